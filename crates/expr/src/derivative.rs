@@ -1,0 +1,147 @@
+//! Exact derivatives and substitution, both on the shared graph.
+
+use std::collections::HashMap;
+
+use crate::graph::{Expr, Graph, Node, NodeId, VariableId};
+use crate::op::{Binary, Unary};
+
+impl<'g> Expr<'g> {
+    /// The exact partial derivative with respect to a variable.
+    ///
+    /// Cost: a few nodes for each node that depends on the variable, once; repeated calls cost only what is new. At a kink
+    /// (`abs`, `min`, `max`) it is the mean of the two sides. The slope of the side that `min` or `max` does not take must
+    /// be finite: it is multiplied by zero.
+    ///
+    /// # Panics
+    /// If `variable` is not a variable, or of another graph.
+    pub fn derivative(self, variable: Expr<'g>) -> Expr<'g> {
+        self.graph.assert_owns(variable);
+        let id = variable.as_variable().expect("the derivative is taken with respect to a variable");
+        let graph = self.graph;
+        if let Some(known) = graph.known_derivative(id, self.id) {
+            return graph.expr(known);
+        }
+        for node in graph.reachable_without_derivative(self.id, id) {
+            let slope = rule(graph, node, id);
+            graph.remember_derivative(id, node, slope.id);
+        }
+        known(graph, self.id, id)
+    }
+}
+
+fn known<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
+    graph.expr(graph.known_derivative(variable, node).expect("operands come before what is made of them"))
+}
+
+/// The derivative of one node, whose operands' derivatives are known.
+fn rule<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
+    let y = graph.expr(node);
+    match graph.node(node) {
+        Node::Constant(_) => graph.constant(0.0),
+        Node::Variable(id) => graph.constant(if id == variable { 1.0 } else { 0.0 }),
+        Node::Unary(op, a) => {
+            let slope = known(graph, a, variable);
+            if slope.is_zero() { slope } else { unary_rule(op, graph.expr(a), y, slope) }
+        }
+        Node::Binary(op, a, b) => {
+            let slopes = (known(graph, a, variable), known(graph, b, variable));
+            if slopes.0.is_zero() && slopes.1.is_zero() {
+                return slopes.0;
+            }
+            binary_rule(op, (graph.expr(a), graph.expr(b)), y, slopes)
+        }
+    }
+}
+
+fn unary_rule<'g>(op: Unary, a: Expr<'g>, y: Expr<'g>, da: Expr<'g>) -> Expr<'g> {
+    match op {
+        Unary::Neg => -da,
+        Unary::Sqrt => da / (2.0 * y),
+        Unary::Sin => a.cos() * da,
+        Unary::Cos => -(a.sin() * da),
+        Unary::Tan => (1.0 + y.squared()) * da,
+        Unary::Asin => da / (1.0 - a.squared()).sqrt(),
+        Unary::Acos => -(da / (1.0 - a.squared()).sqrt()),
+        Unary::Atan => da / (1.0 + a.squared()),
+        Unary::Sinh => a.cosh() * da,
+        Unary::Cosh => a.sinh() * da,
+        Unary::Tanh => (1.0 - y.squared()) * da,
+        Unary::Exp => y * da,
+        Unary::Ln => da / a,
+        Unary::Abs => a.sign() * da,
+        Unary::Sign => a.graph.constant(0.0),
+    }
+}
+
+fn binary_rule<'g>(op: Binary, (a, b): (Expr<'g>, Expr<'g>), y: Expr<'g>, (da, db): (Expr<'g>, Expr<'g>)) -> Expr<'g> {
+    match op {
+        Binary::Add => da + db,
+        Binary::Sub => da - db,
+        Binary::Mul => da * b + a * db,
+        Binary::Div => (da - y * db) / b,
+        // the two parts apart, so that a constant exponent never meets the logarithm of a negative base
+        Binary::Pow if db.is_zero() => b * a.pow(b - 1.0) * da,
+        Binary::Pow if da.is_zero() => y * a.ln() * db,
+        Binary::Pow => b * a.pow(b - 1.0) * da + y * a.ln() * db,
+        Binary::Atan2 => (b * da - a * db) / (a.squared() + b.squared()),
+        // weights 0, ½ or 1, each exact: a large slope of the side that is not taken leaves no rounding error behind
+        Binary::Min => blend((a - b).sign(), db, da),
+        Binary::Max => blend((a - b).sign(), da, db),
+    }
+}
+
+/// One expression where the side is 1, another where it is −1, their mean where it is 0.
+fn blend<'g>(side: Expr<'g>, positive: Expr<'g>, negative: Expr<'g>) -> Expr<'g> {
+    if positive == negative {
+        return positive;
+    }
+    (0.5 + 0.5 * side) * positive + (0.5 - 0.5 * side) * negative
+}
+
+impl Graph {
+    fn reachable_without_derivative(&self, root: NodeId, variable: VariableId) -> Vec<NodeId> {
+        let mut seen = std::collections::HashSet::new();
+        let mut stack = vec![root];
+        while let Some(id) = stack.pop() {
+            if self.known_derivative(variable, id).is_none() && seen.insert(id) {
+                stack.extend(self.node(id).operands());
+            }
+        }
+        let mut order: Vec<NodeId> = seen.into_iter().collect();
+        order.sort_unstable();
+        order
+    }
+
+    /// The expressions with variables replaced, simplified anew. Shared parts stay shared.
+    ///
+    /// # Panics
+    /// If a key of `replacements` is not a variable.
+    pub fn substitute<'g>(&'g self, roots: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
+        let table: HashMap<VariableId, Expr<'g>> = replacements
+            .iter()
+            .map(|(variable, value)| (variable.as_variable().expect("only variables are replaced"), *value))
+            .collect();
+        let mut image: HashMap<NodeId, Expr<'g>> = HashMap::new();
+        for id in self.reachable(roots.iter().map(|root| root.id)) {
+            let new = match self.node(id) {
+                Node::Constant(_) => self.expr(id),
+                Node::Variable(variable) => table.get(&variable).copied().unwrap_or(self.expr(id)),
+                Node::Unary(op, a) => image[&a].unary(op),
+                Node::Binary(op, a, b) => image[&a].binary(op, image[&b]),
+            };
+            image.insert(id, new);
+        }
+        roots.iter().map(|root| image[&root.id]).collect()
+    }
+
+    /// The variables that the expressions depend on, in order of creation.
+    pub fn variables_of(&self, roots: &[Expr<'_>]) -> Vec<VariableId> {
+        let mut found: Vec<VariableId> = self
+            .reachable(roots.iter().map(|root| root.id))
+            .into_iter()
+            .filter_map(|id| self.expr(id).as_variable())
+            .collect();
+        found.sort_unstable();
+        found
+    }
+}

@@ -1,0 +1,243 @@
+//! Chains of elementary transforms between two frames.
+
+use crate::geometry::pose::{Pose, Twist};
+use crate::geometry::vector::{Matrix3, Vector3};
+use crate::graph::{Expr, Graph};
+
+/// The line that a rotation turns about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis<'g> {
+    /// The frame's x axis.
+    X,
+    /// The frame's y axis.
+    Y,
+    /// The frame's z axis.
+    Z,
+    /// A unit vector through the origin.
+    Along(Vector3<'g>),
+}
+
+/// One elementary transform, read from parent to child.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step<'g> {
+    /// The child's origin is moved, its axes stay.
+    Translate(Vector3<'g>),
+    /// The child is turned right-handed about an axis through the common origin.
+    Rotate(Axis<'g>, Expr<'g>),
+    /// An explicit rigid motion.
+    Rigid(Pose<'g>),
+}
+
+impl<'g> Step<'g> {
+    /// The same step from child to parent.
+    pub fn inverse(self) -> Step<'g> {
+        match self {
+            Step::Translate(by) => Step::Translate(-by),
+            Step::Rotate(axis, angle) => Step::Rotate(axis, -angle),
+            Step::Rigid(pose) => Step::Rigid(pose.inverse()),
+        }
+    }
+
+    /// The pose of the child in the parent.
+    pub fn pose(self, graph: &'g Graph) -> Pose<'g> {
+        match self {
+            Step::Translate(translation) => Pose { rotation: Matrix3::identity(graph), translation },
+            Step::Rotate(axis, angle) => {
+                Pose { rotation: rotation(graph, axis, angle), translation: Vector3::zero(graph) }
+            }
+            Step::Rigid(pose) => pose,
+        }
+    }
+
+    /// How the child moves in the parent along a motion, given in the child.
+    pub fn twist(self, graph: &'g Graph, motion: Expr<'g>) -> Twist<'g> {
+        match self {
+            Step::Translate(by) => Twist { angular: Vector3::zero(graph), linear: by.derivative(motion) },
+            Step::Rotate(axis, angle) if axis.stands_still(motion) => {
+                Twist { angular: axis.direction(graph).scaled(angle.derivative(motion)), linear: Vector3::zero(graph) }
+            }
+            Step::Rotate(..) | Step::Rigid(_) => self.pose(graph).twist(motion),
+        }
+    }
+
+    /// One step instead of two, where the two commute into one of the same kind.
+    fn merged(self, next: Step<'g>) -> Option<Step<'g>> {
+        match (self, next) {
+            (Step::Translate(a), Step::Translate(b)) => Some(Step::Translate(a + b)),
+            (Step::Rotate(axis, a), Step::Rotate(same, b)) if axis == same => Some(Step::Rotate(axis, a + b)),
+            _ => None,
+        }
+    }
+
+    fn is_identity(self) -> bool {
+        match self {
+            Step::Translate(by) => by.is_zero(),
+            Step::Rotate(_, angle) => angle.is_zero(),
+            Step::Rigid(_) => false,
+        }
+    }
+
+    fn expressions(self) -> Vec<Expr<'g>> {
+        match self {
+            Step::Translate(by) => by.0.to_vec(),
+            Step::Rotate(Axis::Along(axis), angle) => axis.0.into_iter().chain([angle]).collect(),
+            Step::Rotate(_, angle) => vec![angle],
+            Step::Rigid(pose) => pose.rotation.entries().into_iter().chain(pose.translation.0).collect(),
+        }
+    }
+
+    fn rebuilt(self, new: &[Expr<'g>]) -> Step<'g> {
+        match self {
+            Step::Translate(_) => Step::Translate(Vector3([new[0], new[1], new[2]])),
+            Step::Rotate(Axis::Along(_), _) => Step::Rotate(Axis::Along(Vector3([new[0], new[1], new[2]])), new[3]),
+            Step::Rotate(axis, _) => Step::Rotate(axis, new[0]),
+            Step::Rigid(_) => {
+                let row = |i: usize| Vector3([new[3 * i], new[3 * i + 1], new[3 * i + 2]]);
+                Step::Rigid(Pose { rotation: Matrix3([row(0), row(1), row(2)]), translation: row(3) })
+            }
+        }
+    }
+}
+
+impl<'g> Axis<'g> {
+    /// The axis as a unit vector.
+    pub fn direction(self, graph: &'g Graph) -> Vector3<'g> {
+        match self {
+            Axis::X => Vector3::constant(graph, [1.0, 0.0, 0.0]),
+            Axis::Y => Vector3::constant(graph, [0.0, 1.0, 0.0]),
+            Axis::Z => Vector3::constant(graph, [0.0, 0.0, 1.0]),
+            Axis::Along(axis) => axis,
+        }
+    }
+
+    fn stands_still(self, motion: Expr<'g>) -> bool {
+        match self {
+            Axis::Along(axis) => axis.derivative(motion).is_zero(),
+            Axis::X | Axis::Y | Axis::Z => true,
+        }
+    }
+}
+
+/// Right-handed rotation: about x, y, z as usual, about any unit vector by Rodrigues' formula.
+fn rotation<'g>(graph: &'g Graph, axis: Axis<'g>, angle: Expr<'g>) -> Matrix3<'g> {
+    let (c, s) = (angle.cos(), angle.sin());
+    let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
+    let rows = match axis {
+        Axis::X => [[one, zero, zero], [zero, c, -s], [zero, s, c]],
+        Axis::Y => [[c, zero, s], [zero, one, zero], [-s, zero, c]],
+        Axis::Z => [[c, -s, zero], [s, c, zero], [zero, zero, one]],
+        Axis::Along(Vector3([x, y, z])) => {
+            let v = 1.0 - c;
+            [
+                [c + x * x * v, x * y * v - z * s, x * z * v + y * s],
+                [x * y * v + z * s, c + y * y * v, y * z * v - x * s],
+                [x * z * v - y * s, y * z * v + x * s, c + z * z * v],
+            ]
+        }
+    };
+    Matrix3(rows.map(Vector3))
+}
+
+/// Elementary transforms in a row: the pose of the last child in the first parent.
+///
+/// A chain named `t_work_hob` leads from the work frame (left) to the hob frame (right).
+#[derive(Clone, Debug)]
+pub struct Chain<'g> {
+    graph: &'g Graph,
+    steps: Vec<Step<'g>>,
+}
+
+impl<'g> Chain<'g> {
+    /// A chain from its steps, read from parent to child, exactly as given.
+    pub fn new(graph: &'g Graph, steps: Vec<Step<'g>>) -> Chain<'g> {
+        Chain { graph, steps }
+    }
+
+    /// The steps, from parent to child.
+    pub fn steps(&self) -> &[Step<'g>] {
+        &self.steps
+    }
+
+    /// `t_a_b.then(t_b_c) = t_a_c`, steps side by side.
+    pub fn then(&self, t_b_c: &Chain<'g>) -> Chain<'g> {
+        Chain { graph: self.graph, steps: self.steps.iter().chain(&t_b_c.steps).copied().collect() }
+    }
+
+    /// The pose of the parent in the child.
+    pub fn inverse(&self) -> Chain<'g> {
+        Chain { graph: self.graph, steps: self.steps.iter().rev().map(|step| step.inverse()).collect() }
+    }
+
+    /// Neighbours of one kind merged (two rotations about one axis add their angles), steps that do nothing left out.
+    pub fn merged(&self) -> Chain<'g> {
+        let mut steps: Vec<Step<'g>> = Vec::new();
+        for &step in &self.steps {
+            let next = match steps.last().and_then(|last| last.merged(step)) {
+                Some(both) => {
+                    steps.pop();
+                    both
+                }
+                None => step,
+            };
+            if !next.is_identity() {
+                steps.push(next);
+            }
+        }
+        Chain { graph: self.graph, steps }
+    }
+
+    /// The chain with variables replaced by expressions.
+    pub fn substituted(&self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Chain<'g> {
+        let parts: Vec<Vec<Expr<'g>>> = self.steps.iter().map(|step| step.expressions()).collect();
+        let mut new = self.graph.substitute(&parts.concat(), replacements).into_iter();
+        let steps = self
+            .steps
+            .iter()
+            .zip(&parts)
+            .map(|(step, old)| step.rebuilt(&new.by_ref().take(old.len()).collect::<Vec<_>>()))
+            .collect();
+        Chain { graph: self.graph, steps }
+    }
+
+    /// The pose that the chain amounts to.
+    pub fn pose(&self) -> Pose<'g> {
+        self.steps.iter().fold(Pose::identity(self.graph), |pose, step| pose.then(step.pose(self.graph)))
+    }
+
+    /// A point of the last frame in the first: the steps are applied to the vector one by one.
+    pub fn point(&self, p_child: Vector3<'g>) -> Vector3<'g> {
+        self.steps.iter().rev().fold(p_child, |p, step| match *step {
+            Step::Translate(by) => p + by,
+            _ => step.pose(self.graph).point(p),
+        })
+    }
+
+    /// A direction of the last frame in the first.
+    pub fn direction(&self, n_child: Vector3<'g>) -> Vector3<'g> {
+        self.steps.iter().rev().fold(n_child, |n, step| match *step {
+            Step::Translate(_) => n,
+            _ => step.pose(self.graph).direction(n),
+        })
+    }
+
+    /// M⁻¹ ∂M/∂motion, given in the last frame; it does not depend on any point.
+    ///
+    /// Each step adds its own twist to what the steps before it did, seen from its child.
+    pub fn twist(&self, motion: Expr<'g>) -> Twist<'g> {
+        self.steps.iter().fold(Twist::zero(self.graph), |before, step| {
+            let carried = match *step {
+                _ if before.is_zero() => before,
+                Step::Translate(by) => Twist { angular: before.angular, linear: before.velocity(by) },
+                _ => {
+                    let Pose { rotation, translation } = step.pose(self.graph);
+                    let into_child = rotation.transposed();
+                    Twist {
+                        angular: into_child.times(before.angular),
+                        linear: into_child.times(before.velocity(translation)),
+                    }
+                }
+            };
+            carried.plus(step.twist(self.graph, motion))
+        })
+    }
+}

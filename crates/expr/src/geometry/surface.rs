@@ -1,0 +1,65 @@
+//! Surfaces under constraint: the one idea that carries everything.
+
+use crate::geometry::chain::Chain;
+use crate::geometry::vector::Vector3;
+use crate::graph::Expr;
+
+/// A surface as four symbolic things: unknowns, position, normal, constraints.
+///
+/// It has two more unknowns than constraints. Whatever generates or moves a surface maps surfaces to surfaces.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Surface<'g> {
+    /// The variables that it is described with.
+    pub unknowns: Vec<Expr<'g>>,
+    /// A point of it, mm, in one frame.
+    pub position: Vector3<'g>,
+    /// Unit vector in the same frame, out of the body that owns the surface.
+    pub normal: Vector3<'g>,
+    /// What must be zero for the point to lie on it.
+    pub constraints: Vec<Expr<'g>>,
+}
+
+impl<'g> Surface<'g> {
+    /// A parametric surface `position(u, v)`, whose body lies against `r_u × r_v` (or along it, if `flipped`).
+    pub fn parametric(unknowns: [Expr<'g>; 2], position: Vector3<'g>, flipped: bool) -> Surface<'g> {
+        let normal = Surface::raw_normal(unknowns, position).normalized();
+        let normal = if flipped { -normal } else { normal };
+        Surface { unknowns: unknowns.to_vec(), position, normal, constraints: Vec::new() }
+    }
+
+    /// `r_u × r_v`, not of unit length.
+    pub fn raw_normal([u, v]: [Expr<'g>; 2], position: Vector3<'g>) -> Vector3<'g> {
+        position.derivative(u).cross(position.derivative(v))
+    }
+
+    /// The same surface seen from the frame at the other end of a chain that does not depend on its unknowns.
+    pub fn moved(&self, t_frame_own: &Chain<'g>) -> Surface<'g> {
+        Surface {
+            position: t_frame_own.point(self.position),
+            normal: t_frame_own.direction(self.normal),
+            ..self.clone()
+        }
+    }
+
+    /// What this surface, as a tool, leaves on a work that it moves against.
+    ///
+    /// `t_work_tool` is the pose of the tool in the work and depends on `motions`. Each motion adds itself as an unknown
+    /// and its equation of meshing `n · v = 0` as a constraint (see [`Surface::meshing`]). The work's material lies on
+    /// the other side of the surface, so its normal is turned round. No motion at all is a plunged (Formate) member.
+    pub fn envelope(&self, t_work_tool: &Chain<'g>, motions: &[Expr<'g>]) -> Surface<'g> {
+        let meshing = motions.iter().map(|&motion| self.meshing(t_work_tool, motion));
+        let moved = self.moved(t_work_tool);
+        Surface {
+            unknowns: self.unknowns.iter().chain(motions).copied().collect(),
+            position: moved.position,
+            normal: -moved.normal,
+            constraints: self.constraints.iter().copied().chain(meshing).collect(),
+        }
+    }
+
+    /// The equation of meshing of one motion, mm per unit of the motion: `n · (ω × r + v)`, with the twist of the tool
+    /// against the work in the tool's own frame. It equals `det(r_u, r_v, r_motion) / |r_u × r_v|` in the work's frame.
+    pub fn meshing(&self, t_work_tool: &Chain<'g>, motion: Expr<'g>) -> Expr<'g> {
+        self.normal.dot(t_work_tool.twist(motion).velocity(self.position))
+    }
+}

@@ -1,0 +1,124 @@
+//! Vectors and matrices of symbolic scalars.
+
+use std::ops::{Add, Neg, Sub};
+
+use crate::graph::{Expr, Graph};
+
+/// A vector of three scalars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Vector3<'g>(pub [Expr<'g>; 3]);
+
+impl<'g> Vector3<'g> {
+    /// The vector of zeros.
+    pub fn zero(graph: &'g Graph) -> Vector3<'g> {
+        Vector3([graph.constant(0.0); 3])
+    }
+
+    /// A vector of numbers.
+    pub fn constant(graph: &'g Graph, components: [f64; 3]) -> Vector3<'g> {
+        Vector3(components.map(|component| graph.constant(component)))
+    }
+
+    /// The same operation on each component.
+    pub fn map(self, operation: impl FnMut(Expr<'g>) -> Expr<'g>) -> Vector3<'g> {
+        Vector3(self.0.map(operation))
+    }
+
+    /// a · b.
+    pub fn dot(self, other: Vector3<'g>) -> Expr<'g> {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        a * x + b * y + c * z
+    }
+
+    /// a × b.
+    pub fn cross(self, other: Vector3<'g>) -> Vector3<'g> {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Vector3([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
+    /// Length.
+    pub fn norm(self) -> Expr<'g> {
+        self.dot(self).sqrt()
+    }
+
+    /// Multiplied by a scalar.
+    pub fn scaled(self, factor: Expr<'g>) -> Vector3<'g> {
+        self.map(|component| factor * component)
+    }
+
+    /// Divided by its length.
+    pub fn normalized(self) -> Vector3<'g> {
+        let norm = self.norm();
+        self.map(|component| component / norm)
+    }
+
+    /// Partial derivative of each component.
+    pub fn derivative(self, variable: Expr<'g>) -> Vector3<'g> {
+        self.map(|component| component.derivative(variable))
+    }
+
+    /// True if every component is the number zero.
+    pub fn is_zero(self) -> bool {
+        self.0.iter().all(|component| component.is_zero())
+    }
+}
+
+impl<'g> Add for Vector3<'g> {
+    type Output = Vector3<'g>;
+    fn add(self, other: Vector3<'g>) -> Vector3<'g> {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Vector3([a + x, b + y, c + z])
+    }
+}
+
+impl<'g> Sub for Vector3<'g> {
+    type Output = Vector3<'g>;
+    fn sub(self, other: Vector3<'g>) -> Vector3<'g> {
+        self + -other
+    }
+}
+
+impl<'g> Neg for Vector3<'g> {
+    type Output = Vector3<'g>;
+    fn neg(self) -> Vector3<'g> {
+        self.map(|component| -component)
+    }
+}
+
+/// A 3 × 3 matrix of scalars, as rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Matrix3<'g>(pub [Vector3<'g>; 3]);
+
+impl<'g> Matrix3<'g> {
+    /// Ones on the diagonal.
+    pub fn identity(graph: &'g Graph) -> Matrix3<'g> {
+        let row = |k: usize| Vector3(std::array::from_fn(|j| graph.constant(if j == k { 1.0 } else { 0.0 })));
+        Matrix3([row(0), row(1), row(2)])
+    }
+
+    /// Rows and columns exchanged: the inverse of a rotation.
+    pub fn transposed(self) -> Matrix3<'g> {
+        Matrix3(std::array::from_fn(|i| Vector3(std::array::from_fn(|j| self.0[j].0[i]))))
+    }
+
+    /// Matrix times column.
+    pub fn times(self, column: Vector3<'g>) -> Vector3<'g> {
+        Vector3(self.0.map(|row| row.dot(column)))
+    }
+
+    /// Matrix times matrix.
+    pub fn product(self, right: Matrix3<'g>) -> Matrix3<'g> {
+        let columns = right.transposed();
+        Matrix3(self.0.map(|row| columns.times(row)))
+    }
+
+    /// Partial derivative of each entry.
+    pub fn derivative(self, variable: Expr<'g>) -> Matrix3<'g> {
+        Matrix3(self.0.map(|row| row.derivative(variable)))
+    }
+
+    /// All entries, row by row.
+    pub fn entries(self) -> [Expr<'g>; 9] {
+        std::array::from_fn(|k| self.0[k / 3].0[k % 3])
+    }
+}

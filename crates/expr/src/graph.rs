@@ -1,0 +1,370 @@
+//! A graph in which equal expressions are one node.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::op::{Binary, Unary};
+use crate::rules;
+
+/// Index of a node. Operands always have smaller indices than what is made of them.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct NodeId(pub(crate) u32);
+
+/// Index of a variable, in order of creation.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct VariableId(pub(crate) u32);
+
+impl VariableId {
+    /// Position in a slice that holds one entry per variable of the graph.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// One node of the graph.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// A number, kept as its bits so that it can be a key. There is one zero and one NaN.
+    Constant(u64),
+    /// A variable.
+    Variable(VariableId),
+    /// An operation on one node.
+    Unary(Unary, NodeId),
+    /// An operation on two nodes.
+    Binary(Binary, NodeId, NodeId),
+}
+
+impl Node {
+    pub(crate) fn constant(value: f64) -> Node {
+        let settled = if value == 0.0 {
+            0.0
+        } else if value.is_nan() {
+            f64::NAN
+        } else {
+            value
+        };
+        Node::Constant(settled.to_bits())
+    }
+
+    /// The nodes it is made of.
+    pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
+        let (a, b) = match self {
+            Node::Constant(_) | Node::Variable(_) => (None, None),
+            Node::Unary(_, a) => (Some(a), None),
+            Node::Binary(_, a, b) => (Some(a), Some(b)),
+        };
+        a.into_iter().chain(b)
+    }
+}
+
+#[derive(Default)]
+struct Store {
+    nodes: Vec<Node>,
+    index: HashMap<Node, NodeId>,
+    variables: Vec<String>,
+    derivatives: HashMap<(VariableId, NodeId), NodeId>,
+}
+
+/// The arena of all symbolic scalars of one model.
+///
+/// Nodes are never removed; two equal expressions are the same node, so a derivative or a product costs only what is new
+/// in it.
+///
+/// ```
+/// let graph = flank_expr::Graph::new();
+/// let x = graph.variable("x");
+/// let f = (x * 2.0).sin() * x;
+/// let slope = f.derivative(x);
+/// assert_eq!(graph.evaluate(&[slope], &[0.0]), [0.0]);
+/// ```
+#[derive(Default)]
+pub struct Graph {
+    store: RefCell<Store>,
+}
+
+impl fmt::Debug for Graph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Graph({} nodes)", self.len())
+    }
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Graph {
+        Graph::default()
+    }
+
+    /// Number of nodes made so far.
+    pub fn len(&self) -> usize {
+        self.store.borrow().nodes.len()
+    }
+
+    /// True before the first node.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A number.
+    pub fn constant(&self, value: f64) -> Expr<'_> {
+        self.intern(Node::constant(value))
+    }
+
+    /// A new variable; names are for printing, two variables of one name are two variables.
+    pub fn variable(&self, name: impl Into<String>) -> Expr<'_> {
+        let id = {
+            let mut store = self.store.borrow_mut();
+            store.variables.push(name.into());
+            VariableId(store.variables.len() as u32 - 1)
+        };
+        self.intern(Node::Variable(id))
+    }
+
+    /// Number of variables made so far.
+    pub fn variable_count(&self) -> usize {
+        self.store.borrow().variables.len()
+    }
+
+    /// The name of a variable.
+    pub fn variable_name(&self, variable: VariableId) -> String {
+        self.store.borrow().variables[variable.index()].clone()
+    }
+
+    /// An expression of another graph would silently mean some other node.
+    pub(crate) fn assert_owns(&self, expr: Expr<'_>) {
+        assert!(std::ptr::eq(self, expr.graph), "expressions of two graphs");
+    }
+
+    pub(crate) fn node(&self, id: NodeId) -> Node {
+        self.store.borrow().nodes[id.0 as usize]
+    }
+
+    pub(crate) fn expr(&self, id: NodeId) -> Expr<'_> {
+        Expr { graph: self, id }
+    }
+
+    pub(crate) fn intern(&self, node: Node) -> Expr<'_> {
+        let mut guard = self.store.borrow_mut();
+        let store = &mut *guard;
+        let next = NodeId(u32::try_from(store.nodes.len()).expect("fewer than 2³² nodes"));
+        let id = *store.index.entry(node).or_insert(next);
+        if id == next {
+            store.nodes.push(node);
+        }
+        drop(guard);
+        self.expr(id)
+    }
+
+    pub(crate) fn known_derivative(&self, variable: VariableId, id: NodeId) -> Option<NodeId> {
+        self.store.borrow().derivatives.get(&(variable, id)).copied()
+    }
+
+    pub(crate) fn remember_derivative(&self, variable: VariableId, id: NodeId, derivative: NodeId) {
+        self.store.borrow_mut().derivatives.insert((variable, id), derivative);
+    }
+
+    /// Every node that the roots are made of, operands before what is made of them.
+    pub(crate) fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
+        let store = self.store.borrow();
+        let mut seen = std::collections::HashSet::new();
+        let mut stack: Vec<NodeId> = roots.into_iter().collect();
+        while let Some(id) = stack.pop() {
+            if seen.insert(id) {
+                stack.extend(store.nodes[id.0 as usize].operands());
+            }
+        }
+        let mut order: Vec<NodeId> = seen.into_iter().collect();
+        order.sort_unstable();
+        order
+    }
+
+    /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.
+    pub fn count(&self, roots: &[Expr<'_>]) -> NodeCount {
+        let order = self.reachable(roots.iter().map(|root| root.id));
+        let mut written: HashMap<NodeId, f64> = HashMap::with_capacity(order.len());
+        for &id in &order {
+            let below: f64 = self.node(id).operands().map(|operand| written[&operand]).sum();
+            written.insert(id, below + 1.0);
+        }
+        NodeCount { written_out: roots.iter().map(|root| written[&root.id]).sum(), shared: order.len() }
+    }
+}
+
+/// Size of a set of expressions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeCount {
+    /// Nodes when every use of a part is written out again (a float: it grows exponentially).
+    pub written_out: f64,
+    /// Nodes when equal parts are shared.
+    pub shared: usize,
+}
+
+/// A symbolic scalar: a handle into its graph.
+#[derive(Clone, Copy)]
+pub struct Expr<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) id: NodeId,
+}
+
+impl PartialEq for Expr<'_> {
+    /// Same node of the same graph.
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id && std::ptr::eq(self.graph, other.graph)
+    }
+}
+
+impl Eq for Expr<'_> {}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The graph it lives in.
+    pub fn graph(self) -> &'g Graph {
+        self.graph
+    }
+
+    /// What it is made of.
+    pub fn node(self) -> Node {
+        self.graph.node(self.id)
+    }
+
+    /// Its value if it is a number.
+    pub fn as_constant(self) -> Option<f64> {
+        match self.node() {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// Its variable if it is one.
+    pub fn as_variable(self) -> Option<VariableId> {
+        match self.node() {
+            Node::Variable(id) => Some(id),
+            _ => None,
+        }
+    }
+
+    /// True for the number zero.
+    pub fn is_zero(self) -> bool {
+        self.as_constant() == Some(0.0)
+    }
+
+    /// An operation on it, simplified.
+    pub fn unary(self, op: Unary) -> Expr<'g> {
+        rules::unary(op, self)
+    }
+
+    /// An operation on it and another one, simplified.
+    ///
+    /// # Panics
+    /// If the two are of different graphs.
+    pub fn binary(self, op: Binary, other: Expr<'g>) -> Expr<'g> {
+        self.graph.assert_owns(other);
+        rules::binary(op, self, other)
+    }
+
+    /// x·x.
+    pub fn squared(self) -> Expr<'g> {
+        self * self
+    }
+
+    /// Integer power by repeated squaring; negative ones divide.
+    pub fn powi(self, exponent: i32) -> Expr<'g> {
+        let one = self.graph.constant(1.0);
+        let (mut result, mut square, mut left) = (one, self, exponent.unsigned_abs());
+        while left > 0 {
+            if left & 1 == 1 {
+                result = result * square;
+            }
+            left >>= 1;
+            if left > 0 {
+                square = square.squared();
+            }
+        }
+        if exponent < 0 { one / result } else { result }
+    }
+}
+
+macro_rules! unary_methods {
+    ($($method:ident $op:ident $doc:literal;)*) => {
+        impl<'g> Expr<'g> {
+            $(#[doc = $doc] pub fn $method(self) -> Expr<'g> { self.unary(Unary::$op) })*
+        }
+    };
+}
+
+unary_methods! {
+    sqrt Sqrt "Square root; NaN below zero.";
+    sin Sin "Sine of radians.";
+    cos Cos "Cosine of radians.";
+    tan Tan "Tangent of radians.";
+    asin Asin "Arc sine in radians; NaN outside [−1, 1].";
+    acos Acos "Arc cosine in radians; NaN outside [−1, 1].";
+    atan Atan "Arc tangent in radians.";
+    sinh Sinh "Hyperbolic sine.";
+    cosh Cosh "Hyperbolic cosine.";
+    tanh Tanh "Hyperbolic tangent.";
+    exp Exp "Exponential.";
+    ln Ln "Natural logarithm; NaN below zero.";
+    abs Abs "Absolute value; its derivative at zero is taken as zero.";
+    sign Sign "−1, 0 or 1.";
+}
+
+macro_rules! binary_methods {
+    ($($method:ident $op:ident $doc:literal;)*) => {
+        impl<'g> Expr<'g> {
+            $(#[doc = $doc] pub fn $method(self, other: Expr<'g>) -> Expr<'g> { self.binary(Binary::$op, other) })*
+        }
+    };
+}
+
+binary_methods! {
+    pow Pow "Power with any exponent.";
+    atan2 Atan2 "Angle of the point (x = `other`, y = `self`) in (−π, π].";
+    min Min "The smaller of two.";
+    max Max "The larger of two.";
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $op:ident;)*) => {$(
+        impl<'g> $trait for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                self.binary(Binary::$op, other)
+            }
+        }
+
+        impl<'g> $trait<f64> for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: f64) -> Expr<'g> {
+                self.binary(Binary::$op, self.graph.constant(other))
+            }
+        }
+
+        impl<'g> $trait<Expr<'g>> for f64 {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                other.graph.constant(self).binary(Binary::$op, other)
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add Add;
+    Sub sub Sub;
+    Mul mul Mul;
+    Div div Div;
+}
+
+impl<'g> Neg for Expr<'g> {
+    type Output = Expr<'g>;
+    fn neg(self) -> Expr<'g> {
+        self.unary(Unary::Neg)
+    }
+}

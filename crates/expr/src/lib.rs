@@ -1,0 +1,35 @@
+//! Symbolic scalars that share everything, differentiate exactly, and run as tapes; and the geometry of rigid motions and
+//! enveloped surfaces over such scalars.
+//!
+//! Order of the modules is the pipeline: a [`Graph`] makes [`Expr`]s and simplifies them on construction, `derivative`
+//! differentiates on the shared graph, [`Tape`] lays expressions out for fast evaluation. [`geometry`] builds vectors,
+//! poses, chains, twists and surfaces under constraint from them. Nothing here knows of machines or gears.
+//!
+//! ```
+//! use flank_expr::{Graph, ScalarEvaluator, Tape};
+//!
+//! let graph = Graph::new();
+//! let (x, y) = (graph.variable("x"), graph.variable("y"));
+//! let f = x.sin() * y;
+//! let tape = Tape::new(&[f, f.derivative(x)], &[x, y]).expect("x and y are the inputs");
+//! let mut evaluator = ScalarEvaluator::new(&tape);
+//! let mut out = [0.0; 2];
+//! evaluator.run(&[0.0, 3.0], &mut out);
+//! assert_eq!(out, [0.0, 3.0]);
+//! ```
+
+mod derivative;
+mod evaluate;
+pub mod geometry;
+mod graph;
+mod interpret;
+mod op;
+mod print;
+mod rules;
+mod tape;
+
+pub use evaluate::ScalarEvaluator;
+pub use graph::{Expr, Graph, Node, NodeCount, NodeId, VariableId};
+pub use op::{Binary, Unary};
+pub use print::{Definition, Listing, Style};
+pub use tape::{Instruction, Operation, Tape, TapeError};

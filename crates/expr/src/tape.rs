@@ -1,0 +1,203 @@
+//! Expressions laid out as a list of instructions.
+
+use std::collections::HashMap;
+
+use thiserror::Error;
+
+use crate::graph::{Expr, Graph, Node, NodeId};
+use crate::op::{Binary, Unary};
+
+/// What an instruction does with its registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// `out = op(a)`; `b` is unused.
+    Unary(Unary),
+    /// `out = op(a, b)`.
+    Binary(Binary),
+}
+
+/// One step: read registers `a` and `b`, write register `out`, which may be one of the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instruction {
+    /// What is done.
+    pub operation: Operation,
+    /// The register written.
+    pub out: u32,
+    /// The first operand.
+    pub a: u32,
+    /// The second operand.
+    pub b: u32,
+}
+
+// Evaluation streams through instructions: their size is memory traffic.
+const _: () = assert!(size_of::<Instruction>() == 16);
+
+/// A straight list of instructions that computes some outputs from some inputs.
+///
+/// Registers hold the inputs first, then the constants, then temporaries, which are used again once their value is dead.
+#[derive(Clone, Debug)]
+pub struct Tape {
+    input_count: usize,
+    constants: Vec<f64>,
+    instructions: Vec<Instruction>,
+    outputs: Vec<u32>,
+    register_count: usize,
+}
+
+/// Why a tape cannot be made.
+#[derive(Debug, Error, PartialEq, Eq)]
+pub enum TapeError {
+    /// An output depends on a variable that is not among the inputs.
+    #[error("`{0}` has no value: it is not among the inputs of the tape")]
+    UnboundVariable(String),
+}
+
+impl Tape {
+    /// Lays out `outputs` as functions of the variables `inputs`. Of a variable given twice the last entry counts.
+    ///
+    /// # Errors
+    /// If an output depends on a variable that is not an input.
+    ///
+    /// # Panics
+    /// If an entry of `inputs` is not a variable, or the expressions are of different graphs.
+    pub fn new(outputs: &[Expr<'_>], inputs: &[Expr<'_>]) -> Result<Tape, TapeError> {
+        assert!(inputs.iter().all(|input| input.as_variable().is_some()), "inputs of a tape are variables");
+        let mut tape = Tape {
+            input_count: inputs.len(),
+            constants: Vec::new(),
+            instructions: Vec::new(),
+            outputs: Vec::new(),
+            register_count: inputs.len(),
+        };
+        let Some(first) = outputs.first() else {
+            return Ok(tape);
+        };
+        let graph = first.graph();
+        for &expr in outputs.iter().chain(inputs) {
+            graph.assert_owns(expr);
+        }
+        let order = graph.reachable(outputs.iter().map(|output| output.id));
+        let mut registers = Registers::new(graph, &order, outputs);
+        for (index, input) in inputs.iter().enumerate() {
+            registers.place.insert(input.id, index as u32);
+        }
+        tape.place_leaves(graph, &order, &mut registers)?;
+        registers.next = (tape.input_count + tape.constants.len()) as u32;
+        tape.instructions = order.iter().filter_map(|&id| registers.step(graph, id)).collect();
+        tape.outputs = outputs.iter().map(|output| registers.place[&output.id]).collect();
+        tape.register_count = registers.next as usize;
+        Ok(tape)
+    }
+
+    fn place_leaves(&mut self, graph: &Graph, order: &[NodeId], registers: &mut Registers) -> Result<(), TapeError> {
+        for &id in order {
+            match graph.node(id) {
+                Node::Constant(bits) => {
+                    registers.place.insert(id, (self.input_count + self.constants.len()) as u32);
+                    self.constants.push(f64::from_bits(bits));
+                }
+                Node::Variable(variable) if !registers.place.contains_key(&id) => {
+                    return Err(TapeError::UnboundVariable(graph.variable_name(variable)));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of inputs.
+    pub fn input_count(&self) -> usize {
+        self.input_count
+    }
+
+    /// Number of outputs.
+    pub fn output_count(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// Registers that an evaluator needs.
+    pub fn register_count(&self) -> usize {
+        self.register_count
+    }
+
+    /// The numbers in the registers after the inputs.
+    pub fn constants(&self) -> &[f64] {
+        &self.constants
+    }
+
+    /// The steps.
+    pub fn instructions(&self) -> &[Instruction] {
+        &self.instructions
+    }
+
+    /// Register of each output after the last step.
+    pub fn outputs(&self) -> &[u32] {
+        &self.outputs
+    }
+}
+
+/// Which node lives in which register, and which registers are free.
+struct Registers {
+    place: HashMap<NodeId, u32>,
+    uses: HashMap<NodeId, u32>,
+    free: Vec<u32>,
+    next: u32,
+}
+
+impl Registers {
+    fn new(graph: &Graph, order: &[NodeId], outputs: &[Expr<'_>]) -> Registers {
+        let mut uses = HashMap::with_capacity(order.len());
+        for &id in order {
+            let mut operands: Vec<NodeId> = graph.node(id).operands().collect();
+            operands.dedup();
+            for operand in operands {
+                *uses.entry(operand).or_insert(0) += 1;
+            }
+        }
+        // an output is read once more, after the last step
+        for output in outputs {
+            *uses.entry(output.id).or_insert(0) += 1;
+        }
+        // leaves are never written again
+        for &id in order {
+            if matches!(graph.node(id), Node::Constant(_) | Node::Variable(_)) {
+                uses.insert(id, u32::MAX);
+            }
+        }
+        Registers { place: HashMap::new(), uses, free: Vec::new(), next: 0 }
+    }
+
+    /// The instruction of a node; none for a leaf, which is in its register from the start.
+    fn step(&mut self, graph: &Graph, id: NodeId) -> Option<Instruction> {
+        let (operation, a, b) = match graph.node(id) {
+            Node::Unary(op, a) => (Operation::Unary(op), a, a),
+            Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
+            Node::Constant(_) | Node::Variable(_) => return None,
+        };
+        let (a_register, b_register) = (self.place[&a], self.place[&b]);
+        self.release(a);
+        if b != a {
+            self.release(b);
+        }
+        Some(Instruction { operation, out: self.allocate(id), a: a_register, b: b_register })
+    }
+
+    fn release(&mut self, id: NodeId) {
+        let Some(left) = self.uses.get_mut(&id).filter(|left| **left != u32::MAX) else {
+            return;
+        };
+        *left -= 1;
+        if *left == 0 {
+            self.free.push(self.place[&id]);
+        }
+    }
+
+    fn allocate(&mut self, id: NodeId) -> u32 {
+        let register = self.free.pop().unwrap_or_else(|| {
+            self.next += 1;
+            self.next - 1
+        });
+        self.place.insert(id, register);
+        register
+    }
+}

@@ -1,0 +1,106 @@
+//! Every evaluator of tapes passes one suite against the oracle.
+
+#[path = "evaluators/suite.rs"]
+mod suite;
+mod support;
+
+use flank_expr::{Graph, ScalarEvaluator, Tape};
+use suite::Subject;
+
+struct Scalar;
+
+impl Subject for Scalar {
+    type Value = f64;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut evaluator = ScalarEvaluator::new(tape);
+        points
+            .iter()
+            .map(|point| {
+                let mut outputs = vec![f64::NAN; tape.output_count()];
+                evaluator.run(point, &mut outputs);
+                outputs
+            })
+            .collect()
+    }
+
+    fn agrees(expected: f64, found: &f64) -> bool {
+        expected.to_bits() == found.to_bits() || expected.is_nan() && found.is_nan()
+    }
+}
+
+evaluator_suite!(scalar, Scalar);
+
+/// Evaluators that are wrong in one way each: the suite must notice.
+mod the_suite_notices {
+    use super::*;
+    use flank_expr::Operation;
+
+    /// Runs a tape by hand with the mistake in `write`.
+    fn run(tape: &Tape, point: &[f64], write: impl Fn(&mut [f64], usize, f64)) -> Vec<f64> {
+        let mut registers = vec![0.0; tape.register_count()];
+        registers[..point.len()].copy_from_slice(point);
+        registers[point.len()..][..tape.constants().len()].copy_from_slice(tape.constants());
+        for step in tape.instructions() {
+            let (a, b) = (registers[step.a as usize], registers[step.b as usize]);
+            let value = match step.operation {
+                Operation::Unary(op) => op.apply(a),
+                Operation::Binary(op) => op.apply(a, b),
+            };
+            write(&mut registers, step.out as usize, value);
+        }
+        let read = |&register: &u32| registers[register as usize];
+        tape.outputs().iter().map(read).collect()
+    }
+
+    macro_rules! mistake {
+        ($name:ident $subject:ident $check:ident $write:expr) => {
+            struct $subject;
+
+            impl Subject for $subject {
+                type Value = f64;
+
+                fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+                    points.iter().map(|point| run(tape, point, $write)).collect()
+                }
+
+                fn agrees(expected: f64, found: &f64) -> bool {
+                    Scalar::agrees(expected, found)
+                }
+            }
+
+            #[test]
+            #[should_panic(expected = "oracle")]
+            fn $name() {
+                suite::$check::<$subject>();
+            }
+        };
+    }
+
+    mistake!(one_unit_in_the_last_place LastPlace every_unary_alone |registers, out, value| {
+        registers[out] = value.next_up();
+    });
+    mistake!(a_lost_sign_of_zero LostSign every_binary_alone |registers, out, value| {
+        registers[out] = if value == 0.0 { 0.0 } else { value };
+    });
+    mistake!(a_nan_that_became_a_number LostNan random_programs |registers, out, value| {
+        registers[out] = if value.is_nan() { 0.0 } else { value };
+    });
+    mistake!(a_register_too_far Neighbour combinations |registers, out, value| {
+        registers[(out + 1) % registers.len()] = value;
+    });
+}
+
+/// Registers are free again after their last use, also that of both operands at once.
+#[test]
+fn a_long_chain_runs_in_a_few_registers() {
+    let graph = Graph::new();
+    let (x, y) = (graph.variable("x"), graph.variable("y"));
+    let mut f = x;
+    for _ in 0..100 {
+        f = (f * f - y).sin() + f.cos();
+    }
+    let tape = Tape::new(&[f], &[x, y]).expect("every variable is an input");
+    assert_eq!(tape.instructions().len(), 500);
+    assert!(tape.register_count() <= 5, "{} registers", tape.register_count());
+}
