@@ -1,0 +1,188 @@
+//! From files to a model.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use flank_expr::Graph;
+
+use crate::codes::Code;
+use crate::context::{Context, Scope, Value};
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::functions;
+use crate::instance::{Overrides, Source};
+use crate::job::{self, Definitions};
+use crate::load::{self, Loaded};
+use crate::machine::{self, Machines};
+use crate::model::Job;
+use crate::source::{FileId, Name, Sources, Span};
+use crate::syntax::ast::{self, Item};
+use crate::syntax::parse_expression;
+use crate::tool::{self, Tools};
+
+/// What became of a text.
+#[derive(Clone, Debug)]
+pub struct Compilation<'g> {
+    /// The texts, for showing places in them.
+    pub sources: Sources,
+    /// Findings in the order of their places.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The jobs of the file itself (not those of the files it uses); none if there is an error.
+    pub jobs: Vec<Job<'g>>,
+}
+
+impl Compilation<'_> {
+    /// True if the text means nothing.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error)
+    }
+}
+
+/// Reads a file, everything it uses, and builds its jobs in an empty graph.
+///
+/// `overrides` are pairs of a name (`ratio`, `m.swivel`) and a value as text (`2 mm`) that win over what the text says.
+pub fn compile_file<'g>(graph: &'g Graph, path: &Path, overrides: &[(String, String)]) -> Compilation<'g> {
+    compile(graph, load::load(path), overrides)
+}
+
+/// The same for a text in memory, which can use no other file.
+pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(String, String)]) -> Compilation<'g> {
+    compile(graph, load::load_text(name, text), overrides)
+}
+
+fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
+    let Loaded { mut sources, files, diagnostics } = loaded;
+    let mut context = Context::new(graph);
+    diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
+    let overrides = read_overrides(&mut context, &mut sources, overrides);
+    let items = Items::collect(&mut context, &files);
+    check_definitions(&mut context, &items);
+    let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
+    let main = files.last().map(|(id, _)| *id);
+    let mut jobs = Vec::new();
+    for (file, written) in &items.jobs {
+        let job = job::build(&mut context, written, &definitions, &sources.file(*file).path);
+        if Some(*file) == main {
+            jobs.push(job);
+        }
+    }
+    check_overrides(&mut context, &overrides, &jobs);
+    let failed = context.has_errors();
+    let mut diagnostics = context.finish();
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
+    Compilation { sources, diagnostics, jobs: if failed { Vec::new() } else { jobs } }
+}
+
+/// The items of all files by name.
+#[derive(Default)]
+struct Items {
+    machines: Machines,
+    tools: Tools,
+    jobs: Vec<(FileId, ast::Job)>,
+}
+
+impl Items {
+    fn collect(context: &mut Context<'_>, files: &[(FileId, ast::File)]) -> Items {
+        let mut items = Items::default();
+        let mut seen: HashMap<String, Span> = HashMap::new();
+        for (file, parsed) in files {
+            for item in &parsed.items {
+                let name = match item {
+                    Item::Use(_) => continue,
+                    Item::Function(function) => &function.name,
+                    Item::Machine(machine) => &machine.name,
+                    Item::Tool(tool) => &tool.name,
+                    Item::Job(job) => &job.name,
+                };
+                if let Some(first) = seen.insert(name.node.clone(), name.span) {
+                    context.duplicate(name, first);
+                }
+                items.add(context, *file, item);
+            }
+        }
+        items
+    }
+
+    fn add(&mut self, context: &mut Context<'_>, file: FileId, item: &Item) {
+        match item {
+            Item::Use(_) => {}
+            Item::Function(function) => {
+                if functions::names().any(|known| known == function.name.node) {
+                    let message = format!("`{}` is a function of the language", function.name.node);
+                    context.report(Diagnostic::new(Code::DuplicateName, function.name.span, message));
+                } else {
+                    context.functions.insert(function.name.node.clone(), function.clone());
+                }
+            }
+            Item::Machine(machine) => {
+                self.machines.insert(machine.name.node.clone(), machine.clone());
+            }
+            Item::Tool(tool) => {
+                self.tools.insert(tool.name.node.clone(), tool.clone());
+            }
+            Item::Job(job) => self.jobs.push((file, job.clone())),
+        }
+    }
+}
+
+/// Definitions are looked at by themselves, with parameters that have no values, so that a mistake shows without a use.
+fn check_definitions(context: &mut Context<'_>, items: &Items) {
+    let nothing = Overrides::new();
+    let mut functions: Vec<ast::Function> = context.functions.values().cloned().collect();
+    functions.sort_by_key(|function| function.name.span);
+    for function in functions {
+        let mut scope = Scope::new();
+        for (name, written) in &function.arguments {
+            let value = match context.dimension(written) {
+                Some(dimension) => {
+                    let variable = context.variable(name.node.clone(), crate::context::Role::Parameter, f64::NAN);
+                    Value::Scalar(variable, dimension)
+                }
+                None => Value::Poison,
+            };
+            scope.insert(name.node.clone(), value);
+        }
+        context.function_body(&function, scope);
+    }
+    let mut machines: Vec<&ast::Machine> = items.machines.values().collect();
+    machines.sort_by_key(|machine| machine.name.span);
+    for machine in machines {
+        if let Some(flat) = machine::flatten(context, &items.machines, machine) {
+            flat.build(context, &machine.name, Source::Definition, &nothing);
+        }
+    }
+    let mut tools: Vec<&ast::Tool> = items.tools.values().collect();
+    tools.sort_by_key(|tool| tool.name.span);
+    for tool in tools {
+        tool::build(context, tool, Source::Definition, &nothing);
+    }
+}
+
+/// Values from outside, as expressions of a text of their own.
+struct OuterValues {
+    values: Overrides,
+    names: Vec<Name>,
+}
+
+fn read_overrides(context: &mut Context<'_>, sources: &mut Sources, given: &[(String, String)]) -> OuterValues {
+    let mut outer = OuterValues { values: Overrides::new(), names: Vec::new() };
+    for (name, value) in given {
+        let text = format!("{name}={value}");
+        let start = name.len() as u32 + 1;
+        let file = sources.add("--set", text);
+        let (expression, diagnostics) = parse_expression(&sources.file(file).text, file, start);
+        diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
+        outer.values.insert(name.clone(), expression);
+        outer.names.push(Name { node: name.clone(), span: Span { file, start: 0, end: start - 1 } });
+    }
+    outer
+}
+
+fn check_overrides(context: &mut Context<'_>, outer: &OuterValues, jobs: &[Job<'_>]) {
+    for name in &outer.names {
+        let known: Vec<&str> =
+            jobs.iter().flat_map(|job| &job.parameters).map(|parameter| parameter.name.as_str()).collect();
+        if !known.contains(&name.node.as_str()) && !context.has_errors() {
+            context.unknown(name, "parameter", known.into_iter());
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! What a compilation knows while it runs: variables with their values, functions, findings.
+
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
+
+use flank_expr::{Expr, Graph};
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::limits;
+use crate::source::{Name, Span};
+use crate::syntax::ast;
+
+/// What a variable stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Parameter,
+    Axis,
+    Motion,
+    SurfaceParameter,
+}
+
+impl Role {
+    pub(crate) fn described(self) -> &'static str {
+        match self {
+            Role::Parameter => "a parameter",
+            Role::Axis => "an axis",
+            Role::Motion => "a motion",
+            Role::SurfaceParameter => "a surface parameter",
+        }
+    }
+}
+
+/// A value of the language.
+#[derive(Clone, Debug)]
+pub(crate) enum Value<'g> {
+    Scalar(Expr<'g>, Dimension),
+    Vector(Vec<Value<'g>>),
+    /// `None` where the answer is not known yet: a definition checked without values.
+    Truth(Option<bool>),
+    Text,
+    /// Something wrong that has been reported: whatever is made of it is silent.
+    Poison,
+}
+
+impl Value<'_> {
+    pub(crate) fn described(&self) -> String {
+        match self {
+            Value::Scalar(_, dimension) if *dimension == Dimension::NUMBER => "a number".to_string(),
+            Value::Scalar(_, dimension) => format!("{} {dimension}", article(*dimension)),
+            Value::Vector(parts) => format!("a vector of {}", parts.len()),
+            Value::Truth(_) => "a condition".to_string(),
+            Value::Text => "a text".to_string(),
+            Value::Poison => "an error".to_string(),
+        }
+    }
+}
+
+/// `a` or `an` before a dimension's name.
+pub(crate) fn article(dimension: Dimension) -> &'static str {
+    if dimension.to_string().starts_with('a') { "an" } else { "a" }
+}
+
+/// Names and their values.
+pub(crate) type Scope<'g> = HashMap<String, Value<'g>>;
+
+/// Whether an expression is a number now.
+pub(crate) enum Constant {
+    Known(f64),
+    /// It depends on a parameter that has no value yet.
+    Unknown,
+    /// It depends on something that moves.
+    Moves(String),
+}
+
+/// The state of one compilation.
+pub(crate) struct Context<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) functions: HashMap<String, ast::Function>,
+    roles: Vec<Role>,
+    values: Vec<f64>,
+    diagnostics: Vec<Diagnostic>,
+    reported: HashSet<(Code, Span)>,
+    /// Steps of evaluation so far: expressions looked at and nodes walked over.
+    steps: Cell<usize>,
+    exhausted: bool,
+    pub(crate) call_depth: usize,
+}
+
+impl<'g> Context<'g> {
+    pub(crate) fn new(graph: &'g Graph) -> Context<'g> {
+        assert_eq!(graph.variable_count(), 0, "a compilation starts with a graph of its own");
+        Context {
+            graph,
+            functions: HashMap::new(),
+            roles: Vec::new(),
+            values: Vec::new(),
+            diagnostics: Vec::new(),
+            reported: HashSet::new(),
+            steps: Cell::new(0),
+            exhausted: false,
+            call_depth: 0,
+        }
+    }
+
+    /// Reports the second definition of a name, unless the parser has reported that the name is missing.
+    pub(crate) fn duplicate(&mut self, name: &Name, first: Span) {
+        if !name.node.is_empty() {
+            let message = format!("`{}` is defined twice", name.node);
+            self.report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here"));
+        }
+    }
+
+    /// Keeps a finding, unless the same was found at the same place before (a definition is looked at once by itself and
+    /// once for each use).
+    pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
+        if self.reported.insert((diagnostic.code, diagnostic.span)) {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    pub(crate) fn finish(self) -> Vec<Diagnostic> {
+        self.diagnostics
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == crate::Severity::Error)
+    }
+
+    /// Number of findings so far, to ask later whether there are new ones.
+    pub(crate) fn findings(&self) -> usize {
+        self.diagnostics.len()
+    }
+
+    pub(crate) fn variable(&mut self, name: impl Into<String>, role: Role, value: f64) -> Expr<'g> {
+        self.roles.push(role);
+        self.values.push(value);
+        self.graph.variable(name)
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The number that an expression of parameters is.
+    pub(crate) fn constant(&self, expr: Expr<'g>) -> Constant {
+        if let Some(value) = expr.as_constant() {
+            return Constant::Known(value);
+        }
+        if self.steps.get() > limits::EVALUATION_STEPS {
+            return Constant::Unknown;
+        }
+        self.steps.set(self.steps.get() + self.graph.count(&[expr]).shared);
+        let variables = self.graph.variables_of(&[expr]);
+        if let Some(moving) = variables.iter().find(|variable| self.roles[variable.index()] != Role::Parameter) {
+            let role = self.roles[moving.index()].described();
+            return Constant::Moves(format!("`{}`, {role}", self.graph.variable_name(*moving)));
+        }
+        if variables.iter().any(|variable| self.values[variable.index()].is_nan()) {
+            return Constant::Unknown;
+        }
+        Constant::Known(self.graph.evaluate(&[expr], &self.values)[0])
+    }
+
+    /// The number behind a value that must be one; `None` (reported where it is the user's fault) if it is not.
+    pub(crate) fn require_constant(&mut self, expr: Expr<'g>, span: Span, what: &str) -> Option<f64> {
+        match self.constant(expr) {
+            Constant::Known(value) if value.is_finite() => Some(value),
+            Constant::Known(value) => {
+                self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} is {value}, not a finite number")));
+                None
+            }
+            Constant::Unknown => None,
+            Constant::Moves(name) => {
+                let message = format!("{what} must stand still, but depends on {name}");
+                self.report(Diagnostic::new(Code::NotConstant, span, message));
+                None
+            }
+        }
+    }
+
+    /// A scalar of the wanted dimension, or `None` with the reason reported.
+    pub(crate) fn require(&mut self, value: &Value<'g>, wanted: Dimension, span: Span, what: &str) -> Option<Expr<'g>> {
+        match value {
+            Value::Poison => None,
+            Value::Scalar(expr, dimension) if wanted.accepts(*dimension) => Some(*expr),
+            other => {
+                let wanted_text = Value::Scalar(self.graph.constant(0.0), wanted).described();
+                let message = format!("{what} must be {wanted_text}, this is {}", other.described());
+                let mut diagnostic = Diagnostic::new(Code::WrongDimension, span, message);
+                diagnostic.help = unit_help(wanted, other);
+                self.report(diagnostic);
+                None
+            }
+        }
+    }
+
+    /// Reports an unknown name with the nearest known one.
+    pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
+        // the parser has reported a missing name
+        if name.node.is_empty() {
+            return;
+        }
+        let message = format!("there is no {kind} `{}`", name.node);
+        let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
+        diagnostic.help = did_you_mean(&name.node, known);
+        self.report(diagnostic);
+    }
+
+    /// Counts one step of evaluation; false (reported once) when a text asks for too many.
+    pub(crate) fn step(&mut self, span: Span) -> bool {
+        self.steps.set(self.steps.get() + 1);
+        let within = self.steps.get() <= limits::EVALUATION_STEPS;
+        if !within && !self.exhausted {
+            self.exhausted = true;
+            let message = format!("the text takes more than {} steps to evaluate", limits::EVALUATION_STEPS);
+            self.report(Diagnostic::new(Code::LimitExceeded, span, message));
+        }
+        within
+    }
+}
+
+/// What to write where a plain number stands for an angle or a length.
+fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<String> {
+    let Value::Scalar(expr, Dimension::NUMBER) = found else {
+        return None;
+    };
+    let unit = match wanted {
+        Dimension::ANGLE => "deg",
+        Dimension::LENGTH => "mm",
+        _ => return None,
+    };
+    Some(match expr.as_constant() {
+        Some(value) => format!("give it a unit: `{value} {unit}`"),
+        None if wanted == Dimension::ANGLE => "a number of radians becomes an angle by `* 1 rad`".to_string(),
+        None => format!("a number of millimetres becomes a length by `* 1 {unit}`"),
+    })
+}
+
+/// The nearest of the known names, as a sentence.
+pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    let mut known: Vec<&str> = known.collect();
+    known.sort_unstable();
+    known.dedup();
+    let nearest =
+        known.iter().map(|candidate| (strsim::damerau_levenshtein(name, candidate), *candidate)).min().filter(
+            |(distance, candidate)| {
+                *distance <= candidate.chars().count().div_ceil(3) && *distance < candidate.chars().count()
+            },
+        );
+    match nearest {
+        Some((_, candidate)) => Some(format!("did you mean `{candidate}`?")),
+        None if !known.is_empty() && known.len() <= 12 => Some(format!("there is: {}", quoted(&known))),
+        None => None,
+    }
+}
+
+/// Names in a list.
+pub(crate) fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}

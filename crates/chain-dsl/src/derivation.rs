@@ -1,0 +1,305 @@
+//! What was built from a job, written out stage by stage.
+
+use std::fmt::Write;
+
+use flank_expr::geometry::{Axis as Line, Pose, Step, Vector3};
+use flank_expr::{Expr, Style};
+
+use crate::dimension::Dimension;
+use crate::model::{GeneratedSurface, Generation, Job, LawSource, Machine};
+
+/// Writes what the compiler built for a job: frames, the chain from tool to work with each elementary matrix, the product
+/// and its 3 × 3 vector part, the twist of each motion, position and normal, the equation of meshing, and how much is
+/// shared.
+pub fn derivation(job: &Job<'_>, style: Style) -> String {
+    let mut page = Page { out: String::new(), style };
+    page.title(&format!("job {}", job.name));
+    job.doc.iter().for_each(|line| page.text(line));
+    page.parameters(job);
+    job.machines.iter().for_each(|machine| page.machine(machine));
+    job.surfaces.iter().for_each(|surface| page.surface(surface));
+    page.finish()
+}
+
+struct Page {
+    out: String,
+    style: Style,
+}
+
+impl Page {
+    fn line(&mut self, text: &str) {
+        self.out.push_str(text);
+        self.out.push('\n');
+    }
+
+    fn title(&mut self, text: &str) {
+        match self.style {
+            Style::Text => self.line(&format!("{text}\n{}", "=".repeat(text.chars().count()))),
+            Style::Latex => self.line(&format!("\\section*{{{}}}", escaped(text))),
+        }
+    }
+
+    fn heading(&mut self, text: &str) {
+        match self.style {
+            Style::Text => self.line(&format!("\n{text}\n{}", "-".repeat(text.chars().count()))),
+            Style::Latex => self.line(&format!("\\subsection*{{{}}}", escaped(text))),
+        }
+    }
+
+    fn text(&mut self, text: &str) {
+        let text = if self.style == Style::Latex { format!("{}\n", escaped(text)) } else { text.to_string() };
+        self.line(&text);
+    }
+
+    fn finish(self) -> String {
+        match self.style {
+            Style::Text => self.out,
+            Style::Latex => format!(
+                "\\documentclass{{article}}\n\\usepackage{{amsmath}}\n\\usepackage[a3paper,landscape,margin=15mm]{{geometry}}\n\
+                 \\setcounter{{MaxMatrixCols}}{{20}}\n\\begin{{document}}\n{}\\end{{document}}\n",
+                self.out
+            ),
+        }
+    }
+
+    /// `name = value`, on a line of its own.
+    fn equation(&mut self, name: &str, value: &str) {
+        match self.style {
+            Style::Text => self.line(&format!("  {name} = {value}")),
+            Style::Latex => self.line(&format!("\\[ {name} = {value} \\]")),
+        }
+    }
+
+    fn parameters(&mut self, job: &Job<'_>) {
+        if job.parameters.is_empty() {
+            return;
+        }
+        self.heading("parameters");
+        for parameter in &job.parameters {
+            let listing =
+                parameter.variable.graph().listing(&[parameter.variable, parameter.definition], self.style, "p");
+            let shown = shown(parameter.value, parameter.dimension);
+            let value = match (parameter.definition.as_constant(), listing.definitions.is_empty()) {
+                (None, true) => format!("{} = {shown}", listing.values[1]),
+                _ => shown,
+            };
+            self.equation(&listing.values[0], &value);
+        }
+    }
+
+    fn machine(&mut self, machine: &Machine<'_>) {
+        self.heading(&format!("machine {} ({})", machine.name, machine.definition));
+        self.text("frames:");
+        self.tree(machine);
+        self.text("axes:");
+        for axis in &machine.axes {
+            let how = match axis.source {
+                LawSource::Driven => "driven",
+                LawSource::Fixed => "fixed",
+                LawSource::Coupled => "coupled",
+            };
+            let listing = axis.law.graph().listing(&[axis.variable, axis.law], self.style, "a");
+            let comment =
+                if self.style == Style::Latex { format!("\\quad\\text{{{how}}}") } else { format!("   ({how})") };
+            self.definitions(&listing.definitions);
+            self.equation(&listing.values[0], &format!("{}{comment}", listing.values[1]));
+        }
+    }
+
+    fn tree(&mut self, machine: &Machine<'_>) {
+        if self.style == Style::Latex {
+            self.line("\\begin{verbatim}");
+        }
+        let mut order = vec![(0, 0)];
+        while let Some((index, depth)) = order.pop() {
+            let Some(frame) = machine.frames.get(index) else {
+                break;
+            };
+            let steps: Vec<String> = frame.steps.iter().map(|step| described(*step)).collect();
+            let how = if steps.is_empty() { String::new() } else { format!(" = {}", steps.join(" ")) };
+            self.line(&format!("  {}{}{how}", "    ".repeat(depth), frame.name));
+            let children = machine.frames.iter().enumerate().filter(|(_, child)| child.parent == Some(index));
+            order.extend(children.map(|(child, _)| (child, depth + 1)).rev());
+        }
+        if self.style == Style::Latex {
+            self.line("\\end{verbatim}");
+        }
+    }
+
+    fn surface(&mut self, surface: &GeneratedSurface<'_>) {
+        self.heading(&format!("surface {} in {}", surface.name, surface.frame));
+        surface.doc.iter().for_each(|line| self.text(line));
+        if let Some(generation) = &surface.generation {
+            self.generation(generation, &surface.frame);
+        }
+        self.text(&format!("position in {}, mm:", surface.frame));
+        self.vector("r", surface.surface.position);
+        self.text(&format!("unit normal in {}, out of the body:", surface.frame));
+        self.vector("n", surface.surface.normal);
+        self.text("unknowns:");
+        for unknown in &surface.unknowns {
+            let name = unknown.variable.graph().listing(&[unknown.variable], self.style, "u").values[0].clone();
+            let (low, high) = (shown(unknown.low, unknown.dimension), shown(unknown.high, unknown.dimension));
+            self.text(&format!(
+                "  {} in {low} .. {high}",
+                if self.style == Style::Text { name } else { format!("${name}$") }
+            ));
+        }
+        self.counts(surface);
+    }
+
+    fn generation(&mut self, generation: &Generation<'_>, frame: &str) {
+        let frames: Vec<&str> = generation.path.iter().map(|(frame, _)| frame.as_str()).collect();
+        let arrow = if self.style == Style::Latex { " $\\leftarrow$ " } else { " <- " };
+        let way =
+            frames.iter().map(|frame| if self.style == Style::Latex { escaped(frame) } else { frame.to_string() });
+        let way = way.collect::<Vec<_>>().join(arrow);
+        self.line(&format!("envelope of {}; chain from work to tool:\n  {way}", self.words(&generation.tool_name)));
+        let graph = generation.tool.position.0[0].graph();
+        for (index, (arrives, steps)) in generation.path.iter().enumerate().skip(1) {
+            for step in steps {
+                self.text(&format!("{} to {arrives}: {}", generation.path[index - 1].0, described(*step)));
+                self.matrix4("M", step.pose(graph));
+            }
+        }
+        let tool_frame = generation.path.last().map_or("tool", |(name, _)| name.as_str());
+        self.text(&format!("product of all, pose of {tool_frame} in {frame}:"));
+        let pose = generation.t_work_tool.pose();
+        self.matrix4("M", pose);
+        self.text("its vector part (last row and column deleted):");
+        self.matrix("L", &pose.rotation.0.map(|row| row.0.to_vec()));
+        self.text(&format!("tool surface in {tool_frame}, mm, and its unit normal, out of the tool's steel:"));
+        self.vector("r_t", generation.tool.position);
+        self.vector("n_t", generation.tool.normal);
+        for &motion in &generation.motions {
+            let name = graph.listing(&[motion], self.style, "t").values[0].clone();
+            let plain = motion.to_string();
+            self.text(&format!(
+                "twist along {plain}, of {tool_frame} against {frame}, in {tool_frame}: angular, linear:"
+            ));
+            let twist = generation.driven.twist(motion);
+            self.vector("omega", twist.angular);
+            self.vector("v", twist.linear);
+            self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0"));
+            let meshing = generation.tool.meshing(&generation.driven, motion);
+            let listing = graph.listing(&[meshing], self.style, "t");
+            self.definitions(&listing.definitions);
+            match self.style {
+                Style::Text => self.line(&format!("  {} = 0", listing.values[0])),
+                Style::Latex => self.line(&format!("\\[ f_{{{name}}} = {} = 0 \\]", listing.values[0])),
+            }
+        }
+    }
+
+    fn counts(&mut self, surface: &GeneratedSurface<'_>) {
+        let parts = &surface.surface;
+        let all: Vec<Expr<'_>> =
+            parts.position.0.into_iter().chain(parts.normal.0).chain(parts.constraints.iter().copied()).collect();
+        let graph = all[0].graph();
+        let jacobian: Vec<Expr<'_>> =
+            parts.constraints.iter().flat_map(|f| parts.unknowns.iter().map(|u| f.derivative(*u))).collect();
+        for (what, roots) in [("position, normal and constraints", &all), ("Jacobian of the constraints", &jacobian)] {
+            let count = graph.count(roots);
+            self.text(&format!("nodes of {what}: {} written out, {} shared", count.written_out, count.shared));
+        }
+    }
+
+    fn words(&self, text: &str) -> String {
+        if self.style == Style::Latex { escaped(text) } else { text.to_string() }
+    }
+
+    fn definitions(&mut self, definitions: &[flank_expr::Definition]) {
+        for definition in definitions {
+            self.equation(&definition.name, &definition.value);
+        }
+    }
+
+    fn vector(&mut self, name: &str, vector: Vector3<'_>) {
+        self.matrix(name, &vector.0.map(|component| vec![component]));
+    }
+
+    fn matrix4(&mut self, name: &str, pose: Pose<'_>) {
+        self.matrix(name, &pose.matrix4().map(|row| row.to_vec()));
+    }
+
+    fn matrix(&mut self, name: &str, rows: &[Vec<Expr<'_>>]) {
+        let Some(columns) = rows.first().map(Vec::len) else {
+            return;
+        };
+        let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
+        let listing = entries[0].graph().listing(&entries, self.style, "t");
+        self.definitions(&listing.definitions);
+        match self.style {
+            Style::Latex => {
+                let symbol = match name {
+                    "omega" => "\\omega",
+                    other => other,
+                };
+                let rows: Vec<String> = listing.values.chunks(columns).map(|row| row.join(" & ")).collect();
+                self.line(&format!("\\[ {symbol} = \\begin{{bmatrix}} {} \\end{{bmatrix}} \\]", rows.join(" \\\\ ")));
+            }
+            Style::Text => {
+                let width = |column: usize| {
+                    listing
+                        .values
+                        .iter()
+                        .skip(column)
+                        .step_by(columns)
+                        .map(|text| text.chars().count())
+                        .max()
+                        .unwrap_or(0)
+                };
+                for (i, row) in listing.values.chunks(columns).enumerate() {
+                    let label =
+                        if i == 0 { format!("  {name} = [") } else { format!("  {} [", " ".repeat(name.len() + 2)) };
+                    let mut text = label;
+                    for (j, entry) in row.iter().enumerate() {
+                        let pad = " ".repeat(width(j) - entry.chars().count());
+                        let _ = write!(text, " {entry}{pad} ");
+                    }
+                    self.line(&format!("{text}]"));
+                }
+            }
+        }
+    }
+}
+
+/// A step as it is written in a spec.
+fn described(step: Step<'_>) -> String {
+    match step {
+        Step::Translate(Vector3([x, y, z])) => format!("translate({x}, {y}, {z})"),
+        Step::Rotate(Line::X, angle) => format!("rotate_x({})", angle_text(angle)),
+        Step::Rotate(Line::Y, angle) => format!("rotate_y({})", angle_text(angle)),
+        Step::Rotate(Line::Z, angle) => format!("rotate_z({})", angle_text(angle)),
+        Step::Rotate(Line::Along(Vector3([x, y, z])), angle) => {
+            format!("rotate([{x}, {y}, {z}], {})", angle_text(angle))
+        }
+        Step::Rigid(_) => "matrix(…)".to_string(),
+    }
+}
+
+fn angle_text(angle: Expr<'_>) -> String {
+    match angle.as_constant() {
+        Some(value) => shown(value, Dimension::ANGLE),
+        None => angle.to_string(),
+    }
+}
+
+/// An inside value as people write it: degrees for angles, millimetres for lengths.
+pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
+    match dimension {
+        // the twelfth decimal of a degree is a rounding of the conversion
+        Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e12).round() / 1e12),
+        Dimension::LENGTH => format!("{value} mm"),
+        Dimension { length: 1, angle: -1 } => format!("{value} mm/rad"),
+        _ => value.to_string(),
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\textbackslash ")
+        .replace('_', "\\_")
+        .replace('&', "\\&")
+        .replace('%', "\\%")
+        .replace('#', "\\#")
+}

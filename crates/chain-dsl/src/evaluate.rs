@@ -1,0 +1,446 @@
+//! Expressions of the text become symbolic scalars, their dimensions checked on the way.
+
+use flank_expr::Expr;
+
+use crate::codes::Code;
+use crate::context::{Constant, Context, Scope, Value, article};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::{self, Dimension};
+use crate::functions;
+use crate::limits;
+use crate::source::Span;
+use crate::syntax::ast::{self, BinaryOperator, Expression, ExpressionKind, Range, UnaryOperator};
+
+impl<'g> Context<'g> {
+    /// The value of an expression; what is wrong in it is reported and becomes poison.
+    pub(crate) fn evaluate(&mut self, expression: &Expression, scope: &Scope<'g>) -> Value<'g> {
+        if !self.step(expression.span) {
+            return Value::Poison;
+        }
+        match &expression.kind {
+            ExpressionKind::Number(value, units) => self.number(*value, units),
+            ExpressionKind::Text(_) => Value::Text,
+            ExpressionKind::Path(path) => self.path(path, scope),
+            ExpressionKind::Call(call) => self.call(call, scope),
+            ExpressionKind::Vector(parts) => {
+                Value::Vector(parts.iter().map(|part| self.evaluate(part, scope)).collect())
+            }
+            ExpressionKind::Index(vector, index) => self.index(vector, index, scope),
+            ExpressionKind::Unary(operator, operand) => {
+                let value = self.evaluate(operand, scope);
+                self.unary(operator.node, value, operand.span)
+            }
+            ExpressionKind::Binary(operator, left, right) => {
+                let values = (self.evaluate(left, scope), self.evaluate(right, scope));
+                self.binary(operator.node, values, (left.span, right.span), operator.span)
+            }
+            ExpressionKind::If(condition, yes, no) => self.conditional(condition, yes, no, scope),
+            ExpressionKind::Error => Value::Poison,
+        }
+    }
+
+    /// An expression that must have a dimension.
+    pub(crate) fn scalar(
+        &mut self,
+        expression: &Expression,
+        scope: &Scope<'g>,
+        wanted: Dimension,
+        what: &str,
+    ) -> Option<Expr<'g>> {
+        let value = self.evaluate(expression, scope);
+        self.require(&value, wanted, expression.span, what)
+    }
+
+    /// An expression that must be a vector of three of one dimension.
+    pub(crate) fn vector3(
+        &mut self,
+        expression: &Expression,
+        scope: &Scope<'g>,
+        wanted: Dimension,
+        what: &str,
+    ) -> Option<[Expr<'g>; 3]> {
+        let value = self.evaluate(expression, scope);
+        let parts = match &value {
+            Value::Poison => return None,
+            Value::Vector(parts) if parts.len() == 3 => parts,
+            other => {
+                let message = format!("{what} must be a vector of 3, this is {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, expression.span, message));
+                return None;
+            }
+        };
+        let spans: Vec<Span> = match &expression.kind {
+            ExpressionKind::Vector(written) => written.iter().map(|part| part.span).collect(),
+            _ => vec![expression.span; 3],
+        };
+        let names = ["x", "y", "z"];
+        let found: Vec<Option<Expr<'g>>> =
+            (0..3).map(|k| self.require(&parts[k], wanted, spans[k], &format!("{} of {what}", names[k]))).collect();
+        Some([found[0]?, found[1]?, found[2]?])
+    }
+
+    /// Both ends of a range as numbers; `None` where they are not known (or wrong, and reported).
+    pub(crate) fn range(
+        &mut self,
+        range: &Range,
+        scope: &Scope<'g>,
+        wanted: Dimension,
+        what: &str,
+    ) -> Option<(f64, f64)> {
+        let low = self.scalar(&range.low, scope, wanted, &format!("the lower end of {what}"));
+        let high = self.scalar(&range.high, scope, wanted, &format!("the upper end of {what}"));
+        let low_value = low.and_then(|low| self.require_constant(low, range.low.span, &format!("the range of {what}")));
+        let high_value =
+            high.and_then(|high| self.require_constant(high, range.high.span, &format!("the range of {what}")));
+        let (low_value, high_value) = (low_value?, high_value?);
+        if low_value >= high_value {
+            let shown = |value: f64| {
+                if wanted == Dimension::ANGLE { value.to_degrees() } else { value }
+            };
+            let unit = match wanted {
+                Dimension::ANGLE => " deg",
+                Dimension::LENGTH => " mm",
+                _ => "",
+            };
+            let message = format!(
+                "the range of {what} is empty: {}{unit} is not below {}{unit}",
+                shown(low_value),
+                shown(high_value)
+            );
+            let help = if low_value > high_value { "put the smaller end first" } else { "give it two different ends" };
+            self.report(Diagnostic::new(Code::EmptyRange, range.span, message).help(help));
+            return None;
+        }
+        Some((low_value, high_value))
+    }
+
+    /// A dimension as written.
+    pub(crate) fn dimension(&mut self, written: &ast::Dimension) -> Option<Dimension> {
+        let mut product = Dimension::NUMBER;
+        for (name, exponent) in &written.factors {
+            match dimension::named(&name.node) {
+                Some(base) => product = product.times(base.power(*exponent)),
+                None => {
+                    self.unknown(name, "dimension", ["length", "angle", "number", "count"].into_iter());
+                    return None;
+                }
+            }
+        }
+        Some(product)
+    }
+
+    fn number(&mut self, value: f64, units: &[(crate::source::Name, i32)]) -> Value<'g> {
+        let (mut number, mut product) = (value, Dimension::NUMBER);
+        for (name, exponent) in units {
+            let Some((_, base)) = dimension::unit(&name.node) else {
+                self.unknown(name, "unit", ["mm", "um", "cm", "inch", "deg", "rad", "rev"].into_iter());
+                return Value::Poison;
+            };
+            number = dimension::convert(number, &name.node, *exponent).unwrap_or(f64::NAN);
+            product = product.times(base.power(*exponent));
+        }
+        Value::Scalar(self.graph.constant(number), product)
+    }
+
+    fn path(&mut self, path: &ast::Path, scope: &Scope<'g>) -> Value<'g> {
+        let joined = path.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".");
+        if let Some(value) = scope.get(&joined) {
+            return value.clone();
+        }
+        if joined == "pi" {
+            return Value::Scalar(self.graph.constant(std::f64::consts::PI), Dimension::NUMBER);
+        }
+        let name = crate::source::Spanned { node: joined, span: path.span };
+        let known: Vec<String> = scope.keys().cloned().collect();
+        self.unknown(&name, "value", known.iter().map(String::as_str));
+        Value::Poison
+    }
+
+    fn index(&mut self, vector: &Expression, index: &Expression, scope: &Scope<'g>) -> Value<'g> {
+        let value = self.evaluate(vector, scope);
+        let Some(position) = self.scalar(index, scope, Dimension::NUMBER, "an index") else {
+            return Value::Poison;
+        };
+        let Some(position) = self.require_constant(position, index.span, "an index") else {
+            return Value::Poison;
+        };
+        match value {
+            Value::Vector(parts) if position.fract() == 0.0 && (0.0..parts.len() as f64).contains(&position) => {
+                parts[position as usize].clone()
+            }
+            Value::Vector(parts) => {
+                let message = format!("there is no element {position} in a vector of {}", parts.len());
+                self.report(Diagnostic::new(Code::WrongArguments, index.span, message).help("elements count from 0"));
+                Value::Poison
+            }
+            Value::Poison => Value::Poison,
+            other => {
+                let message = format!("only a vector has elements, this is {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, vector.span, message));
+                Value::Poison
+            }
+        }
+    }
+
+    fn unary(&mut self, operator: UnaryOperator, value: Value<'g>, span: Span) -> Value<'g> {
+        match (operator, value) {
+            (_, Value::Poison) => Value::Poison,
+            (UnaryOperator::Negate, Value::Scalar(expr, dimension)) => Value::Scalar(-expr, dimension),
+            (UnaryOperator::Negate, Value::Vector(parts)) => {
+                Value::Vector(parts.into_iter().map(|part| self.unary(operator, part, span)).collect())
+            }
+            (UnaryOperator::Not, Value::Truth(truth)) => Value::Truth(truth.map(|truth| !truth)),
+            (_, other) => {
+                let wanted = if operator == UnaryOperator::Not { "a condition" } else { "a number or a vector" };
+                let message = format!("this must be {wanted}, it is {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, span, message));
+                Value::Poison
+            }
+        }
+    }
+
+    fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        values: (Value<'g>, Value<'g>),
+        spans: (Span, Span),
+        operator_span: Span,
+    ) -> Value<'g> {
+        use BinaryOperator as Op;
+        match (operator, values) {
+            (_, (Value::Poison, _) | (_, Value::Poison)) => Value::Poison,
+            (Op::Add | Op::Subtract, (Value::Scalar(a, da), Value::Scalar(b, db))) => {
+                self.sum(operator, (a, da), (b, db), spans, operator_span)
+            }
+            (Op::Add | Op::Subtract, (Value::Vector(a), Value::Vector(b))) if a.len() == b.len() => Value::Vector(
+                a.into_iter().zip(b).map(|pair| self.binary(operator, pair, spans, operator_span)).collect(),
+            ),
+            (Op::Multiply, (Value::Scalar(a, da), Value::Scalar(b, db))) => Value::Scalar(a * b, da.times(db)),
+            (Op::Divide, (Value::Scalar(a, da), Value::Scalar(b, db))) => self.quotient((a, da), (b, db), spans.1),
+            (Op::Multiply, (factor @ Value::Scalar(..), Value::Vector(parts)))
+            | (Op::Multiply | Op::Divide, (Value::Vector(parts), factor @ Value::Scalar(..))) => Value::Vector(
+                parts
+                    .into_iter()
+                    .map(|part| self.binary(operator, (part, factor.clone()), spans, operator_span))
+                    .collect(),
+            ),
+            (Op::Power, (Value::Scalar(a, da), Value::Scalar(b, db))) => self.power((a, da), (b, db), spans),
+            (Op::And | Op::Or, (Value::Truth(a), Value::Truth(b))) => Value::Truth(match (operator, a, b) {
+                (Op::And, Some(false), _) | (Op::And, _, Some(false)) => Some(false),
+                (Op::Or, Some(true), _) | (Op::Or, _, Some(true)) => Some(true),
+                (_, Some(a), Some(_)) => Some(a),
+                _ => None,
+            }),
+            (
+                Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual | Op::Equal | Op::NotEqual,
+                (Value::Scalar(a, da), Value::Scalar(b, db)),
+            ) => self.comparison(operator, (a, da), (b, db), spans),
+            (_, (a, b)) => {
+                let message =
+                    format!("`{}` does not go with {} and {}", symbol(operator), a.described(), b.described());
+                self.report(Diagnostic::new(Code::WrongDimension, operator_span, message));
+                Value::Poison
+            }
+        }
+    }
+
+    fn sum(
+        &mut self,
+        operator: BinaryOperator,
+        (a, da): (Expr<'g>, Dimension),
+        (b, db): (Expr<'g>, Dimension),
+        spans: (Span, Span),
+        operator_span: Span,
+    ) -> Value<'g> {
+        let add = operator == BinaryOperator::Add;
+        // an angle is a number where it must be: cos(g) + xi * sin(g); a bare constant beside it is a forgotten unit
+        let plain = [(a, da), (b, db)].iter().any(|(x, d)| *d == Dimension::NUMBER && x.as_constant().is_some());
+        let mixed =
+            [da, db] == [Dimension::NUMBER, Dimension::ANGLE] || [da, db] == [Dimension::ANGLE, Dimension::NUMBER];
+        let sum = if mixed && !plain { Some(Dimension::NUMBER) } else { da.sum(db) };
+        if let Some(dimension) = sum {
+            return Value::Scalar(if add { a + b } else { a - b }, dimension);
+        }
+        let verb = if add { "add" } else { "subtract" };
+        let message = format!("cannot {verb} {da} and {db}");
+        let mut diagnostic = Diagnostic::new(Code::WrongDimension, operator_span, message)
+            .note(spans.0, Value::Scalar(a, da).described())
+            .note(spans.1, Value::Scalar(b, db).described());
+        if mixed {
+            diagnostic.help =
+                Some("give the number its unit (`20 deg`), or make the angle a number by `/ 1 rad`".to_string());
+        }
+        self.report(diagnostic);
+        Value::Poison
+    }
+
+    fn quotient(&mut self, (a, da): (Expr<'g>, Dimension), (b, db): (Expr<'g>, Dimension), span: Span) -> Value<'g> {
+        if b.is_zero() {
+            self.report(Diagnostic::new(Code::NotANumber, span, "division by zero"));
+            return Value::Poison;
+        }
+        Value::Scalar(a / b, da.over(db))
+    }
+
+    fn power(
+        &mut self,
+        (base, base_dimension): (Expr<'g>, Dimension),
+        (exponent, exponent_dimension): (Expr<'g>, Dimension),
+        spans: (Span, Span),
+    ) -> Value<'g> {
+        if exponent_dimension != Dimension::NUMBER {
+            let message =
+                format!("an exponent must be a number, this is {} {exponent_dimension}", article(exponent_dimension));
+            self.report(Diagnostic::new(Code::WrongDimension, spans.1, message));
+            return Value::Poison;
+        }
+        let whole = match self.constant(exponent) {
+            Constant::Known(value) if value.fract() == 0.0 && value.abs() <= 64.0 => Some(value as i32),
+            _ => None,
+        };
+        match whole {
+            Some(whole) => Value::Scalar(base.powi(whole), base_dimension.power(whole)),
+            None if base_dimension.length == 0 => Value::Scalar(base.pow(exponent), Dimension::NUMBER),
+            None => {
+                let message = format!("a {base_dimension} can only be raised to a whole constant power");
+                self.report(
+                    Diagnostic::new(Code::WrongDimension, spans.1, message).help("`sqrt` takes the root of an area"),
+                );
+                Value::Poison
+            }
+        }
+    }
+
+    fn comparison(
+        &mut self,
+        operator: BinaryOperator,
+        (a, da): (Expr<'g>, Dimension),
+        (b, db): (Expr<'g>, Dimension),
+        spans: (Span, Span),
+    ) -> Value<'g> {
+        if da.sum(db).is_none() {
+            let message = format!("cannot compare {da} and {db}");
+            self.report(Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message));
+            return Value::Poison;
+        }
+        for (side, span) in [(a, spans.0), (b, spans.1)] {
+            if let Constant::Moves(name) = self.constant(side) {
+                let message = format!("a condition must be decided before anything moves, but depends on {name}");
+                self.report(Diagnostic::new(Code::NotConstant, span, message));
+                return Value::Poison;
+            }
+        }
+        let (Constant::Known(a), Constant::Known(b)) = (self.constant(a), self.constant(b)) else {
+            return Value::Truth(None);
+        };
+        Value::Truth(Some(match operator {
+            BinaryOperator::Less => a < b,
+            BinaryOperator::LessEqual => a <= b,
+            BinaryOperator::Greater => a > b,
+            BinaryOperator::GreaterEqual => a >= b,
+            BinaryOperator::NotEqual => a != b,
+            _ => a == b,
+        }))
+    }
+
+    fn conditional(
+        &mut self,
+        condition: &Expression,
+        yes: &Expression,
+        no: &Expression,
+        scope: &Scope<'g>,
+    ) -> Value<'g> {
+        let truth = match self.evaluate(condition, scope) {
+            Value::Truth(truth) => truth,
+            Value::Poison => return Value::Poison,
+            other => {
+                let message = format!("this must be a condition, it is {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, condition.span, message));
+                return Value::Poison;
+            }
+        };
+        match truth {
+            Some(true) => self.evaluate(yes, scope),
+            Some(false) => self.evaluate(no, scope),
+            // a definition without values: both ways are looked at
+            None => {
+                let (yes_value, no_value) = (self.evaluate(yes, scope), self.evaluate(no, scope));
+                if let (Value::Scalar(_, a), Value::Scalar(_, b)) = (&yes_value, &no_value)
+                    && a.sum(*b).is_none()
+                {
+                    let message = format!("the two ways give {a} and {b}");
+                    self.report(Diagnostic::new(Code::WrongDimension, no.span, message));
+                    return Value::Poison;
+                }
+                yes_value
+            }
+        }
+    }
+
+    fn call(&mut self, call: &ast::Call, scope: &Scope<'g>) -> Value<'g> {
+        let Some(function) = self.functions.get(&call.function.node).cloned() else {
+            return functions::call(self, call, scope);
+        };
+        if self.call_depth >= limits::CALL_DEPTH {
+            let message = format!("functions call each other more than {} deep", limits::CALL_DEPTH);
+            self.report(Diagnostic::new(Code::LimitExceeded, call.function.span, message));
+            return Value::Poison;
+        }
+        let Some(arguments) = functions::arguments(self, call, function.arguments.len(), scope) else {
+            return Value::Poison;
+        };
+        let mut inner = Scope::new();
+        for ((value, span), (name, written)) in arguments.into_iter().zip(&function.arguments) {
+            let Some(wanted) = self.dimension(written) else {
+                return Value::Poison;
+            };
+            let what = format!("`{}` of `{}`", name.node, function.name.node);
+            let Some(expr) = self.require(&value, wanted, span, &what) else {
+                return Value::Poison;
+            };
+            inner.insert(name.node.clone(), Value::Scalar(expr, wanted));
+        }
+        self.call_depth += 1;
+        let value = self.function_body(&function, inner);
+        self.call_depth -= 1;
+        value
+    }
+
+    /// The value of a function whose arguments are in the scope.
+    pub(crate) fn function_body(&mut self, function: &ast::Function, mut scope: Scope<'g>) -> Value<'g> {
+        for binding in &function.lets {
+            let value = self.evaluate(&binding.value, &scope);
+            scope.insert(binding.name.node.clone(), value);
+        }
+        let value = self.evaluate(&function.body, &scope);
+        let Some(promised) = &function.result else {
+            return value;
+        };
+        let Some(wanted) = self.dimension(promised) else {
+            return Value::Poison;
+        };
+        let what = format!("the value of `{}`", function.name.node);
+        match self.require(&value, wanted, function.body.span, &what) {
+            Some(expr) => Value::Scalar(expr, wanted),
+            None => Value::Poison,
+        }
+    }
+}
+
+fn symbol(operator: BinaryOperator) -> &'static str {
+    match operator {
+        BinaryOperator::Add => "+",
+        BinaryOperator::Subtract => "-",
+        BinaryOperator::Multiply => "*",
+        BinaryOperator::Divide => "/",
+        BinaryOperator::Power => "^",
+        BinaryOperator::Less => "<",
+        BinaryOperator::LessEqual => "<=",
+        BinaryOperator::Greater => ">",
+        BinaryOperator::GreaterEqual => ">=",
+        BinaryOperator::Equal => "==",
+        BinaryOperator::NotEqual => "!=",
+        BinaryOperator::And => "and",
+        BinaryOperator::Or => "or",
+    }
+}

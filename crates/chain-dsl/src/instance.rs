@@ -1,0 +1,181 @@
+//! Parameters of machines and tools get their values.
+
+use std::collections::HashMap;
+
+use crate::codes::Code;
+use crate::context::{Constant, Context, Role, Scope, Value, quoted};
+use crate::diagnostic::Diagnostic;
+use crate::functions::plural;
+use crate::model::Parameter;
+use crate::source::Name;
+use crate::syntax::ast::{Argument, Expression, Param};
+
+/// Values from outside the text, by full name (`ratio`, `m.swivel`): they win over what the text says.
+pub(crate) type Overrides = HashMap<String, Expression>;
+
+/// Where a parameter's values come from.
+pub(crate) enum Source<'a, 'g> {
+    /// A definition by itself: no values unless by default.
+    Definition,
+    /// `machine m = definition(setting: value, …)` in a job.
+    Instance { name: &'a Name, settings: &'a [Argument], job: &'a Scope<'g> },
+    /// The job itself.
+    Job,
+}
+
+/// Makes a variable for each `param`, puts it into the scope and gives the list of them.
+pub(crate) struct Binder<'a, 'g> {
+    pub(crate) source: Source<'a, 'g>,
+    pub(crate) overrides: &'a Overrides,
+    pub(crate) parameters: Vec<Parameter<'g>>,
+    pub(crate) missing: Vec<Name>,
+}
+
+impl<'a, 'g> Binder<'a, 'g> {
+    pub(crate) fn new(source: Source<'a, 'g>, overrides: &'a Overrides) -> Binder<'a, 'g> {
+        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new() }
+    }
+
+    /// One parameter.
+    pub(crate) fn bind(&mut self, context: &mut Context<'g>, param: &Param, scope: &mut Scope<'g>) {
+        let name = &param.name.node;
+        let Some(dimension) = context.dimension(&param.dimension) else {
+            scope.insert(name.clone(), Value::Poison);
+            return;
+        };
+        let full_name = match &self.source {
+            Source::Instance { name: instance, .. } => format!("{}.{name}", instance.node),
+            Source::Definition | Source::Job => name.clone(),
+        };
+        // the short name: a default is looked at once by itself and once for each use, and both must say the same
+        let what = format!("`{name}`");
+        let setting = match &self.source {
+            Source::Instance { settings, .. } => settings
+                .iter()
+                .find(|setting| setting.name.as_ref().is_some_and(|given| given.node == *name))
+                .map(|setting| &setting.value),
+            Source::Definition | Source::Job => None,
+        };
+        let overridden = match self.source {
+            Source::Definition => None,
+            _ => self.overrides.get(&full_name),
+        };
+        let given = match (overridden, setting, &self.source) {
+            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()))),
+            (None, Some(value), Source::Instance { job, .. }) => Some((value, context.evaluate(value, job))),
+            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope))),
+        };
+        let definition = match given {
+            Some((expression, value)) => {
+                let Some(definition) = context.require(&value, dimension, expression.span, &what) else {
+                    scope.insert(name.clone(), Value::Poison);
+                    return;
+                };
+                Some((definition, expression.span))
+            }
+            None => {
+                if !matches!(self.source, Source::Definition) {
+                    self.missing.push(param.name.clone());
+                }
+                None
+            }
+        };
+        let value = match definition {
+            Some((definition, span)) => match context.constant(definition) {
+                Constant::Unknown => f64::NAN,
+                _ => match context.require_constant(definition, span, &what) {
+                    Some(value) => value,
+                    None => {
+                        scope.insert(name.clone(), Value::Poison);
+                        return;
+                    }
+                },
+            },
+            None => f64::NAN,
+        };
+        let checked_at = definition.map_or(param.name.span, |(_, span)| span);
+        self.check_value(context, param, value, scope, checked_at);
+        let variable = context.variable(full_name.clone(), Role::Parameter, value);
+        scope.insert(name.clone(), Value::Scalar(variable, dimension));
+        if let Some((definition, _)) = definition {
+            self.parameters.push(Parameter { name: full_name, variable, dimension, definition, value });
+        }
+    }
+
+    /// Counts are whole, values lie in the declared range.
+    fn check_value(
+        &self,
+        context: &mut Context<'g>,
+        param: &Param,
+        value: f64,
+        scope: &Scope<'g>,
+        span: crate::source::Span,
+    ) {
+        let is_count = param.dimension.factors.iter().any(|(name, _)| name.node == "count");
+        if is_count && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
+            let message = format!("`{}` is a count: it must be a whole number, not {value}", param.name.node);
+            context.report(Diagnostic::new(Code::WrongDimension, span, message));
+        }
+        let Some(range) = &param.range else { return };
+        let Some(dimension) = context.dimension(&param.dimension) else {
+            return;
+        };
+        let what = format!("`{}`", param.name.node);
+        let Some((low, high)) = context.range(range, scope, dimension, &what) else {
+            return;
+        };
+        if value < low || value > high {
+            let message = format!("{what} is outside its range");
+            let diagnostic =
+                Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");
+            context.report(diagnostic);
+        }
+    }
+
+    /// What was given too little or too much.
+    pub(crate) fn finish(self, context: &mut Context<'g>, known: &[&Param]) -> Vec<Parameter<'g>> {
+        let names: Vec<&str> = self.missing.iter().map(|name| name.node.as_str()).collect();
+        match &self.source {
+            Source::Definition => {}
+            Source::Job => {
+                for name in &self.missing {
+                    let message = format!("`{}` has no value", name.node);
+                    let help = "give it one: `param name : dimension = value`";
+                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                }
+            }
+            Source::Instance { name, settings, .. } => {
+                if !names.is_empty() {
+                    let message = format!("`{}` needs {}", name.node, quoted(&names));
+                    let help = format!("give the value{}: `({}: …)`", plural(names.len()), names.join(": …, "));
+                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                }
+                check_settings(context, settings, known);
+            }
+        }
+        self.parameters
+    }
+}
+
+fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &[&Param]) {
+    for (index, setting) in settings.iter().enumerate() {
+        match &setting.name {
+            None => {
+                let message = "a setting has a name: `name: value`";
+                context.report(Diagnostic::new(Code::WrongArguments, setting.value.span, message));
+            }
+            Some(name) if !known.iter().any(|param| param.name.node == name.node) => {
+                context.unknown(name, "setting", known.iter().map(|param| param.name.node.as_str()));
+            }
+            Some(name) => {
+                let earlier = settings[..index].iter().filter_map(|setting| setting.name.as_ref());
+                if let Some(first) = earlier.into_iter().find(|earlier| earlier.node == name.node) {
+                    let message = format!("`{}` is given twice", name.node);
+                    let diagnostic =
+                        Diagnostic::new(Code::DuplicateName, name.span, message).note(first.span, "first given here");
+                    context.report(diagnostic);
+                }
+            }
+        }
+    }
+}

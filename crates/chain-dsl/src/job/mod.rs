@@ -1,0 +1,248 @@
+//! Jobs: machines and tools get values, axes their laws, tools leave surfaces.
+
+mod axes;
+mod surfaces;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use flank_expr::Expr;
+
+use crate::codes::Code;
+use crate::context::{Context, Role, Scope, Value};
+use crate::diagnostic::Diagnostic;
+use crate::instance::{Binder, Overrides, Source};
+use crate::machine::{self, Built, Machines};
+use crate::model::{Bounded, GeneratedSurface, Job};
+use crate::source::{Name, Span};
+use crate::syntax::ast::{self, JobStatement};
+use crate::tool::{self, BuiltTool, Tools};
+
+/// The definitions that jobs draw on.
+pub(crate) struct Definitions<'a> {
+    pub(crate) machines: &'a Machines,
+    pub(crate) tools: &'a Tools,
+    pub(crate) overrides: &'a Overrides,
+}
+
+/// A frame of a machine of the job.
+type FrameRef = (usize, usize);
+
+struct Builder<'a, 'g> {
+    definitions: &'a Definitions<'a>,
+    scope: Scope<'g>,
+    names: HashMap<String, Span>,
+    machines: Vec<(Name, String, Built<'g>)>,
+    tools: Vec<(Name, BuiltTool<'g>)>,
+    motions: Vec<Bounded<'g>>,
+    mounts: HashMap<String, (Option<FrameRef>, Span)>,
+    drives: HashMap<(usize, String), (Option<Expr<'g>>, Span)>,
+    laws: Vec<(Expr<'g>, Expr<'g>)>,
+    surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
+}
+
+/// A job with all its names resolved; what is wrong in it is reported and left out.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    job: &ast::Job,
+    definitions: &Definitions<'_>,
+    file: &Path,
+) -> Job<'g> {
+    let mut builder = Builder {
+        definitions,
+        scope: Scope::new(),
+        names: HashMap::new(),
+        machines: Vec::new(),
+        tools: Vec::new(),
+        motions: Vec::new(),
+        mounts: HashMap::new(),
+        drives: HashMap::new(),
+        laws: Vec::new(),
+        surfaces: Vec::new(),
+    };
+    let mut binder = Binder::new(Source::Job, definitions.overrides);
+    for statement in &job.statements {
+        builder.declare(context, statement, &mut binder);
+    }
+    let mut parameters = binder.finish(context, &[]);
+    for statement in &job.statements {
+        match statement {
+            JobStatement::Mount { tool, frame } => builder.mount(context, tool, frame, job),
+            JobStatement::Drive(drive) => builder.drive(context, drive),
+            _ => {}
+        }
+    }
+    let machines = builder.settle_axes(context);
+    for statement in &job.statements {
+        if let JobStatement::Surface(surface) = statement {
+            builder.surface(context, surface);
+        }
+    }
+    for statement in &job.statements {
+        if let JobStatement::Sample(sample) = statement {
+            builder.sample(context, sample, job);
+        }
+    }
+    if !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
+        let message = format!("`{}` makes no surface", job.name.node);
+        let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
+        context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
+    }
+    for (_, _, built) in builder.machines {
+        parameters.extend(built.parameters);
+    }
+    for (_, built) in builder.tools {
+        parameters.extend(built.parameters);
+    }
+    // a setting comes after the job parameters that it is made of, and those were made first
+    parameters.sort_by_key(|parameter| parameter.variable.as_variable());
+    Job {
+        name: job.name.node.clone(),
+        doc: job.doc.clone(),
+        file: file.to_path_buf(),
+        parameters,
+        motions: builder.motions,
+        machines,
+        surfaces: builder.surfaces.into_iter().map(|(surface, _)| surface).collect(),
+    }
+}
+
+impl<'g> Builder<'_, 'g> {
+    fn define(&mut self, context: &mut Context<'g>, name: &Name) {
+        if let Some(first) = self.names.insert(name.node.clone(), name.span) {
+            context.duplicate(name, first);
+        }
+    }
+
+    fn declare(&mut self, context: &mut Context<'g>, statement: &JobStatement, binder: &mut Binder<'_, 'g>) {
+        match statement {
+            JobStatement::Param(param) => {
+                self.define(context, &param.name);
+                binder.bind(context, param, &mut self.scope);
+            }
+            JobStatement::Let(binding) => {
+                self.define(context, &binding.name);
+                let value = context.evaluate(&binding.value, &self.scope);
+                self.scope.insert(binding.name.node.clone(), value);
+            }
+            JobStatement::Motion(motion) => {
+                self.define(context, &motion.name);
+                let bounded = tool::bounded(context, motion, &self.scope, Role::Motion);
+                let value = match &bounded {
+                    Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
+                    None => Value::Poison,
+                };
+                self.scope.insert(motion.name.node.clone(), value);
+                self.motions.extend(bounded);
+            }
+            JobStatement::Machine(instance) => self.machine(context, instance),
+            JobStatement::Tool(instance) => self.tool(context, instance),
+            JobStatement::Surface(surface) => self.define(context, &surface.name),
+            JobStatement::Mount { .. } | JobStatement::Drive(_) | JobStatement::Sample(_) => {}
+        }
+    }
+
+    fn machine(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
+        self.define(context, &instance.name);
+        let machines = self.definitions.machines;
+        let Some(definition) = machines.get(&instance.definition.node) else {
+            context.unknown(&instance.definition, "machine", machines.keys().map(String::as_str));
+            return;
+        };
+        let Some(flat) = machine::flatten(context, machines, definition) else {
+            return;
+        };
+        let source = Source::Instance { name: &instance.name, settings: &instance.settings, job: &self.scope };
+        let built = flat.build(context, &definition.name, source, self.definitions.overrides);
+        self.expose(&instance.name, &built.scope);
+        self.machines.push((instance.name.clone(), definition.name.node.clone(), built));
+    }
+
+    fn tool(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
+        self.define(context, &instance.name);
+        let tools = self.definitions.tools;
+        let Some(definition) = tools.get(&instance.definition.node) else {
+            context.unknown(&instance.definition, "tool", tools.keys().map(String::as_str));
+            return;
+        };
+        let source = Source::Instance { name: &instance.name, settings: &instance.settings, job: &self.scope };
+        let built = tool::build(context, definition, source, self.definitions.overrides);
+        self.expose(&instance.name, &built.scope);
+        self.tools.push((instance.name.clone(), built));
+    }
+
+    /// Settings, constants and axes of a machine or tool can be read in the job as `m.name`.
+    fn expose(&mut self, name: &Name, scope: &Scope<'g>) {
+        for (inner, value) in scope {
+            self.scope.insert(format!("{}.{inner}", name.node), value.clone());
+        }
+    }
+
+    fn instance_names(&self) -> Vec<String> {
+        self.machines.iter().map(|(name, ..)| name.node.clone()).collect()
+    }
+
+    /// A machine of the job and the name behind the dot.
+    fn machine_member<'p>(
+        &self,
+        context: &mut Context<'g>,
+        path: &'p ast::Path,
+        what: &str,
+    ) -> Option<(usize, &'p Name)> {
+        let [machine, member] = path.segments.as_slice() else {
+            let message = format!("{what} is named as `machine.name`");
+            context.report(Diagnostic::new(Code::WrongKind, path.span, message));
+            return None;
+        };
+        match self.machines.iter().position(|(name, ..)| name.node == machine.node) {
+            Some(index) => Some((index, member)),
+            None if self.names.contains_key(&machine.node) && self.is_broken_machine(machine) => None,
+            None => {
+                let names = self.instance_names();
+                context.unknown(machine, "machine", names.iter().map(String::as_str));
+                None
+            }
+        }
+    }
+
+    /// True for a name that stands for something that could not be built (which has been reported).
+    fn is_broken_machine(&self, name: &Name) -> bool {
+        !self.scope.contains_key(&name.node)
+            && !self.tools.iter().any(|(tool, _)| tool.node == name.node)
+            && !self.surfaces.iter().any(|(surface, _)| surface.name == name.node)
+    }
+
+    fn frame(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<FrameRef> {
+        let (machine, member) = self.machine_member(context, path, "a frame")?;
+        let frames = &self.machines[machine].2.frames;
+        match frames.iter().position(|frame| frame.name == member.node) {
+            Some(frame) => Some((machine, frame)),
+            None if frames.is_empty() => None,
+            None => {
+                context.unknown(member, "frame", frames.iter().map(|frame| frame.name.as_str()));
+                None
+            }
+        }
+    }
+
+    fn mount(&mut self, context: &mut Context<'g>, name: &Name, frame: &ast::Path, job: &ast::Job) {
+        let surfaces = job.statements.iter().filter_map(|statement| match statement {
+            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
+            JobStatement::Tool(tool) => Some(tool.name.node.as_str()),
+            _ => None,
+        });
+        let mountable: Vec<&str> = surfaces.collect();
+        if !mountable.contains(&name.node.as_str()) {
+            context.unknown(name, "tool", mountable.into_iter());
+            return;
+        }
+        let place = self.frame(context, frame);
+        if let Some((_, first)) = self.mounts.get(&name.node) {
+            let message = format!("`{}` is mounted twice", name.node);
+            let first = *first;
+            context.report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here"));
+            return;
+        }
+        self.mounts.insert(name.node.clone(), (place, name.span));
+    }
+}

@@ -1,0 +1,288 @@
+//! The surfaces that tools leave, and the points of them that are asked for.
+
+use flank_expr::Expr;
+use flank_expr::geometry::{Chain, Step, Surface};
+
+use crate::codes::Code;
+use crate::context::{Context, Value, quoted};
+use crate::diagnostic::Diagnostic;
+use crate::machine;
+use crate::model::{Bounded, GeneratedSurface, Generation};
+use crate::sample;
+use crate::source::Span;
+use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
+
+use super::{Builder, FrameRef};
+
+/// A surface that an envelope may take as its tool.
+struct Available<'g> {
+    surface: Surface<'g>,
+    unknowns: Vec<Bounded<'g>>,
+    frame: FrameRef,
+}
+
+impl<'g> Builder<'_, 'g> {
+    pub(super) fn surface(&mut self, context: &mut Context<'g>, written: &ast::GeneratedSurface) {
+        let frame = self.frame(context, &written.frame);
+        let (tool, motions) = match &written.value.kind {
+            ExpressionKind::Call(call) if call.function.node == "envelope" => {
+                let Some(found) = self.envelope_arguments(context, call) else {
+                    return;
+                };
+                found
+            }
+            ExpressionKind::Error => return,
+            ExpressionKind::Call(call) => {
+                context.unknown(&call.function, "way to make a surface", ["envelope"].into_iter());
+                return;
+            }
+            _ => {
+                let message = "a surface is made by `envelope(tool.surface, over: motion)`";
+                context.report(Diagnostic::new(Code::WrongKind, written.value.span, message));
+                return;
+            }
+        };
+        let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else {
+            return;
+        };
+        let Some(path) = self.path_between(context, frame, available.frame, written.value.span) else {
+            return;
+        };
+        let graph = context.graph;
+        let t_work_tool = Chain::new(graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
+        let driven = t_work_tool.substituted(&self.laws).merged();
+        if !self.check_motions(context, &driven, &motions, written, &available) {
+            return;
+        }
+        let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
+        let surface = available.surface.envelope(&driven, &over);
+        let unknowns = available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
+        let generation = Generation {
+            tool_name: tool.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join("."),
+            tool: available.surface,
+            path,
+            t_work_tool,
+            driven,
+            motions: over,
+        };
+        self.surfaces.push((
+            GeneratedSurface {
+                name: written.name.node.clone(),
+                doc: written.doc.clone(),
+                frame: self.frame_name(frame),
+                generation: Some(generation),
+                surface,
+                unknowns,
+                sample: None,
+            },
+            frame,
+        ));
+    }
+
+    /// The tool's surface and the motions of `envelope(tool.surface, over: [motion, …])`.
+    fn envelope_arguments<'p>(
+        &self,
+        context: &mut Context<'g>,
+        call: &'p ast::Call,
+    ) -> Option<(&'p ast::Path, Vec<(Bounded<'g>, Span)>)> {
+        let mut tool = None;
+        let mut motions = Vec::new();
+        for argument in &call.arguments {
+            match (&argument.name, &argument.value.kind) {
+                (_, ExpressionKind::Error) => return None,
+                (None, ExpressionKind::Path(path)) if tool.is_none() => tool = Some(path),
+                (Some(name), _) if name.node == "over" => {
+                    let each: Vec<&Expression> = match &argument.value.kind {
+                        ExpressionKind::Vector(parts) => parts.iter().collect(),
+                        _ => vec![&argument.value],
+                    };
+                    for written in each {
+                        motions.push((self.motion(context, written)?, written.span));
+                    }
+                }
+                (Some(name), _) => {
+                    context.unknown(name, "argument of `envelope`", ["over"].into_iter());
+                    return None;
+                }
+                (None, _) => {
+                    let message = "`envelope` takes a surface of a tool and `over:` its motions";
+                    context.report(Diagnostic::new(Code::WrongArguments, argument.value.span, message));
+                    return None;
+                }
+            }
+        }
+        if tool.is_none() {
+            let message = "`envelope` takes a surface of a tool: `envelope(c.flank, over: roll)`";
+            context.report(Diagnostic::new(Code::WrongArguments, call.span, message));
+        }
+        tool.map(|tool| (tool, motions))
+    }
+
+    fn motion(&self, context: &mut Context<'g>, written: &Expression) -> Option<Bounded<'g>> {
+        let ExpressionKind::Path(path) = &written.kind else {
+            context.report(Diagnostic::new(Code::WrongKind, written.span, "`over:` takes the names of motions"));
+            return None;
+        };
+        let [name] = path.segments.as_slice() else {
+            context.report(Diagnostic::new(Code::WrongKind, written.span, "`over:` takes the names of motions"));
+            return None;
+        };
+        let found = self.motions.iter().find(|motion| motion.name == name.node).cloned();
+        if found.is_none() && !matches!(self.scope.get(&name.node), Some(Value::Poison)) {
+            if self.names.contains_key(&name.node) {
+                let message = format!("`{}` is not a motion", name.node);
+                let help = "declare it as one: `motion name : angle in … .. …`";
+                context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+            } else {
+                context.unknown(name, "motion", self.motions.iter().map(|motion| motion.name.as_str()));
+            }
+        }
+        found
+    }
+
+    /// A surface of a tool, or an earlier surface of the job, and the frame it is fixed to.
+    fn available(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<Available<'g>> {
+        let owner = &path.segments[0];
+        let mounted = self.mounts.get(&owner.node).copied();
+        if let [name] = path.segments.as_slice() {
+            let Some((earlier, frame)) = self.surfaces.iter().find(|(surface, _)| surface.name == name.node) else {
+                if !self.names.contains_key(&name.node) || self.scope.contains_key(&name.node) {
+                    let known = self.surfaces.iter().map(|(surface, _)| surface.name.as_str());
+                    context.unknown(
+                        name,
+                        "surface",
+                        known.chain(self.tools.iter().map(|(tool, _)| tool.node.as_str())),
+                    );
+                } else if let Some((_, built)) = self.tools.iter().find(|(tool, _)| tool.node == name.node) {
+                    let surfaces: Vec<String> =
+                        built.surfaces.iter().map(|surface| format!("{}.{}", name.node, surface.name)).collect();
+                    let message = format!("`{}` is a tool; say which of its surfaces", name.node);
+                    let list: Vec<&str> = surfaces.iter().map(String::as_str).collect();
+                    let help = format!("there is: {}", quoted(&list));
+                    context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+                }
+                return None;
+            };
+            let frame = mounted.map_or(Some(*frame), |(frame, _)| frame)?;
+            return Some(Available { surface: earlier.surface.clone(), unknowns: earlier.unknowns.clone(), frame });
+        }
+        let Some((_, built)) = self.tools.iter().find(|(tool, _)| tool.node == owner.node) else {
+            if !self.names.contains_key(&owner.node) {
+                context.unknown(owner, "tool", self.tools.iter().map(|(tool, _)| tool.node.as_str()));
+            } else if !self.is_broken_machine(owner) {
+                let message = format!("`{}` is not a tool", owner.node);
+                context.report(Diagnostic::new(Code::WrongKind, owner.span, message));
+            }
+            return None;
+        };
+        let member = &path.segments[1];
+        let Some(surface) = built.surfaces.iter().find(|surface| surface.name == member.node) else {
+            context.unknown(member, "surface", built.surfaces.iter().map(|surface| surface.name.as_str()));
+            return None;
+        };
+        let Some((frame, _)) = mounted else {
+            let message = format!("`{}` is not mounted on any frame", owner.node);
+            let help = format!("say where it sits: `mount {} on m.spindle`", owner.node);
+            context.report(Diagnostic::new(Code::NotMounted, owner.span, message).help(help));
+            return None;
+        };
+        let (surface, unknowns) = surface.surface.clone()?;
+        Some(Available { surface, unknowns, frame: frame? })
+    }
+
+    fn frame_name(&self, (machine, frame): FrameRef) -> String {
+        let (name, _, built) = &self.machines[machine];
+        format!("{}.{}", name.node, built.frames[frame].name)
+    }
+
+    fn path_between(
+        &self,
+        context: &mut Context<'g>,
+        from: FrameRef,
+        to: FrameRef,
+        span: Span,
+    ) -> Option<Vec<(String, Vec<Step<'g>>)>> {
+        if from.0 != to.0 {
+            let message = format!(
+                "`{}` and `{}` belong to two machines: nothing says how they stand to each other",
+                self.frame_name(from),
+                self.frame_name(to)
+            );
+            context.report(Diagnostic::new(Code::UnrelatedFrames, span, message));
+            return None;
+        }
+        let hops = machine::path(&self.machines[from.0].2.frames, from.1, to.1);
+        Some(hops.into_iter().map(|(frame, steps)| (self.frame_name((from.0, frame)), steps)).collect())
+    }
+
+    /// The envelope is over exactly the motions that move the tool against the work.
+    fn check_motions(
+        &self,
+        context: &mut Context<'g>,
+        driven: &Chain<'g>,
+        motions: &[(Bounded<'g>, Span)],
+        written: &ast::GeneratedSurface,
+        available: &Available<'g>,
+    ) -> bool {
+        let mut fine = true;
+        for (k, (motion, span)) in motions.iter().enumerate() {
+            if available.unknowns.iter().any(|unknown| unknown.variable == motion.variable) {
+                let message = format!("`{}` has made the tool's own surface already", motion.name);
+                let help = "declare a second motion for this envelope";
+                context.report(Diagnostic::new(Code::IdleMotion, *span, message).help(help));
+                fine = false;
+                continue;
+            }
+            if motions[..k].iter().any(|(earlier, _)| earlier.variable == motion.variable) {
+                let message = format!("`{}` is named twice", motion.name);
+                context.report(Diagnostic::new(Code::DuplicateName, *span, message));
+                fine = false;
+            } else if driven.twist(motion.variable).is_zero() {
+                let message =
+                    format!("`{}` does not move `{}` against the work", motion.name, self.frame_name(available.frame));
+                let help = "drive an axis with it, or leave it out of `over:`";
+                context.report(Diagnostic::new(Code::IdleMotion, *span, message).help(help));
+                fine = false;
+            }
+        }
+        for motion in &self.motions {
+            let taken = motions.iter().any(|(over, _)| over.variable == motion.variable)
+                || available.unknowns.iter().any(|unknown| unknown.variable == motion.variable);
+            if !taken && !driven.twist(motion.variable).is_zero() {
+                let message = format!("the tool also moves with `{}`, which the envelope is not over", motion.name);
+                let help = format!("add it: `over: [{}]`", {
+                    let mut names: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).collect();
+                    names.push(&motion.name);
+                    names.join(", ")
+                });
+                context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
+                fine = false;
+            }
+        }
+        fine
+    }
+
+    pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
+        let Some(index) = self.surfaces.iter().position(|(surface, _)| surface.name == written.surface.node) else {
+            let declared: Vec<&str> = job
+                .statements
+                .iter()
+                .filter_map(|statement| match statement {
+                    JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
+                    _ => None,
+                })
+                .collect();
+            if !declared.contains(&written.surface.node.as_str()) {
+                context.unknown(&written.surface, "surface", declared.into_iter());
+            }
+            return;
+        };
+        if self.surfaces[index].0.sample.is_some() {
+            let message = format!("`{}` is sampled twice", written.surface.node);
+            context.report(Diagnostic::new(Code::DuplicateName, written.surface.span, message));
+            return;
+        }
+        let sample = sample::build(context, written, &self.surfaces[index].0, &self.scope);
+        self.surfaces[index].0.sample = sample;
+    }
+}

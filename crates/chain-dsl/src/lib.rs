@@ -1,0 +1,65 @@
+//! The language: text in, diagnostics or a checked symbolic model out.
+//!
+//! ```
+//! let graph = flank_expr::Graph::new();
+//! let text = "
+//!     machine lathe {
+//!         axis Z : linear
+//!         axis C : rotary
+//!         frame bed
+//!         frame slide in bed = translate_z(Z)
+//!         frame work  in bed = rotate_z(C)
+//!     }
+//!     tool ball {
+//!         param radius : length = 5 mm
+//!         surface face(u: angle in -80 deg .. 80 deg, v: angle in -60 deg .. 60 deg) {
+//!             at = [20 mm - radius * cos(u) * cos(v), radius * cos(u) * sin(v), radius * sin(u)]
+//!             body towards [1, 0, 0]
+//!         }
+//!     }
+//!     job thread {
+//!         machine m = lathe
+//!         tool b = ball
+//!         mount b on m.slide
+//!         motion turn : angle in 0 deg .. 360 deg
+//!         drive m.C = turn
+//!         drive m.Z = 4 mm/rev * turn
+//!         surface groove in m.work = envelope(b.face, over: turn)
+//!         sample groove { u: -50 deg .. 50 deg by 5, turn: 10 deg .. 350 deg by 9 }
+//!     }";
+//! let compilation = flank_chain_dsl::compile_text(&graph, "thread.chain", text, &[]);
+//! assert!(compilation.diagnostics.is_empty());
+//! assert_eq!(compilation.jobs[0].surfaces[0].surface.constraints.len(), 1);
+//! ```
+
+mod codes;
+mod compile;
+mod context;
+mod derivation;
+mod diagnostic;
+mod dimension;
+mod evaluate;
+mod functions;
+mod instance;
+mod job;
+pub mod limits;
+mod load;
+mod machine;
+mod model;
+mod render;
+mod sample;
+mod source;
+pub mod syntax;
+mod tool;
+mod transforms;
+
+pub use codes::Code;
+pub use compile::{Compilation, compile_file, compile_text};
+pub use derivation::derivation;
+pub use diagnostic::{Diagnostic, Note, Severity};
+pub use dimension::Dimension;
+pub use model::{
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Sample,
+};
+pub use render::render;
+pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

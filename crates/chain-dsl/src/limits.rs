@@ -1,0 +1,18 @@
+//! The limits of the language, in one place.
+
+/// Size of one file.
+pub const FILE_BYTES: usize = 1 << 20;
+/// Depth to which files use each other.
+pub const USE_DEPTH: usize = 32;
+/// Depth of brackets, conditionals and signs in an expression.
+pub const NESTING: usize = 64;
+/// Depth to which functions call each other.
+pub const CALL_DEPTH: usize = 64;
+/// Steps of evaluating expressions in one compilation.
+pub const EVALUATION_STEPS: usize = 2_000_000;
+/// Frames of one machine.
+pub const FRAMES: usize = 10_000;
+/// Points of one sample.
+pub const SAMPLE_POINTS: usize = 20_000_000;
+/// Depth to which machines extend each other.
+pub const EXTENDS_DEPTH: usize = 64;

@@ -1,0 +1,189 @@
+//! Reading a file and the files that it uses.
+
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::limits;
+use crate::source::{FileId, Name, Sources, Span, Spanned};
+use crate::syntax::ast::{File, Item};
+use crate::syntax::parse;
+
+/// All files of a compilation, each once, used ones before those that use them.
+pub(crate) struct Loaded {
+    pub(crate) sources: Sources,
+    pub(crate) files: Vec<(FileId, File)>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+struct Loader {
+    loaded: Loaded,
+    root: PathBuf,
+    known: HashMap<PathBuf, FileId>,
+    /// Files on the way from the first one to the one being read.
+    open: Vec<FileId>,
+}
+
+/// Reads `path` and everything it uses.
+///
+/// Files that are used must lie in the project folder: the nearest folder above `path` that holds a `.git` or a
+/// `flank.toml`; else the current folder, if `path` lies in it; else the folder above that of `path`.
+pub(crate) fn load(path: &Path) -> Loaded {
+    let mut loader = Loader {
+        loaded: Loaded { sources: Sources::default(), files: Vec::new(), diagnostics: Vec::new() },
+        root: project_folder(path),
+        known: HashMap::new(),
+        open: Vec::new(),
+    };
+    match std::fs::canonicalize(path) {
+        Ok(found) => {
+            loader.read(path, &found, None);
+        }
+        Err(error) => loader.unreadable(path, &error, None),
+    }
+    loader.loaded
+}
+
+/// Parses one text that uses no other file.
+pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
+    let mut sources = Sources::default();
+    let id = sources.add(name, text);
+    let (file, mut diagnostics) = parse(text, id);
+    for item in &file.items {
+        if let Item::Use(path) = item {
+            diagnostics.push(Diagnostic::new(
+                Code::UnreadableFile,
+                path.span,
+                "a text that is not a file cannot use files",
+            ));
+        }
+    }
+    Loaded { sources, files: vec![(id, file)], diagnostics }
+}
+
+fn project_folder(path: &Path) -> PathBuf {
+    let absolute = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let marked =
+        absolute.ancestors().skip(1).find(|folder| folder.join(".git").exists() || folder.join("flank.toml").exists());
+    if let Some(folder) = marked {
+        return folder.to_path_buf();
+    }
+    let here = std::env::current_dir().and_then(std::fs::canonicalize).unwrap_or_default();
+    if !here.as_os_str().is_empty() && absolute.starts_with(&here) {
+        return here;
+    }
+    absolute.ancestors().nth(2).unwrap_or(Path::new("/")).to_path_buf()
+}
+
+impl Loader {
+    fn read(&mut self, shown: &Path, real: &Path, used_at: Option<Span>) {
+        let text = match read_limited(real) {
+            Ok(text) => text,
+            Err(ReadError::Io(error)) => return self.unreadable(shown, &error, used_at),
+            Err(ReadError::TooLarge) => {
+                let span = self.place(shown, used_at);
+                let message = format!("`{}` is larger than {} bytes", shown.display(), limits::FILE_BYTES);
+                return self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, span, message));
+            }
+        };
+        let id = self.loaded.sources.add(shown, text);
+        self.known.insert(real.to_path_buf(), id);
+        let (file, diagnostics) = parse(&self.loaded.sources.file(id).text, id);
+        self.loaded.diagnostics.extend(diagnostics);
+        self.open.push(id);
+        for item in &file.items {
+            if let Item::Use(used) = item {
+                self.follow(shown, real, used);
+            }
+        }
+        self.open.pop();
+        self.loaded.files.push((id, file));
+    }
+
+    fn follow(&mut self, from_shown: &Path, from_real: &Path, used: &Spanned<String>) {
+        let here = from_real.parent().unwrap_or(Path::new("/"));
+        let shown = tidy(&from_shown.parent().unwrap_or(Path::new("")).join(&used.node));
+        if Path::new(&used.node).is_absolute() {
+            return self.outside(used);
+        }
+        let real = match std::fs::canonicalize(here.join(&used.node)) {
+            Ok(real) => real,
+            // a path that leaves the project says so whether the file exists or not
+            Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.root) => {
+                return self.outside(used);
+            }
+            Err(error) => return self.unreadable(&shown, &error, Some(used.span)),
+        };
+        if !real.starts_with(&self.root) {
+            return self.outside(used);
+        }
+        match self.known.get(&real) {
+            Some(id) if self.open.contains(id) => {
+                let message = format!("`{}` uses this file again, in a circle", used.node);
+                let diagnostic =
+                    Diagnostic::new(Code::CyclicUse, used.span, message).help("move what both need into a third file");
+                self.loaded.diagnostics.push(diagnostic);
+            }
+            Some(_) => {}
+            None if self.open.len() >= limits::USE_DEPTH => {
+                let message = format!("files use each other more than {} deep", limits::USE_DEPTH);
+                self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, used.span, message));
+            }
+            None => self.read(&shown, &real, Some(used.span)),
+        }
+    }
+
+    fn outside(&mut self, used: &Name) {
+        let message = format!("`{}` lies outside the project folder {}", used.node, self.root.display());
+        let help = "use only files of the project; an empty `flank.toml` marks the project's top folder";
+        self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
+    }
+
+    fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
+        let span = self.place(shown, used_at);
+        let reason = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file".to_string(),
+            std::io::ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
+            std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
+            std::io::ErrorKind::PermissionDenied => "reading it is not permitted".to_string(),
+            _ => error.to_string(),
+        };
+        let message = format!("cannot read `{}`: {reason}", shown.display());
+        self.loaded.diagnostics.push(Diagnostic::new(Code::UnreadableFile, span, message));
+    }
+
+    /// Where a file is asked for; the start of an empty text of its own if on the command line.
+    fn place(&mut self, shown: &Path, used_at: Option<Span>) -> Span {
+        used_at.unwrap_or_else(|| Span { file: self.loaded.sources.add(shown, ""), start: 0, end: 0 })
+    }
+}
+
+enum ReadError {
+    Io(std::io::Error),
+    TooLarge,
+}
+
+fn read_limited(path: &Path) -> Result<String, ReadError> {
+    use std::io::Read;
+    let file = std::fs::File::open(path).map_err(ReadError::Io)?;
+    let mut text = String::new();
+    let limit = limits::FILE_BYTES as u64;
+    file.take(limit + 1).read_to_string(&mut text).map_err(ReadError::Io)?;
+    if text.len() as u64 > limit { Err(ReadError::TooLarge) } else { Ok(text) }
+}
+
+/// A path without `.` and without `folder/..`.
+fn tidy(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(out.components().next_back(), Some(Component::Normal(_))) => {
+                out.pop();
+            }
+            other => out.push(other),
+        }
+    }
+    out
+}

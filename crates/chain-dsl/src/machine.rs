@@ -1,0 +1,330 @@
+//! Machines: what `extends` amounts to, axes and their laws, the tree of frames.
+
+use std::collections::HashMap;
+
+use flank_expr::Expr;
+use flank_expr::geometry::Step;
+
+use crate::codes::Code;
+use crate::context::{Context, Role, Scope, Value};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::instance::{Binder, Overrides, Source};
+use crate::limits;
+use crate::model::{Frame, Parameter};
+use crate::source::{Name, Span};
+use crate::syntax::ast::{self, AxisKind, MachineStatement};
+use crate::transforms;
+
+/// All machines of a compilation by name.
+pub(crate) type Machines = HashMap<String, ast::Machine>;
+
+/// A machine with everything it inherits, each thing once.
+#[derive(Default)]
+pub(crate) struct Flat<'a> {
+    constants: Vec<&'a MachineStatement>,
+    axes: Vec<&'a ast::Axis>,
+    laws: Vec<(&'a ast::Assignment, LawKind)>,
+    frames: Vec<&'a ast::Frame>,
+}
+
+/// A law that the machine itself states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LawKind {
+    Fix,
+    Couple,
+}
+
+/// A machine with values.
+pub(crate) struct Built<'g> {
+    pub(crate) parameters: Vec<Parameter<'g>>,
+    pub(crate) scope: Scope<'g>,
+    pub(crate) axes: Vec<BuiltAxis<'g>>,
+    pub(crate) frames: Vec<Frame<'g>>,
+}
+
+/// An axis, perhaps with a law.
+pub(crate) struct BuiltAxis<'g> {
+    pub(crate) name: Name,
+    pub(crate) dimension: Dimension,
+    pub(crate) variable: Expr<'g>,
+    pub(crate) travel: Option<(f64, f64)>,
+    pub(crate) law: Option<(Option<Expr<'g>>, LawKind, Span)>,
+}
+
+/// What a machine consists of, its parents' things first; what a variant states again replaces the parent's.
+pub(crate) fn flatten<'a, 'g>(
+    context: &mut Context<'g>,
+    machines: &'a Machines,
+    machine: &'a ast::Machine,
+) -> Option<Flat<'a>> {
+    let mut line = vec![machine];
+    while let Some(parent) = &line[line.len() - 1].extends {
+        let Some(next) = machines.get(&parent.node) else {
+            context.unknown(parent, "machine", machines.keys().map(String::as_str));
+            return None;
+        };
+        if line.iter().any(|seen| seen.name.node == next.name.node) {
+            // reported once: at the machine of the circle that is written first
+            let circle = line.iter().skip_while(|seen| seen.name.node != next.name.node);
+            let first = circle.min_by_key(|seen| seen.name.span).map(|seen| seen.name.span);
+            if first == Some(machine.name.span) {
+                let through = if line.len() == 1 { String::new() } else { format!(" through `{}`", line[1].name.node) };
+                let message = format!("`{}` extends itself{through}", machine.name.node);
+                let at = machine.extends.as_ref().map_or(machine.name.span, |name| name.span);
+                context.report(Diagnostic::new(Code::CyclicExtends, at, message));
+            }
+            return None;
+        }
+        if line.len() >= limits::EXTENDS_DEPTH {
+            let message = format!("machines extend each other more than {} deep", limits::EXTENDS_DEPTH);
+            context.report(Diagnostic::new(Code::LimitExceeded, parent.span, message));
+            return None;
+        }
+        line.push(next);
+    }
+    let mut flat = Flat::default();
+    for machine in line.into_iter().rev() {
+        check_duplicates(context, machine);
+        machine.statements.iter().for_each(|statement| flat.add(statement));
+    }
+    Some(flat)
+}
+
+/// Name and place of what a statement defines, with a word for its namespace.
+fn defined(statement: &MachineStatement) -> (&Name, &'static str) {
+    match statement {
+        MachineStatement::Param(param) => (&param.name, "value"),
+        MachineStatement::Let(binding) => (&binding.name, "value"),
+        MachineStatement::Axis(axis) => (&axis.name, "value"),
+        MachineStatement::Frame(frame) => (&frame.name, "frame"),
+        MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
+    }
+}
+
+fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) {
+    let mut seen: HashMap<(&str, &str), Span> = HashMap::new();
+    for statement in &machine.statements {
+        let (name, kind) = defined(statement);
+        let Some(&first) = seen.get(&(kind, name.node.as_str())) else {
+            seen.insert((kind, &name.node), name.span);
+            continue;
+        };
+        if kind == "law" && !name.node.is_empty() {
+            let message = format!("axis `{}` has two laws", name.node);
+            context.report(Diagnostic::new(Code::DrivenTwice, name.span, message).note(first, "first here"));
+        } else {
+            context.duplicate(name, first);
+        }
+    }
+}
+
+/// Puts `new` in the place of what has the same name, else at the end.
+fn replace_or_push<T>(list: &mut Vec<T>, new: T, same: impl Fn(&T) -> bool) {
+    match list.iter().position(same) {
+        Some(index) => list[index] = new,
+        None => list.push(new),
+    }
+}
+
+impl<'a> Flat<'a> {
+    fn add(&mut self, statement: &'a MachineStatement) {
+        let name = &defined(statement).0.node;
+        match statement {
+            MachineStatement::Param(_) | MachineStatement::Let(_) => {
+                replace_or_push(&mut self.constants, statement, |old| defined(old).0.node == *name);
+            }
+            MachineStatement::Axis(axis) => replace_or_push(&mut self.axes, axis, |old| old.name.node == *name),
+            MachineStatement::Frame(frame) => replace_or_push(&mut self.frames, frame, |old| old.name.node == *name),
+            MachineStatement::Fix(law) => self.add_law(law, LawKind::Fix),
+            MachineStatement::Couple(law) => self.add_law(law, LawKind::Couple),
+        }
+    }
+
+    fn add_law(&mut self, law: &'a ast::Assignment, kind: LawKind) {
+        let target = &law.target.segments[0].node;
+        replace_or_push(&mut self.laws, (law, kind), |(old, _)| old.target.segments[0].node == *target);
+    }
+
+    fn params(&self) -> Vec<&'a ast::Param> {
+        self.constants
+            .iter()
+            .filter_map(|statement| match statement {
+                MachineStatement::Param(param) => Some(param),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Gives values to the parameters and builds axes and frames.
+    pub(crate) fn build<'g>(
+        &self,
+        context: &mut Context<'g>,
+        machine: &Name,
+        source: Source<'_, 'g>,
+        overrides: &Overrides,
+    ) -> Built<'g> {
+        let prefix = match &source {
+            Source::Instance { name, .. } => format!("{}.", name.node),
+            _ => String::new(),
+        };
+        let mut binder = Binder::new(source, overrides);
+        let mut scope = Scope::new();
+        for statement in &self.constants {
+            match statement {
+                MachineStatement::Param(param) => binder.bind(context, param, &mut scope),
+                MachineStatement::Let(binding) => {
+                    let value = context.evaluate(&binding.value, &scope);
+                    scope.insert(binding.name.node.clone(), value);
+                }
+                _ => {}
+            }
+        }
+        let parameters = binder.finish(context, &self.params());
+        let mut axes = self.build_axes(context, &scope, &prefix);
+        for axis in &axes {
+            scope.insert(axis.name.node.clone(), Value::Scalar(axis.variable, axis.dimension));
+        }
+        self.build_laws(context, &scope, &mut axes);
+        let frames = self.build_frames(context, machine, &scope);
+        Built { parameters, scope, axes, frames }
+    }
+
+    fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
+        let mut axes = Vec::new();
+        for axis in &self.axes {
+            let dimension = match axis.kind {
+                AxisKind::Linear => Dimension::LENGTH,
+                AxisKind::Rotary => Dimension::ANGLE,
+            };
+            let what = format!("axis `{}`", axis.name.node);
+            let travel = axis.range.as_ref().and_then(|range| context.range(range, scope, dimension, &what));
+            let variable = context.variable(format!("{prefix}{}", axis.name.node), Role::Axis, f64::NAN);
+            axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None });
+        }
+        axes
+    }
+
+    fn build_laws<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, axes: &mut [BuiltAxis<'g>]) {
+        for (law, kind) in &self.laws {
+            let target = &law.target.segments[0];
+            let Some(index) = axes.iter().position(|axis| axis.name.node == target.node) else {
+                context.unknown(target, "axis", axes.iter().map(|axis| axis.name.node.as_str()));
+                continue;
+            };
+            let what = format!("axis `{}`", target.node);
+            let dimension = axes[index].dimension;
+            let mut value = context.scalar(&law.value, scope, dimension, &what);
+            if let (Some(expr), LawKind::Fix) = (value, kind)
+                && matches!(context.constant(expr), crate::context::Constant::Moves(_))
+            {
+                context.require_constant(expr, law.value.span, &what);
+                value = None;
+            }
+            axes[index].law = Some((value, *kind, law.target.span));
+        }
+    }
+
+    /// The frames, parents before children.
+    fn build_frames<'g>(&self, context: &mut Context<'g>, machine: &Name, scope: &Scope<'g>) -> Vec<Frame<'g>> {
+        if self.frames.len() > limits::FRAMES {
+            let message = format!("`{}` has more than {} frames", machine.node, limits::FRAMES);
+            context.report(Diagnostic::new(Code::LimitExceeded, machine.span, message));
+            return Vec::new();
+        }
+        let roots: Vec<&&ast::Frame> = self.frames.iter().filter(|frame| frame.parent.is_none()).collect();
+        if let Some(second) = roots.get(1) {
+            let message = format!("`{}` hangs on nothing, and so does `{}`", second.name.node, roots[0].name.node);
+            let diagnostic = Diagnostic::new(Code::FrameTree, second.name.span, message)
+                .note(roots[0].name.span, "the first frame without a parent")
+                .help(format!("say what it hangs on: `frame {} in {} = …`", second.name.node, roots[0].name.node));
+            context.report(diagnostic);
+        }
+        let index: HashMap<&str, usize> =
+            self.frames.iter().enumerate().map(|(k, frame)| (frame.name.node.as_str(), k)).collect();
+        for frame in &self.frames {
+            if let Some(parent) = &frame.parent
+                && !index.contains_key(parent.node.as_str())
+            {
+                context.unknown(parent, "frame", index.keys().copied().filter(|name| *name != frame.name.node));
+            }
+        }
+        self.report_circles(context, &index);
+        self.order_frames(&index)
+            .into_iter()
+            .map(|(k, parent)| {
+                let frame = self.frames[k];
+                let steps = transforms::steps(context, &frame.transforms, scope);
+                Frame { name: frame.name.node.clone(), parent, steps }
+            })
+            .collect()
+    }
+
+    fn report_circles(&self, context: &mut Context<'_>, index: &HashMap<&str, usize>) {
+        // 0 not seen, 1 on the way up from the frame being looked at, 2 done
+        let mut state = vec![0u8; self.frames.len()];
+        for start in 0..self.frames.len() {
+            let mut way = Vec::new();
+            let mut at = Some(start);
+            while let Some(k) = at.filter(|k| state[*k] == 0) {
+                state[k] = 1;
+                way.push(k);
+                at = self.frames[k].parent.as_ref().and_then(|parent| index.get(parent.node.as_str()).copied());
+            }
+            if let Some(k) = at.filter(|k| state[*k] == 1) {
+                let names: Vec<&str> = way
+                    .iter()
+                    .skip_while(|other| **other != k)
+                    .map(|other| self.frames[*other].name.node.as_str())
+                    .collect();
+                let message = format!("frames hang on each other in a circle: {} → {}", names.join(" → "), names[0]);
+                let place = self.frames[k].parent.as_ref().map_or(self.frames[k].name.span, |parent| parent.span);
+                let diagnostic = Diagnostic::new(Code::CyclicFrames, place, message)
+                    .help("one frame must hang on nothing: `frame bed`");
+                context.report(diagnostic);
+            }
+            way.into_iter().for_each(|k| state[k] = 2);
+        }
+    }
+
+    /// Indices of the frames, parents first, with the new index of each one's parent; circles are left out.
+    fn order_frames(&self, index: &HashMap<&str, usize>) -> Vec<(usize, Option<usize>)> {
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.frames.len()];
+        let mut order: Vec<(usize, Option<usize>)> = Vec::new();
+        for (k, frame) in self.frames.iter().enumerate() {
+            match frame.parent.as_ref().map(|parent| index.get(parent.node.as_str())) {
+                Some(Some(&parent)) => children[parent].push(k),
+                Some(None) => {}
+                None => order.push((k, None)),
+            }
+        }
+        let mut next = 0;
+        while next < order.len() {
+            let parent = order[next].0;
+            order.extend(children[parent].iter().map(|&child| (child, Some(next))));
+            next += 1;
+        }
+        order
+    }
+}
+
+/// The steps from one frame of a machine to another: up to the frame that both hang on, then down. Each hop is named by
+/// the frame that it arrives in.
+pub(crate) fn path<'g>(frames: &[Frame<'g>], from: usize, to: usize) -> Vec<(usize, Vec<Step<'g>>)> {
+    let line = |start: usize| std::iter::successors(Some(start), |&k| frames[k].parent).collect::<Vec<_>>();
+    let (mut up, mut down) = (line(from), line(to));
+    // frames above the meeting point belong to neither way
+    while up.len() > 1 && down.len() > 1 && up[up.len() - 2] == down[down.len() - 2] {
+        up.pop();
+        down.pop();
+    }
+    let mut hops = vec![(from, Vec::new())];
+    for pair in up.windows(2) {
+        let steps = frames[pair[0]].steps.iter().rev().map(|step| step.inverse()).collect();
+        hops.push((pair[1], steps));
+    }
+    for pair in down.windows(2).rev() {
+        hops.push((pair[0], frames[pair[0]].steps.clone()));
+    }
+    hops
+}

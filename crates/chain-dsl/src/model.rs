@@ -1,0 +1,179 @@
+//! What a checked text means, all symbolic.
+
+use std::path::PathBuf;
+
+use flank_expr::Expr;
+use flank_expr::geometry::{Chain, Step, Surface};
+
+use crate::dimension::Dimension;
+
+/// One job, ready to be solved: its parameters are variables with values beside them.
+#[derive(Clone, Debug)]
+pub struct Job<'g> {
+    /// Its name.
+    pub name: String,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// The file that it stands in.
+    pub file: PathBuf,
+    /// Job parameters and settings of its machines and tools, each after those that its value depends on.
+    pub parameters: Vec<Parameter<'g>>,
+    /// What moves.
+    pub motions: Vec<Bounded<'g>>,
+    /// Its machines.
+    pub machines: Vec<Machine<'g>>,
+    /// Its surfaces, in order.
+    pub surfaces: Vec<GeneratedSurface<'g>>,
+}
+
+/// A named constant of a job.
+#[derive(Clone, Debug)]
+pub struct Parameter<'g> {
+    /// `ratio`, `m.radial_distance`.
+    pub name: String,
+    /// The variable that stands for it.
+    pub variable: Expr<'g>,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Its value as an expression in earlier parameters.
+    pub definition: Expr<'g>,
+    /// Its value, mm or radians.
+    pub value: f64,
+}
+
+/// A variable that is looked for in a range.
+#[derive(Clone, Debug)]
+pub struct Bounded<'g> {
+    /// Its name.
+    pub name: String,
+    /// The variable.
+    pub variable: Expr<'g>,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Lower end, mm or radians.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// A machine of a job: a tree of frames moved by axes.
+#[derive(Clone, Debug)]
+pub struct Machine<'g> {
+    /// Its name in the job.
+    pub name: String,
+    /// The machine that it is one of.
+    pub definition: String,
+    /// Its axes.
+    pub axes: Vec<Axis<'g>>,
+    /// Its frames, parents before children; the first is the root.
+    pub frames: Vec<Frame<'g>>,
+}
+
+/// An axis and its law.
+#[derive(Clone, Debug)]
+pub struct Axis<'g> {
+    /// Its name.
+    pub name: String,
+    /// The variable in the frames' transforms.
+    pub variable: Expr<'g>,
+    /// A length or an angle.
+    pub dimension: Dimension,
+    /// Its value as a function of motions and parameters.
+    pub law: Expr<'g>,
+    /// How the law was given.
+    pub source: LawSource,
+    /// Travel, mm or radians.
+    pub travel: Option<(f64, f64)>,
+}
+
+/// Where an axis has its law from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LawSource {
+    /// `drive` in the job.
+    Driven,
+    /// `fix` in the machine.
+    Fixed,
+    /// `couple` in the machine.
+    Coupled,
+}
+
+/// A frame in its machine.
+#[derive(Clone, Debug)]
+pub struct Frame<'g> {
+    /// Its name.
+    pub name: String,
+    /// Index of the frame it hangs on; `None` for the root.
+    pub parent: Option<usize>,
+    /// From the parent to it, in axis variables.
+    pub steps: Vec<Step<'g>>,
+}
+
+/// A surface of a job in the frame it is asked for in.
+#[derive(Clone, Debug)]
+pub struct GeneratedSurface<'g> {
+    /// Its name.
+    pub name: String,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// The frame, as `m.table`.
+    pub frame: String,
+    /// How it came about; `None` if it is an earlier surface moved.
+    pub generation: Option<Generation<'g>>,
+    /// The surface, in motions and parameters.
+    pub surface: Surface<'g>,
+    /// Ranges of its unknowns, in the order of `surface.unknowns`.
+    pub unknowns: Vec<Bounded<'g>>,
+    /// The points that are asked for.
+    pub sample: Option<Sample<'g>>,
+}
+
+/// The envelope that made a surface.
+#[derive(Clone, Debug)]
+pub struct Generation<'g> {
+    /// The tool's surface, as `c.flank`.
+    pub tool_name: String,
+    /// The tool's surface in its own frame.
+    pub tool: Surface<'g>,
+    /// The frames from work to tool, as `m.table`, with the steps between each and the one before it.
+    pub path: Vec<(String, Vec<Step<'g>>)>,
+    /// The pose of the tool in the work, in axis variables.
+    pub t_work_tool: Chain<'g>,
+    /// The same with each axis replaced by its law.
+    pub driven: Chain<'g>,
+    /// The motions that it is an envelope over.
+    pub motions: Vec<Expr<'g>>,
+}
+
+/// A grid of points that is asked for: two coordinates and their values.
+#[derive(Clone, Debug)]
+pub struct Sample<'g> {
+    /// The two functions of the unknowns that are given values.
+    pub coordinates: [Coordinate<'g>; 2],
+    /// What a row and a column of the grid are.
+    pub labels: [String; 2],
+    /// Number of rows and of columns.
+    pub counts: [usize; 2],
+    /// Values of the coordinates, row by row.
+    pub targets: Vec<[f64; 2]>,
+}
+
+/// A function of the unknowns that a sample gives values to.
+#[derive(Clone, Debug)]
+pub struct Coordinate<'g> {
+    /// `z`, `rho`, or the name of an unknown.
+    pub name: String,
+    /// Its expression.
+    pub value: Expr<'g>,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+impl<'g> Job<'g> {
+    /// Each parameter's variable with its value as a number: what to substitute before solving.
+    pub fn bindings(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.parameters
+            .iter()
+            .map(|parameter| (parameter.variable, parameter.variable.graph().constant(parameter.value)))
+            .collect()
+    }
+}

@@ -1,0 +1,231 @@
+//! Which points of a surface are asked for.
+
+use crate::codes::Code;
+use crate::context::{Context, Scope, quoted};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::limits;
+use crate::model::{Coordinate, GeneratedSurface, Sample};
+use crate::syntax::ast::{self, SampleEntry, SampleValues};
+
+/// Corners of a flank in the axial section.
+const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
+
+/// The grid that a `sample` statement asks for.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    // the parser has reported an entry without a key
+    if written.entries.iter().any(|entry| entry.key.node.is_empty()) {
+        return None;
+    }
+    for (k, entry) in written.entries.iter().enumerate() {
+        if let Some(first) = written.entries[..k].iter().find(|earlier| earlier.key.node == entry.key.node) {
+            let message = format!("`{}` is given twice", entry.key.node);
+            let diagnostic =
+                Diagnostic::new(Code::DuplicateName, entry.key.span, message).note(first.key.span, "first here");
+            context.report(diagnostic);
+            return None;
+        }
+    }
+    let is_outline = |entry: &SampleEntry| {
+        CORNERS.contains(&entry.key.node.as_str()) || ["lengthwise", "profilewise"].contains(&entry.key.node.as_str())
+    };
+    if written.entries.iter().any(is_outline) {
+        return outline(context, written, surface, scope);
+    }
+    let [rows, columns] = written.entries.as_slice() else {
+        let message = format!("a sample gives two coordinates, this one {}", written.entries.len());
+        let help = "for example `sample flank { z: -5 mm .. 5 mm by 11, rho: 48 mm .. 52 mm by 9 }`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    };
+    let row_coordinate = coordinate(context, rows, surface);
+    let column_coordinate = coordinate(context, columns, surface);
+    let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
+    let row_values = values(context, rows, scope, row_coordinate.dimension);
+    let column_values = values(context, columns, scope, column_coordinate.dimension);
+    let (row_values, column_values) = (row_values?, column_values?);
+    check_size(context, written, row_values.len(), column_values.len())?;
+    Some(Sample {
+        labels: [row_coordinate.name.clone(), column_coordinate.name.clone()],
+        coordinates: [row_coordinate, column_coordinate],
+        counts: [row_values.len(), column_values.len()],
+        targets: row_values.iter().flat_map(|&row| column_values.iter().map(move |&column| [row, column])).collect(),
+    })
+}
+
+impl<'g> GeneratedSurface<'g> {
+    /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
+    /// `angle` (about it, in (−π, π]), then its unknowns by their names.
+    pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
+        let [x, y, z] = self.surface.position.0;
+        let of_position = [
+            ("x", x, Dimension::LENGTH),
+            ("y", y, Dimension::LENGTH),
+            ("z", z, Dimension::LENGTH),
+            ("rho", (x * x + y * y).sqrt(), Dimension::LENGTH),
+            ("angle", y.atan2(x), Dimension::ANGLE),
+        ];
+        let unknowns = self.unknowns.iter().map(|u| (u.name.as_str(), u.variable, u.dimension));
+        let coordinate =
+            |(name, value, dimension): (&str, _, _)| Coordinate { name: name.to_string(), value, dimension };
+        of_position.into_iter().chain(unknowns).map(coordinate).collect()
+    }
+
+    /// One of [`GeneratedSurface::coordinates`] by its name.
+    pub fn coordinate(&self, name: &str) -> Option<Coordinate<'g>> {
+        self.coordinates().into_iter().find(|coordinate| coordinate.name == name)
+    }
+}
+
+fn coordinate<'g>(
+    context: &mut Context<'g>,
+    entry: &SampleEntry,
+    surface: &GeneratedSurface<'g>,
+) -> Option<Coordinate<'g>> {
+    let found = surface.coordinate(&entry.key.node);
+    if found.is_none() {
+        let known = surface.coordinates();
+        context.unknown(&entry.key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
+    }
+    found
+}
+
+fn values<'g>(
+    context: &mut Context<'g>,
+    entry: &SampleEntry,
+    scope: &Scope<'g>,
+    dimension: Dimension,
+) -> Option<Vec<f64>> {
+    let what = format!("`{}`", entry.key.node);
+    match &entry.values {
+        SampleValues::Value(value) => {
+            let expr = context.scalar(value, scope, dimension, &what)?;
+            Some(vec![context.require_constant(expr, value.span, &what)?])
+        }
+        SampleValues::Range(range, by) => {
+            let ends = context.range(range, scope, dimension, &what);
+            let count = context.scalar(by, scope, Dimension::NUMBER, "the number of points");
+            let count = context.require_constant(count?, by.span, "the number of points")?;
+            if count.fract() != 0.0 || count < 1.0 {
+                let message = format!("the number of points must be a whole number from 1, not {count}");
+                context.report(Diagnostic::new(Code::SampleShape, by.span, message));
+                return None;
+            }
+            if count > limits::SAMPLE_POINTS as f64 {
+                let message = format!("a sample has at most {} points", limits::SAMPLE_POINTS);
+                context.report(Diagnostic::new(Code::LimitExceeded, by.span, message));
+                return None;
+            }
+            Some(spaced(ends?, count as usize))
+        }
+    }
+}
+
+/// `count` values from end to end, both included; a single one is the middle.
+fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
+    if count == 1 {
+        return vec![0.5 * (low + high)];
+    }
+    let last = (count - 1) as f64;
+    (0..count)
+        .map(|k| {
+            let share = k as f64 / last;
+            low * (1.0 - share) + high * share
+        })
+        .collect()
+}
+
+fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {
+    if rows.saturating_mul(columns) <= limits::SAMPLE_POINTS {
+        return Some(());
+    }
+    let message = format!("a sample has at most {} points, this one {rows} × {columns}", limits::SAMPLE_POINTS);
+    context.report(Diagnostic::new(Code::LimitExceeded, written.surface.span, message));
+    None
+}
+
+/// The flank of a blank between four corners `[z, rho]`, divided evenly from root to tip and from toe to heel.
+fn outline<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    let mut corners = [[f64::NAN; 2]; 4];
+    let (mut profile, mut length) = (None, None);
+    for entry in &written.entries {
+        let name = entry.key.node.as_str();
+        if let Some(corner) = CORNERS.iter().position(|known| *known == name) {
+            corners[corner] = corner_point(context, entry, scope)?;
+        } else if name == "profilewise" {
+            profile = values(context, entry, scope, Dimension::NUMBER);
+            profile.as_ref()?;
+        } else if name == "lengthwise" {
+            length = values(context, entry, scope, Dimension::NUMBER);
+            length.as_ref()?;
+        } else {
+            context.unknown(
+                &entry.key,
+                "corner or direction",
+                CORNERS.into_iter().chain(["lengthwise", "profilewise"]),
+            );
+            return None;
+        }
+    }
+    let missing: Vec<&str> = (0..4).filter(|&k| corners[k][0].is_nan()).map(|k| CORNERS[k]).collect();
+    if !missing.is_empty() {
+        let message = format!("an outline has four corners; {} missing", quoted(&missing));
+        let help = "a corner is `[z, rho]`: `toe_root: [92 mm, 25.7 mm]`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    }
+    let (Some(profile), Some(length)) = (profile, length) else {
+        let message = "an outline is divided in two directions, given as shares from root to tip and from toe to heel";
+        let help = "for example `profilewise: 0.05 .. 0.95 by 9` and `lengthwise: 0.05 .. 0.95 by 15`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    };
+    check_size(context, written, profile.len(), length.len())?;
+    let [toe_root, heel_root, toe_tip, heel_tip] = corners;
+    let point = |v: f64, u: f64| {
+        std::array::from_fn(|k| {
+            (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k]) + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
+        })
+    };
+    Some(Sample {
+        coordinates: [surface.coordinate("z")?, surface.coordinate("rho")?],
+        labels: ["root -> tip".to_string(), "toe -> heel".to_string()],
+        counts: [profile.len(), length.len()],
+        targets: profile.iter().flat_map(|&v| length.iter().map(move |&u| (v, u))).map(|(v, u)| point(v, u)).collect(),
+    })
+}
+
+fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scope<'g>) -> Option<[f64; 2]> {
+    let what = format!("`{}`", entry.key.node);
+    let SampleValues::Value(written) = &entry.values else {
+        let message = format!("{what} is one point `[z, rho]`, not a range");
+        context.report(Diagnostic::new(Code::SampleShape, entry.key.span, message));
+        return None;
+    };
+    let crate::context::Value::Vector(parts) = context.evaluate(written, scope) else {
+        let message = format!("{what} is a point `[z, rho]`");
+        context.report(Diagnostic::new(Code::SampleShape, written.span, message));
+        return None;
+    };
+    let [z, rho] = parts.as_slice() else {
+        let message = format!("{what} is a point `[z, rho]`, this is a vector of {}", parts.len());
+        context.report(Diagnostic::new(Code::SampleShape, written.span, message));
+        return None;
+    };
+    let z = context.require(z, Dimension::LENGTH, written.span, &format!("z of {what}"));
+    let rho = context.require(rho, Dimension::LENGTH, written.span, &format!("rho of {what}"));
+    Some([
+        context.require_constant(z?, written.span, &format!("z of {what}"))?,
+        context.require_constant(rho?, written.span, &format!("rho of {what}"))?,
+    ])
+}

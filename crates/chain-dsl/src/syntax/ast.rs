@@ -1,0 +1,425 @@
+//! What a file says, before anybody asks what it means. Every node knows its place.
+//!
+//! After a mistake, a value may be [`ExpressionKind::Error`] and a name the empty string (a frame's parent, a dimension, a
+//! definition that is not there): both have been reported, and whoever meets one says nothing.
+
+use crate::source::{Name, Span, Spanned};
+
+/// One parsed file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct File {
+    /// `//!` lines at the top, without the marks.
+    pub doc: Vec<String>,
+    /// The items in order.
+    pub items: Vec<Item>,
+}
+
+/// A top-level item.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// `use "path"`
+    Use(Spanned<String>),
+    /// `fn name(a: length) -> angle = …`
+    Function(Function),
+    /// `machine name extends other { … }`
+    Machine(Machine),
+    /// `tool name { … }`
+    Tool(Tool),
+    /// `job name { … }`
+    Job(Job),
+}
+
+/// A function of the user.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Its arguments with their dimensions.
+    pub arguments: Vec<(Name, Dimension)>,
+    /// The dimension it promises, if it does.
+    pub result: Option<Dimension>,
+    /// `let`s of the block form.
+    pub lets: Vec<Let>,
+    /// The value.
+    pub body: Expression,
+}
+
+/// A machine: parameters, axes, frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The machine it is a variant of.
+    pub extends: Option<Name>,
+    /// Statements in order.
+    pub statements: Vec<MachineStatement>,
+    /// From `machine` to the closing brace.
+    pub span: Span,
+}
+
+/// A statement in a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MachineStatement {
+    /// `param name : dimension …`
+    Param(Param),
+    /// `let name = …`
+    Let(Let),
+    /// `axis X : linear in a .. b`
+    Axis(Axis),
+    /// `frame name in parent = transform …`
+    Frame(Frame),
+    /// `fix A = …`: an axis that stands still.
+    Fix(Assignment),
+    /// `couple C = …`: an axis that follows others.
+    Couple(Assignment),
+}
+
+/// `param name : dimension in a .. b = default`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Allowed values.
+    pub range: Option<Range>,
+    /// Value where none is given.
+    pub default: Option<Expression>,
+}
+
+/// `let name = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Let {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: Expression,
+}
+
+/// `axis X : linear in a .. b`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// ISO 841 letter or a word.
+    pub name: Name,
+    /// Linear or rotary.
+    pub kind: AxisKind,
+    /// Travel.
+    pub range: Option<Range>,
+}
+
+/// How an axis moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisKind {
+    /// Along a line: a length.
+    Linear,
+    /// About a line: an angle.
+    Rotary,
+}
+
+/// `frame name in parent = transform …`; the root has neither parent nor transforms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The frame it hangs on.
+    pub parent: Option<Name>,
+    /// Calls, read from parent to child, each in the moving frame.
+    pub transforms: Vec<Call>,
+}
+
+/// `target = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assignment {
+    /// What gets the value.
+    pub target: Path,
+    /// The value.
+    pub value: Expression,
+}
+
+/// A tool: parameters and surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tool {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Statements in order.
+    pub statements: Vec<ToolStatement>,
+}
+
+/// A statement in a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ToolStatement {
+    /// `param name : dimension …`
+    Param(Param),
+    /// `let name = …`
+    Let(Let),
+    /// `surface name(u: length in a .. b, …) { … }`
+    Surface(ToolSurface),
+}
+
+/// A parametric surface of a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolSurface {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Its parameters with their ranges.
+    pub parameters: Vec<Parameter>,
+    /// `let`s in order.
+    pub lets: Vec<Let>,
+    /// `at = [x, y, z]`
+    pub at: Expression,
+    /// `body …`
+    pub body: Body,
+}
+
+/// `name : dimension in a .. b`: a surface parameter or a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Where it is looked for.
+    pub range: Range,
+}
+
+/// Which side of a tool surface is steel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// The side.
+    pub side: Side,
+    /// `body …`
+    pub span: Span,
+}
+
+/// A side of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Side {
+    /// Towards the z axis of the tool.
+    Inside,
+    /// Away from the z axis of the tool.
+    Outside,
+    /// `body towards [x, y, z]`: the side to which this direction points.
+    Towards(Expression),
+}
+
+/// A job: machine, tool, motions, the surfaces asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Statements in order.
+    pub statements: Vec<JobStatement>,
+    /// From `job` to the closing brace.
+    pub span: Span,
+}
+
+/// A statement in a job.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JobStatement {
+    /// `param name : dimension = …`
+    Param(Param),
+    /// `let name = …`
+    Let(Let),
+    /// `machine m = definition(setting: value, …)`
+    Machine(Instance),
+    /// `tool c = definition(setting: value, …)`
+    Tool(Instance),
+    /// `mount c on m.cutter`
+    Mount {
+        /// The tool.
+        tool: Name,
+        /// The frame.
+        frame: Path,
+    },
+    /// `motion roll : angle in a .. b`
+    Motion(Parameter),
+    /// `drive m.X = …`
+    Drive(Assignment),
+    /// `surface name in m.work = …`
+    Surface(GeneratedSurface),
+    /// `sample name { … }`
+    Sample(Sample),
+}
+
+/// `name = definition(setting: value, …)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// The name in the job.
+    pub name: Name,
+    /// The machine or tool.
+    pub definition: Name,
+    /// Settings by name.
+    pub settings: Vec<Argument>,
+}
+
+/// `surface name in frame = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeneratedSurface {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The frame it is given in.
+    pub frame: Path,
+    /// `envelope(c.flank, over: roll)`
+    pub value: Expression,
+}
+
+/// `sample name { key: values … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// The surface.
+    pub surface: Name,
+    /// What is asked for, in order.
+    pub entries: Vec<SampleEntry>,
+    /// The whole statement.
+    pub span: Span,
+}
+
+/// `key: a .. b by n`, or `key: value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampleEntry {
+    /// A coordinate (`z`, `rho`), an unknown, a corner of the outline.
+    pub key: Name,
+    /// Its values.
+    pub values: SampleValues,
+}
+
+/// The values of a sample entry.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // there are few of them
+pub enum SampleValues {
+    /// `a .. b by n`
+    Range(Range, Expression),
+    /// One value or vector.
+    Value(Expression),
+}
+
+/// `low .. high`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub low: Expression,
+    /// Upper end.
+    pub high: Expression,
+    /// Both ends.
+    pub span: Span,
+}
+
+/// A dimension as written, `length * angle / number`, reduced to a product of named powers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dimension {
+    /// Names with their exponents; names are checked later.
+    pub factors: Vec<(Name, i32)>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// `a.b.c`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// At least one.
+    pub segments: Vec<Name>,
+    /// From the first to the last.
+    pub span: Span,
+}
+
+/// `name(…)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Call {
+    /// The function.
+    pub function: Name,
+    /// Its arguments.
+    pub arguments: Vec<Argument>,
+    /// From the name to the closing parenthesis.
+    pub span: Span,
+}
+
+/// `value`, or `name: value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument {
+    /// Its name if it is named.
+    pub name: Option<Name>,
+    /// Its value.
+    pub value: Expression,
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    /// What it is.
+    pub kind: ExpressionKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// Kinds of expressions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExpressionKind {
+    /// `20`, `20 mm`, `2 mm/rev`: the number and the units with their exponents, as written.
+    Number(f64, Vec<(Name, i32)>),
+    /// `"text"`
+    Text(String),
+    /// `a`, `m.work`
+    Path(Path),
+    /// `f(x, over: y)`
+    Call(Call),
+    /// `[a, b, c]`
+    Vector(Vec<Expression>),
+    /// `v[0]`
+    Index(Box<Expression>, Box<Expression>),
+    /// `-a`, `not a`
+    Unary(Spanned<UnaryOperator>, Box<Expression>),
+    /// `a + b`, `a <= b`, `a and b`
+    Binary(Spanned<BinaryOperator>, Box<Expression>, Box<Expression>),
+    /// `if condition then a else b`
+    If(Box<Expression>, Box<Expression>, Box<Expression>),
+    /// Something that did not parse; reported already.
+    Error,
+}
+
+/// Operators before one operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryOperator {
+    /// `-a`
+    Negate,
+    /// `not a`
+    Not,
+}
+
+/// Operators between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // each is its name
+pub enum BinaryOperator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    NotEqual,
+    And,
+    Or,
+}

@@ -1,0 +1,99 @@
+//! Items.
+
+use pest::iterators::Pair;
+
+use crate::source::{Name, Spanned};
+
+use super::super::ast::{Dimension, Function, Item, Job, Let, Machine, Tool};
+use super::super::grammar::Rule;
+use super::{Build, Parts};
+
+/// What stands before the opening brace of a machine, tool or job.
+pub(in super::super) struct Head {
+    pub(in super::super) doc: Vec<String>,
+    pub(in super::super) name: Name,
+    pub(in super::super) extends: Option<Name>,
+}
+
+impl Build<'_> {
+    /// An item; nothing for the end of the file.
+    pub(in super::super) fn item(&mut self, pair: Pair<'_, Rule>) -> Option<Item> {
+        Some(match pair.as_rule() {
+            Rule::use_item => Item::Use(self.text(Parts::of(pair).required(Rule::string))),
+            Rule::function => Item::Function(self.function(pair)),
+            Rule::machine => Item::Machine(self.machine(pair)),
+            Rule::tool => Item::Tool(self.tool(pair)),
+            Rule::job => Item::Job(self.job(pair)),
+            _ => return None,
+        })
+    }
+
+    /// The text between quotes.
+    pub(super) fn text(&self, pair: Pair<'_, Rule>) -> Spanned<String> {
+        let text = pair.as_str();
+        Spanned { node: text[1..text.len() - 1].to_owned(), span: self.span(&pair) }
+    }
+
+    fn function(&mut self, pair: Pair<'_, Rule>) -> Function {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Function {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            arguments: parts.all(Rule::formal).into_iter().map(|formal| self.formal(formal)).collect(),
+            result: parts.optional(Rule::dimension).map(|dimension| self.dimension(dimension)),
+            lets: self.lets(parts.all(Rule::let_statement)),
+            body: self.expression(parts.required(Rule::expression)),
+        }
+    }
+
+    fn formal(&mut self, pair: Pair<'_, Rule>) -> (Name, Dimension) {
+        let mut parts = Parts::of(pair);
+        (self.name(parts.required(Rule::name)), self.dimension(parts.required(Rule::dimension)))
+    }
+
+    fn lets(&mut self, pairs: Vec<Pair<'_, Rule>>) -> Vec<Let> {
+        pairs.into_iter().map(|pair| self.let_statement(pair)).collect()
+    }
+
+    pub(in super::super) fn head(&mut self, pair: Pair<'_, Rule>) -> Head {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Head {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            extends: parts.optional(Rule::name).map(|name| self.name(name)),
+        }
+    }
+
+    fn machine(&mut self, pair: Pair<'_, Rule>) -> Machine {
+        let span = self.span(&pair);
+        let mut parts = pair.into_inner();
+        let Head { doc, name, extends } = self.first_head(&mut parts);
+        Machine {
+            doc,
+            name,
+            extends,
+            statements: parts.filter_map(|part| self.machine_statement(part)).collect(),
+            span,
+        }
+    }
+
+    fn tool(&mut self, pair: Pair<'_, Rule>) -> Tool {
+        let mut parts = pair.into_inner();
+        let Head { doc, name, .. } = self.first_head(&mut parts);
+        Tool { doc, name, statements: parts.filter_map(|part| self.tool_statement(part)).collect() }
+    }
+
+    fn job(&mut self, pair: Pair<'_, Rule>) -> Job {
+        let span = self.span(&pair);
+        let mut parts = pair.into_inner();
+        let Head { doc, name, .. } = self.first_head(&mut parts);
+        Job { doc, name, statements: parts.filter_map(|part| self.job_statement(part)).collect(), span }
+    }
+
+    fn first_head(&mut self, parts: &mut pest::iterators::Pairs<'_, Rule>) -> Head {
+        let head = parts.next().unwrap_or_else(|| unreachable!("the grammar has a head here"));
+        self.head(head)
+    }
+}

@@ -1,0 +1,199 @@
+//! Statements.
+
+use pest::iterators::Pair;
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::source::Span;
+
+use super::super::ast::{
+    Argument, Assignment, Axis, AxisKind, Frame, GeneratedSurface, Instance, JobStatement, Let, MachineStatement,
+    Param, Parameter, Path, Range, Sample, SampleEntry, SampleValues, ToolStatement,
+};
+use super::super::grammar::Rule;
+use super::{Build, Parts};
+
+impl Build<'_> {
+    /// A statement in a machine; nothing for its closing brace and the end of a piece.
+    pub(in super::super) fn machine_statement(&mut self, pair: Pair<'_, Rule>) -> Option<MachineStatement> {
+        Some(match pair.as_rule() {
+            Rule::param => MachineStatement::Param(self.param(pair)),
+            Rule::let_statement => MachineStatement::Let(self.let_statement(pair)),
+            Rule::axis => MachineStatement::Axis(self.axis(pair)),
+            Rule::frame => MachineStatement::Frame(self.frame(pair)),
+            Rule::fix => MachineStatement::Fix(self.assignment(pair)),
+            Rule::couple => MachineStatement::Couple(self.assignment(pair)),
+            _ => return None,
+        })
+    }
+
+    /// A statement in a tool; nothing for its closing brace and the end of a piece.
+    pub(in super::super) fn tool_statement(&mut self, pair: Pair<'_, Rule>) -> Option<ToolStatement> {
+        Some(match pair.as_rule() {
+            Rule::param => ToolStatement::Param(self.param(pair)),
+            Rule::let_statement => ToolStatement::Let(self.let_statement(pair)),
+            Rule::tool_surface => ToolStatement::Surface(self.tool_surface(pair)),
+            _ => return None,
+        })
+    }
+
+    /// A statement in a job; nothing for its closing brace and the end of a piece.
+    pub(in super::super) fn job_statement(&mut self, pair: Pair<'_, Rule>) -> Option<JobStatement> {
+        Some(match pair.as_rule() {
+            Rule::param => JobStatement::Param(self.param(pair)),
+            Rule::let_statement => JobStatement::Let(self.let_statement(pair)),
+            Rule::machine_instance => JobStatement::Machine(self.instance(pair)),
+            Rule::tool_instance => JobStatement::Tool(self.instance(pair)),
+            Rule::mount => self.mount(pair),
+            Rule::motion => JobStatement::Motion(self.motion(pair)),
+            Rule::drive => JobStatement::Drive(self.assignment(pair)),
+            Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
+            Rule::sample => JobStatement::Sample(self.sample(pair)),
+            _ => return None,
+        })
+    }
+
+    fn param(&mut self, pair: Pair<'_, Rule>) -> Param {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Param {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            dimension: self.dimension(parts.required(Rule::dimension)),
+            range: parts.optional(Rule::range).map(|range| self.range(range)),
+            default: parts.optional(Rule::expression).map(|value| self.expression(value)),
+        }
+    }
+
+    pub(super) fn let_statement(&mut self, pair: Pair<'_, Rule>) -> Let {
+        let mut parts = Parts::of(pair);
+        Let { name: self.name(parts.required(Rule::name)), value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn axis(&mut self, pair: Pair<'_, Rule>) -> Axis {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let kind = match parts.required(Rule::axis_kind).as_str() {
+            "rotary" => AxisKind::Rotary,
+            _ => AxisKind::Linear,
+        };
+        Axis { doc, name, kind, range: parts.optional(Rule::range).map(|range| self.range(range)) }
+    }
+
+    fn frame(&mut self, pair: Pair<'_, Rule>) -> Frame {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Frame {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            parent: parts.optional(Rule::name).map(|name| self.name(name)),
+            transforms: parts.all(Rule::call).into_iter().map(|call| self.call(call)).collect(),
+        }
+    }
+
+    fn assignment(&mut self, pair: Pair<'_, Rule>) -> Assignment {
+        let mut parts = Parts::of(pair);
+        let target = match parts.optional(Rule::path) {
+            Some(path) => self.path(path),
+            None => {
+                let name = self.name(parts.required(Rule::name));
+                Path { span: name.span, segments: vec![name] }
+            }
+        };
+        Assignment { target, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn instance(&mut self, pair: Pair<'_, Rule>) -> Instance {
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let mut parts = Parts::of(parts.required(Rule::definition));
+        let definition = self.name(parts.required(Rule::name));
+        let settings = parts.optional(Rule::settings).map_or_else(Vec::new, |settings| {
+            Parts::of(settings).all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect()
+        });
+        Instance { name, definition, settings }
+    }
+
+    fn setting(&mut self, pair: Pair<'_, Rule>) -> Argument {
+        let mut parts = Parts::of(pair);
+        let name = Some(self.name(parts.required(Rule::name)));
+        Argument { name, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn mount(&mut self, pair: Pair<'_, Rule>) -> JobStatement {
+        let mut parts = Parts::of(pair);
+        JobStatement::Mount {
+            tool: self.name(parts.required(Rule::name)),
+            frame: self.path(parts.required(Rule::path)),
+        }
+    }
+
+    fn motion(&mut self, pair: Pair<'_, Rule>) -> Parameter {
+        let doc = self.doc(&pair);
+        Parameter { doc, ..self.parameter(Parts::of(pair).required(Rule::parameter)) }
+    }
+
+    pub(super) fn parameter(&mut self, pair: Pair<'_, Rule>) -> Parameter {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Parameter {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            dimension: self.dimension(parts.required(Rule::dimension)),
+            range: self.range(parts.required(Rule::range)),
+        }
+    }
+
+    fn generated_surface(&mut self, pair: Pair<'_, Rule>) -> GeneratedSurface {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        GeneratedSurface {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            frame: self.path(parts.required(Rule::path)),
+            value: self.expression(parts.required(Rule::expression)),
+        }
+    }
+
+    fn sample(&mut self, pair: Pair<'_, Rule>) -> Sample {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let surface = self.name(parts.required(Rule::name));
+        let mut entries = Vec::new();
+        let mut end = None;
+        for pair in parts.all(Rule::entry) {
+            let place = self.span(&pair);
+            self.separated(end, place);
+            end = Some(place.end);
+            entries.push(self.entry(pair));
+        }
+        Sample { surface, entries, span }
+    }
+
+    /// Asks for a comma or a new line between two entries of a sample.
+    fn separated(&mut self, end: Option<u32>, next: Span) {
+        let Some(end) = end else { return };
+        if !self.scan.text[end as usize..next.start as usize].contains([',', '\n']) {
+            let word = self.scan.token_at(next.start as usize);
+            let place = self.scan.place(word);
+            let message = format!("expected `,` or a new line before {}", self.scan.quote(word));
+            self.diagnostics.push(Diagnostic::new(Code::Syntax, place, message));
+        }
+    }
+
+    fn entry(&mut self, pair: Pair<'_, Rule>) -> SampleEntry {
+        let mut parts = Parts::of(pair);
+        let key = self.name(parts.required(Rule::name));
+        let low = self.expression(parts.required(Rule::expression));
+        let values = match parts.optional(Rule::expression) {
+            None => SampleValues::Value(low),
+            Some(high) => {
+                let high = self.expression(high);
+                let span = low.span.to(high.span);
+                SampleValues::Range(Range { low, high, span }, self.expression(parts.required(Rule::expression)))
+            }
+        };
+        SampleEntry { key, values }
+    }
+}

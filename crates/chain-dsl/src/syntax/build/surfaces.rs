@@ -1,0 +1,110 @@
+//! Surfaces of tools.
+
+use pest::iterators::Pair;
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::source::{Name, Span};
+
+use super::super::ast::{Body, Expression, ExpressionKind, Let, Parameter, Side, ToolSurface};
+use super::super::grammar::Rule;
+use super::super::scan::shorten;
+use super::{Build, Parts};
+
+impl Build<'_> {
+    pub(super) fn tool_surface(&mut self, pair: Pair<'_, Rule>) -> ToolSurface {
+        let mut parts = pair.into_inner();
+        let head = parts.next().unwrap_or_else(|| unreachable!("the grammar has a head here"));
+        let mut surface = self.surface_head(head);
+        for part in parts {
+            self.surface_statement(&mut surface, part);
+        }
+        self.finish_surface(surface)
+    }
+
+    pub(in super::super) fn surface_head(&mut self, pair: Pair<'_, Rule>) -> SurfaceParts {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let parameters = parts.all(Rule::parameter).into_iter().map(|pair| self.parameter(pair)).collect();
+        SurfaceParts { doc, parameters, ..SurfaceParts::new(name) }
+    }
+
+    /// Adds a statement to a tool's surface.
+    pub(in super::super) fn surface_statement(&mut self, surface: &mut SurfaceParts, pair: Pair<'_, Rule>) {
+        let span = self.span(&pair);
+        match pair.as_rule() {
+            Rule::let_statement => surface.lets.push(self.let_statement(pair)),
+            Rule::at => {
+                self.once("at", surface.at.as_ref().map(|at| at.span), span);
+                surface.at = Some(self.expression(Parts::of(pair).required(Rule::expression)));
+            }
+            Rule::body => {
+                self.once("body", surface.body.as_ref().map(|body| body.span), span);
+                surface.body = Some(Body { side: self.side(pair), span });
+            }
+            _ => {}
+        }
+    }
+
+    fn side(&mut self, pair: Pair<'_, Rule>) -> Side {
+        let mut parts = Parts::of(pair);
+        match parts.optional(Rule::side) {
+            Some(side) if side.as_str() == "inside" => Side::Inside,
+            Some(_) => Side::Outside,
+            None => Side::Towards(self.expression(parts.required(Rule::expression))),
+        }
+    }
+
+    fn once(&mut self, word: &str, first: Option<Span>, second: Span) {
+        if let Some(first) = first {
+            let keyword = Span { end: second.start + word.len() as u32, ..second };
+            let message = format!("a second `{word}` in one surface");
+            self.diagnostics.push(Diagnostic::new(Code::Syntax, keyword, message).note(first, "the first one"));
+        }
+    }
+
+    /// A tool's surface, with a report on what it lacks.
+    pub(in super::super) fn finish_surface(&mut self, parts: SurfaceParts) -> ToolSurface {
+        let SurfaceParts { doc, name, parameters, lets, at, body, broken } = parts;
+        let place = name.span;
+        if at.is_none() && !broken {
+            let message = format!("the surface `{}` does not say where its points are", shorten(&name.node));
+            self.report(place, message, "add `at = [x, y, z]`");
+        }
+        if body.is_none() && !broken {
+            let message = format!("the surface `{}` does not say on which side the steel is", shorten(&name.node));
+            self.report(place, message, "add `body inside`, `body outside` or `body towards [x, y, z]`");
+        }
+        let error = Expression { kind: ExpressionKind::Error, span: place };
+        let at = at.unwrap_or_else(|| error.clone());
+        let body = body.unwrap_or(Body { side: Side::Towards(error), span: place });
+        ToolSurface { doc, name, parameters, lets, at, body }
+    }
+}
+
+/// A tool's surface while it is being read.
+pub(in super::super) struct SurfaceParts {
+    pub(in super::super) doc: Vec<String>,
+    pub(in super::super) name: Name,
+    pub(in super::super) parameters: Vec<Parameter>,
+    pub(in super::super) lets: Vec<Let>,
+    pub(in super::super) at: Option<Expression>,
+    pub(in super::super) body: Option<Body>,
+    /// Whether a statement of it did not parse.
+    pub(in super::super) broken: bool,
+}
+
+impl SurfaceParts {
+    pub(in super::super) fn new(name: Name) -> SurfaceParts {
+        SurfaceParts {
+            doc: Vec::new(),
+            name,
+            parameters: Vec::new(),
+            lets: Vec::new(),
+            at: None,
+            body: None,
+            broken: false,
+        }
+    }
+}

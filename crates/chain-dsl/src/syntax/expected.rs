@@ -1,0 +1,180 @@
+//! What could have stood at a place, in the user's words.
+
+use super::grammar::Rule;
+
+const TRANSFORM: &str = "a transform such as `translate(x, y, z)`";
+
+/// What stands before the place.
+pub(super) struct Before<'t> {
+    /// The first word of the statement.
+    pub(super) statement: &'t str,
+    /// The word or sign right before.
+    pub(super) last: &'t str,
+    /// Whether that one is a name.
+    pub(super) name: bool,
+    /// Whether a parenthesis is open.
+    pub(super) in_parentheses: bool,
+}
+
+/// Leaves out what can always follow: operators, the end, another digit; unless there is nothing else.
+pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
+    const TIGHT: [Rule; 6] = [Rule::open_index, Rule::unit, Rule::unit_word, Rule::unit_power, Rule::dot, Rule::caret];
+    rules.retain(|rule| !TIGHT.contains(rule));
+    if rules.contains(&Rule::infix) {
+        rules.retain(|rule| *rule != Rule::colon);
+    }
+    if rules.contains(&Rule::infix) || rules.contains(&Rule::EOI) {
+        rules.retain(|rule| *rule != Rule::open_paren);
+    }
+    const OPTIONAL: [Rule; 5] = [Rule::EOI, Rule::infix, Rule::dimension_operator, Rule::let_statement, Rule::kw_let];
+    if rules.iter().any(|rule| !OPTIONAL.contains(rule)) {
+        rules.retain(|rule| !OPTIONAL.contains(rule));
+    }
+    rules.sort_by_key(|rule| match rule {
+        Rule::comma => 0,
+        Rule::EOI => 2,
+        _ => 1,
+    });
+    rules
+}
+
+/// All of the rules in words, as a list.
+pub(super) fn list(rules: &[Rule], before: &Before<'_>) -> String {
+    let mut words: Vec<String> = Vec::new();
+    for &rule in rules {
+        let word = describe(rule, before);
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => "something else".to_owned(),
+    }
+}
+
+fn describe(rule: Rule, before: &Before<'_>) -> String {
+    match rule {
+        Rule::EOI => "the next statement".to_owned(),
+        Rule::name => name(before),
+        Rule::path => path(before).to_owned(),
+        Rule::colon if before.name => format!("`:` after the name of the {}", named(before)),
+        Rule::equals if before.name => format!("`=` after {}", assigned(before)),
+        Rule::open_brace if before.name => {
+            format!("`{{` after the name of the {}", noun(before.statement))
+        }
+        Rule::open_paren if before.statement == "frame" => TRANSFORM.to_owned(),
+        Rule::open_paren if before.name => {
+            format!("`(` after the name of the {}", noun(before.statement))
+        }
+        Rule::kw_in if before.statement == "frame" => "`in` and the frame that it hangs on".to_owned(),
+        Rule::kw_in if matches!(before.statement, "motion" | "surface") && !before.name => {
+            "`in` and a range".to_owned()
+        }
+        Rule::kw_by => "`by` and a number of points".to_owned(),
+        Rule::dots => "`..` between the ends of the range".to_owned(),
+        Rule::axis_kind => "`linear` or `rotary`".to_owned(),
+        Rule::side => "`inside`, `outside`".to_owned(),
+        Rule::string => "a path such as `\"machines/hobbing.chain\"`".to_owned(),
+        Rule::infix => "an operator".to_owned(),
+        Rule::integer => "a whole number".to_owned(),
+        Rule::dimension | Rule::dimension_factor | Rule::dimension_name | Rule::one => {
+            "a dimension such as `length` or `angle`".to_owned()
+        }
+        Rule::expression | Rule::operation | Rule::conditional | Rule::value | Rule::prefix | Rule::argument => {
+            "a value".to_owned()
+        }
+        Rule::range => "a range such as `0 mm .. 12 mm`".to_owned(),
+        _ => sign(rule).map_or_else(|| "something else".to_owned(), |sign| format!("`{sign}`")),
+    }
+}
+
+fn name(before: &Before<'_>) -> String {
+    let first = before.last == before.statement;
+    match (before.statement, before.last) {
+        _ if first => format!("the name of the {}", noun(before.statement)),
+        (_, ".") => "a name".to_owned(),
+        ("surface", "in") | (_, "on") => path(before).to_owned(),
+        ("frame", "in") => "the frame that it hangs on".to_owned(),
+        ("frame", _) => TRANSFORM.to_owned(),
+        (_, "extends") => "the machine that it extends".to_owned(),
+        ("machine", "=") => "the name of a machine".to_owned(),
+        ("tool", "=") => "the name of a tool".to_owned(),
+        ("machine" | "tool", _) => "a setting such as `radial: 70 mm`".to_owned(),
+        ("surface", _) => "a parameter such as `u: length in 0 mm .. 12 mm`".to_owned(),
+        ("fn", _) => "a parameter such as `x: length`".to_owned(),
+        ("sample", _) => "an entry such as `z: 40 mm .. 62 mm by 45`".to_owned(),
+        _ => "a name".to_owned(),
+    }
+}
+
+fn path(before: &Before<'_>) -> &'static str {
+    match before.statement {
+        "drive" => "an axis such as `m.X`",
+        _ => "a frame such as `m.work`",
+    }
+}
+
+/// What a name before a colon or a brace is the name of.
+fn named<'t>(before: &Before<'t>) -> &'t str {
+    match before.statement {
+        "machine" | "tool" if before.in_parentheses => "setting",
+        "surface" | "fn" if before.in_parentheses => "parameter",
+        "sample" if before.last != "sample" => "entry",
+        statement => noun(statement),
+    }
+}
+
+fn assigned(before: &Before<'_>) -> String {
+    match before.statement {
+        "frame" | "surface" => "the name of the frame".to_owned(),
+        statement => format!("the name of the {}", noun(statement)),
+    }
+}
+
+/// What a statement is about.
+fn noun(statement: &str) -> &str {
+    match statement {
+        "param" => "parameter",
+        "let" => "value",
+        "fix" | "couple" | "drive" => "axis",
+        "mount" => "tool",
+        "sample" => "surface",
+        "fn" => "function",
+        other => other,
+    }
+}
+
+/// The text of a rule that stands for one word or sign.
+pub(super) fn sign(rule: Rule) -> Option<&'static str> {
+    Some(match rule {
+        Rule::open_brace => "{",
+        Rule::close_brace => "}",
+        Rule::open_paren | Rule::open_group => "(",
+        Rule::close_paren => ")",
+        Rule::open_bracket | Rule::open_index => "[",
+        Rule::close_bracket => "]",
+        Rule::comma => ",",
+        Rule::colon => ":",
+        Rule::equals => "=",
+        Rule::arrow => "->",
+        Rule::dot => ".",
+        Rule::dots => "..",
+        Rule::caret => "^",
+        Rule::kw_use => "use",
+        Rule::kw_fn => "fn",
+        Rule::kw_machine => "machine",
+        Rule::kw_extends => "extends",
+        Rule::kw_tool => "tool",
+        Rule::kw_job => "job",
+        Rule::kw_on => "on",
+        Rule::kw_in => "in",
+        Rule::kw_by => "by",
+        Rule::kw_if => "if",
+        Rule::kw_then => "then",
+        Rule::kw_else => "else",
+        Rule::kw_towards => "towards",
+        _ => return None,
+    })
+}

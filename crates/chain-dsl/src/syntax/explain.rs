@@ -1,0 +1,180 @@
+//! Why a piece of text does not parse: one report on its first mistake, from where the grammar gave up and what it hoped for.
+
+use std::ops::Range;
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+
+use super::expected::{self, Before};
+use super::grammar::Rule;
+use super::scan::{Kind, Scan};
+use super::words;
+
+mod brackets;
+mod habits;
+mod names;
+
+pub(super) use habits::{block_comment, foreign};
+
+/// A piece of text that does not parse.
+pub(super) struct Mistake<'s> {
+    scan: &'s Scan<'s>,
+    /// The tokens of the piece.
+    range: Range<usize>,
+    /// The token that cannot stand where it does; the end of the range if the piece is only too short.
+    pub(super) found: usize,
+    expected: Vec<Rule>,
+}
+
+impl<'s> Mistake<'s> {
+    pub(super) fn new(scan: &'s Scan<'s>, range: Range<usize>, place: usize, expected: Vec<Rule>) -> Mistake<'s> {
+        let mut found = scan.token_at(place).clamp(range.start, range.end);
+        // A frame's last name is not followed by a parenthesis: then the name itself is wrong, unless there is one further on.
+        let lacks_parenthesis = scan.say(range.start) == "frame" && expected == [Rule::open_paren];
+        if lacks_parenthesis && (scan.say(found) != "(" || scan.indent(found).is_some()) {
+            found -= 1;
+        }
+        Mistake { scan, range, found, expected }
+    }
+
+    /// Where a whole statement ends that is followed by a new line or a sign like a semicolon.
+    pub(super) fn whole_before(&self) -> Option<u32> {
+        let whole = self.expected.contains(&Rule::EOI) || self.lacks_parenthesis();
+        let within = self.found > self.range.start && self.found < self.range.end;
+        let separate = self.leads() || self.kind() == Some(Kind::Strange) || self.say() == ",";
+        (whole && within && separate).then(|| self.scan.place(self.found - 1).end)
+    }
+
+    /// Whether the name at hand is no call where only calls can stand, and another call stands before it.
+    fn lacks_parenthesis(&self) -> bool {
+        self.expected == [Rule::open_paren] && self.before() == ")"
+    }
+
+    pub(super) fn explain(&self) -> Diagnostic {
+        let special = [Self::text, Self::not_a_unit, Self::not_a_name, Self::habit, Self::stray_bracket];
+        special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
+    }
+
+    fn say(&self) -> &'s str {
+        if self.found < self.range.end { self.scan.say(self.found) } else { "" }
+    }
+
+    fn before(&self) -> &'s str {
+        if self.found > self.range.start { self.scan.say(self.found - 1) } else { "" }
+    }
+
+    fn kind(&self) -> Option<Kind> {
+        self.scan.kind(self.found).filter(|_| self.found < self.range.end)
+    }
+
+    fn kind_before(&self) -> Option<Kind> {
+        self.found.checked_sub(1).filter(|&index| index >= self.range.start).and_then(|index| self.scan.kind(index))
+    }
+
+    /// Whether the piece is only too short.
+    fn ends(&self) -> bool {
+        self.found == self.range.end
+    }
+
+    /// Whether the mistake begins a line, other than the first of the piece.
+    fn leads(&self) -> bool {
+        self.found > self.range.start && self.scan.indent(self.found).is_some()
+    }
+
+    /// Whether no white space stands between a token and the one before it.
+    fn touches(&self, index: usize) -> bool {
+        index > 0 && self.scan.place(index - 1).end == self.scan.place(index).start
+    }
+
+    fn here(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Code::Syntax, self.scan.place(self.found), message)
+    }
+
+    fn text(&self) -> Option<Diagnostic> {
+        (self.kind() == Some(Kind::OpenText))
+            .then(|| self.here("the text is not closed").help("write `\"` at its end, on the same line"))
+    }
+
+    fn closest(&self, candidates: impl IntoIterator<Item = &'static str>) -> Option<&'static str> {
+        words::closest(self.say(), candidates)
+    }
+
+    /// Whatever it is: what was expected, and what is there.
+    fn unexpected(&self) -> Diagnostic {
+        let mut rules = expected::relevant(self.expected.clone());
+        let open = self.unclosed_bracket().filter(|_| rules.iter().any(|rule| closes(*rule)));
+        if open.is_some() && (self.ends() || matches!(self.say(), ")" | "]" | "}")) {
+            rules.retain(|rule| closes(*rule));
+        }
+        let diagnostic = self.expects(&rules);
+        let diagnostic = match open {
+            Some(open) => {
+                let text = format!("this `{}` is not closed", self.scan.say(open));
+                diagnostic.note(self.scan.place(open), text)
+            }
+            None => diagnostic,
+        };
+        match self.misspelt(&rules) {
+            Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
+            None => diagnostic,
+        }
+    }
+
+    fn expects(&self, rules: &[Rule]) -> Diagnostic {
+        let value = match self.kind() {
+            Some(Kind::Word) => words::reserved(self.say()).is_none(),
+            Some(Kind::Number | Kind::Text) => true,
+            _ => matches!(self.say(), "(" | "["),
+        };
+        let found = self.scan.quote(self.found);
+        let list = expected::list(rules, &self.surroundings());
+        if self.expected.contains(&Rule::EOI) && self.leads() && !self.ends() {
+            self.here(format!("expected the next statement, found {found}"))
+        } else if self.leads() || self.ends() {
+            self.missing(&list)
+        } else if value && rules.contains(&Rule::infix) {
+            let before = self.scan.quote(self.found - 1);
+            self.here(format!("expected an operator between {before} and {found}"))
+        } else {
+            self.here(format!("expected {list}, found {found}"))
+        }
+    }
+
+    /// Something is missing at the end of a line: the last word before is underlined.
+    fn missing(&self, list: &str) -> Diagnostic {
+        let last = self.found.saturating_sub(1).max(self.range.start);
+        let after = if list.contains(" after ") { String::new() } else { format!(" after {}", self.scan.quote(last)) };
+        Diagnostic::new(Code::Syntax, self.scan.place(last), format!("expected {list}{after}"))
+    }
+
+    fn surroundings(&self) -> Before<'s> {
+        let last = self.found.wrapping_sub(1);
+        let open = self.open_bracket();
+        Before {
+            statement: self.scan.say(self.range.start),
+            last: self.before(),
+            name: self.scan.is_name(last),
+            in_parentheses: open.is_some_and(|open| self.scan.say(open) == "("),
+        }
+    }
+
+    /// The word that was meant, among those expected.
+    fn misspelt(&self, rules: &[Rule]) -> Option<&'static str> {
+        let mut candidates: Vec<&str> = rules.iter().filter_map(|rule| expected::sign(*rule)).collect();
+        if rules.contains(&Rule::axis_kind) {
+            candidates.extend(["linear", "rotary"]);
+        }
+        if rules.contains(&Rule::side) {
+            candidates.extend(["inside", "outside"]);
+        }
+        if rules.contains(&Rule::infix) {
+            candidates.extend(["and", "or"]);
+        }
+        candidates.retain(|candidate| candidate.len() > 1 && candidate.starts_with(char::is_alphabetic));
+        self.closest(candidates).filter(|_| self.kind() == Some(Kind::Word))
+    }
+}
+
+fn closes(rule: Rule) -> bool {
+    matches!(rule, Rule::close_paren | Rule::close_bracket | Rule::close_brace)
+}

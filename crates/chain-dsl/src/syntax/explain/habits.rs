@@ -1,0 +1,130 @@
+//! Habits from other languages and from paper, and how the same is said here.
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+
+use super::super::grammar::Rule;
+use super::super::scan::{Kind, Scan};
+use super::Mistake;
+
+impl Mistake<'_> {
+    /// A mistake for which there is better advice than the list of what could follow.
+    pub(super) fn habit(&self) -> Option<Diagnostic> {
+        if let Some(diagnostic) = foreign(self.scan, self.found).filter(|_| self.found < self.range.end) {
+            return Some(diagnostic);
+        }
+        self.space().or_else(|| self.decimal()).or_else(|| self.sign())
+    }
+
+    /// `sin (x)`, `v [0]`
+    fn space(&self) -> Option<Diagnostic> {
+        let (name, sign) = (self.before(), self.say());
+        let after = match self.kind_before()? {
+            Kind::Word => self.scan.is_name(self.found - 1),
+            _ => sign == "[" && matches!(name, ")" | "]"),
+        };
+        if !after || self.touches(self.found) || self.leads() {
+            return None;
+        }
+        let what = match sign {
+            "(" => "call",
+            "[" => "index",
+            _ => return None,
+        };
+        let message = format!("no space may stand before the `{sign}` of a {what}").replace("a index", "an index");
+        Some(self.here(message).help(format!("write `{}{sign}`", self.scan.short(self.found - 1))))
+    }
+
+    /// `.5`, `5.`, `1,5`
+    fn decimal(&self) -> Option<Diagnostic> {
+        let digits_before = self.kind_before() == Some(Kind::Number) && self.touches(self.found);
+        let digits_after = self.scan.kind(self.found + 1) == Some(Kind::Number) && self.touches(self.found + 1);
+        let (before, after) = (self.scan.short(self.found.saturating_sub(1)), self.scan.short(self.found + 1));
+        match self.say() {
+            "." if digits_before => Some(
+                self.here("a digit must follow the decimal point").help(format!("write `{before}.0` or `{before}`")),
+            ),
+            "." if digits_after => {
+                Some(self.here("a digit must stand before the decimal point").help(format!("write `0.{after}`")))
+            }
+            "," if digits_before && digits_after => {
+                Some(self.here("decimals are written with a point").help(format!("write `{before}.{after}`")))
+            }
+            _ => None,
+        }
+    }
+
+    fn sign(&self) -> Option<Diagnostic> {
+        let wants = |rule: Rule| self.expected.contains(&rule);
+        let statement = self.scan.say(self.range.start);
+        let help = match (self.before(), self.say()) {
+            ("*", "*") if self.touches(self.found) => "a power is written `a ^ b`",
+            (_, "=") if wants(Rule::close_paren) && self.scan.is_name(self.found - 1) => {
+                "an argument gets its value with `:`"
+            }
+            (_, "in") if statement == "param" && wants(Rule::infix) && !wants(Rule::dots) => {
+                "the range stands before the value: write `in low .. high = value`"
+            }
+            (_, ".") if matches!(statement, "machine" | "tool") && wants(Rule::EOI) => {
+                "what a used file defines is called by its plain name"
+            }
+            (_, "if") if wants(Rule::value) => "put the `if` into parentheses",
+            (_, "=") if wants(Rule::infix) && !wants(Rule::equals) && !self.leads() => "values are compared with `==`",
+            (_, "==") if wants(Rule::equals) => "write `=` to give something a value",
+            (_, ":") if statement == "let" && wants(Rule::equals) => {
+                "a `let` takes its dimension from its value: write `let name = value`"
+            }
+            (")", "*") if statement == "frame" => "transforms stand side by side, without a sign between them",
+            ("/", "*") if self.touches(self.found) => block_comment(self.scan, self.found - 1)?,
+            (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
+            _ => block_comment(self.scan, self.found)?,
+        };
+        Some(self.unexpected().help(help))
+    }
+}
+
+/// The report on a character that the language does not know.
+pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic> {
+    if scan.kind(index) != Some(Kind::Strange) {
+        return None;
+    }
+    let message = format!("{} is not part of the language", scan.quote(index));
+    let diagnostic = Diagnostic::new(Code::Syntax, scan.place(index), message);
+    Some(match strange(scan.say(index)) {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    })
+}
+
+/// What to say of `/*`.
+pub(in super::super) fn block_comment(scan: &Scan, index: usize) -> Option<&'static str> {
+    (scan.say(index) == "/" && scan.say(index + 1) == "*")
+        .then_some("a comment begins with `//` and ends with the line")
+}
+
+/// How a sign from elsewhere is written here.
+fn strange(sign: &str) -> Option<&'static str> {
+    Some(match sign {
+        ";" => "a statement ends without a sign",
+        "°" | "º" => "write `deg`",
+        "′" => "write `arcmin`",
+        "″" => "write `arcsec`",
+        "\u{a0}" | "\u{2009}" | "\u{202f}" => "write a plain space",
+        "'" | "‘" | "’" | "“" | "”" | "„" => "text stands between `\"` and `\"`",
+        "&" => "write `and`",
+        "|" => "write `or`",
+        "!" => "write `not`",
+        "#" | "%" => "a comment begins with `//`",
+        "×" | "·" | "⋅" | "∙" => "write `*`",
+        "÷" | "∕" => "write `/`",
+        "−" | "–" | "—" => "write `-`",
+        "²" => "write `^2`",
+        "³" => "write `^3`",
+        "…" => "a range is written `a .. b`",
+        "≤" => "write `<=`",
+        "≥" => "write `>=`",
+        "≠" => "write `!=`",
+        "√" => "write `sqrt(x)`",
+        _ => return None,
+    })
+}

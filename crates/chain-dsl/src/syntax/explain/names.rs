@@ -1,0 +1,77 @@
+//! Words that are no units, and units and other words that are no names.
+
+use crate::diagnostic::Diagnostic;
+
+use super::super::expected;
+use super::super::grammar::Rule;
+use super::super::pieces;
+use super::super::scan::Kind;
+use super::super::words::{self, Reserved};
+use super::Mistake;
+
+impl Mistake<'_> {
+    /// `20 mmm`
+    pub(super) fn not_a_unit(&self) -> Option<Diagnostic> {
+        let unit = self.kind_before() == Some(Kind::Number)
+            && !self.leads()
+            && !self.ends()
+            && self.scan.is_name(self.found)
+            && self.scan.say(self.found + 1) != ":"
+            && self.expected.iter().any(|rule| matches!(rule, Rule::unit_word | Rule::infix));
+        let like = words::closest(self.say(), words::UNITS.iter().copied());
+        if !unit || like.is_none() && self.misspelt(&expected::relevant(self.expected.clone())).is_some() {
+            return None;
+        }
+        let help = match like {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None => format!("the units are {}", words::UNITS.join(", ")),
+        };
+        Some(self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help))
+    }
+
+    /// A word of the language where a name or a value belongs.
+    pub(super) fn not_a_name(&self) -> Option<Diagnostic> {
+        let word = self.say();
+        let reserved = words::reserved(word).filter(|_| self.kind() == Some(Kind::Word))?;
+        let wants = |rules: &[Rule]| rules.iter().any(|rule| self.expected.contains(rule));
+        if reserved == Reserved::Unit && wants(&[Rule::dimension, Rule::dimension_factor]) {
+            let dimension = dimension_of(word);
+            let help = format!("write `{dimension}`");
+            return Some(self.here(format!("`{word}` is a unit, not a dimension")).help(help));
+        }
+        let name = wants(&[Rule::name, Rule::path]);
+        let value = wants(&[Rule::expression, Rule::value, Rule::argument]);
+        match reserved {
+            Reserved::Keyword if self.introduces() => None,
+            Reserved::Keyword if name || value && words::begins_statement(word) => {
+                let message = format!("`{word}` is a word of the language and cannot be a name");
+                Some(self.here(message))
+            }
+            Reserved::Unit if name => Some(self.here(format!("`{word}` is a unit and cannot be a name"))),
+            Reserved::Unit if value || wants(&[Rule::infix]) => Some(
+                self.here(format!("the unit `{word}` does not follow a number"))
+                    .help(format!("a unit follows a number, as in `1 {word}`")),
+            ),
+            Reserved::Dimension if name || value => {
+                Some(self.here(format!("`{word}` is a dimension and cannot be a name")))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the word does what it is there for, so that something is missing before it.
+    fn introduces(&self) -> bool {
+        if words::begins_statement(self.say()) {
+            pieces::begins(self.scan, self.found)
+        } else {
+            self.scan.is_name(self.found + 1)
+        }
+    }
+}
+
+fn dimension_of(unit: &str) -> &'static str {
+    match unit {
+        "deg" | "rad" | "arcmin" | "arcsec" | "rev" => "angle",
+        _ => "length",
+    }
+}

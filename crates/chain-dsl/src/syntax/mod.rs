@@ -1,0 +1,60 @@
+//! The text: grammar, parser, tree.
+//!
+//! [`parse`] reads a whole file by the strict grammar (`grammar.pest`). Only if that fails is the text cut into pieces, each
+//! piece parsed by itself, and each mistake reported; see `recover`. Nothing of the grammar's machinery leaves this module.
+
+pub mod ast;
+
+mod build;
+mod expected;
+mod explain;
+mod grammar;
+mod lex;
+mod limits;
+mod pieces;
+mod recover;
+mod salvage;
+mod scan;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use crate::diagnostic::Diagnostic;
+use crate::source::FileId;
+
+pub use scan::{Comment, CommentKind};
+
+/// Reads a text. Never fails: what did not parse is reported, and what stands around it is in the tree.
+///
+/// A broken statement that gives a name to something still does so, with [`ast::ExpressionKind::Error`] as its value. Where
+/// even a name is missing, it is the empty string; whoever meets one says nothing, for it has been reported.
+pub fn parse(text: &str, file: FileId) -> (ast::File, Vec<Diagnostic>) {
+    if let Some(diagnostic) = limits::too_long(text, file) {
+        return (ast::File::default(), vec![diagnostic]);
+    }
+    let scan = scan::Scan::new(text, file);
+    if limits::first_excess(&scan, 0..scan.tokens.len()).is_some() {
+        return recover::file(&scan, None);
+    }
+    match grammar::strict(grammar::Rule::file, text) {
+        Ok(pairs) => build::file(&scan, pairs),
+        Err(failure) => recover::file(&scan, Some(&failure)),
+    }
+}
+
+/// Reads a text from a place on as one expression, such as the value of a setting on the command line. Never fails, like
+/// [`parse`]; places are those in the whole text.
+pub fn parse_expression(text: &str, file: FileId, start: u32) -> (ast::Expression, Vec<Diagnostic>) {
+    let start = start as usize;
+    if let Some(diagnostic) = limits::too_long(text, file) {
+        let kind = ast::ExpressionKind::Error;
+        return (ast::Expression { kind, span: diagnostic.span }, vec![diagnostic]);
+    }
+    let blank = " ".repeat(start);
+    recover::expression(&scan::Scan::new(&format!("{blank}{}", &text[start..]), file), start)
+}
+
+/// All comments of a text, in order.
+pub fn comments(text: &str, file: FileId) -> Vec<Comment> {
+    if limits::too_long(text, file).is_some() { Vec::new() } else { scan::Scan::new(text, file).comments }
+}

@@ -1,0 +1,249 @@
+//! What a statement that does not parse would have defined, so that its uses are not mistakes of their own.
+
+use std::ops::Range;
+
+use crate::source::{Name, Span, Spanned};
+
+use super::ast::{
+    Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,
+    GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Param, Parameter, Path, Sample, SampleEntry,
+    SampleValues, Side, ToolStatement,
+};
+use super::build::{Head, SurfaceParts};
+use super::scan::Scan;
+use super::words;
+
+/// A machine's statement; nothing if it has no name.
+pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) -> Option<MachineStatement> {
+    let piece = Piece { scan, range };
+    let name = piece.defined()?;
+    Some(match word {
+        "param" => MachineStatement::Param(piece.param(name)),
+        "axis" => MachineStatement::Axis(piece.axis(name)),
+        "frame" => MachineStatement::Frame(piece.frame(name)),
+        "fix" => MachineStatement::Fix(piece.assignment()),
+        "couple" => MachineStatement::Couple(piece.assignment()),
+        _ => MachineStatement::Let(piece.let_statement(name)),
+    })
+}
+
+/// A tool's statement; nothing if it has no name.
+pub(super) fn tool_statement(scan: &Scan, word: &str, range: Range<usize>) -> Option<ToolStatement> {
+    let piece = Piece { scan, range };
+    let name = piece.defined()?;
+    Some(match word {
+        "param" => ToolStatement::Param(piece.param(name)),
+        _ => ToolStatement::Let(piece.let_statement(name)),
+    })
+}
+
+/// A job's statement; nothing if it has no name.
+pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Option<JobStatement> {
+    let piece = Piece { scan, range };
+    let name = piece.defined()?;
+    Some(match word {
+        "param" => JobStatement::Param(piece.param(name)),
+        "machine" => JobStatement::Machine(piece.instance(name)),
+        "tool" => JobStatement::Tool(piece.instance(name)),
+        "mount" => JobStatement::Mount { tool: name, frame: piece.path_after("on") },
+        "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
+        "drive" => JobStatement::Drive(piece.assignment()),
+        "surface" => JobStatement::Surface(GeneratedSurface {
+            doc: piece.doc(),
+            name,
+            frame: piece.path_after("in"),
+            value: piece.error(),
+        }),
+        "sample" => JobStatement::Sample(piece.sample(name)),
+        _ => JobStatement::Let(piece.let_statement(name)),
+    })
+}
+
+/// Adds a broken statement to a tool's surface.
+pub(super) fn surface_statement(scan: &Scan, parts: &mut SurfaceParts, word: &str, range: Range<usize>) {
+    let piece = Piece { scan, range };
+    parts.broken = true;
+    match word {
+        "at" => parts.at = Some(piece.error()),
+        "body" => parts.body = Some(Body { side: Side::Towards(piece.error()), span: piece.span() }),
+        _ => parts.lets.extend(piece.defined().map(|name| piece.let_statement(name))),
+    }
+}
+
+/// What stands before the block of a machine, tool or job.
+pub(super) fn head(scan: &Scan, first: usize) -> Head {
+    let piece = Piece { scan, range: first..first + 1 };
+    let extends = scan.is_name(first + 3) && scan.say(first + 2) != "{";
+    Head {
+        doc: piece.doc(),
+        name: piece.defined().unwrap_or_else(|| piece.nameless()),
+        extends: extends.then(|| piece.name(first + 3)),
+    }
+}
+
+/// What stands before the block of a tool's surface.
+pub(super) fn surface_head(scan: &Scan, range: Range<usize>) -> SurfaceParts {
+    let piece = Piece { scan, range };
+    let name = piece.defined().unwrap_or_else(|| piece.nameless());
+    let firsts = piece.firsts_in_parentheses();
+    let parameters = firsts.into_iter().map(|index| piece.parameter(index, piece.name(index))).collect();
+    SurfaceParts { doc: piece.doc(), parameters, ..SurfaceParts::new(name) }
+}
+
+/// A function; nothing for a `use`.
+pub(super) fn flat_item(scan: &Scan, word: &str, range: Range<usize>) -> Option<Item> {
+    let piece = Piece { scan, range };
+    if word == "use" {
+        return None;
+    }
+    let firsts = piece.firsts_in_parentheses();
+    Some(Item::Function(Function {
+        doc: piece.doc(),
+        name: piece.defined()?,
+        arguments: firsts.into_iter().map(|index| (piece.name(index), piece.dimension(index))).collect(),
+        result: None,
+        lets: Vec::new(),
+        body: piece.error(),
+    }))
+}
+
+/// The tokens of a broken statement.
+struct Piece<'s> {
+    scan: &'s Scan<'s>,
+    range: Range<usize>,
+}
+
+impl Piece<'_> {
+    fn span(&self) -> Span {
+        self.scan.extent(self.range.clone())
+    }
+
+    fn error(&self) -> Expression {
+        Expression { kind: ExpressionKind::Error, span: self.span() }
+    }
+
+    fn doc(&self) -> Vec<String> {
+        self.scan.doc_above(self.scan.place(self.range.start).start)
+    }
+
+    fn name(&self, index: usize) -> Name {
+        Spanned { node: self.scan.say(index).to_owned(), span: self.scan.place(index) }
+    }
+
+    /// The name that a report speaks of as missing.
+    fn nameless(&self) -> Name {
+        Spanned { node: String::new(), span: self.scan.place(self.range.start) }
+    }
+
+    /// The name after the first word; or the first word, if the two are swapped.
+    fn defined(&self) -> Option<Name> {
+        let mut places = [self.range.start + 1, self.range.start].into_iter();
+        places.find(|&index| self.scan.is_name(index)).map(|index| self.name(index))
+    }
+
+    /// The tokens that say something.
+    fn find(&self, word: &str) -> Option<usize> {
+        self.range.clone().find(|&index| self.scan.say(index) == word)
+    }
+
+    /// The dimension in which a parameter is most likely measured: the first one named after it.
+    fn dimension(&self, after: usize) -> Dimension {
+        let named = (after..self.range.end).take_while(|&index| self.scan.say(index) != ",");
+        let found = named.clone().find(|&index| words::DIMENSIONS.contains(&self.scan.say(index)));
+        let factor = found.map_or_else(|| self.nameless(), |index| self.name(index));
+        Dimension { span: factor.span, factors: vec![(factor, 1)] }
+    }
+
+    fn range(&self) -> super::ast::Range {
+        super::ast::Range { low: self.error(), high: self.error(), span: self.span() }
+    }
+
+    fn param(&self, name: Name) -> Param {
+        let dimension = self.dimension(self.range.start);
+        Param { doc: self.doc(), name, dimension, range: None, default: Some(self.error()) }
+    }
+
+    fn parameter(&self, index: usize, name: Name) -> Parameter {
+        Parameter { doc: self.doc(), name, dimension: self.dimension(index), range: self.range() }
+    }
+
+    fn let_statement(&self, name: Name) -> Let {
+        Let { name, value: self.error() }
+    }
+
+    fn axis(&self, name: Name) -> Axis {
+        let rotary = ["rotary", "deg", "rad", "rev", "angle"].iter().any(|word| self.find(word).is_some());
+        let kind = if rotary { AxisKind::Rotary } else { AxisKind::Linear };
+        Axis { doc: self.doc(), name, kind, range: None }
+    }
+
+    /// A frame that hangs on another, be it unknown on which: a second root would be a mistake of its own.
+    fn frame(&self, name: Name) -> Frame {
+        let parent = match self.find("in").map(|index| index + 1) {
+            Some(index) if self.scan.is_name(index) && index < self.range.end => self.name(index),
+            _ => self.nameless(),
+        };
+        Frame { doc: self.doc(), name, parent: Some(parent), transforms: Vec::new() }
+    }
+
+    fn assignment(&self) -> Assignment {
+        Assignment { target: self.path(self.range.start + 1), value: self.error() }
+    }
+
+    fn path_after(&self, word: &str) -> Path {
+        self.path(self.find(word).map_or(self.range.end, |index| index + 1))
+    }
+
+    /// As much of a path as there is.
+    fn path(&self, from: usize) -> Path {
+        let mut segments = Vec::new();
+        let mut index = from;
+        while index < self.range.end && self.scan.is_name(index) {
+            segments.push(self.name(index));
+            index += if self.scan.say(index + 1) == "." { 2 } else { self.range.len() };
+        }
+        if segments.is_empty() {
+            segments.push(self.nameless());
+        }
+        let span = segments[0].span.to(segments[segments.len() - 1].span);
+        Path { segments, span }
+    }
+
+    fn instance(&self, name: Name) -> Instance {
+        let index = self.find("=").unwrap_or(self.range.start + 1) + 1;
+        let named = index < self.range.end && self.scan.is_name(index);
+        let definition = if named { self.name(index) } else { self.nameless() };
+        let settings = self.firsts_in_parentheses().into_iter();
+        let settings = settings.map(|index| Argument { name: Some(self.name(index)), value: self.error() });
+        Instance { name, definition, settings: settings.collect() }
+    }
+
+    fn sample(&self, surface: Name) -> Sample {
+        let entry = SampleEntry { key: self.nameless(), values: SampleValues::Value(self.error()) };
+        Sample { surface, entries: vec![entry], span: self.span() }
+    }
+
+    /// The names right after the first opening parenthesis and after each comma on its level.
+    fn firsts_in_parentheses(&self) -> Vec<usize> {
+        let mut depth = 0usize;
+        let mut firsts = Vec::new();
+        for index in self.range.clone() {
+            let separates = match self.scan.say(index) {
+                "(" | "[" => {
+                    depth += 1;
+                    depth == 1
+                }
+                ")" | "]" => {
+                    depth = depth.saturating_sub(1);
+                    false
+                }
+                "," => depth == 1,
+                _ => false,
+            };
+            if separates && index + 1 < self.range.end && self.scan.is_name(index + 1) {
+                firsts.push(index + 1);
+            }
+        }
+        firsts
+    }
+}

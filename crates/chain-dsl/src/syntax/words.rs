@@ -1,0 +1,73 @@
+//! The words of the language, and the word that somebody may have meant.
+
+/// Why a word cannot be a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reserved {
+    /// A word of the language itself.
+    Keyword,
+    /// A unit.
+    Unit,
+    /// A dimension.
+    Dimension,
+}
+
+/// Words that begin an item.
+pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
+
+/// Words that begin a statement in a machine.
+pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple"];
+
+/// Words that begin a statement in a tool.
+pub(super) const IN_TOOL: &[&str] = &["param", "let", "surface"];
+
+/// Words that begin a statement in a tool's surface.
+pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
+
+/// Words that begin a statement in a job.
+pub(super) const IN_JOB: &[&str] =
+    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "sample"];
+
+/// Words inside statements and expressions.
+const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];
+
+/// Units as they are listed in messages.
+pub(super) const UNITS: &[&str] = &["mm", "um", "µm", "cm", "inch", "deg", "rad", "arcmin", "arcsec", "rev"];
+
+/// `µm` with the Greek letter instead of the micro sign: read alike.
+pub(super) const GREEK_MICROMETRE: &str = "μm";
+
+/// Dimensions.
+pub(super) const DIMENSIONS: &[&str] = &["length", "angle", "number", "count"];
+
+/// Whether a word begins an item or a statement somewhere.
+pub(super) fn begins_statement(word: &str) -> bool {
+    [ITEMS, IN_MACHINE, IN_TOOL, IN_SURFACE, IN_JOB].iter().any(|words| words.contains(&word))
+}
+
+/// Why a word cannot be a name, if it cannot.
+pub(super) fn reserved(word: &str) -> Option<Reserved> {
+    if UNITS.contains(&word) || word == GREEK_MICROMETRE {
+        Some(Reserved::Unit)
+    } else if DIMENSIONS.contains(&word) {
+        Some(Reserved::Dimension)
+    } else if begins_statement(word) || CONNECTING.contains(&word) {
+        Some(Reserved::Keyword)
+    } else {
+        None
+    }
+}
+
+/// The candidate that a misspelt word most likely stands for: at most one mistake in three letters, the first of the nearest.
+pub(super) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    const LONGEST: usize = 64;
+    let letters = word.chars().take(LONGEST + 1).count();
+    if !(2..=LONGEST).contains(&letters) {
+        return None;
+    }
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::osa_distance(word, candidate), candidate))
+        .filter(|&(distance, _)| distance <= (letters / 3).max(1))
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, candidate)| candidate)
+}

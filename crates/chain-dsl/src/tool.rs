@@ -1,0 +1,224 @@
+//! Tools: parametric surfaces and the side on which their steel lies.
+
+use std::collections::HashMap;
+
+use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::{Expr, Graph};
+
+use crate::codes::Code;
+use crate::context::{Context, Role, Scope, Value};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::instance::{Binder, Overrides, Source};
+use crate::model::{Bounded, Parameter};
+use crate::syntax::ast::{self, Side, ToolStatement};
+
+/// All tools of a compilation by name.
+pub(crate) type Tools = HashMap<String, ast::Tool>;
+
+/// A tool with values.
+pub(crate) struct BuiltTool<'g> {
+    pub(crate) parameters: Vec<Parameter<'g>>,
+    pub(crate) scope: Scope<'g>,
+    pub(crate) surfaces: Vec<ToolSurface<'g>>,
+}
+
+/// One surface of a tool in the tool's frame.
+pub(crate) struct ToolSurface<'g> {
+    pub(crate) name: String,
+    /// `None` if something in it is wrong (and reported).
+    pub(crate) surface: Option<(Surface<'g>, Vec<Bounded<'g>>)>,
+}
+
+/// Gives values to the parameters and builds the surfaces.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    tool: &ast::Tool,
+    source: Source<'_, 'g>,
+    overrides: &Overrides,
+) -> BuiltTool<'g> {
+    let mut binder = Binder::new(source, overrides);
+    let mut scope = Scope::new();
+    let mut seen: HashMap<&str, crate::Span> = HashMap::new();
+    for statement in &tool.statements {
+        let name = match statement {
+            ToolStatement::Param(param) => &param.name,
+            ToolStatement::Let(binding) => &binding.name,
+            ToolStatement::Surface(surface) => &surface.name,
+        };
+        if let Some(first) = seen.insert(&name.node, name.span) {
+            context.duplicate(name, first);
+        }
+        match statement {
+            ToolStatement::Param(param) => binder.bind(context, param, &mut scope),
+            ToolStatement::Let(binding) => {
+                let value = context.evaluate(&binding.value, &scope);
+                scope.insert(binding.name.node.clone(), value);
+            }
+            ToolStatement::Surface(_) => {}
+        }
+    }
+    let params: Vec<&ast::Param> = tool
+        .statements
+        .iter()
+        .filter_map(|statement| match statement {
+            ToolStatement::Param(param) => Some(param),
+            _ => None,
+        })
+        .collect();
+    let parameters = binder.finish(context, &params);
+    let mut surfaces = Vec::new();
+    for statement in &tool.statements {
+        if let ToolStatement::Surface(written) = statement {
+            let surface = build_surface(context, written, &scope);
+            surfaces.push(ToolSurface { name: written.name.node.clone(), surface });
+        }
+    }
+    BuiltTool { parameters, scope, surfaces }
+}
+
+fn build_surface<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+) -> Option<(Surface<'g>, Vec<Bounded<'g>>)> {
+    let mut scope = scope.clone();
+    let mut unknowns = Vec::new();
+    for parameter in &written.parameters {
+        let bounded = bounded(context, parameter, &scope, Role::SurfaceParameter);
+        let value = match &bounded {
+            Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
+            None => Value::Poison,
+        };
+        scope.insert(parameter.name.node.clone(), value);
+        unknowns.extend(bounded);
+    }
+    if written.parameters.len() != 2 {
+        let message = format!("a surface has two parameters, `{}` has {}", written.name.node, written.parameters.len());
+        context.report(Diagnostic::new(Code::WrongArguments, written.name.span, message));
+        return None;
+    }
+    for binding in &written.lets {
+        let value = context.evaluate(&binding.value, &scope);
+        scope.insert(binding.name.node.clone(), value);
+    }
+    let position = context.vector3(&written.at, &scope, Dimension::LENGTH, "the point");
+    let towards = match &written.body.side {
+        Side::Towards(direction) => direction_of_steel(context, direction, &scope),
+        _ => position,
+    };
+    let [u, v] = unknowns.as_slice() else {
+        return None;
+    };
+    let (position, towards) = (Vector3(position?), Vector3(towards?));
+    let flipped = is_flipped(context, written, [u, v], position, towards)?;
+    Some((Surface::parametric([u.variable, v.variable], position, flipped), unknowns))
+}
+
+/// A direction: lengths or numbers alike.
+fn direction_of_steel<'g>(
+    context: &mut Context<'g>,
+    direction: &ast::Expression,
+    scope: &Scope<'g>,
+) -> Option<[Expr<'g>; 3]> {
+    let findings = context.findings();
+    let is_length = match context.evaluate(direction, scope) {
+        Value::Vector(parts) => {
+            matches!(parts.first(), Some(Value::Scalar(_, dimension)) if dimension.length == 1)
+        }
+        _ => false,
+    };
+    if context.findings() > findings {
+        return None;
+    }
+    let wanted = if is_length { Dimension::LENGTH } else { Dimension::NUMBER };
+    context.vector3(direction, scope, wanted, "the direction of the steel")
+}
+
+/// A variable with its range; where the range is not known yet its ends are NaN.
+pub(crate) fn bounded<'g>(
+    context: &mut Context<'g>,
+    parameter: &ast::Parameter,
+    scope: &Scope<'g>,
+    role: Role,
+) -> Option<Bounded<'g>> {
+    let name = parameter.name.node.clone();
+    let dimension = context.dimension(&parameter.dimension)?;
+    let what = format!("`{name}`");
+    let (low, high) = context.range(&parameter.range, scope, dimension, &what).unwrap_or((f64::NAN, f64::NAN));
+    let variable = context.variable(name.clone(), role, f64::NAN);
+    Some(Bounded { name, variable, dimension, low, high })
+}
+
+/// Points in each direction at which the side of the steel is looked at.
+const LOOKS: usize = 5;
+
+/// Whether `r_u × r_v` points into the steel: the same answer all over the surface, or an error.
+fn is_flipped<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    [u, v]: [&Bounded<'g>; 2],
+    position: Vector3<'g>,
+    towards: Vector3<'g>,
+) -> Option<bool> {
+    let graph: &'g Graph = context.graph;
+    let raw = Surface::raw_normal([u.variable, v.variable], position);
+    let zero = graph.constant(0.0);
+    // out of the steel
+    let outward = match &written.body.side {
+        Side::Inside => Vector3([position.0[0], position.0[1], zero]),
+        Side::Outside => -Vector3([position.0[0], position.0[1], zero]),
+        Side::Towards(_) => -towards,
+    };
+    let parts = [raw.dot(outward), raw.norm(), outward.norm()];
+    let (mut along, mut against) = (0, 0);
+    for k in 0..LOOKS * LOOKS {
+        let at = |bounded: &Bounded<'g>, step: usize| {
+            let share = (step as f64 + 0.5) / LOOKS as f64;
+            bounded.low + (bounded.high - bounded.low) * share
+        };
+        let mut values = context.values().to_vec();
+        values[u.variable.as_variable()?.index()] = at(u, k / LOOKS);
+        values[v.variable.as_variable()?.index()] = at(v, k % LOOKS);
+        let found = graph.evaluate(&parts, &values);
+        if found.iter().any(|value| value.is_nan()) {
+            continue;
+        }
+        let cosine = found[0] / (found[1] * found[2]);
+        along += usize::from(cosine > 1e-9);
+        against += usize::from(cosine < -1e-9);
+    }
+    match (along, against) {
+        (0, 0)
+            if [u.low, v.low, u.high, v.high].iter().any(|end| end.is_nan())
+                || unknown_values(context, &parts, [u, v]) =>
+        {
+            Some(false)
+        }
+        (0, 0) => {
+            let message = "this side is neither in front of the surface nor behind it";
+            let help = "name a direction that points into the steel: `body towards [0, 0, -1]`";
+            context.report(Diagnostic::new(Code::SteelSide, written.body.span, message).help(help));
+            None
+        }
+        (_, 0) => Some(false),
+        (0, _) => Some(true),
+        _ => {
+            let message = "this side is in front of some points of the surface and behind others";
+            let help = "name a direction that points into the steel everywhere (it may depend on the parameters): \
+                        `body towards [0, 0, -1]`";
+            context.report(Diagnostic::new(Code::SteelSide, written.body.span, message).help(help));
+            None
+        }
+    }
+}
+
+/// True if the expressions depend on parameters without values (a definition looked at by itself).
+fn unknown_values<'g>(context: &Context<'g>, parts: &[Expr<'g>], [u, v]: [&Bounded<'g>; 2]) -> bool {
+    let own = [u.variable.as_variable(), v.variable.as_variable()];
+    context
+        .graph
+        .variables_of(parts)
+        .iter()
+        .any(|variable| !own.contains(&Some(*variable)) && context.values()[variable.index()].is_nan())
+}

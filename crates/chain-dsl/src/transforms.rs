@@ -1,0 +1,174 @@
+//! The elementary transforms between a frame and its parent.
+
+use flank_expr::Expr;
+use flank_expr::geometry::{Axis, Matrix3, Pose, Step, Vector3};
+
+use crate::codes::Code;
+use crate::context::{Context, Scope, Value};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::Dimension;
+use crate::functions;
+use crate::source::Span;
+use crate::syntax::ast::{Call, Expression};
+
+const NAMES: [&str; 10] = [
+    "translate",
+    "translate_x",
+    "translate_y",
+    "translate_z",
+    "rotate",
+    "rotate_x",
+    "rotate_y",
+    "rotate_z",
+    "screw",
+    "matrix",
+];
+
+/// An explicit matrix may deviate this much from a rotation: it is written with finitely many digits.
+const RIGID_WITHIN: f64 = 1e-9;
+
+/// The steps that calls in a row amount to; what is wrong is reported and left out.
+pub(crate) fn steps<'g>(context: &mut Context<'g>, calls: &[Call], scope: &Scope<'g>) -> Vec<Step<'g>> {
+    calls.iter().flat_map(|call| step(context, call, scope).unwrap_or_default()).collect()
+}
+
+fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<Vec<Step<'g>>> {
+    let name = call.function.node.as_str();
+    let count = match name {
+        "translate" if call.arguments.len() == 1 => 1,
+        "translate" => 3,
+        "rotate" => 2,
+        "screw" => 3,
+        _ if NAMES.contains(&name) => 1,
+        _ => {
+            context.unknown(&call.function, "transform", NAMES.into_iter());
+            return None;
+        }
+    };
+    let written: Vec<&Expression> = call.arguments.iter().map(|argument| &argument.value).collect();
+    if call.arguments.len() != count || call.arguments.iter().any(|argument| argument.name.is_some()) {
+        // the same words as for any other function
+        functions::arguments(context, call, count, scope);
+        return None;
+    }
+    let along = |axis: usize, by: Expr<'g>| {
+        let mut components = [by.graph().constant(0.0); 3];
+        components[axis] = by;
+        Step::Translate(Vector3(components))
+    };
+    let what = format!("the argument of `{name}`");
+    Some(match name {
+        "translate" if count == 1 => {
+            vec![Step::Translate(Vector3(context.vector3(written[0], scope, Dimension::LENGTH, &what)?))]
+        }
+        "translate" => {
+            let parts: Vec<Option<Expr<'g>>> =
+                written.iter().map(|part| context.scalar(part, scope, Dimension::LENGTH, &what)).collect();
+            vec![Step::Translate(Vector3([parts[0]?, parts[1]?, parts[2]?]))]
+        }
+        "translate_x" | "translate_y" | "translate_z" => {
+            let by = context.scalar(written[0], scope, Dimension::LENGTH, &what)?;
+            vec![along(axis_index(name), by)]
+        }
+        "rotate_x" | "rotate_y" | "rotate_z" => {
+            let angle = context.scalar(written[0], scope, Dimension::ANGLE, &what)?;
+            vec![Step::Rotate([Axis::X, Axis::Y, Axis::Z][axis_index(name)], angle)]
+        }
+        "rotate" => {
+            let axis = unit_axis(context, written[0], scope)?;
+            let angle = context.scalar(written[1], scope, Dimension::ANGLE, &what)?;
+            vec![Step::Rotate(Axis::Along(axis), angle)]
+        }
+        // screw(axis, angle, lead): turns by the angle and advances by lead · angle
+        "screw" => {
+            let axis = unit_axis(context, written[0], scope)?;
+            let angle = context.scalar(written[1], scope, Dimension::ANGLE, &what)?;
+            let lead = Dimension { length: 1, angle: -1 };
+            let lead = context.scalar(written[2], scope, lead, "the lead of `screw` (such as `12 mm/rev`)")?;
+            vec![Step::Rotate(Axis::Along(axis), angle), Step::Translate(axis.scaled(lead * angle))]
+        }
+        _ => vec![Step::Rigid(matrix(context, written[0], scope)?)],
+    })
+}
+
+fn axis_index(name: &str) -> usize {
+    match name.as_bytes()[name.len() - 1] {
+        b'x' => 0,
+        b'y' => 1,
+        _ => 2,
+    }
+}
+
+/// A direction, made a unit vector.
+fn unit_axis<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>) -> Option<Vector3<'g>> {
+    let axis = Vector3(context.vector3(written, scope, Dimension::NUMBER, "an axis")?);
+    if axis.is_zero() {
+        let message = "an axis needs a direction: this vector is zero";
+        context.report(Diagnostic::new(Code::NotANumber, written.span, message));
+        return None;
+    }
+    Some(axis.normalized())
+}
+
+/// Three rows of four (rotation and translation), perhaps with a last row `[0, 0, 0, 1]`.
+fn matrix<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>) -> Option<Pose<'g>> {
+    let shape = "`matrix` takes three rows `[r, r, r, t]` of three numbers and a length";
+    let Value::Vector(rows) = context.evaluate(written, scope) else {
+        context.report(Diagnostic::new(Code::WrongArguments, written.span, shape));
+        return None;
+    };
+    let mut turned = Vec::new();
+    let mut moved = Vec::new();
+    for row in rows.iter().take(3) {
+        let Value::Vector(entries) = row else { break };
+        let [a, b, c, t] = entries.as_slice() else {
+            break;
+        };
+        let mut numbers = Vec::new();
+        for entry in [a, b, c] {
+            numbers.push(context.require(entry, Dimension::NUMBER, written.span, "a rotation entry of `matrix`")?);
+        }
+        turned.push(Vector3([numbers[0], numbers[1], numbers[2]]));
+        moved.push(context.require(t, Dimension::LENGTH, written.span, "the last entry of a row of `matrix`")?);
+    }
+    if turned.len() != 3 || rows.len() > 4 {
+        context.report(Diagnostic::new(Code::WrongArguments, written.span, shape));
+        return None;
+    }
+    let rotation = Matrix3([turned[0], turned[1], turned[2]]);
+    check_rigid(context, rotation, written.span)?;
+    Some(Pose { rotation, translation: Vector3([moved[0], moved[1], moved[2]]) })
+}
+
+/// Rows of unit length, at right angles, right-handed: looked at for a few values of whatever it depends on.
+fn check_rigid<'g>(context: &mut Context<'g>, rotation: Matrix3<'g>, span: Span) -> Option<()> {
+    let [a, b, c] = rotation.0;
+    let one = [a.dot(a), b.dot(b), c.dot(c), a.cross(b).dot(c)];
+    let zero = [a.dot(b), b.dot(c), c.dot(a)];
+    let all: Vec<Expr<'g>> = one.into_iter().chain(zero).collect();
+    let depends = context.graph.variables_of(&all);
+    for probe in [0.3, -0.7, 1.1] {
+        let mut values = context.values().to_vec();
+        for variable in &depends {
+            let value = &mut values[variable.index()];
+            if value.is_nan() {
+                *value = probe + 0.1 * variable.index() as f64;
+            }
+        }
+        let found = context.graph.evaluate(&all, &values);
+        let off = found[..4].iter().map(|x| (x - 1.0).abs()).chain(found[4..].iter().map(|x| x.abs()));
+        let worst = off.fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
+        if worst.is_nan() || worst > RIGID_WITHIN {
+            let reason = if (found[3] + 1.0).abs() < 1e-3 {
+                "it turns a right hand into a left one".to_string()
+            } else {
+                format!("its rows are not unit vectors at right angles (off by {worst:.1e})")
+            };
+            let message = format!("this matrix is not a rigid motion: {reason}");
+            let help = "give at least 10 digits, or say it with `rotate` and `translate`";
+            context.report(Diagnostic::new(Code::NotRigid, span, message).help(help));
+            return None;
+        }
+    }
+    Some(())
+}

@@ -1,0 +1,31 @@
+//! What texts mean: mistakes of meaning with what is said of them, files that use each other, values from outside.
+
+mod files;
+#[path = "../fixtures/mod.rs"]
+mod fixtures;
+mod models;
+
+use flank_chain_dsl::{Diagnostic, compile_text};
+use flank_expr::Graph;
+
+use fixtures::check;
+
+/// What the fixtures draw on, behind their own text.
+const LIBRARY: &str = include_str!("library.chain");
+
+fn findings(text: &str) -> Vec<Diagnostic> {
+    let graph = Graph::new();
+    compile_text(&graph, "text", &format!("{text}{LIBRARY}"), &[]).diagnostics
+}
+
+#[test]
+fn one_mistake_gives_one_report() {
+    let files = ["names", "dimensions", "values", "machines", "jobs"];
+    let count: usize = files.iter().map(|file| check(&format!("meaning/mistakes/{file}.txt"), true, findings)).sum();
+    assert!(count > 90, "{count}");
+}
+
+#[test]
+fn the_library_is_right() {
+    assert!(findings("").is_empty());
+}

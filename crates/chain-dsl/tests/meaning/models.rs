@@ -1,0 +1,143 @@
+//! Models that texts make: inheritance, coupled axes, poses between frames, envelopes of envelopes.
+
+use flank_chain_dsl::{Compilation, compile_text, render};
+use flank_expr::Graph;
+
+fn compiled<'g>(graph: &'g Graph, text: &str) -> Compilation<'g> {
+    let compilation = compile_text(graph, "text", &format!("{text}{}", super::LIBRARY), &[]);
+    let told = render(&compilation.diagnostics, &compilation.sources, false);
+    assert!(!compilation.has_errors(), "{told}");
+    compilation
+}
+
+/// The printed laws of the axes of a job's first machine.
+fn laws(text: &str) -> Vec<String> {
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    compilation.jobs[0].machines[0].axes.iter().map(|axis| format!("{} = {}", axis.name, axis.law)).collect()
+}
+
+#[test]
+fn a_variant_adds_replaces_and_fixes() {
+    let text = "
+        machine tilted extends lathe {
+            param tilt : angle = 5 deg
+            axis A : rotary
+            fix Z = height / 2
+            frame slide in bed = translate(0 mm, height, Z) rotate_x(A)
+            frame tip in slide = translate_z(1 mm)
+        }
+        job j {
+            machine m = tilted(height: 4 mm)
+            tool b = ball
+            mount b on m.tip
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.A = m.tilt
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    assert_eq!(laws(text), ["Z = m.height / 2", "C = turn", "A = m.tilt"]);
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    let names: Vec<&str> = compilation.jobs[0].machines[0].frames.iter().map(|frame| frame.name.as_str()).collect();
+    assert_eq!(names, ["bed", "slide", "work", "tip"]);
+}
+
+#[test]
+fn coupled_axes_follow_through_others() {
+    let text = "
+        machine geared extends lathe {
+            axis D : rotary
+            couple Z = 2 mm/rad * D
+            couple D = 3 * C
+        }
+        job j {
+            machine m = geared(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    assert_eq!(laws(text), ["Z = 6 * turn", "C = turn", "D = 3 * turn"]);
+}
+
+#[test]
+fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
+    let graph = Graph::new();
+    let text = "
+        job j {
+            machine m = lathe(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 1 mm/rad * turn
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    let compilation = compiled(&graph, text);
+    let generation = compilation.jobs[0].surfaces[0].generation.as_ref().expect("an envelope");
+    let frames: Vec<&str> = generation.path.iter().map(|(frame, _)| frame.as_str()).collect();
+    assert_eq!(frames, ["m.work", "m.bed", "m.slide"]);
+    // p_work = Rz(−turn) · (p_tool + (0, 4, turn))
+    let pose = generation.driven.pose();
+    let bindings = compilation.jobs[0].bindings();
+    let z = graph.substitute(&pose.translation.0, &bindings);
+    assert_eq!(z.map_text(), ["4 * sin(turn)", "4 * cos(turn)", "turn"]);
+}
+
+trait MapText {
+    fn map_text(&self) -> Vec<String>;
+}
+
+impl MapText for Vec<flank_expr::Expr<'_>> {
+    fn map_text(&self) -> Vec<String> {
+        self.iter().map(ToString::to_string).collect()
+    }
+}
+
+#[test]
+fn an_envelope_is_a_tool() {
+    let graph = Graph::new();
+    let text = "
+        machine pair extends lathe {
+            axis D : rotary
+            frame mate in bed = translate_x(80 mm) rotate_z(D)
+        }
+        job j {
+            machine m = pair(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            motion mesh : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 1 mm/rad * turn
+            drive m.D = -2 * mesh
+            surface first in m.bed = envelope(b.face, over: turn)
+            surface second in m.mate = envelope(first, over: mesh)
+        }";
+    let compilation = compiled(&graph, text);
+    let second = &compilation.jobs[0].surfaces[1];
+    assert_eq!(second.surface.constraints.len(), 2);
+    let names: Vec<&str> = second.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
+    assert_eq!(names, ["u", "v", "turn", "mesh"]);
+}
+
+#[test]
+fn conditions_are_decided_by_the_parameters() {
+    for (hand, law) in [("1", "Z = turn"), ("-1", "Z = -turn")] {
+        let text = format!(
+            "job j {{
+                param hand : number = {hand}
+                machine m = lathe(height: 4 mm)
+                tool b = ball
+                mount b on m.slide
+                motion turn : angle in 0 deg .. 90 deg
+                drive m.C = turn
+                drive m.Z = if hand > 0 then 1 mm/rad * turn else -1 mm/rad * turn
+                surface s in m.work = envelope(b.face, over: turn)
+            }}"
+        );
+        assert_eq!(laws(&text)[0], law);
+    }
+}

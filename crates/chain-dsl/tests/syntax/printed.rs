@@ -1,0 +1,209 @@
+//! Trees as short text, `(+ 1 (* 2 3))`, an item or statement a line.
+
+use flank_chain_dsl::Name;
+use flank_chain_dsl::syntax::ast::*;
+
+pub(crate) fn file(file: &File) -> String {
+    let mut lines: Vec<String> = file.doc.iter().map(|line| format!("//! {line}")).collect();
+    lines.extend(file.items.iter().flat_map(item));
+    lines.join("\n")
+}
+
+fn item(item: &Item) -> Vec<String> {
+    let (head, statements): (String, Vec<String>) = match item {
+        Item::Use(path) => (format!("use {:?}", path.node), Vec::new()),
+        Item::Function(function) => function_lines(function),
+        Item::Machine(machine) => {
+            let extends = machine.extends.as_ref().map_or(String::new(), |name| format!(" < {}", name.node));
+            let head = format!("{}machine {}{extends}", doc(&machine.doc), machine.name.node);
+            (head, machine.statements.iter().map(machine_statement).collect())
+        }
+        Item::Tool(tool) => {
+            let head = format!("{}tool {}", doc(&tool.doc), tool.name.node);
+            (head, tool.statements.iter().flat_map(tool_statement).collect())
+        }
+        Item::Job(job) => {
+            let head = format!("{}job {}", doc(&job.doc), job.name.node);
+            (head, job.statements.iter().map(job_statement).collect())
+        }
+    };
+    std::iter::once(head).chain(statements.into_iter().map(|line| format!("  {line}"))).collect()
+}
+
+fn function_lines(function: &Function) -> (String, Vec<String>) {
+    let arguments: Vec<String> =
+        function.arguments.iter().map(|(name, of)| format!("{}: {}", name.node, dimension(of))).collect();
+    let result = function.result.as_ref().map_or(String::new(), |result| format!(" -> {}", dimension(result)));
+    let head = format!("{}fn {}({}){result}", doc(&function.doc), function.name.node, arguments.join(", "));
+    let lets = function.lets.iter().map(let_statement);
+    (head, lets.chain([expression(&function.body)]).collect())
+}
+
+fn machine_statement(statement: &MachineStatement) -> String {
+    match statement {
+        MachineStatement::Param(it) => param(it),
+        MachineStatement::Let(it) => let_statement(it),
+        MachineStatement::Axis(it) => {
+            format!("{}axis {} {:?}{}", doc(&it.doc), it.name.node, it.kind, optional_range(it.range.as_ref()))
+        }
+        MachineStatement::Frame(it) => {
+            let parent = it.parent.as_ref().map_or(String::new(), |name| format!(" in {}", named(name)));
+            let transforms: String = it.transforms.iter().map(|it| format!(" {}", call(it))).collect();
+            format!("{}frame {}{parent}{transforms}", doc(&it.doc), it.name.node)
+        }
+        MachineStatement::Fix(it) => assignment("fix", it),
+        MachineStatement::Couple(it) => assignment("couple", it),
+    }
+}
+
+fn tool_statement(statement: &ToolStatement) -> Vec<String> {
+    match statement {
+        ToolStatement::Param(it) => vec![param(it)],
+        ToolStatement::Let(it) => vec![let_statement(it)],
+        ToolStatement::Surface(it) => {
+            let parameters: Vec<String> = it.parameters.iter().map(parameter).collect();
+            let head = format!("{}surface {}({})", doc(&it.doc), it.name.node, parameters.join(", "));
+            let body = match &it.body.side {
+                Side::Inside => "inside".to_owned(),
+                Side::Outside => "outside".to_owned(),
+                Side::Towards(direction) => format!("towards {}", expression(direction)),
+            };
+            let lets = it.lets.iter().map(|it| format!("  {}", let_statement(it)));
+            let rest = [format!("  at {}", expression(&it.at)), format!("  body {body}")];
+            std::iter::once(head).chain(lets).chain(rest).collect()
+        }
+    }
+}
+
+fn job_statement(statement: &JobStatement) -> String {
+    match statement {
+        JobStatement::Param(it) => param(it),
+        JobStatement::Let(it) => let_statement(it),
+        JobStatement::Machine(it) => instance("machine", it),
+        JobStatement::Tool(it) => instance("tool", it),
+        JobStatement::Mount { tool, frame } => format!("mount {} {}", tool.node, path(frame)),
+        JobStatement::Motion(it) => format!("motion {}", parameter(it)),
+        JobStatement::Drive(it) => assignment("drive", it),
+        JobStatement::Surface(it) => {
+            format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
+        }
+        JobStatement::Sample(it) => {
+            let entries: Vec<String> = it.entries.iter().map(entry).collect();
+            format!("sample {} {}", it.surface.node, entries.join(", "))
+        }
+    }
+}
+
+fn doc(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("/{line}/ ")).collect()
+}
+
+/// A name, or `?` where it is missing.
+fn named(name: &Name) -> &str {
+    if name.node.is_empty() { "?" } else { &name.node }
+}
+
+fn param(it: &Param) -> String {
+    let default = it.default.as_ref().map_or(String::new(), |it| format!(" = {}", expression(it)));
+    let range = optional_range(it.range.as_ref());
+    format!("{}param {}: {}{range}{default}", doc(&it.doc), it.name.node, dimension(&it.dimension))
+}
+
+fn let_statement(it: &Let) -> String {
+    format!("let {} {}", it.name.node, expression(&it.value))
+}
+
+fn assignment(word: &str, it: &Assignment) -> String {
+    format!("{word} {} {}", path(&it.target), expression(&it.value))
+}
+
+fn instance(word: &str, it: &Instance) -> String {
+    let settings: Vec<String> = it.settings.iter().map(argument).collect();
+    format!("{word} {} = {}({})", it.name.node, named(&it.definition), settings.join(", "))
+}
+
+fn entry(it: &SampleEntry) -> String {
+    match &it.values {
+        SampleValues::Range(of, points) => format!("{}: {} by {}", named(&it.key), range(of), expression(points)),
+        SampleValues::Value(value) => format!("{}: {}", named(&it.key), expression(value)),
+    }
+}
+
+fn parameter(it: &Parameter) -> String {
+    format!("{}{}: {} in {}", doc(&it.doc), it.name.node, dimension(&it.dimension), range(&it.range))
+}
+
+fn optional_range(it: Option<&Range>) -> String {
+    it.map_or(String::new(), |it| format!(" in {}", range(it)))
+}
+
+fn range(it: &Range) -> String {
+    format!("{}..{}", expression(&it.low), expression(&it.high))
+}
+
+fn dimension(it: &Dimension) -> String {
+    powers(&it.factors)
+}
+
+fn powers(factors: &[(Name, i32)]) -> String {
+    let factors: Vec<String> = factors
+        .iter()
+        .map(|(name, power)| if *power == 1 { named(name).to_owned() } else { format!("{}^{power}", named(name)) })
+        .collect();
+    factors.join("*")
+}
+
+fn path(it: &Path) -> String {
+    it.segments.iter().map(named).collect::<Vec<_>>().join(".")
+}
+
+fn call(it: &Call) -> String {
+    let arguments: String = it.arguments.iter().map(|it| format!(" {}", argument(it))).collect();
+    format!("({}!{arguments})", it.function.node)
+}
+
+fn argument(it: &Argument) -> String {
+    let name = it.name.as_ref().map_or(String::new(), |name| format!("{}: ", name.node));
+    format!("{name}{}", expression(&it.value))
+}
+
+pub(crate) fn expression(it: &Expression) -> String {
+    match &it.kind {
+        ExpressionKind::Number(value, units) if units.is_empty() => value.to_string(),
+        ExpressionKind::Number(value, units) => format!("{value}_{}", powers(units)),
+        ExpressionKind::Text(text) => format!("{text:?}"),
+        ExpressionKind::Path(it) => path(it),
+        ExpressionKind::Call(it) => call(it),
+        ExpressionKind::Vector(items) => format!("[{}]", items.iter().map(expression).collect::<Vec<_>>().join(" ")),
+        ExpressionKind::Index(of, at) => format!("(at {} {})", expression(of), expression(at)),
+        ExpressionKind::Unary(operator, value) => {
+            let operator = if operator.node == UnaryOperator::Not { "not" } else { "-" };
+            format!("({operator} {})", expression(value))
+        }
+        ExpressionKind::Binary(operator, a, b) => {
+            format!("({} {} {})", sign(operator.node), expression(a), expression(b))
+        }
+        ExpressionKind::If(condition, a, b) => {
+            format!("(if {} {} {})", expression(condition), expression(a), expression(b))
+        }
+        ExpressionKind::Error => "ERROR".to_owned(),
+    }
+}
+
+fn sign(operator: BinaryOperator) -> &'static str {
+    match operator {
+        BinaryOperator::Add => "+",
+        BinaryOperator::Subtract => "-",
+        BinaryOperator::Multiply => "*",
+        BinaryOperator::Divide => "/",
+        BinaryOperator::Power => "^",
+        BinaryOperator::Less => "<",
+        BinaryOperator::LessEqual => "<=",
+        BinaryOperator::Greater => ">",
+        BinaryOperator::GreaterEqual => ">=",
+        BinaryOperator::Equal => "==",
+        BinaryOperator::NotEqual => "!=",
+        BinaryOperator::And => "and",
+        BinaryOperator::Or => "or",
+    }
+}
