@@ -1,0 +1,198 @@
+//! Grids of points: one is looked for, the others follow from neighbour to neighbour.
+
+use std::collections::VecDeque;
+
+use crate::Outcome;
+use crate::newton::{Range, Solution, distance, solve_with};
+use crate::start::{Scan, roots};
+use crate::system::{Evaluation, System};
+
+/// How widely the anchor of a grid is looked for.
+const ANCHOR: Scan = Scan { probes: 1024, starts: 64 };
+/// Points that are tried as the anchor before a grid is taken for unsolvable.
+const MOST_ANCHORS: usize = 9;
+/// Parts into which the way to a neighbour is divided where one step is too long.
+const SUBSTEPS: [u32; 3] = [1, 4, 16];
+/// A corrected point may lie this many times farther from where it started than the tangent says; beyond, it may be on
+/// another branch.
+const JUMP: f64 = 3.0;
+/// Distances below this share of the ranges are never a jump.
+const NEAR: f64 = 1e-3;
+
+/// What a grid cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Evaluations of residuals with Jacobian.
+    pub evaluations: u64,
+    /// Roots that were found in the ranges at the anchor; more than one means that the ranges hold several branches, and
+    /// the one that reaches the most points was taken.
+    pub branches: u32,
+}
+
+/// Solves the system at each pair of targets of a grid (row by row); every point gets a verdict.
+///
+/// The system's parameters are the two targets. One point, the anchor, is looked for in the whole of the ranges, the middle
+/// of the grid first; each solved point then is the start for its neighbours, in steps short enough to stay on the branch.
+/// So all points lie on one branch; a point where that branch leaves the ranges is outside, even if another branch has a
+/// point there.
+///
+/// # Panics
+/// If there are not `counts[0] · counts[1]` targets.
+pub fn solve_grid(
+    system: &System,
+    ranges: &[Range],
+    targets: &[[f64; 2]],
+    counts: [usize; 2],
+) -> (Vec<Solution>, Effort) {
+    assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
+    let mut grid = Grid {
+        evaluation: system.evaluation(&[0.0; 2]),
+        ranges,
+        targets,
+        rows: counts[0],
+        columns: counts[1],
+        effort: Effort::default(),
+    };
+    let order = grid.middle_first();
+    let mut failures: Vec<Option<Solution>> = vec![None; targets.len()];
+    for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
+        let found = grid.look_for(anchor);
+        grid.effort.branches = found.iter().filter(|root| root.outcome == Outcome::Solved).count() as u32;
+        if grid.effort.branches == 0 {
+            failures[anchor] = found.into_iter().next();
+            continue;
+        }
+        let fillings = found.into_iter().map(|root| grid.fill(anchor, root));
+        let solved =
+            |filling: &Vec<Option<Solution>>| filling.iter().flatten().filter(|point| point.is_solved()).count();
+        // the first of the best: `max_by_key` takes the last
+        let best = fillings.reduce(|best, next| if solved(&next) > solved(&best) { next } else { best });
+        return (grid.completed(best.unwrap_or_default()), grid.effort);
+    }
+    (grid.completed(failures), grid.effort)
+}
+
+struct Grid<'s> {
+    evaluation: Evaluation<'s>,
+    ranges: &'s [Range],
+    targets: &'s [[f64; 2]],
+    rows: usize,
+    columns: usize,
+    effort: Effort,
+}
+
+impl Grid<'_> {
+    /// All points, the ones near the middle first.
+    fn middle_first(&self) -> Vec<usize> {
+        let distance = |point: usize| {
+            let (i, j) = (point / self.columns, point % self.columns);
+            let across = |k: usize, count: usize| (2 * k).abs_diff(count - 1) * 1000 / count.max(2);
+            (across(i, self.rows).max(across(j, self.columns)), point)
+        };
+        let mut order: Vec<usize> = (0..self.targets.len()).collect();
+        order.sort_by_key(|&point| distance(point));
+        order
+    }
+
+    fn look_for(&mut self, point: usize) -> Vec<Solution> {
+        self.evaluation.set_parameters(&self.targets[point]);
+        let (found, evaluations) = roots(&mut self.evaluation, self.ranges, ANCHOR);
+        self.effort.evaluations += evaluations;
+        found
+    }
+
+    /// Everything that can be reached from the anchor, ring by ring; what is not reached stays `None`.
+    fn fill(&mut self, anchor: usize, root: Solution) -> Vec<Option<Solution>> {
+        let mut found: Vec<Option<Solution>> = vec![None; self.targets.len()];
+        found[anchor] = Some(root);
+        let mut queue = VecDeque::from([anchor]);
+        while let Some(point) = queue.pop_front() {
+            let (i, j) = ((point / self.columns) as isize, (point % self.columns) as isize);
+            for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
+                let Some(next) = self.index(i + di, j + dj) else {
+                    continue;
+                };
+                if found[next].as_ref().is_some_and(Solution::is_root) {
+                    continue;
+                }
+                let far = self.index(i - di, j - dj).and_then(|far| found[far].as_ref()).filter(|far| far.is_root());
+                let Some(near) = &found[point] else { continue };
+                let start = extrapolated(near, far);
+                let solution = self.step(point, next, &near.unknowns.clone(), &start);
+                let is_root = solution.is_root();
+                found[next] = Some(match found[next].take() {
+                    Some(earlier) => earlier.better(solution),
+                    None => solution,
+                });
+                if is_root {
+                    queue.push_back(next);
+                }
+            }
+        }
+        found
+    }
+
+    fn index(&self, i: isize, j: isize) -> Option<usize> {
+        let inside = (0..self.rows as isize).contains(&i) && (0..self.columns as isize).contains(&j);
+        inside.then(|| i as usize * self.columns + j as usize)
+    }
+
+    /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way.
+    fn step(&mut self, from: usize, to: usize, near: &[f64], start: &[f64]) -> Solution {
+        let (a, b) = (self.targets[from], self.targets[to]);
+        let mut last = None;
+        for parts in SUBSTEPS {
+            let mut at = near.to_vec();
+            let mut stepped = None;
+            for part in 1..=parts {
+                let share = f64::from(part) / f64::from(parts);
+                let target = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
+                self.evaluation.set_parameters(if part == parts { &b } else { &target });
+                let first = if parts == 1 { start } else { &at };
+                let solution = solve_with(&mut self.evaluation, self.ranges, first);
+                self.effort.evaluations += u64::from(solution.iterations);
+                let stays = solution.is_root() && self.stays_near(&at, &solution.unknowns);
+                at.clone_from(&solution.unknowns);
+                stepped = Some((solution, stays));
+                if !stays {
+                    break;
+                }
+            }
+            match stepped {
+                Some((solution, true)) => return solution,
+                Some((solution, false)) => last = Some(solution),
+                None => {}
+            }
+        }
+        let mut lost = last.unwrap_or_else(|| Solution::never_reached(self.ranges));
+        if lost.is_root() {
+            // a root, but not one that the way leads to
+            lost.outcome = Outcome::NotConverged;
+        }
+        lost
+    }
+
+    /// Whether a corrected point is as near to where it came from as the tangent there says.
+    fn stays_near(&mut self, from: &[f64], to: &[f64]) -> bool {
+        let moved = distance(from, to, self.ranges);
+        if moved <= NEAR {
+            return true;
+        }
+        self.evaluation.at(from);
+        self.effort.evaluations += 1;
+        moved <= JUMP * self.evaluation.tangent_step(self.ranges) + NEAR
+    }
+
+    /// A verdict for every point: those that nothing leads to are not converged.
+    fn completed(&self, found: Vec<Option<Solution>>) -> Vec<Solution> {
+        found.into_iter().map(|point| point.unwrap_or_else(|| Solution::never_reached(self.ranges))).collect()
+    }
+}
+
+/// The start for the next point in line: straight on from the two before it, or the one before it.
+fn extrapolated(near: &Solution, far: Option<&Solution>) -> Vec<f64> {
+    match far {
+        Some(far) => near.unknowns.iter().zip(&far.unknowns).map(|(a, b)| 2.0 * a - b).collect(),
+        None => near.unknowns.clone(),
+    }
+}

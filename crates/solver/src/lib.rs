@@ -1,0 +1,26 @@
+//! Points of surfaces under constraint: Newton's method on exact Jacobians, start values of its own, a verdict for each
+//! point.
+//!
+//! ```
+//! use flank_expr::Graph;
+//! use flank_solver::{Outcome, Range, System, solve};
+//!
+//! let graph = Graph::new();
+//! let (x, y, area) = (graph.variable("x"), graph.variable("y"), graph.variable("area"));
+//! let system = System::new(&[x * y - area, x - 2.0 * y], &[x, y], &[area]).expect("nothing else is unknown");
+//! let ranges = [Range { low: 0.0, high: 10.0 }; 2];
+//! let solution = solve(&system, &ranges, &[8.0], &[1.0, 1.0]);
+//! assert_eq!(solution.outcome, Outcome::Solved);
+//! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
+//! ```
+
+mod grid;
+mod newton;
+mod start;
+mod surface;
+mod system;
+
+pub use grid::{Effort, solve_grid};
+pub use newton::{Outcome, Range, Solution, TOLERANCE, solve};
+pub use surface::{SurfacePoint, SurfaceProblem};
+pub use system::System;

@@ -1,0 +1,91 @@
+//! Points of one surface at given values of two coordinates.
+
+use flank_expr::geometry::Surface;
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+
+use crate::grid::{Effort, solve_grid};
+use crate::newton::{Outcome, Range};
+use crate::system::System;
+
+/// A surface under constraint with two coordinates that points are asked for by.
+#[derive(Clone, Debug)]
+pub struct SurfaceProblem {
+    system: System,
+    point: Tape,
+    ranges: Vec<Range>,
+}
+
+/// A point that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The verdict; the other fields describe a point of the surface only if it is [`Outcome::Solved`].
+    pub outcome: Outcome,
+    /// The surface's unknowns, mm or radians.
+    pub unknowns: Vec<f64>,
+    /// Position, mm, in the frame of the surface.
+    pub position: [f64; 3],
+    /// Unit vector out of the body that owns the surface.
+    pub normal: [f64; 3],
+    /// The largest residual, mm or mm per radian.
+    pub residual: f64,
+}
+
+impl SurfaceProblem {
+    /// Points of `surface` at which two `coordinates` (functions of its unknowns) have given values, with the unknowns in
+    /// `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    ///
+    /// # Panics
+    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
+    pub fn new<'g>(
+        surface: &Surface<'g>,
+        coordinates: [Expr<'g>; 2],
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SurfaceProblem, TapeError> {
+        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
+        let graph = coordinates[0].graph();
+        let targets = [graph.variable("target 1"), graph.variable("target 2")];
+        let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
+        let residuals: Vec<Expr<'g>> = surface.constraints.iter().copied().chain(on_target).collect();
+        let residuals = graph.substitute(&residuals, bindings);
+        let point: Vec<Expr<'g>> = surface.position.0.into_iter().chain(surface.normal.0).collect();
+        let point = graph.substitute(&point, bindings);
+        Ok(SurfaceProblem {
+            system: System::new(&residuals, &surface.unknowns, &targets)?,
+            point: Tape::new(&point, &surface.unknowns)?,
+            ranges,
+        })
+    }
+
+    /// The system that is solved for each point.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Solves a grid of targets, row by row; every point gets a verdict.
+    ///
+    /// # Panics
+    /// If there are not `counts[0] · counts[1]` targets.
+    pub fn solve(&self, targets: &[[f64; 2]], counts: [usize; 2]) -> (Vec<SurfacePoint>, Effort) {
+        let (solutions, effort) = solve_grid(&self.system, &self.ranges, targets, counts);
+        let mut evaluator = ScalarEvaluator::new(&self.point);
+        let mut out = [0.0; 6];
+        let points = solutions
+            .into_iter()
+            .map(|solution| {
+                evaluator.run(&solution.unknowns, &mut out);
+                SurfacePoint {
+                    outcome: solution.outcome,
+                    unknowns: solution.unknowns,
+                    position: [out[0], out[1], out[2]],
+                    normal: [out[3], out[4], out[5]],
+                    residual: solution.residual,
+                }
+            })
+            .collect();
+        (points, effort)
+    }
+}

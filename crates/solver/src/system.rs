@@ -1,0 +1,77 @@
+//! Square systems with their exact Jacobian, as one tape.
+
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+
+/// As many equations as unknowns, with parameters that are given for each solution.
+#[derive(Clone, Debug)]
+pub struct System {
+    size: usize,
+    tape: Tape,
+}
+
+impl System {
+    /// The system `residuals = 0` in `unknowns`; `parameters` are given numbers for each solution.
+    ///
+    /// # Errors
+    /// If a residual depends on a variable that is neither an unknown nor a parameter.
+    ///
+    /// # Panics
+    /// If there are not as many residuals as unknowns.
+    pub fn new(residuals: &[Expr<'_>], unknowns: &[Expr<'_>], parameters: &[Expr<'_>]) -> Result<System, TapeError> {
+        assert_eq!(residuals.len(), unknowns.len(), "a system is square");
+        let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
+        let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
+        let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
+        Ok(System { size: unknowns.len(), tape: Tape::new(&outputs, &inputs)? })
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The tape: unknowns, then parameters in; residuals, then the Jacobian row by row out.
+    pub fn tape(&self) -> &Tape {
+        &self.tape
+    }
+
+    /// Something that evaluates it at one set of parameters.
+    pub(crate) fn evaluation(&self, parameters: &[f64]) -> Evaluation<'_> {
+        let mut inputs = vec![0.0; self.size];
+        inputs.extend_from_slice(parameters);
+        let outputs = vec![0.0; self.tape.output_count()];
+        Evaluation { evaluator: ScalarEvaluator::new(&self.tape), size: self.size, inputs, outputs }
+    }
+}
+
+/// Residuals and Jacobian at a point.
+pub(crate) struct Evaluation<'s> {
+    evaluator: ScalarEvaluator<'s>,
+    size: usize,
+    inputs: Vec<f64>,
+    outputs: Vec<f64>,
+}
+
+impl Evaluation<'_> {
+    pub(crate) fn at(&mut self, unknowns: &[f64]) {
+        self.inputs[..self.size].copy_from_slice(unknowns);
+        self.evaluator.run(&self.inputs, &mut self.outputs);
+    }
+
+    pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.inputs[self.size..].copy_from_slice(parameters);
+    }
+
+    pub(crate) fn residuals(&self) -> &[f64] {
+        &self.outputs[..self.size]
+    }
+
+    pub(crate) fn jacobian(&self, row: usize, column: usize) -> f64 {
+        self.outputs[self.size * (1 + row) + column]
+    }
+
+    /// The largest residual; NaN if any is.
+    pub(crate) fn worst_residual(&self) -> f64 {
+        self.residuals().iter().fold(0.0, |worst: f64, r| if r.is_nan() { r.abs() } else { worst.max(r.abs()) })
+    }
+}
