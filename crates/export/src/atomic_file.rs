@@ -1,0 +1,91 @@
+//! Files that are complete or not there.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::error::{FileError, WriteError};
+
+/// Writes a file so that a reader sees the old one or the new one, never half of it.
+///
+/// The content goes to a temporary file in the same folder, is forced to the disk, and takes the name at the end. On any
+/// error the temporary file is removed and what was there before stays. A link is followed, so the file it names is
+/// replaced; a device or a pipe is written to as it is.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("points.csv");
+/// flank_export::write_atomically(&path, |out| Ok(out.write_all(b"x,y,z\n")?))?;
+/// assert_eq!(std::fs::read(&path)?, b"x,y,z\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Names the file and says in plain words what stood in the way, be it the disk or `content`.
+pub fn write_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), FileError> {
+    replace(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })
+}
+
+fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>) -> Result<(), WriteError> {
+    let existing = match fs::metadata(path) {
+        Ok(found) => Some(found),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(error.into()),
+    };
+    match existing {
+        Some(found) if found.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory).into()),
+        Some(found) if !found.is_file() => fill(File::options().write(true).open(path)?, content).map(|_| ()),
+        Some(found) => through_temporary(&fs::canonicalize(path)?, Some(found.permissions()), content),
+        None => through_temporary(path, None, content),
+    }
+}
+
+fn through_temporary(
+    path: &Path,
+    permissions: Option<fs::Permissions>,
+    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    let folder = folder_of(path);
+    let temporary = new_temporary(&folder)?;
+    let file = fill(temporary.as_file().try_clone()?, content)?;
+    if let Some(permissions) = permissions {
+        file.set_permissions(permissions)?;
+    }
+    file.sync_all()?;
+    temporary.persist(path).map_err(|error| error.error)?;
+    // The name is on the disk only when the folder is; not every system lets a folder be synced.
+    if let Ok(folder) = File::open(&folder) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+fn fill(file: File, content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>) -> Result<File, WriteError> {
+    let mut buffer = BufWriter::new(file);
+    content(&mut buffer)?;
+    buffer.into_inner().map_err(|error| error.into_error().into())
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// A temporary file with the permissions a new file has here, not the private ones of a secret.
+fn new_temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".flank-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}

@@ -1,0 +1,24 @@
+//! The sentences that every file of data states about itself.
+
+use crate::dataset::Dataset;
+
+/// What a reader must know to use the numbers, then the caller's own sentences.
+pub(crate) fn sentences(dataset: &Dataset) -> Vec<String> {
+    let fixed = [
+        "lengths in mm, angles in degrees, not reduced to one turn",
+        "positions and unit normals are in the frame named with their surface",
+        "a normal points out of the body that owns the surface: out of the gear's steel on a tooth flank",
+        "row i and column j count from 0; what each runs over is named with its surface",
+        "a point that was not solved has a status that says why, and no numbers",
+    ];
+    fixed
+        .iter()
+        .map(|&sentence| sentence.to_owned())
+        .chain(dataset.header.conventions.iter().map(|s| one_line(s)))
+        .collect()
+}
+
+/// Text that stays on its line, whatever a user has put into it.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}

@@ -1,0 +1,204 @@
+//! What the solver's results look like to a writer of files.
+
+use crate::error::Malformed;
+
+/// Everything one job produced, ready to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset {
+    /// Where the surfaces come from.
+    pub header: Header,
+    /// The surfaces, in the order they appear in files.
+    pub patches: Vec<Patch>,
+}
+
+/// Where a dataset comes from; stated at the head of every file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Header {
+    /// Program and version, such as `flank 0.1.0`.
+    pub program: String,
+    /// The spec file, as the user gave it.
+    pub spec: String,
+    /// Hash of what the spec says.
+    pub spec_hash: String,
+    /// The job of the spec that was run.
+    pub job: String,
+    /// Further sentences on conventions, written as they are.
+    pub conventions: Vec<String>,
+}
+
+/// One surface: a grid of points in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// Name of the surface, such as `right flank`.
+    pub name: String,
+    /// The frame of positions and normals, such as `m.table`.
+    pub frame: String,
+    /// What index `i` runs over.
+    pub rows: Axis,
+    /// What index `j` runs over.
+    pub columns: Axis,
+    /// What the numbers in [`Point::unknowns`] are, in the same order.
+    pub unknowns: Vec<Unknown>,
+    /// The points, row by row: point `(i, j)` is at `i * columns.count + j`.
+    pub points: Vec<Point>,
+}
+
+/// One direction of a grid.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    /// What changes along it, such as `z`, or from where to where it runs, such as `toe -> heel`.
+    pub label: String,
+    /// How many points it has.
+    pub count: usize,
+}
+
+/// One of the parameters a surface was solved for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unknown {
+    /// Its name in the spec.
+    pub name: String,
+    /// The unit it is written in.
+    pub unit: Unit,
+}
+
+/// The unit a number is written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unit {
+    /// A length, in mm.
+    Millimetre,
+    /// An angle: handed over in radians, written in degrees. It is not reduced to one turn.
+    Degree,
+    /// A number without a unit.
+    One,
+}
+
+/// One grid point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Whether the rest means anything.
+    pub outcome: Outcome,
+    /// Position in the patch's frame, mm.
+    pub position: [f64; 3],
+    /// Unit normal in the patch's frame; it points out of the body that owns the surface.
+    pub normal: [f64; 3],
+    /// Values of the patch's unknowns: mm, radians or plain numbers. May be empty where the point is not solved.
+    pub unknowns: Vec<f64>,
+    /// What the solved equations leave.
+    pub residual: f64,
+}
+
+/// Whether a point was solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Position, normal, unknowns and residual are those of a root.
+    Solved,
+    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. The point's numbers are
+    /// never written.
+    Unsolved(&'static str),
+}
+
+impl Unit {
+    /// How files name the unit: `mm`, `deg` or `1`.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Unit::Millimetre => "mm",
+            Unit::Degree => "deg",
+            Unit::One => "1",
+        }
+    }
+
+    /// A value as it is written: radians become degrees.
+    pub(crate) fn written(self, value: f64) -> f64 {
+        match self {
+            Unit::Degree => value.to_degrees(),
+            Unit::Millimetre | Unit::One => value,
+        }
+    }
+}
+
+impl Outcome {
+    /// The word in a file's status column; `solved` if it is.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Solved => "solved",
+            Outcome::Unsolved(word) => word,
+        }
+    }
+}
+
+impl Point {
+    /// A point that was asked for and has no solution; `why` is its status word.
+    #[must_use]
+    pub fn unsolved(why: &'static str) -> Self {
+        Point {
+            outcome: Outcome::Unsolved(why),
+            position: [f64::NAN; 3],
+            normal: [f64::NAN; 3],
+            unknowns: Vec::new(),
+            residual: f64::NAN,
+        }
+    }
+
+    /// Whether the point's numbers mean anything.
+    #[must_use]
+    pub fn is_solved(&self) -> bool {
+        self.outcome == Outcome::Solved
+    }
+}
+
+impl Patch {
+    /// The grid point in row `i` and column `j`, if there is one.
+    #[must_use]
+    pub fn point(&self, i: usize, j: usize) -> Option<&Point> {
+        if i >= self.rows.count || j >= self.columns.count {
+            return None;
+        }
+        self.points.get(i.checked_mul(self.columns.count)?.checked_add(j)?)
+    }
+
+    /// The points with their row and column, in the order of files.
+    pub(crate) fn indexed_points(&self) -> impl Iterator<Item = (usize, usize, &Point)> {
+        let columns = self.columns.count.max(1);
+        self.points.iter().enumerate().map(move |(at, point)| (at / columns, at % columns, point))
+    }
+
+    fn check(&self) -> Result<(), Malformed> {
+        if self.rows.count.checked_mul(self.columns.count) != Some(self.points.len()) {
+            return Err(Malformed::PointCount {
+                surface: self.name.clone(),
+                rows: self.rows.count,
+                columns: self.columns.count,
+                points: self.points.len(),
+            });
+        }
+        for (i, j, point) in self.indexed_points().filter(|(_, _, point)| point.is_solved()) {
+            if point.unknowns.len() != self.unknowns.len() {
+                return Err(Malformed::UnknownCount {
+                    surface: self.name.clone(),
+                    i,
+                    j,
+                    given: point.unknowns.len(),
+                    named: self.unknowns.len(),
+                });
+            }
+            let mut numbers =
+                point.position.iter().chain(&point.normal).chain(&point.unknowns).chain([&point.residual]);
+            if !numbers.all(|number| number.is_finite()) {
+                return Err(Malformed::NotANumber { surface: self.name.clone(), i, j });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Dataset {
+    /// Whether the grids are complete and every solved point has all its numbers. The writers of data refuse what fails.
+    ///
+    /// # Errors
+    /// The first fault, by surface and grid point.
+    pub fn check(&self) -> Result<(), Malformed> {
+        self.patches.iter().try_for_each(Patch::check)
+    }
+}

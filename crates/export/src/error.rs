@@ -1,0 +1,106 @@
+//! What can go wrong when results are written.
+
+use std::io;
+use std::path::PathBuf;
+
+/// A dataset that contradicts itself; the fault is in the program that filled it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Malformed {
+    /// The grid has holes or leftovers.
+    #[error("surface `{surface}` has {points} points, but {rows} rows of {columns}")]
+    PointCount {
+        /// Name of the patch.
+        surface: String,
+        /// Rows it declares.
+        rows: usize,
+        /// Columns it declares.
+        columns: usize,
+        /// Points it has.
+        points: usize,
+    },
+    /// A solved point has not one value for each unknown.
+    #[error("surface `{surface}`, point ({i}, {j}): {given} values for {named} unknowns")]
+    UnknownCount {
+        /// Name of the patch.
+        surface: String,
+        /// Row.
+        i: usize,
+        /// Column.
+        j: usize,
+        /// Values the point has.
+        given: usize,
+        /// Unknowns the patch names.
+        named: usize,
+    },
+    /// A solved point has an infinity or a NaN somewhere.
+    #[error("surface `{surface}`, point ({i}, {j}) is said to be solved, but not all of its numbers are finite")]
+    NotANumber {
+        /// Name of the patch.
+        surface: String,
+        /// Row.
+        i: usize,
+        /// Column.
+        j: usize,
+    },
+}
+
+/// Why a dataset could not be written to a stream.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// There is nothing sensible to write.
+    #[error(transparent)]
+    Malformed(#[from] Malformed),
+    /// The mesh is too large for the format, whose count of triangles has 32 bits.
+    #[error("{triangles} triangles are more than an STL file can hold")]
+    TooManyTriangles {
+        /// How many there are.
+        triangles: usize,
+    },
+    /// The picture cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The stream refused.
+    #[error("{}", plain_words(.0))]
+    Io(#[from] io::Error),
+}
+
+/// Why a picture could not become a PNG.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PictureError {
+    /// There is no memory for that many pixels.
+    #[error("a picture of {width} x {height} pixels is too large")]
+    TooLarge {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// The encoder refused.
+    #[error("the picture could not be encoded as PNG: {0}")]
+    Encoding(String),
+}
+
+/// Why a file could not be written. What was there before is still there.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write `{}`: {reason}", path.display())]
+pub struct FileError {
+    /// The file, as it was asked for.
+    pub path: PathBuf,
+    /// What stood in the way.
+    #[source]
+    pub reason: WriteError,
+}
+
+/// An input or output error as a user would say it.
+fn plain_words(error: &io::Error) -> String {
+    let words = match error.kind() {
+        io::ErrorKind::NotFound => "the folder does not exist",
+        io::ErrorKind::PermissionDenied => "no permission to write there",
+        io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "the disk is full",
+        io::ErrorKind::IsADirectory => "it is a folder",
+        io::ErrorKind::NotADirectory => "what should be its folder is a file",
+        _ => return error.to_string(),
+    };
+    words.to_owned()
+}

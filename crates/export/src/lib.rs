@@ -1,0 +1,68 @@
+//! Solved tooth surfaces as files: CSV, JSON, STL, SVG and PNG.
+//!
+//! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
+//! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
+//! Every file states its conventions: frame, units, the side the normals point to, what rows and columns mean, the
+//! program, the spec and its hash, the worst residual, and how many points were solved of those asked for. A point that
+//! was not solved is written as such: no file and no picture invents a position for it.
+//!
+//! ```
+//! use flank_export::{Axis, Dataset, Header, Outcome, Patch, Point, Unit, Unknown, write_csv};
+//!
+//! let point = |z: f64| Point {
+//!     outcome: Outcome::Solved,
+//!     position: [30.0, 0.0, z],
+//!     normal: [1.0, 0.0, 0.0],
+//!     unknowns: vec![std::f64::consts::FRAC_PI_2],
+//!     residual: 0.0,
+//! };
+//! let dataset = Dataset {
+//!     header: Header {
+//!         program: "flank 0.1.0".into(),
+//!         spec: "cylinder.flank".into(),
+//!         spec_hash: "5e1f".into(),
+//!         job: "cylinder".into(),
+//!         conventions: Vec::new(),
+//!     },
+//!     patches: vec![Patch {
+//!         name: "side".into(),
+//!         frame: "m.table".into(),
+//!         rows: Axis { label: "z".into(), count: 2 },
+//!         columns: Axis { label: "rho".into(), count: 1 },
+//!         unknowns: vec![Unknown { name: "phi".into(), unit: Unit::Degree }],
+//!         points: vec![point(-0.0), point(0.1)],
+//!     }],
+//! };
+//!
+//! let mut file = Vec::new();
+//! write_csv(&dataset, &mut file)?;
+//! let text = String::from_utf8(file)?;
+//! let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+//! assert_eq!(rows[0], "surface,i,j,x,y,z,nx,ny,nz,phi,residual,status");
+//! assert_eq!(rows[1], "side,0,0,30,0,0,1,0,0,90,0,solved");
+//! assert_eq!(rows[2], "side,1,0,30,0,0.1,1,0,0,90,0,solved");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The same dataset gives the same bytes, in every format.
+
+mod atomic_file;
+mod conventions;
+mod csv_file;
+mod dataset;
+mod error;
+mod json_file;
+mod number;
+mod picture;
+mod stl_file;
+mod tally;
+mod vector;
+
+pub use atomic_file::write_atomically;
+pub use csv_file::write_csv;
+pub use dataset::{Axis, Dataset, Header, Outcome, Patch, Point, Unit, Unknown};
+pub use error::{FileError, Malformed, PictureError, WriteError};
+pub use json_file::{SCHEMA, write_json};
+pub use picture::{Picture, PictureOptions, picture};
+pub use stl_file::write_stl;
+pub use tally::Tally;

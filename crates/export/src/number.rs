@@ -1,0 +1,59 @@
+//! Numbers as text.
+
+/// The number itself, but never a negative zero: it reads as a fault and differs in bytes only.
+pub(crate) fn plain(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value }
+}
+
+/// The shortest text that reads back as the same bits (a negative zero becomes `0`).
+pub(crate) fn shortest(value: f64) -> String {
+    let mut text = format!("{:?}", plain(value));
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+    text
+}
+
+/// A length for people: to the micrometre, without trailing zeros, with a real minus sign.
+pub(crate) fn dimension(millimetres: f64) -> String {
+    let text = if millimetres != 0.0 && !(1e-3..1e7).contains(&millimetres.abs()) {
+        format!("{millimetres:.2e}")
+    } else {
+        let fixed = format!("{millimetres:.3}");
+        fixed.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
+}
+
+/// A residual for people: two significant digits.
+pub(crate) fn residual(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortest_reads_back_to_the_bit() {
+        for value in [0.1, -1.0 / 3.0, 1e-17, 6.02e23, f64::MAX, f64::MIN_POSITIVE, 5e-324, 40.0, 1e21] {
+            assert_eq!(shortest(value).parse::<f64>().unwrap().to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn shortest_has_no_ballast() {
+        assert_eq!(shortest(-0.0), "0");
+        assert_eq!(shortest(40.0), "40");
+        assert_eq!(shortest(1e-300), "1e-300");
+    }
+
+    #[test]
+    fn dimensions_are_for_people() {
+        assert_eq!(dimension(-10.0), "\u{2212}10");
+        assert_eq!(dimension(33.828_947_2), "33.829");
+        assert_eq!(dimension(-0.0), "0");
+        assert_eq!(dimension(100.0), "100");
+        assert_eq!(dimension(2.5e-5), "2.50e\u{2212}5");
+    }
+}

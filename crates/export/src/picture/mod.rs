@@ -1,0 +1,112 @@
+//! One shaded picture of all patches, as SVG and as PNG.
+//!
+//! A dataset becomes a display list once; SVG and PNG are two ways to write that list, so they show the same. Order of
+//! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines,
+//! `figure` arranges them with labels, legend and inset, `svg` and `png` write.
+
+mod axis;
+mod camera;
+mod figure;
+mod font;
+mod inset;
+mod labels;
+mod legend;
+mod marks;
+mod mesh;
+mod missing;
+mod occupancy;
+mod paint;
+mod palette;
+mod png;
+mod surface;
+mod svg;
+
+use crate::dataset::Dataset;
+use crate::error::PictureError;
+use paint::Item;
+
+/// Size of the sheet that line widths and letters are made for.
+const SHEET: [f64; 2] = [1200.0, 900.0];
+
+/// Sides that are drawn as they are asked for, pixels; others are brought to the nearest end.
+const SIDES: std::ops::RangeInclusive<u32> = 64..=16_384;
+
+/// How large a picture is.
+///
+/// Lines and letters grow with it: 2400 x 1800 is the same figure as 1200 x 900, twice as fine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PictureOptions {
+    /// Pixels across; 64 to 16384.
+    pub width: u32,
+    /// Pixels down; 64 to 16384.
+    pub height: u32,
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        PictureOptions { width: 1200, height: 900 }
+    }
+}
+
+/// A finished picture.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    /// Pixels per sheet unit.
+    unit: f64,
+    title: String,
+    description: String,
+    items: Vec<Item>,
+}
+
+/// Draws all patches of a dataset, looked at from the side their normals point to, with the gear axis, dimensions, the
+/// directions of rows and columns, a scale, and what was solved.
+///
+/// There is a picture of any dataset: points without a finite position are left out, and a dataset with no point to draw
+/// becomes a sheet that says so. Patches are drawn in one coordinate system, whatever frames they name.
+///
+/// ```
+/// use flank_export::{Dataset, Header, PictureOptions, picture};
+///
+/// let header = Header {
+///     program: "flank 0.1.0".into(),
+///     spec: "gear.flank".into(),
+///     spec_hash: "5e1f".into(),
+///     job: "flanks".into(),
+///     conventions: Vec::new(),
+/// };
+/// let picture = picture(&Dataset { header, patches: Vec::new() }, &PictureOptions::default());
+/// assert!(picture.svg().contains("nothing to draw"));
+/// assert!(picture.png()?.starts_with(b"\x89PNG"));
+/// # Ok::<(), flank_export::PictureError>(())
+/// ```
+#[must_use]
+pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
+    let width = options.width.clamp(*SIDES.start(), *SIDES.end());
+    let height = options.height.clamp(*SIDES.start(), *SIDES.end());
+    let unit = (f64::from(width) / SHEET[0]).min(f64::from(height) / SHEET[1]);
+    let figure = figure::compose(dataset, f64::from(width) / unit, f64::from(height) / unit);
+    Picture { width, height, unit, title: figure.title, description: figure.caption, items: figure.items }
+}
+
+impl Picture {
+    /// The picture as an SVG document. It needs no font.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        svg::document(self)
+    }
+
+    /// The same picture as a PNG file, with a white ground.
+    ///
+    /// # Errors
+    /// When there is no memory for the pixels.
+    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
+        png::file(self)
+    }
+
+    /// The sheet in its own units, in which all items are placed.
+    fn sheet_size(&self) -> [f64; 2] {
+        [f64::from(self.width) / self.unit, f64::from(self.height) / self.unit]
+    }
+}

@@ -1,0 +1,57 @@
+//! Colours: Okabe and Ito's set, which colour-blind readers can tell apart, in an order that differs in lightness too.
+
+use super::paint::Colour;
+use crate::vector::{Vector, dot};
+
+pub(super) const WHITE: Colour = Colour([255, 255, 255]);
+pub(super) const INK: Colour = Colour([26, 26, 26]);
+pub(super) const GREY: Colour = Colour([96, 96, 96]);
+pub(super) const FAINT: Colour = Colour([200, 200, 200]);
+pub(super) const RED: Colour = Colour([190, 0, 0]);
+
+/// CIE lightness in this order: 70, 54, 89, 46, 71, 58, 61.
+const PATCHES: [Colour; 7] = [
+    Colour([86, 180, 233]),
+    Colour([213, 94, 0]),
+    Colour([240, 228, 66]),
+    Colour([0, 114, 178]),
+    Colour([230, 159, 0]),
+    Colour([0, 158, 115]),
+    Colour([204, 121, 167]),
+];
+
+/// Where the light comes from, in the eye's frame (right, up, towards the eye); a unit vector.
+const LIGHT: Vector = [-0.55, 0.62, 0.56];
+
+/// The colour of the patch with this number; a second round is paler.
+pub(super) fn of_patch(number: usize) -> Colour {
+    let base = PATCHES[number % PATCHES.len()];
+    let round = number / PATCHES.len();
+    base.towards(WHITE, if round % 2 == 1 { 0.45 } else { 0.0 })
+}
+
+/// A face's colour under the light. `normal` is a unit vector in the eye's frame. A face that looks straight at the eye
+/// has its own colour, as in the legend; towards the light it is paler, away from it darker, but never black: light
+/// comes from everywhere. One seen from inside the body is greyer.
+pub(super) fn shaded(base: Colour, normal: Vector) -> Colour {
+    let from_behind = normal[2] < 0.0;
+    let (base, normal) = if from_behind { (base.towards(GREY, 0.4), normal.map(|x| -x)) } else { (base, normal) };
+    let gain = dot(normal, LIGHT) - LIGHT[2];
+    if gain > 0.0 { base.towards(WHITE, 0.95 * gain) } else { base.times(1.0 / (1.0 - 0.8 * gain)) }
+}
+
+impl Colour {
+    /// The colour mixed with a share of another.
+    pub(super) fn towards(self, other: Colour, share: f64) -> Colour {
+        let mix = |a: u8, b: u8| byte(f64::from(a) + share * (f64::from(b) - f64::from(a)));
+        Colour([mix(self.0[0], other.0[0]), mix(self.0[1], other.0[1]), mix(self.0[2], other.0[2])])
+    }
+
+    fn times(self, factor: f64) -> Colour {
+        Colour(self.0.map(|channel| byte(factor * f64::from(channel))))
+    }
+}
+
+fn byte(value: f64) -> u8 {
+    value.round().clamp(0.0, 255.0) as u8
+}

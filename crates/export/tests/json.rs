@@ -1,0 +1,154 @@
+//! JSON: by the schema shipped with the crate, and with the numbers that were given.
+
+mod synthetic;
+
+use flank_export::{Dataset, SCHEMA, write_json};
+use serde_json::Value;
+use synthetic::{Gear, dataset, gallery, holes, without};
+
+const SCHEMA_FILE: &str = include_str!("../schema/surfaces-1.schema.json");
+
+fn text_of(dataset: &Dataset) -> String {
+    let mut bytes = Vec::new();
+    write_json(dataset, &mut bytes).expect("a sound dataset");
+    String::from_utf8(bytes).expect("text")
+}
+
+/// Faults of a value by a schema: the words that our schema uses, all others are faults themselves.
+fn faults(value: &Value, schema: &Value, root: &Value, place: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (rule, wanted) in entries(schema) {
+        found.extend(match rule.as_str() {
+            "$schema" | "$defs" | "title" | "description" => vec![],
+            "$ref" => {
+                let path = text(wanted).strip_prefix('#').expect("a local reference");
+                let definition = root.pointer(path).expect("a definition");
+                faults(value, definition, root, place)
+            }
+            "required" => {
+                let missing = items(wanted).iter().map(text).filter(|key| value.get(key).is_none());
+                missing.map(|key| format!("{place}: no {key}")).collect()
+            }
+            "additionalProperties" => {
+                let extra = entries(value).filter(|(key, _)| schema["properties"].get(key).is_none());
+                extra.map(|(key, _)| format!("{place}: extra {key}")).collect()
+            }
+            "properties" => {
+                let below = |(key, schema): (&String, &Value)| match value.get(key) {
+                    Some(value) => faults(value, schema, root, &format!("{place}/{key}")),
+                    None => vec![],
+                };
+                entries(wanted).flat_map(below).collect()
+            }
+            "items" => {
+                let below = |(at, item)| faults(item, wanted, root, &format!("{place}/{at}"));
+                items(value).iter().enumerate().flat_map(below).collect()
+            }
+            rule if keeps(value, rule, wanted) => vec![],
+            rule => vec![format!("{place}: {rule}")],
+        });
+    }
+    found
+}
+
+/// Whether a value keeps a rule about itself alone; an unknown rule is not kept.
+fn keeps(value: &Value, rule: &str, wanted: &Value) -> bool {
+    let size = || items(value).len() as u64;
+    match rule {
+        "const" => value == wanted,
+        "enum" => items(wanted).contains(value),
+        "minimum" => value.as_f64() >= wanted.as_f64(),
+        "minItems" => value.is_null() || Some(size()) >= wanted.as_u64(),
+        "maxItems" => value.is_null() || Some(size()) <= wanted.as_u64(),
+        "type" if wanted.is_array() => items(wanted).iter().any(|name| is_a(value, text(name))),
+        "type" => is_a(value, text(wanted)),
+        _ => false,
+    }
+}
+
+fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    value.as_object().into_iter().flatten()
+}
+
+fn items(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().expect("a text")
+}
+
+fn is_a(value: &Value, name: &str) -> bool {
+    match name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "integer" => value.is_u64(),
+        "number" => value.is_number(),
+        "null" => value.is_null(),
+        _ => false,
+    }
+}
+
+fn faults_of(document: &Value) -> Vec<String> {
+    let schema: Value = serde_json::from_str(SCHEMA_FILE).expect("the schema is JSON");
+    faults(document, &schema, &schema, "")
+}
+
+#[test]
+fn every_document_keeps_the_schema() {
+    for (name, dataset) in gallery() {
+        let document: Value = serde_json::from_str(&text_of(&dataset)).expect("JSON");
+        assert_eq!(document["schema"], SCHEMA);
+        assert_eq!(faults_of(&document), Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+fn the_check_of_the_schema_can_fail() {
+    let patch = Gear { helix: 0.0, width: 20.0 }.flank("flank", [2, 2]);
+    let sound: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch]))).unwrap();
+    type Spoil = fn(&mut Value);
+    let spoilers: [(Spoil, &str); 6] = [
+        (|d| d["schema"] = "flank.surfaces/2".into(), "/schema: const"),
+        (|d| d["more"] = 1.into(), ": extra more"),
+        (|d| d["surfaces"][0]["points"][1]["normal"] = vec![1.0, 0.0].into(), "/surfaces/0/points/1/normal: minItems"),
+        (|d| d["surfaces"][0]["unknowns"][0]["unit"] = "rad".into(), "/surfaces/0/unknowns/0/unit: enum"),
+        (|d| d["asked"] = (-1).into(), "/asked: type"),
+        (|d| drop(d.as_object_mut().unwrap().remove("spec_hash")), ": no spec_hash"),
+    ];
+    for (spoil, fault) in spoilers {
+        let mut document = sound.clone();
+        spoil(&mut document);
+        assert!(faults_of(&document).iter().any(|found| found == fault), "{fault} in {:?}", faults_of(&document));
+    }
+}
+
+#[test]
+fn numbers_come_back_and_holes_are_null() {
+    let patch = without(Gear { helix: 0.3, width: 20.0 }.flank("flank", [25, 15]), holes);
+    let document: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch.clone()]))).unwrap();
+    let points = document["surfaces"][0]["points"].as_array().unwrap();
+    assert_eq!((document["asked"].as_u64(), document["solved"].as_u64()), (Some(375), Some(343)));
+    for (out, point) in points.iter().zip(&patch.points) {
+        assert_eq!(out["status"], point.outcome.word());
+        if point.is_solved() {
+            assert_eq!(out["position"], Value::from(point.position.map(|x| x + 0.0).to_vec()));
+            assert_eq!(out["unknowns"][0].as_f64(), Some(point.unknowns[0].to_degrees()));
+        } else {
+            let all = ["position", "normal", "unknowns", "residual"];
+            assert!(all.iter().all(|&key| out[key].is_null()));
+        }
+    }
+}
+
+#[test]
+fn a_point_takes_a_line_and_keys_keep_their_order() {
+    let text = text_of(&dataset("job", vec![synthetic::plane([2, 1], [-0.0, 1.0, 2.0], 0.5)]));
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[1], "  \"schema\": \"flank.surfaces/1\",");
+    let points: Vec<&&str> = lines.iter().filter(|line| line.contains("\"i\"")).collect();
+    assert_eq!(points.len(), 2);
+    assert!(points[0].contains("\"status\": \"solved\", \"position\": [0.0, 1.25, 2.0]"), "{}", points[0]);
+    assert!(text.ends_with("}\n"));
+}

@@ -1,0 +1,195 @@
+//! Pictures of all kinds of datasets: they exist, are well formed, show something, and SVG and PNG are the same.
+
+mod synthetic;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use flank_export::{Dataset, PictureError, PictureOptions, picture};
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree, roxmltree};
+
+/// The pictures are left here for people to look at.
+fn kept(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+fn drawn(dataset: &Dataset) -> (String, Pixmap) {
+    let picture = picture(dataset, &PictureOptions::default());
+    let png = picture.png().expect("a picture of usual size");
+    (picture.svg(), Pixmap::decode_png(&png).expect("a PNG that others can read"))
+}
+
+/// How many pixels are not white.
+fn inked(pixels: &Pixmap) -> usize {
+    pixels.pixels().iter().filter(|pixel| (pixel.red(), pixel.green(), pixel.blue()) != (255, 255, 255)).count()
+}
+
+#[test]
+fn every_dataset_has_a_picture() {
+    for (name, dataset) in synthetic::gallery() {
+        let (svg, pixels) = drawn(&dataset);
+        std::fs::write(kept(&format!("{name}.svg")), &svg).unwrap();
+        pixels.save_png(kept(&format!("{name}.png"))).unwrap();
+        assert_eq!((pixels.width(), pixels.height()), (1200, 900), "{name}");
+        assert!(inked(&pixels) > 2_000, "{name} is blank");
+        let document = roxmltree::Document::parse(&svg).expect("well-formed XML");
+        assert_eq!(document.root_element().tag_name().name(), "svg");
+    }
+}
+
+#[test]
+fn the_png_is_the_svg() {
+    let some = ["spur", "holes", "face", "point", "empty"];
+    for (name, dataset) in synthetic::gallery().into_iter().filter(|(name, _)| some.contains(name)) {
+        let (svg, pixels) = drawn(&dataset);
+        let tree = Tree::from_str(&svg, &Options::default()).expect("an SVG that others can read");
+        let mut others = Pixmap::new(1200, 900).unwrap();
+        resvg::render(&tree, Transform::identity(), &mut others.as_mut());
+        let differences = pixels.data().iter().zip(others.data()).map(|(&a, &b)| a.abs_diff(b));
+        let off = differences.clone().filter(|&difference| difference > 40).count();
+        let mean = differences.map(f64::from).sum::<f64>() / pixels.data().len() as f64;
+        assert!(mean < 0.02 && off < 200, "{name}: {mean} on average, {off} bytes far off");
+    }
+}
+
+#[test]
+fn patches_have_their_own_colours() {
+    let colours = |name: &str| {
+        let dataset = synthetic::gallery().into_iter().find(|(other, _)| *other == name).unwrap().1;
+        let pixels = drawn(&dataset).1;
+        let hue = |r: u8, g: u8, b: u8| match (r > b, g > b) {
+            _ if r.abs_diff(b) < 30 => "grey",
+            (true, true) if g.abs_diff(r) < 40 => "yellow",
+            (true, _) => "orange",
+            (false, _) => "blue",
+        };
+        pixels.pixels().iter().map(|p| hue(p.red(), p.green(), p.blue())).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(colours("helical"), BTreeSet::from(["blue", "grey"]));
+    assert!(colours("spur").is_superset(&BTreeSet::from(["blue", "grey", "orange"])));
+    assert!(colours("tooth").is_superset(&BTreeSet::from(["blue", "grey", "orange", "yellow"])));
+}
+
+/// Texts of the picture, as a screen reader finds them.
+fn labels(svg: &str) -> Vec<String> {
+    let document = roxmltree::Document::parse(svg).expect("well-formed XML");
+    let labels = document.descendants().filter_map(|node| node.attribute("aria-label"));
+    labels.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_figure_says_what_it_shows() {
+    let dataset = synthetic::gallery().into_iter().find(|(name, _)| *name == "holes").unwrap().1;
+    let labels = labels(&drawn(&dataset).0);
+    for wanted in [
+        "flank with holes",
+        "specs/jobs/synthetic.flank \u{b7} hash 9f2c1e7a55d0b3c4 \u{b7} flank 0.1.0",
+        "right flank",
+        "z \u{2212}10 to 10 mm",
+        "radius 34.014 to 37.986 mm",
+        "z",
+        "root",
+        "tip",
+        "x",
+        "y",
+        "5 mm",
+        "frame m.table",
+        "z (gear axis)",
+    ] {
+        assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
+    }
+    let all = labels.join(" ");
+    assert!(all.contains("Solved 343 of 375 points asked for; worst residual 1.1e-14."), "{all}");
+    assert!(all.contains("not converged 6, outside 25, singular 1"), "{all}");
+}
+
+#[test]
+fn crosses_stand_only_beside_solved_points() {
+    let crosses = |lost: fn(usize, usize) -> Option<&'static str>| {
+        let patch = synthetic::without(synthetic::plane([9, 9], [30.0, 0.0, 0.0], 8.0), lost);
+        let svg = drawn(&synthetic::dataset("job", vec![patch])).0;
+        svg.matches("stroke=\"#be0000\"").count() / 2
+    };
+    assert_eq!(crosses(|_, _| None), 0);
+    assert_eq!(crosses(|i, j| (i == 4 && j == 4).then_some("outside")), 1);
+    // Rows beyond the third from the known ones have no neighbour to tell where they are.
+    assert_eq!(crosses(|i, _| (i > 4).then_some("outside")), 9);
+    assert_eq!(crosses(|_, _| Some("outside")), 0);
+}
+
+#[test]
+fn size_is_as_asked_and_letters_grow_with_it() {
+    let dataset = synthetic::gallery().remove(0).1;
+    for (width, height) in [(2400, 1800), (1200, 500), (300, 900), (64, 64)] {
+        let picture = picture(&dataset, &PictureOptions { width, height });
+        let pixels = Pixmap::decode_png(&picture.png().unwrap()).unwrap();
+        assert_eq!((pixels.width(), pixels.height()), (width, height));
+        pixels.save_png(kept(&format!("spur-{width}x{height}.png"))).unwrap();
+    }
+    let large = picture(&dataset, &PictureOptions { width: 2400, height: 1800 }).svg();
+    let usual = picture(&dataset, &PictureOptions::default()).svg();
+    assert_eq!(large.lines().skip(2).collect::<Vec<_>>(), usual.lines().skip(2).collect::<Vec<_>>());
+}
+
+#[test]
+fn odd_sizes_are_brought_into_range() {
+    let dataset = synthetic::dataset("job", Vec::new());
+    let pixels = picture(&dataset, &PictureOptions { width: 0, height: 1 }).png().unwrap();
+    assert_eq!(Pixmap::decode_png(&pixels).unwrap().width(), 64);
+    let error = PictureError::TooLarge { width: 9, height: 8 };
+    assert_eq!(error.to_string(), "a picture of 9 x 8 pixels is too large");
+}
+
+#[test]
+fn names_cannot_break_the_svg() {
+    let mut patch = synthetic::plane([3, 3], [30.0, 0.0, 0.0], 5.0);
+    patch.name = "<b>&\"'\u{0}\u{ffff} ]]>".into();
+    patch.frame = "a\nb".into();
+    patch.rows.label = "-> ->".into();
+    patch.columns.label = "\u{1F980} \u{2192} \u{4e2d}".into();
+    let mut dataset = synthetic::dataset("<&>", vec![patch]);
+    dataset.header.spec = "x".repeat(5_000);
+    let labels = labels(&drawn(&dataset).0);
+    assert!(labels.contains(&"<&>".to_owned()) && labels.contains(&"<b>&\"'  ]]>".to_owned()), "{labels:?}");
+}
+
+/// A sequence without pattern, the same in every run.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self, below: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % below
+    }
+
+    fn number(&mut self) -> f64 {
+        let odd = [f64::NAN, f64::INFINITY, -1e300, 1e300, 1e9, -0.0, 0.0, 5e-324, 1e-12, 1.0, 1.0, 30.0];
+        match self.next(24) as usize {
+            at if at < odd.len() => odd[at],
+            _ => self.next(2_000) as f64 / 20.0 - 50.0,
+        }
+    }
+}
+
+#[test]
+fn no_numbers_make_it_panic() {
+    let mut noise = Noise(7);
+    for _ in 0..300 {
+        let size = [noise.next(5) as usize, noise.next(5) as usize];
+        let mut patch = synthetic::plane(size, [0.0; 3], 1.0);
+        for point in &mut patch.points {
+            point.position = [(); 3].map(|()| noise.number());
+            point.normal = [(); 3].map(|()| noise.number());
+            point.residual = noise.number();
+        }
+        let mut patch = synthetic::without(patch, |i, j| ((i + 2 * j) % 5 == 4).then_some("outside"));
+        if noise.next(4) == 0 {
+            patch.rows.count = [0, 1, 7, usize::MAX][noise.next(4) as usize];
+            patch.columns.count = [0, 1, 7, usize::MAX][noise.next(4) as usize];
+        }
+        let picture = picture(&synthetic::dataset("noise", vec![patch]), &PictureOptions { width: 200, height: 150 });
+        roxmltree::Document::parse(&picture.svg()).expect("well-formed XML");
+        assert!(picture.png().is_ok());
+    }
+}
