@@ -1,0 +1,116 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
+#[derive(Parser, Debug)]
+#[command(
+    name = "flank",
+    version,
+    after_help = "\
+Examples:
+  flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
+  flank check specs/machines/*.chain                    is it right, and if not, where and why
+  flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
+
+Exit codes: 0 done; 1 the spec is wrong, or a file cannot be read or written; 2 usage; 3 done, but something asked for
+could not be solved, and it is listed."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    /// Solve the surfaces of a job; write points and a picture
+    Solve(Solve),
+    /// Parse, resolve and check dimensions
+    Check(Check),
+    /// Print what was built: matrices, vector parts, twists, the equation of meshing
+    Derive(Derive),
+}
+
+/// Which job of which file, with which values.
+#[derive(Args, Debug)]
+pub(crate) struct Which {
+    /// The file that the job stands in
+    pub(crate) file: PathBuf,
+    /// The job, where the file holds several; all of them otherwise
+    #[arg(long, value_name = "NAME")]
+    pub(crate) job: Option<String>,
+    /// Another value for a job parameter or a setting, with its unit: teeth=25, m.swivel="-3 deg"
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+fn name_and_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_string(), value.trim().to_string()))
+        }
+        _ => Err("write NAME=VALUE, for example shift=\"0.5 mm\"".to_string()),
+    }
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank solve specs/hobbing/helical_gear.chain
+  flank solve specs/hobbing/helical_gear.chain --set teeth=37 --set helix_angle=\"15 deg\"
+  flank solve specs/bevel/pinion_19x62.chain --out /tmp/pinion --format csv,json,stl
+  flank solve specs/hobbing/spur_gear.chain --json --no-picture")]
+pub(crate) struct Solve {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Files with the points: csv, json, stl, or several with commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<Format>,
+    /// Write no picture (otherwise a PNG and an SVG)
+    #[arg(long)]
+    pub(crate) no_picture: bool,
+    /// Print the table as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Csv,
+    Json,
+    Stl,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank check specs/hobbing/helical_gear.chain
+  flank check specs/*/*.chain
+  flank check --json my_machine.chain")]
+pub(crate) struct Check {
+    /// The files
+    #[arg(required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Print the findings as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank derive specs/hobbing/helical_gear.chain
+  flank derive specs/bevel/pinion_19x62.chain --latex > pinion.tex
+  flank derive specs/hobbing/spur_gear.chain --set teeth=10")]
+pub(crate) struct Derive {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// Print LaTeX instead of text
+    #[arg(long)]
+    pub(crate) latex: bool,
+}

@@ -1,0 +1,51 @@
+//! `flank check`
+
+use flank_chain_dsl::{Diagnostic, Severity, Sources, compile_file};
+use flank_expr::Graph;
+use serde_json::{Value, json};
+
+use crate::arguments::Check;
+use crate::spec::{shown, tell};
+use crate::{Ending, print};
+
+pub(crate) fn run(arguments: &Check) -> Ending {
+    let mut ending = Ending::Done;
+    let mut files = Vec::new();
+    for file in &arguments.files {
+        let graph = Graph::new();
+        let compilation = compile_file(&graph, file, &[]);
+        let wrong = compilation.has_errors();
+        if wrong {
+            ending = Ending::Wrong;
+        }
+        if arguments.json {
+            let findings: Vec<Value> =
+                compilation.diagnostics.iter().map(|finding| as_json(finding, &compilation.sources)).collect();
+            files.push(json!({ "file": shown(file), "ok": !wrong, "findings": findings }));
+        } else {
+            tell(&compilation.diagnostics, &compilation);
+            print(&format!("{}: {}\n", shown(file), if wrong { "wrong" } else { "ok" }));
+        }
+    }
+    if arguments.json {
+        print(&format!("{:#}\n", json!({ "schema": "flank.check/1", "files": files })));
+    }
+    ending
+}
+
+fn as_json(finding: &Diagnostic, sources: &Sources) -> Value {
+    let place = |span| {
+        let (path, line, column) = sources.place(span);
+        json!({ "file": shown(path), "line": line, "column": column, "text": sources.text(span) })
+    };
+    let notes: Vec<Value> =
+        finding.notes.iter().map(|note| json!({ "place": place(note.span), "text": note.text })).collect();
+    json!({
+        "code": finding.code.as_str(),
+        "severity": if finding.severity() == Severity::Error { "error" } else { "warning" },
+        "message": finding.message,
+        "place": place(finding.span),
+        "notes": notes,
+        "help": finding.help,
+    })
+}

@@ -1,0 +1,44 @@
+//! `flank`: tooth surfaces of any machine, from the command line.
+
+mod arguments;
+mod check;
+mod derive;
+mod solve;
+mod spec;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+/// How a command ended, as the exit codes say it; 2, a wrong command line, is told by the argument parser.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    /// 0
+    Done,
+    /// 1: the spec is wrong, or a file cannot be read or written.
+    Wrong,
+    /// 3: done, but something asked for could not be solved, and it is listed.
+    Unsolved,
+}
+
+fn main() -> ExitCode {
+    let ending = match Arguments::parse().command {
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Derive(arguments) => derive::run(&arguments),
+    };
+    ExitCode::from(match ending {
+        Ending::Done => 0,
+        Ending::Wrong => 1,
+        Ending::Unsolved => 3,
+    })
+}
+
+/// Writes to stdout; a reader that has gone away is not an error.
+fn print(text: &str) {
+    use std::io::Write;
+    let _ = anstream::stdout().write_all(text.as_bytes());
+}

@@ -1,0 +1,137 @@
+//! `flank solve`
+
+use std::path::Path;
+use std::time::Instant;
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
+use flank_export::{
+    Axis, Dataset, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, WriteError, picture, write_atomically,
+    write_csv, write_json, write_stl,
+};
+use flank_expr::Graph;
+use flank_solver::{Range, SurfacePoint, SurfaceProblem};
+
+use crate::arguments::{Format, Solve};
+use crate::table::{Solved, Table};
+use crate::{Ending, print, spec};
+
+pub(crate) fn run(arguments: &Solve) -> Ending {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
+        Ok(found) => found,
+        Err(ending) => return ending,
+    };
+    let hash = spec::hash(&compilation);
+    let mut ending = Ending::Done;
+    for job in &jobs {
+        if job.surfaces.iter().all(|surface| surface.sample.is_none()) {
+            anstream::eprintln!("error: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
+            return Ending::Wrong;
+        }
+        let solved: Vec<Solved<'_, '_>> =
+            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface)).collect();
+        let dataset = dataset(job, &solved, &hash, arguments);
+        let written = match write_files(&dataset, &job.name, arguments) {
+            Ok(written) => written,
+            Err(reason) => {
+                anstream::eprintln!("error: {reason}");
+                return Ending::Wrong;
+            }
+        };
+        let table = Table { job, spec: spec::shown(&arguments.which.file), solved: &solved, written, since: start };
+        print(&if arguments.json { table.json() } else { table.text() });
+        if !table.unsolved().is_empty() {
+            anstream::eprint!("{}", table.unsolved());
+            ending = Ending::Unsolved;
+        }
+    }
+    ending
+}
+
+/// The points of one surface, if any are asked for.
+fn solve_surface<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Option<Solved<'j, 'g>> {
+    let sample = surface.sample.as_ref()?;
+    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
+    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
+        .expect("a job without errors leaves nothing unbound");
+    let (points, effort) = problem.solve(&sample.targets, sample.counts);
+    Some(Solved { surface, sample, points, effort })
+}
+
+fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {
+    let settings = arguments.which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
+    Dataset {
+        header: Header {
+            program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
+            spec: spec::shown(&arguments.which.file),
+            spec_hash: format!("sha256:{hash}"),
+            job: job.name.clone(),
+            conventions: settings.collect(),
+        },
+        patches: solved.iter().map(patch).collect(),
+    }
+}
+
+fn patch(solved: &Solved<'_, '_>) -> Patch {
+    let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
+    let unknowns = solved.surface.unknowns.iter();
+    Patch {
+        name: solved.surface.name.clone(),
+        frame: solved.surface.frame.clone(),
+        rows: axis(0),
+        columns: axis(1),
+        unknowns: unknowns.map(|u| Unknown { name: u.name.clone(), unit: unit(u.dimension) }).collect(),
+        points: solved.points.iter().map(point).collect(),
+    }
+}
+
+fn unit(dimension: Dimension) -> Unit {
+    match dimension {
+        Dimension::LENGTH => Unit::Millimetre,
+        Dimension::ANGLE => Unit::Degree,
+        _ => Unit::One,
+    }
+}
+
+fn point(solved: &SurfacePoint) -> Point {
+    if solved.outcome != flank_solver::Outcome::Solved {
+        return Point::unsolved(solved.outcome.word());
+    }
+    Point {
+        outcome: Outcome::Solved,
+        position: solved.position,
+        normal: solved.normal,
+        unknowns: solved.unknowns.clone(),
+        residual: solved.residual,
+    }
+}
+
+/// Writes the files that are asked for and names them.
+fn write_files(dataset: &Dataset, name: &str, arguments: &Solve) -> Result<Vec<String>, String> {
+    let folder = &arguments.out;
+    std::fs::create_dir_all(folder).map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
+    let mut written = Vec::new();
+    let mut write = |extension: &str, content: &dyn Fn(&mut dyn std::io::Write) -> Result<(), WriteError>| {
+        let path = folder.join(format!("{name}.{extension}"));
+        write_atomically(&path, content).map_err(|error| error.to_string())?;
+        written.push(spec::shown(Path::new(&path)));
+        Ok::<(), String>(())
+    };
+    for format in &arguments.format {
+        match format {
+            Format::Csv => write("csv", &|out| write_csv(dataset, out))?,
+            Format::Json => write("json", &|out| write_json(dataset, out))?,
+            Format::Stl => write("stl", &|out| write_stl(dataset, out))?,
+        }
+    }
+    if !arguments.no_picture {
+        let drawn = picture(dataset, &PictureOptions::default());
+        let png = drawn.png().map_err(|error| error.to_string())?;
+        write("png", &|out| Ok(out.write_all(&png)?))?;
+        let svg = drawn.svg();
+        write("svg", &|out| Ok(out.write_all(svg.as_bytes())?))?;
+    }
+    Ok(written)
+}

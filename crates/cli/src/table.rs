@@ -1,0 +1,200 @@
+//! What `flank solve` tells of its work.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
+use flank_solver::{Effort, Outcome, SurfacePoint};
+use serde_json::{Map, Value, json};
+
+/// One surface with its points.
+pub(crate) struct Solved<'j, 'g> {
+    pub(crate) surface: &'j GeneratedSurface<'g>,
+    pub(crate) sample: &'j Sample<'g>,
+    pub(crate) points: Vec<SurfacePoint>,
+    pub(crate) effort: Effort,
+}
+
+/// A job's surfaces.
+pub(crate) struct Table<'a, 'j, 'g> {
+    pub(crate) job: &'a Job<'g>,
+    pub(crate) spec: String,
+    pub(crate) solved: &'a [Solved<'j, 'g>],
+    pub(crate) written: Vec<String>,
+    pub(crate) since: Instant,
+}
+
+/// Something that was reached: its name, unit, smallest and largest value.
+struct Reached {
+    name: String,
+    unit: &'static str,
+    ends: Option<(f64, f64)>,
+}
+
+impl Solved<'_, '_> {
+    fn count(&self) -> usize {
+        self.roots().count()
+    }
+
+    fn roots(&self) -> impl Iterator<Item = &SurfacePoint> {
+        self.points.iter().filter(|point| point.outcome == Outcome::Solved)
+    }
+
+    fn worst_residual(&self) -> Option<f64> {
+        self.roots().map(|point| point.residual).reduce(f64::max)
+    }
+
+    /// Radius and z in the work's frame, then the unknowns.
+    fn reached(&self) -> Vec<Reached> {
+        let of = |name: &str, unit: &'static str, value: &dyn Fn(&SurfacePoint) -> f64| {
+            let ends = self.roots().map(value).fold(None, |ends: Option<(f64, f64)>, x| {
+                Some(ends.map_or((x, x), |(low, high)| (low.min(x), high.max(x))))
+            });
+            Reached { name: name.to_string(), unit, ends }
+        };
+        let mut all = vec![
+            of("rho", "mm", &|point| point.position[0].hypot(point.position[1])),
+            of("z", "mm", &|point| point.position[2]),
+        ];
+        for (k, unknown) in self.surface.unknowns.iter().enumerate() {
+            let (unit, size) = match unknown.dimension {
+                Dimension::ANGLE => ("deg", 1f64.to_degrees()),
+                Dimension::LENGTH => ("mm", 1.0),
+                _ => ("", 1.0),
+            };
+            all.push(of(&unknown.name, unit, &|point| size * point.unknowns[k]));
+        }
+        all
+    }
+}
+
+impl Table<'_, '_, '_> {
+    pub(crate) fn text(&self) -> String {
+        let mut out = format!("job {} ({})\n\n", self.job.name, self.spec);
+        let mut rows = vec![["surface", "asked", "solved", "worst residual", "ranges reached"].map(String::from)];
+        for solved in self.solved {
+            let residual = solved.worst_residual().map_or("-".to_string(), |worst| format!("{worst:.1e}"));
+            let mut name = solved.surface.name.clone();
+            let mut counts = [solved.points.len().to_string(), solved.count().to_string(), residual];
+            for pair in solved.reached().chunks(2) {
+                let reached: Vec<String> = pair.iter().map(Reached::text).collect();
+                let [asked, found, worst] = counts;
+                rows.push([name, asked, found, worst, reached.join("   ")]);
+                name = String::new();
+                counts = [const { String::new() }; 3];
+            }
+        }
+        let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+        let widths: [usize; 5] = std::array::from_fn(width);
+        for row in &rows {
+            let [name, asked, found, worst, reached] = row;
+            let [a, b, c, d, _] = widths;
+            let line = format!("  {name:<a$}  {asked:>b$}  {found:>c$}  {worst:>d$}  {reached}");
+            let _ = writeln!(out, "{}", line.trim_end());
+        }
+        let points: usize = self.solved.iter().map(|solved| solved.points.len()).sum();
+        let _ = writeln!(out, "\n{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3);
+        let _ = writeln!(out, "wrote {}", self.written.join(", "));
+        out
+    }
+
+    pub(crate) fn json(&self) -> String {
+        let surfaces: Vec<Value> = self.solved.iter().map(surface_json).collect();
+        let table = json!({
+            "schema": "flank.solve/1",
+            "job": self.job.name,
+            "spec": self.spec,
+            "surfaces": surfaces,
+            "files": self.written,
+            "seconds": self.since.elapsed().as_secs_f64(),
+        });
+        format!("{table:#}\n")
+    }
+
+    /// What was asked for and not solved, in words; empty if nothing.
+    pub(crate) fn unsolved(&self) -> String {
+        let mut out = String::new();
+        for solved in self.solved {
+            let asked = solved.points.len();
+            let missing = asked - solved.count();
+            if missing > 0 {
+                let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
+                reasons(solved).iter().for_each(|reason| {
+                    let _ = writeln!(out, "  {reason}");
+                });
+            }
+        }
+        out
+    }
+}
+
+/// Why points of a surface were not solved, with the number of points for each reason.
+fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
+    let unknowns = &solved.surface.unknowns;
+    let mut reasons = Vec::new();
+    for (k, unknown) in unknowns.iter().enumerate() {
+        let excess = solved.points.iter().filter_map(|point| match point.outcome {
+            Outcome::Outside { unknown, by } if unknown == k => Some(by),
+            _ => None,
+        });
+        let (count, most) = excess.fold((0, 0.0), |(count, most), by| (count + 1, f64::max(most, by)));
+        if count > 0 {
+            let (size, unit) = match unknown.dimension {
+                Dimension::ANGLE => (1f64.to_degrees(), " deg"),
+                Dimension::LENGTH => (1.0, " mm"),
+                _ => (1.0, ""),
+            };
+            reasons.push(format!("{count}: {} outside its range, by up to {:.6}{unit}", unknown.name, size * most));
+        }
+    }
+    let singular = solved.points.iter().filter(|point| point.outcome == Outcome::Singular).count();
+    if singular > 0 {
+        reasons.push(format!("{singular}: singular, the equations do not fix a single point there"));
+    }
+    let open = solved.points.iter().filter(|point| point.outcome == Outcome::NotConverged);
+    let residuals: Vec<f64> = open.map(|point| point.residual).collect();
+    if !residuals.is_empty() {
+        let least = residuals.iter().copied().fold(f64::INFINITY, f64::min);
+        reasons.push(format!(
+            "{}: not converged (smallest residual {least:.1e}): no point of the surface there within the ranges",
+            residuals.len()
+        ));
+    }
+    reasons
+}
+
+impl Reached {
+    fn text(&self) -> String {
+        match self.ends {
+            Some((low, high)) => format!("{} {low:.4} .. {high:.4} {}", self.name, self.unit).trim_end().to_string(),
+            None => format!("{} -", self.name),
+        }
+    }
+}
+
+fn surface_json(solved: &Solved<'_, '_>) -> Value {
+    let mut outcomes = Map::new();
+    for point in &solved.points {
+        let count = outcomes.entry(point.outcome.word()).or_insert(json!(0));
+        *count = json!(count.as_u64().unwrap_or(0) + 1);
+    }
+    let reached: Vec<Value> = solved
+        .reached()
+        .iter()
+        .map(|reached| {
+            let (low, high) = reached.ends.unzip();
+            json!({ "name": reached.name, "unit": reached.unit, "low": low, "high": high })
+        })
+        .collect();
+    json!({
+        "name": solved.surface.name,
+        "frame": solved.surface.frame,
+        "asked": solved.points.len(),
+        "solved": solved.count(),
+        "outcomes": outcomes,
+        "worst_residual": solved.worst_residual(),
+        "ranges_reached": reached,
+        "evaluations": solved.effort.evaluations,
+        "branches": solved.effort.branches,
+    })
+}

@@ -1,0 +1,209 @@
+//! The binary as a user runs it: output, files, exit codes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn top() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn flank(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_flank")).args(arguments).current_dir(top()).output().expect("the binary runs")
+}
+
+/// A folder of its own for each test, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn written(folder: &Path, name: &str, content: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, content).expect("the test's file");
+    path.to_str().expect("a plain path").to_string()
+}
+
+#[test]
+fn solve_writes_points_and_pictures() {
+    let out = folder("solve");
+    let run = flank(&[
+        "solve",
+        "specs/hobbing/helical_gear.chain",
+        "--out",
+        out.to_str().unwrap(),
+        "--format",
+        "csv,json,stl",
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in ["lower_flank", "upper_flank", "651", "worst residual", "spindle", "1302 points in"] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    for extension in ["csv", "json", "stl", "png", "svg"] {
+        let path = out.join(format!("helical_gear.{extension}"));
+        assert!(std::fs::metadata(&path).is_ok_and(|file| file.len() > 1000), "{}", path.display());
+    }
+    let csv = std::fs::read_to_string(out.join("helical_gear.csv")).unwrap();
+    let head = csv.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert_eq!(head, "surface,i,j,x,y,z,nx,ny,nz,xi,tau,spindle,feed,residual,status");
+    assert_eq!(csv.lines().filter(|line| line.ends_with(",solved")).count(), 1302);
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let [a, b] = ["bytes-a", "bytes-b"].map(folder);
+    for out in [&a, &b] {
+        let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--format", "csv,json,stl", "--out"];
+        let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+        assert_eq!(run.status.code(), Some(0));
+    }
+    for extension in ["csv", "json", "stl", "png", "svg"] {
+        let read = |folder: &Path| std::fs::read(folder.join(format!("spur_gear.{extension}"))).unwrap();
+        assert_eq!(read(&a), read(&b), "{extension}");
+    }
+}
+
+#[test]
+fn set_changes_a_parameter_and_a_setting() {
+    let out = folder("set");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--json", "--no-picture", "--out", out.to_str().unwrap()];
+    let plain = flank(&base);
+    let changed = flank(&[&base[..], &["--set", "profile_shift=0.25", "--set", "r.tip_radius=1 mm"]].concat());
+    assert_eq!(changed.status.code(), Some(0), "{}", text(&changed.stderr));
+    let low = |run: &Output| -> f64 {
+        let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        table["surfaces"][1]["ranges_reached"][0]["low"].as_f64().expect("a number")
+    };
+    // the root circle moves with the profile shift
+    assert!((low(&changed) - low(&plain) - 0.05 * 3.0).abs() < 1e-3, "{} {}", low(&plain), low(&changed));
+}
+
+#[test]
+fn set_of_a_wrong_name_or_value_is_told() {
+    for (set, code, words) in [
+        ("teeht=30", 1, "did you mean `teeth`?"),
+        ("module=3", 1, "give it a unit: `3 mm`"),
+        ("module=3 furlong", 1, "is not a unit"),
+        ("module", 2, "NAME=VALUE"),
+    ] {
+        let run = flank(&["derive", "specs/hobbing/spur_gear.chain", "--set", set]);
+        assert_eq!(run.status.code(), Some(code), "{set}: {}", text(&run.stderr));
+        assert!(text(&run.stderr).contains(words), "{set}: {}", text(&run.stderr));
+    }
+}
+
+#[test]
+fn check_says_where_and_why() {
+    let folder = folder("check");
+    let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n}\n");
+    let run = flank(&["check", "specs/machines/cradle.chain", &wrong]);
+    assert_eq!(run.status.code(), Some(1));
+    let told = text(&run.stderr);
+    for part in ["E0201", "wrong.chain:2:15", "did you mean `length`?"] {
+        assert!(told.contains(part), "{part} in\n{told}");
+    }
+    assert!(text(&run.stdout).contains("specs/machines/cradle.chain: ok"));
+    let run = flank(&["check", "--json", &wrong]);
+    let findings: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!(findings["files"][0]["findings"][0]["place"]["column"], 15);
+}
+
+#[test]
+fn every_spec_of_the_library_is_right() {
+    let mut files = Vec::new();
+    for folder in ["machines", "tools", "hobbing", "bevel"] {
+        for entry in std::fs::read_dir(top().join("specs").join(folder)).unwrap() {
+            files.push(format!("specs/{folder}/{}", entry.unwrap().file_name().into_string().unwrap()));
+        }
+    }
+    assert!(files.len() >= 9);
+    let arguments: Vec<&str> = std::iter::once("check").chain(files.iter().map(String::as_str)).collect();
+    let run = flank(&arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(run.stderr.is_empty(), "{}", text(&run.stderr));
+}
+
+#[test]
+fn a_missing_file_is_told() {
+    for command in ["check", "solve", "derive"] {
+        let run = flank(&[command, "specs/no_such_file.chain"]);
+        assert_eq!(run.status.code(), Some(1));
+        assert!(text(&run.stderr).contains("there is no such file"), "{}", text(&run.stderr));
+    }
+}
+
+#[test]
+fn derive_prints_every_stage() {
+    let run = flank(&["derive", "specs/bevel/pinion_19x62.chain"]);
+    assert_eq!(run.status.code(), Some(0));
+    let told = text(&run.stdout);
+    for part in [
+        "m.work <- m.head <- m.swinging_base <- m.base <- m.vertical_slide <- m.bed <- m.cradle",
+        "rotate_x(-m.cradle)",
+        "product of all",
+        "vector part",
+        "twist along roll",
+        "equation of meshing for roll",
+        "shared",
+    ] {
+        assert!(told.contains(part), "{part}");
+    }
+    let latex = text(&flank(&["derive", "specs/bevel/pinion_19x62.chain", "--latex"]).stdout);
+    assert!(latex.starts_with("\\documentclass") && latex.trim_end().ends_with("\\end{document}"));
+    assert_eq!(latex.matches('{').count(), latex.matches('}').count());
+    assert_eq!(latex.matches("\\left(").count(), latex.matches("\\right)").count());
+}
+
+/// A rack that is too far away to touch the radii that are asked for.
+#[test]
+fn a_job_without_solution_exits_3_and_writes_statuses() {
+    let out = folder("unsolved");
+    let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--set", "profile_shift=8", "--out"];
+    let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("not solved: 275 of 275 points of flank_plus"), "{}", text(&run.stderr));
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    let flank_rows: Vec<&str> = csv.lines().filter(|line| line.starts_with("flank_plus,")).collect();
+    assert_eq!(flank_rows.len(), 275);
+    for row in flank_rows {
+        assert!(row.ends_with(",outside") || row.ends_with(",not converged") || row.ends_with(",singular"), "{row}");
+        assert!(row.contains(",,,,,,"), "no position is invented: {row}");
+    }
+}
+
+#[test]
+fn files_that_cannot_be_written_are_told() {
+    let folder = folder("unwritable");
+    let blocked = written(&folder, "blocked", "a file, not a folder");
+    let run = flank(&["solve", "specs/hobbing/spur_gear.chain", "--out", &blocked]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("blocked"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn help_has_examples_and_usage_errors_exit_2() {
+    for command in [&["--help"][..], &["solve", "--help"], &["check", "--help"], &["derive", "--help"]] {
+        let run = flank(command);
+        assert_eq!(run.status.code(), Some(0));
+        assert!(text(&run.stdout).contains("Examples:"), "{command:?}");
+    }
+    for wrong in [&[][..], &["sovle"], &["solve"], &["solve", "x.chain", "--format", "docx"]] {
+        assert_eq!(flank(wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_file_without_a_job_cannot_be_solved() {
+    let run = flank(&["solve", "specs/machines/cradle.chain"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("E0507"), "{}", text(&run.stderr));
+    let run = flank(&["solve", "specs/hobbing/spur_gear.chain", "--job", "spur"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("there is: `spur_gear`"), "{}", text(&run.stderr));
+}
