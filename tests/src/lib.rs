@@ -1,0 +1,118 @@
+//! What the tests of flank as a whole share: specs solved at given points, reference tables read.
+
+use std::path::PathBuf;
+
+use flank_chain_dsl::{Job, compile_file, render};
+use flank_expr::Graph;
+use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+use serde_json::Value;
+
+/// A path below the repository's top folder.
+pub fn repository(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// The first job of a spec of the library, with some values replaced.
+///
+/// # Panics
+/// With the diagnostics, if there are errors.
+pub fn job<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Job<'g> {
+    let set: Vec<(String, String)> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+    let mut compilation = compile_file(graph, &repository(spec), &set);
+    let told = render(&compilation.diagnostics, &compilation.sources, false);
+    assert!(!compilation.has_errors(), "{spec} is wrong:\n{told}");
+    compilation.jobs.swap_remove(0)
+}
+
+/// Points of a surface at given values of two of its coordinates, in the order given.
+///
+/// # Panics
+/// If there is no such surface or coordinate.
+pub fn points(job: &Job<'_>, surface: &str, coordinates: [&str; 2], targets: &[[f64; 2]]) -> Vec<SurfacePoint> {
+    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let [a, b] = coordinates.map(|name| surface.coordinate(name).expect("a coordinate of the surface").value);
+    let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let problem = SurfaceProblem::new(&surface.surface, [a, b], ranges, &job.bindings()).expect("nothing is unbound");
+    problem.solve(targets, [1, targets.len()]).0
+}
+
+/// A JSON file of `tests/reference`.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn reference_json(name: &str) -> Value {
+    let text = std::fs::read_to_string(repository("tests/reference").join(name)).expect("the reference file is there");
+    serde_json::from_str(&text).expect("the reference file is JSON")
+}
+
+/// A CSV file of `tests/reference`: one function of column names to numbers for each row.
+///
+/// # Panics
+/// If it cannot be read.
+pub fn reference_csv(name: &str) -> Vec<Row> {
+    let mut reader =
+        csv::Reader::from_path(repository("tests/reference").join(name)).expect("the reference file is there");
+    let headers: Vec<String> = reader.headers().expect("a head").iter().map(str::to_string).collect();
+    reader
+        .records()
+        .map(|record| {
+            let values = record.expect("a row").iter().map(|cell| cell.parse().expect("a number")).collect();
+            Row { headers: headers.clone(), values }
+        })
+        .collect()
+}
+
+/// One row of a reference table.
+#[derive(Clone, Debug)]
+pub struct Row {
+    headers: Vec<String>,
+    values: Vec<f64>,
+}
+
+impl Row {
+    /// The number in a column.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    pub fn get(&self, column: &str) -> f64 {
+        let index = self.headers.iter().position(|header| header == column).expect("the column is there");
+        self.values[index]
+    }
+}
+
+/// A number of a JSON object.
+///
+/// # Panics
+/// If it is not there.
+pub fn number(row: &Value, key: &str) -> f64 {
+    row[key].as_f64().unwrap_or_else(|| panic!("{key} is a number"))
+}
+
+/// A vector of a JSON object.
+///
+/// # Panics
+/// If it is not there.
+pub fn vector(row: &Value, key: &str) -> [f64; 3] {
+    std::array::from_fn(|k| row[key][k].as_f64().unwrap_or_else(|| panic!("{key} is a vector")))
+}
+
+/// The largest difference of two vectors' components; NaN if any is.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len(), "vectors of one length");
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, |worst, d| if d.is_nan() || d > worst { d } else { worst })
+}
+
+/// Asserts that a point was solved, lies at `position` and has `normal`, to 1e-9 mm and 1e-9: the bound that every
+/// derived surface has to meet; reference tables carry 12 decimals or more.
+pub fn assert_point(point: &SurfacePoint, position: [f64; 3], normal: [f64; 3], what: &str) {
+    const BOUND: f64 = 1e-9;
+    assert_eq!(point.outcome, Outcome::Solved, "{what}");
+    let (off, turned) = (difference(&point.position, &position), difference(&point.normal, &normal));
+    assert!(off <= BOUND, "{what}: position {:?} is {off:e} mm from {position:?}", point.position);
+    assert!(turned <= BOUND, "{what}: normal {:?} is {turned:e} from {normal:?}", point.normal);
+}
+
+/// A vector turned round: reference normals point out of the tool, flank's out of the gear.
+pub fn reversed(v: [f64; 3]) -> [f64; 3] {
+    v.map(|component| -component)
+}

@@ -1,0 +1,65 @@
+//! "Unchanged": a few points of each surface at nine significant digits, and what they cost.
+//!
+//! A snapshot does not say that a surface is right; the tests beside this one do.
+
+use std::fmt::Write;
+
+use flank_expr::Graph;
+use flank_solver::{Range, SurfaceProblem};
+use flank_tests::job;
+
+/// Nine significant digits, without a negative zero.
+fn digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.8e}").parse().expect("a number");
+    // what is zero but for rounding
+    if rounded.abs() < 1e-11 { "0".to_string() } else { rounded.to_string() }
+}
+
+fn described(spec: &str) -> String {
+    let graph = Graph::new();
+    let job = job(&graph, spec, &[]);
+    let mut out = String::new();
+    for surface in &job.surfaces {
+        let Some(sample) = &surface.sample else {
+            continue;
+        };
+        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+        let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+        let (points, effort) = problem.solve(&sample.targets, sample.counts);
+        let constraints = graph.count(&surface.surface.constraints);
+        let tape = problem.system().tape();
+        let per_point = effort.evaluations as f64 / points.len() as f64;
+        let _ = writeln!(
+            out,
+            "{}: {} nodes in the constraints, tape {} instructions in {} registers, {per_point:.1} evaluations a point",
+            surface.name,
+            constraints.shared,
+            tape.instructions().len(),
+            tape.register_count(),
+        );
+        let [rows, columns] = sample.counts;
+        for (i, j) in [(0, 0), (0, columns - 1), (rows / 2, columns / 2), (rows - 1, 0), (rows - 1, columns - 1)] {
+            let point = &points[i * columns + j];
+            let numbers = point.position.iter().chain(&point.normal).chain(&point.unknowns);
+            let numbers: Vec<String> = numbers.map(|value| digits(*value)).collect();
+            let _ = writeln!(out, "  {i:>2} {j:>2} {} {}", point.outcome.word(), numbers.join(" "));
+        }
+    }
+    out
+}
+
+#[test]
+fn spur_gear() {
+    insta::assert_snapshot!(described("specs/hobbing/spur_gear.chain"));
+}
+
+#[test]
+fn helical_gear() {
+    insta::assert_snapshot!(described("specs/hobbing/helical_gear.chain"));
+}
+
+#[test]
+fn pinion_19x62() {
+    insta::assert_snapshot!(described("specs/bevel/pinion_19x62.chain"));
+}
