@@ -39,6 +39,10 @@ fn rule<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
     match graph.node(node) {
         Node::Constant(_) => graph.constant(0.0),
         Node::Variable(id) => graph.constant(if id == variable { 1.0 } else { 0.0 }),
+        Node::Curve(curve, order, a) => {
+            let slope = known(graph, a, variable);
+            if slope.is_zero() { slope } else { graph.expr(a).on_curve(curve, order + 1) * slope }
+        }
         Node::Unary(op, a) => {
             let slope = known(graph, a, variable);
             if slope.is_zero() { slope } else { unary_rule(op, graph.expr(a), y, slope) }
@@ -66,6 +70,11 @@ fn unary_rule<'g>(op: Unary, a: Expr<'g>, y: Expr<'g>, da: Expr<'g>) -> Expr<'g>
         Unary::Sinh => a.cosh() * da,
         Unary::Cosh => a.sinh() * da,
         Unary::Tanh => (1.0 - y.squared()) * da,
+        Unary::Asinh => da / (1.0 + a.squared()).sqrt(),
+        Unary::Acosh => da / (a.squared() - 1.0).sqrt(),
+        Unary::Atanh => da / (1.0 - a.squared()),
+        // d(tan a − a) = tan²a da
+        Unary::Arcinv => da / y.tan().squared(),
         Unary::Exp => y * da,
         Unary::Ln => da / a,
         Unary::Abs => a.sign() * da,
@@ -127,6 +136,7 @@ impl Graph {
                 Node::Constant(_) => self.expr(id),
                 Node::Variable(variable) => table.get(&variable).copied().unwrap_or(self.expr(id)),
                 Node::Unary(op, a) => image[&a].unary(op),
+                Node::Curve(curve, order, a) => image[&a].on_curve(curve, order),
                 Node::Binary(op, a, b) => image[&a].binary(op, image[&b]),
             };
             image.insert(id, new);

@@ -29,6 +29,7 @@ impl<'t> ScalarEvaluator<'t> {
             let a = self.registers[step.a as usize];
             self.registers[step.out as usize] = match step.operation {
                 Operation::Unary(op) => op.apply(a),
+                Operation::Curve(order) => self.tape.curves()[step.b as usize].value(order, a),
                 Operation::Binary(op) => op.apply(a, self.registers[step.b as usize]),
             };
         }

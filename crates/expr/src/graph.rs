@@ -4,7 +4,9 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
 
+use crate::curve::Curve;
 use crate::op::{Binary, Unary};
 use crate::rules;
 
@@ -23,6 +25,10 @@ impl VariableId {
     }
 }
 
+/// Index of a curve.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct CurveId(pub(crate) u32);
+
 /// One node of the graph.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
@@ -34,6 +40,8 @@ pub enum Node {
     Unary(Unary, NodeId),
     /// An operation on two nodes.
     Binary(Binary, NodeId, NodeId),
+    /// A derivative of a curve, of an order, at a node.
+    Curve(CurveId, u8, NodeId),
 }
 
 impl Node {
@@ -52,7 +60,7 @@ impl Node {
     pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
         let (a, b) = match self {
             Node::Constant(_) | Node::Variable(_) => (None, None),
-            Node::Unary(_, a) => (Some(a), None),
+            Node::Unary(_, a) | Node::Curve(_, _, a) => (Some(a), None),
             Node::Binary(_, a, b) => (Some(a), Some(b)),
         };
         a.into_iter().chain(b)
@@ -64,6 +72,7 @@ struct Store {
     nodes: Vec<Node>,
     index: HashMap<Node, NodeId>,
     variables: Vec<String>,
+    curves: Vec<Arc<Curve>>,
     derivatives: HashMap<(VariableId, NodeId), NodeId>,
 }
 
@@ -119,6 +128,17 @@ impl Graph {
             VariableId(store.variables.len() as u32 - 1)
         };
         self.intern(Node::Variable(id))
+    }
+
+    /// Takes in a curve, which expressions then can be put into.
+    pub fn curve(&self, curve: Curve) -> CurveId {
+        let mut store = self.store.borrow_mut();
+        store.curves.push(Arc::new(curve));
+        CurveId(store.curves.len() as u32 - 1)
+    }
+
+    pub(crate) fn curve_of(&self, id: CurveId) -> Arc<Curve> {
+        Arc::clone(&self.store.borrow().curves[id.0 as usize])
     }
 
     /// Number of variables made so far.
@@ -268,6 +288,14 @@ impl<'g> Expr<'g> {
         rules::binary(op, self, other)
     }
 
+    /// A derivative of a curve (order 0: its value) here.
+    pub fn on_curve(self, curve: CurveId, order: u8) -> Expr<'g> {
+        if let Some(x) = self.as_constant() {
+            return self.graph.constant(self.graph.curve_of(curve).value(order, x));
+        }
+        self.graph.intern(Node::Curve(curve, order, self.id))
+    }
+
     /// x·x.
     pub fn squared(self) -> Expr<'g> {
         self * self
@@ -309,6 +337,10 @@ unary_methods! {
     sinh Sinh "Hyperbolic sine.";
     cosh Cosh "Hyperbolic cosine.";
     tanh Tanh "Hyperbolic tangent.";
+    asinh Asinh "Inverse hyperbolic sine.";
+    acosh Acosh "Inverse hyperbolic cosine; NaN below 1.";
+    atanh Atanh "Inverse hyperbolic tangent; NaN outside [−1, 1].";
+    arcinv Arcinv "The angle in radians whose involute function tan a − a is given.";
     exp Exp "Exponential.";
     ln Ln "Natural logarithm; NaN below zero.";
     abs Abs "Absolute value; its derivative at zero is taken as zero.";

@@ -18,6 +18,7 @@ impl Graph {
                 Node::Constant(bits) => f64::from_bits(bits),
                 Node::Variable(variable) => values[variable.index()],
                 Node::Unary(op, a) => op.apply(known[&a]),
+                Node::Curve(curve, order, a) => self.curve_of(curve).value(order, known[&a]),
                 Node::Binary(op, a, b) => op.apply(known[&a], known[&b]),
             };
             known.insert(id, value);

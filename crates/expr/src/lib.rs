@@ -18,6 +18,7 @@
 //! assert_eq!(out, [0.0, 3.0]);
 //! ```
 
+mod curve;
 mod derivative;
 mod evaluate;
 pub mod geometry;
@@ -28,8 +29,9 @@ mod print;
 mod rules;
 mod tape;
 
+pub use curve::{Curve, CurveError};
 pub use evaluate::ScalarEvaluator;
-pub use graph::{Expr, Graph, Node, NodeCount, NodeId, VariableId};
+pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use op::{Binary, Unary};
 pub use print::{Definition, Listing, Style};
 pub use tape::{Instruction, Operation, Tape, TapeError};

@@ -1,10 +1,12 @@
 //! Expressions laid out as a list of instructions.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::graph::{Expr, Graph, Node, NodeId};
+use crate::curve::Curve;
+use crate::graph::{CurveId, Expr, Graph, Node, NodeId};
 use crate::op::{Binary, Unary};
 
 /// What an instruction does with its registers.
@@ -14,6 +16,8 @@ pub enum Operation {
     Unary(Unary),
     /// `out = op(a, b)`.
     Binary(Binary),
+    /// `out` = the derivative of this order of the tape's curve number `b`, at `a`.
+    Curve(u8),
 }
 
 /// One step: read registers `a` and `b`, write register `out`, which may be one of the two.
@@ -39,6 +43,7 @@ const _: () = assert!(size_of::<Instruction>() == 16);
 pub struct Tape {
     input_count: usize,
     constants: Vec<f64>,
+    curves: Vec<Arc<Curve>>,
     instructions: Vec<Instruction>,
     outputs: Vec<u32>,
     register_count: usize,
@@ -65,6 +70,7 @@ impl Tape {
         let mut tape = Tape {
             input_count: inputs.len(),
             constants: Vec::new(),
+            curves: Vec::new(),
             instructions: Vec::new(),
             outputs: Vec::new(),
             register_count: inputs.len(),
@@ -84,6 +90,7 @@ impl Tape {
         tape.place_leaves(graph, &order, &mut registers)?;
         registers.next = (tape.input_count + tape.constants.len()) as u32;
         tape.instructions = order.iter().filter_map(|&id| registers.step(graph, id)).collect();
+        tape.curves = registers.curves.iter().map(|&id| graph.curve_of(id)).collect();
         tape.outputs = outputs.iter().map(|output| registers.place[&output.id]).collect();
         tape.register_count = registers.next as usize;
         Ok(tape)
@@ -125,6 +132,11 @@ impl Tape {
         &self.constants
     }
 
+    /// The curves that instructions refer to by number.
+    pub fn curves(&self) -> &[Arc<Curve>] {
+        &self.curves
+    }
+
     /// The steps.
     pub fn instructions(&self) -> &[Instruction] {
         &self.instructions
@@ -141,6 +153,8 @@ struct Registers {
     place: HashMap<NodeId, u32>,
     uses: HashMap<NodeId, u32>,
     free: Vec<u32>,
+    /// Curves in the order in which the tape numbers them.
+    curves: Vec<CurveId>,
     next: u32,
 }
 
@@ -164,7 +178,7 @@ impl Registers {
                 uses.insert(id, u32::MAX);
             }
         }
-        Registers { place: HashMap::new(), uses, free: Vec::new(), next: 0 }
+        Registers { place: HashMap::new(), uses, free: Vec::new(), curves: Vec::new(), next: 0 }
     }
 
     /// The instruction of a node; none for a leaf, which is in its register from the start.
@@ -172,6 +186,7 @@ impl Registers {
         let (operation, a, b) = match graph.node(id) {
             Node::Unary(op, a) => (Operation::Unary(op), a, a),
             Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
+            Node::Curve(curve, order, a) => return Some(self.curve_step(id, curve, order, a)),
             Node::Constant(_) | Node::Variable(_) => return None,
         };
         let (a_register, b_register) = (self.place[&a], self.place[&b]);
@@ -180,6 +195,17 @@ impl Registers {
             self.release(b);
         }
         Some(Instruction { operation, out: self.allocate(id), a: a_register, b: b_register })
+    }
+
+    fn curve_step(&mut self, id: NodeId, curve: CurveId, order: u8, a: NodeId) -> Instruction {
+        let known = self.curves.iter().position(|&other| other == curve);
+        let index = known.unwrap_or(self.curves.len());
+        if known.is_none() {
+            self.curves.push(curve);
+        }
+        let a_register = self.place[&a];
+        self.release(a);
+        Instruction { operation: Operation::Curve(order), out: self.allocate(id), a: a_register, b: index as u32 }
     }
 
     fn release(&mut self, id: NodeId) {

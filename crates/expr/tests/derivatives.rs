@@ -22,6 +22,13 @@ fn dual_unary(op: Unary, a: HyperDual64) -> HyperDual64 {
         Unary::Sinh => a.sinh(),
         Unary::Cosh => a.cosh(),
         Unary::Tanh => a.tanh(),
+        Unary::Asinh => a.asinh(),
+        Unary::Acosh => a.acosh(),
+        Unary::Atanh => a.atanh(),
+        // Newton on tan y − y = a in dual numbers: three rounds settle two orders
+        Unary::Arcinv => {
+            (0..3).fold(HyperDual64::from_re(op.apply(a.re)), |y, _| y - (y.tan() - y - a) / y.tan().powi(2))
+        }
         Unary::Exp => a.exp(),
         Unary::Ln => a.ln(),
         Unary::Abs if a.re < 0.0 => -a,
@@ -66,6 +73,10 @@ fn arguments(op: Unary) -> Vec<f64> {
     let symmetric = [-20.0, -3.0, -1.2, -0.5, -1e-3, 1e-9, 0.3, 0.9, 1.5, 2.5, 30.0];
     match op {
         Unary::Sqrt | Unary::Ln => vec![1e-12, 1e-3, 0.5, 1.0, 7.0, 1e9],
+        Unary::Acosh => vec![1.001, 1.5, 4.0, 1e6],
+        Unary::Atanh => vec![-0.999, -0.5, 1e-6, 0.3, 0.999],
+        // near zero the slope 1/tan² grows beyond what dual numbers resolve
+        Unary::Arcinv => vec![-20.0, -0.5, 0.015, 0.3, 2.0, 30.0],
         Unary::Asin | Unary::Acos => {
             vec![-0.9999999999, -0.99, -0.5, 1e-9, 0.3, 0.999, 0.9999999999]
         }

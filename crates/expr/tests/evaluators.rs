@@ -45,6 +45,7 @@ mod the_suite_notices {
             let (a, b) = (registers[step.a as usize], registers[step.b as usize]);
             let value = match step.operation {
                 Operation::Unary(op) => op.apply(a),
+                Operation::Curve(order) => tape.curves()[step.b as usize].value(order, a),
                 Operation::Binary(op) => op.apply(a, b),
             };
             write(&mut registers, step.out as usize, value);

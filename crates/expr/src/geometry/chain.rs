@@ -26,6 +26,8 @@ pub enum Step<'g> {
     Rotate(Axis<'g>, Expr<'g>),
     /// An explicit rigid motion.
     Rigid(Pose<'g>),
+    /// The child is the mirror image in the plane through the common origin, square to an axis that stands still.
+    Mirror(Axis<'g>),
 }
 
 impl<'g> Step<'g> {
@@ -35,6 +37,7 @@ impl<'g> Step<'g> {
             Step::Translate(by) => Step::Translate(-by),
             Step::Rotate(axis, angle) => Step::Rotate(axis, -angle),
             Step::Rigid(pose) => Step::Rigid(pose.inverse()),
+            Step::Mirror(_) => self,
         }
     }
 
@@ -46,6 +49,7 @@ impl<'g> Step<'g> {
                 Pose { rotation: rotation(graph, axis, angle), translation: Vector3::zero(graph) }
             }
             Step::Rigid(pose) => pose,
+            Step::Mirror(axis) => Pose { rotation: reflection(graph, axis), translation: Vector3::zero(graph) },
         }
     }
 
@@ -57,14 +61,17 @@ impl<'g> Step<'g> {
                 Twist { angular: axis.direction(graph).scaled(angle.derivative(motion)), linear: Vector3::zero(graph) }
             }
             Step::Rotate(..) | Step::Rigid(_) => self.pose(graph).twist(motion),
+            Step::Mirror(_) => Twist::zero(graph),
         }
     }
 
     /// One step instead of two, where the two commute into one of the same kind.
-    fn merged(self, next: Step<'g>) -> Option<Step<'g>> {
+    fn merged(self, next: Step<'g>, graph: &'g Graph) -> Option<Step<'g>> {
         match (self, next) {
             (Step::Translate(a), Step::Translate(b)) => Some(Step::Translate(a + b)),
             (Step::Rotate(axis, a), Step::Rotate(same, b)) if axis == same => Some(Step::Rotate(axis, a + b)),
+            // twice mirrored is not mirrored
+            (Step::Mirror(axis), Step::Mirror(same)) if axis == same => Some(Step::Translate(Vector3::zero(graph))),
             _ => None,
         }
     }
@@ -73,7 +80,7 @@ impl<'g> Step<'g> {
         match self {
             Step::Translate(by) => by.is_zero(),
             Step::Rotate(_, angle) => angle.is_zero(),
-            Step::Rigid(_) => false,
+            Step::Rigid(_) | Step::Mirror(_) => false,
         }
     }
 
@@ -82,6 +89,8 @@ impl<'g> Step<'g> {
             Step::Translate(by) => by.0.to_vec(),
             Step::Rotate(Axis::Along(axis), angle) => axis.0.into_iter().chain([angle]).collect(),
             Step::Rotate(_, angle) => vec![angle],
+            Step::Mirror(Axis::Along(axis)) => axis.0.to_vec(),
+            Step::Mirror(_) => Vec::new(),
             Step::Rigid(pose) => pose.rotation.entries().into_iter().chain(pose.translation.0).collect(),
         }
     }
@@ -91,6 +100,8 @@ impl<'g> Step<'g> {
             Step::Translate(_) => Step::Translate(Vector3([new[0], new[1], new[2]])),
             Step::Rotate(Axis::Along(_), _) => Step::Rotate(Axis::Along(Vector3([new[0], new[1], new[2]])), new[3]),
             Step::Rotate(axis, _) => Step::Rotate(axis, new[0]),
+            Step::Mirror(Axis::Along(_)) => Step::Mirror(Axis::Along(Vector3([new[0], new[1], new[2]]))),
+            Step::Mirror(_) => self,
             Step::Rigid(_) => {
                 let row = |i: usize| Vector3([new[3 * i], new[3 * i + 1], new[3 * i + 2]]);
                 Step::Rigid(Pose { rotation: Matrix3([row(0), row(1), row(2)]), translation: row(3) })
@@ -116,6 +127,13 @@ impl<'g> Axis<'g> {
             Axis::X | Axis::Y | Axis::Z => true,
         }
     }
+}
+
+/// I − 2 a aᵀ.
+fn reflection<'g>(graph: &'g Graph, axis: Axis<'g>) -> Matrix3<'g> {
+    let a = axis.direction(graph);
+    let identity = Matrix3::identity(graph);
+    Matrix3(std::array::from_fn(|i| identity.0[i] - a.scaled(2.0 * a.0[i])))
 }
 
 /// Right-handed rotation: about x, y, z as usual, about any unit vector by Rodrigues' formula.
@@ -172,7 +190,7 @@ impl<'g> Chain<'g> {
     pub fn merged(&self) -> Chain<'g> {
         let mut steps: Vec<Step<'g>> = Vec::new();
         for &step in &self.steps {
-            let next = match steps.last().and_then(|last| last.merged(step)) {
+            let next = match steps.last().and_then(|last| last.merged(step, self.graph)) {
                 Some(both) => {
                     steps.pop();
                     both
@@ -231,8 +249,10 @@ impl<'g> Chain<'g> {
                 _ => {
                     let Pose { rotation, translation } = step.pose(self.graph);
                     let into_child = rotation.transposed();
+                    let angular = into_child.times(before.angular);
                     Twist {
-                        angular: into_child.times(before.angular),
+                        // an angular velocity keeps its sense of turning in a mirror only by turning round
+                        angular: if matches!(step, Step::Mirror(_)) { -angular } else { angular },
                         linear: into_child.times(before.velocity(translation)),
                     }
                 }

@@ -94,6 +94,7 @@ impl<'g> Writer<'g> {
                 vec![sign(is_unsigned), Part::Node(a, Binding::Product)]
             }
             Node::Unary(op, a) => self.call(op.name(), &[a]),
+            Node::Curve(curve, order, a) => self.on_curve(self.graph.curve_of(curve).name(), order, a),
             Node::Binary(Binary::Add, a, b) => {
                 let (a, b) = terms(self.graph, a, b);
                 let mut parts = vec![first(a, Binding::Sum)];
@@ -178,6 +179,14 @@ impl<'g> Writer<'g> {
         }
     }
 
+    /// A curve's value, primed for each derivative.
+    fn on_curve(&self, curve: &str, order: u8, argument: NodeId) -> Vec<Part> {
+        let primes = "'".repeat(order.into());
+        let (open, close) = self.parentheses();
+        let function = format!("{}{primes}{open}", name::variable(curve, self.style));
+        vec![function.into(), Part::Node(argument, Binding::Sum), close.into()]
+    }
+
     fn call(&self, function: &'static str, arguments: &[NodeId]) -> Vec<Part> {
         let (open, close): (Cow<'static, str>, &'static str) = match (self.style, function) {
             (Style::Text, _) => (format!("{function}(").into(), ")"),
@@ -215,6 +224,8 @@ fn has_bare_name(op: Unary) -> bool {
 fn latex_function(name: &str) -> String {
     match name {
         "asin" | "acos" | "atan" => format!("\\arc{}", &name[1..]),
+        "asinh" | "acosh" | "atanh" => format!("\\operatorname{{ar{}}}", &name[1..]),
+        "arcinv" => "\\operatorname{inv}^{-1}".to_string(),
         "atan2" | "sign" => format!("\\operatorname{{{name}}}"),
         _ => format!("\\{name}"),
     }

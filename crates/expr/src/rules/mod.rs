@@ -32,7 +32,16 @@ pub(crate) fn unary<'g>(op: Unary, a: Expr<'g>) -> Expr<'g> {
         }
         // odd functions: f(−x) = −f(x)
         (
-            Unary::Sin | Unary::Tan | Unary::Asin | Unary::Atan | Unary::Sinh | Unary::Tanh | Unary::Sign,
+            Unary::Sin
+            | Unary::Tan
+            | Unary::Asin
+            | Unary::Atan
+            | Unary::Sinh
+            | Unary::Tanh
+            | Unary::Asinh
+            | Unary::Atanh
+            | Unary::Arcinv
+            | Unary::Sign,
             Node::Unary(Unary::Neg, x),
         ) => -unary(op, a.graph.expr(x)),
         // even functions: f(−x) = f(x)

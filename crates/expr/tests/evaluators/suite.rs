@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use flank_expr::{Binary, Expr, Graph, Tape, TapeError, Unary};
+use flank_expr::{Binary, Curve, Expr, Graph, Tape, TapeError, Unary};
 
 use crate::support::{Program, Random, reference_point};
 
@@ -23,7 +23,7 @@ pub(crate) trait Subject {
 macro_rules! evaluator_suite {
     ($name:ident, $subject:ident) => {
         $crate::evaluator_suite!($name, $subject:
-            every_unary_alone every_binary_alone combinations constants_only outputs_that_are_inputs
+            every_unary_alone every_binary_alone curves combinations constants_only outputs_that_are_inputs
             one_output_twice outputs_used_later no_outputs unused_inputs unbound_variable random_programs
             random_tame_programs many_points);
     };
@@ -118,6 +118,19 @@ pub(crate) fn every_binary_alone<S: Subject>() {
         let (x, y) = (graph.variable("x"), graph.variable("y"));
         check::<S>(&[x.binary(op, y), y.binary(op, x), x.binary(op, x)], &[x, y], &points);
     }
+}
+
+/// Curves: several of them, several orders, beyond their ends.
+pub(crate) fn curves<S: Subject>() {
+    let graph = Graph::new();
+    let x = graph.variable("x");
+    let table = |f: fn(f64) -> f64| (0..9).map(|k| (f64::from(k), f(f64::from(k)))).collect::<Vec<_>>();
+    let [sine, root] = [f64::sin as fn(f64) -> f64, f64::sqrt]
+        .map(|f| graph.curve(Curve::through("f", &table(f)).expect("increasing")));
+    let mut outputs: Vec<Expr<'_>> = (0..4).map(|order| x.on_curve(sine, order)).collect();
+    outputs.push((x * 0.5).on_curve(root, 0) * x.on_curve(sine, 1));
+    let points: Vec<Vec<f64>> = (-4..40).map(|k| vec![0.25 * f64::from(k)]).chain([vec![f64::NAN]]).collect();
+    check::<S>(&outputs, &[x], &points);
 }
 
 pub(crate) fn combinations<S: Subject>() {

@@ -57,13 +57,14 @@ impl<'g> Setting<'g> {
 
     pub fn step(&self, random: &mut Random) -> Step<'g> {
         let angle = self.scalar(random);
-        match random.below(8) {
+        match random.below(9) {
             0 | 1 => Step::Translate(self.vector(random)),
             2 => Step::Rotate(Axis::X, angle),
             3 => Step::Rotate(Axis::Y, angle),
             4 => Step::Rotate(Axis::Z, angle),
             5 => Step::Rotate(Axis::Along(self.axis(random, false)), angle),
             6 => Step::Rotate(Axis::Along(self.axis(random, true)), angle),
+            7 => Step::Mirror(if random.below(2) == 0 { Axis::Y } else { Axis::Along(self.axis(random, false)) }),
             _ => {
                 let axis = Axis::Along(self.axis(random, false));
                 let turned = Step::Rotate(axis, angle).pose(self.graph);
@@ -98,17 +99,25 @@ impl<'g> Setting<'g> {
         chain.steps().iter().map(|step| self.dense_step(step, at)).product()
     }
 
+    fn direction_at(&self, axis: Axis<'g>, at: &Point) -> na::Vector3<f64> {
+        match axis {
+            Axis::X => na::Vector3::x(),
+            Axis::Y => na::Vector3::y(),
+            Axis::Z => na::Vector3::z(),
+            Axis::Along(axis) => self.vector_at(axis, at),
+        }
+    }
+
     fn dense_step(&self, step: &Step<'g>, at: &Point) -> na::Matrix4<f64> {
         match *step {
             Step::Translate(by) => na::Matrix4::new_translation(&self.vector_at(by, at)),
             Step::Rotate(axis, angle) => {
-                let direction = match axis {
-                    Axis::X => na::Vector3::x(),
-                    Axis::Y => na::Vector3::y(),
-                    Axis::Z => na::Vector3::z(),
-                    Axis::Along(axis) => self.vector_at(axis, at),
-                };
-                na::Matrix4::from_axis_angle(&na::Unit::new_normalize(direction), self.number(angle, at))
+                let direction = na::Unit::new_normalize(self.direction_at(axis, at));
+                na::Matrix4::from_axis_angle(&direction, self.number(angle, at))
+            }
+            Step::Mirror(axis) => {
+                let direction = self.direction_at(axis, at);
+                (na::Matrix3::identity() - 2.0 * direction * direction.transpose()).to_homogeneous()
             }
             Step::Rigid(pose) => {
                 let mut matrix = self.matrix_at(pose.rotation, at).to_homogeneous();

@@ -177,7 +177,9 @@ fn is_tame(step: Step, values: &[f64]) -> bool {
         Step::Constant(_) | Step::Variable(_) => return true,
         Step::Unary(op, a) => match op {
             Unary::Sqrt | Unary::Ln => values[a] > MARGIN,
-            Unary::Asin | Unary::Acos => values[a].abs() < 1.0 - MARGIN,
+            Unary::Acosh => values[a] > 1.0 + MARGIN,
+            Unary::Arcinv => values[a].abs() > MARGIN,
+            Unary::Asin | Unary::Acos | Unary::Atanh => values[a].abs() < 1.0 - MARGIN,
             Unary::Tan => values[a].cos().abs() > 0.2,
             Unary::Abs | Unary::Sign => values[a].abs() > MARGIN,
             _ => true,
