@@ -6,7 +6,7 @@ use flank_expr::geometry::{Axis as Line, Pose, Step, Vector3};
 use flank_expr::{Expr, Style};
 
 use crate::dimension::Dimension;
-use crate::model::{GeneratedSurface, Generation, Job, LawSource, Machine};
+use crate::model::{GeneratedSurface, Generation, Job, LawSource, Machine, Process, ToolShape};
 
 /// Writes what the compiler built for a job: frames, the chain from tool to work with each elementary matrix, the product
 /// and its 3 × 3 vector part, the twist of each motion, position and normal, the equation of meshing, and how much is
@@ -129,9 +129,9 @@ impl Page {
     fn surface(&mut self, surface: &GeneratedSurface<'_>) {
         self.heading(&format!("surface {} in {}", surface.name, surface.frame));
         surface.doc.iter().for_each(|line| self.text(line));
-        if let Some(generation) = &surface.generation {
-            self.generation(generation, &surface.frame);
-        }
+        self.chain(&surface.generation, &surface.frame);
+        self.tool(&surface.generation);
+        self.motions(surface);
         self.text(&format!("position in {}, mm:", surface.frame));
         self.vector("r", surface.surface.position);
         self.text(&format!("unit normal in {}, out of the body:", surface.frame));
@@ -148,40 +148,63 @@ impl Page {
         self.counts(surface);
     }
 
-    fn generation(&mut self, generation: &Generation<'_>, frame: &str) {
-        let frames: Vec<&str> = generation.path.iter().map(|(frame, _)| frame.as_str()).collect();
+    fn chain(&mut self, generation: &Generation<'_>, frame: &str) {
+        let frames: Vec<String> = generation.path.iter().map(|(frame, _)| self.words(frame)).collect();
         let arrow = if self.style == Style::Latex { " $\\leftarrow$ " } else { " <- " };
-        let way =
-            frames.iter().map(|frame| if self.style == Style::Latex { escaped(frame) } else { frame.to_string() });
-        let way = way.collect::<Vec<_>>().join(arrow);
-        self.line(&format!("envelope of {}; chain from work to tool:\n  {way}", self.words(&generation.tool_name)));
-        let graph = generation.tool.position.0[0].graph();
-        for (index, (arrives, steps)) in generation.path.iter().enumerate().skip(1) {
-            for step in steps {
-                self.text(&format!("{} to {arrives}: {}", generation.path[index - 1].0, described(*step)));
+        let process = match generation.process {
+            Process::Envelope => "envelope",
+            Process::Sweep => "sweep",
+            Process::Move => "move",
+        };
+        let tool = self.words(&generation.tool_name);
+        self.line(&format!("{process} of {tool}; chain from work to tool:\n  {}", frames.join(arrow)));
+        let graph = generation.position().0[0].graph();
+        for pair in generation.path.windows(2) {
+            for step in &pair[1].1 {
+                self.text(&format!("{} to {}: {}", pair[0].0, pair[1].0, described(*step)));
                 self.matrix4("M", step.pose(graph));
             }
         }
-        let tool_frame = generation.path.last().map_or("tool", |(name, _)| name.as_str());
-        self.text(&format!("product of all, pose of {tool_frame} in {frame}:"));
+        self.text(&format!("product of all, pose of {} in {frame}:", generation.tool_frame()));
         let pose = generation.t_work_tool.pose();
         self.matrix4("M", pose);
         self.text("its vector part (last row and column deleted):");
         self.matrix("L", &pose.rotation.0.map(|row| row.0.to_vec()));
-        self.text(&format!("tool surface in {tool_frame}, mm, and its unit normal, out of the tool's steel:"));
-        self.vector("r_t", generation.tool.position);
-        self.vector("n_t", generation.tool.normal);
-        for &motion in &generation.motions {
-            let name = graph.listing(&[motion], self.style, "t").values[0].clone();
+    }
+
+    fn tool(&mut self, generation: &Generation<'_>) {
+        let frame = generation.tool_frame();
+        match &generation.tool {
+            ToolShape::Surface(surface) => {
+                self.text(&format!("tool surface in {frame}, mm, and its unit normal, out of the tool's steel:"));
+                self.vector("r_t", surface.position);
+                self.vector("n_t", surface.normal);
+            }
+            ToolShape::Edge(edge) => {
+                self.text(&format!("cutting edge in {frame}, mm, and a direction into the tool's steel:"));
+                self.vector("r_t", edge.position);
+                self.vector("s_t", edge.steel);
+            }
+        }
+    }
+
+    fn motions(&mut self, surface: &GeneratedSurface<'_>) {
+        let generation = &surface.generation;
+        let (tool_frame, frame) = (generation.tool_frame(), &surface.frame);
+        // a sweep has no equation for its first motion; the constraints of a tool that is an envelope itself come first
+        let free = usize::from(generation.process == Process::Sweep);
+        let constraints = &surface.surface.constraints;
+        let own = &constraints[constraints.len() - generation.motions.len().saturating_sub(free)..];
+        for (index, &motion) in generation.motions.iter().enumerate() {
+            let graph = motion.graph();
             let plain = motion.to_string();
-            self.text(&format!(
-                "twist along {plain}, of {tool_frame} against {frame}, in {tool_frame}: angular, linear:"
-            ));
+            self.text(&format!("twist along {plain}, of {tool_frame} against {frame}, in {tool_frame}: angular, linear:"));
             let twist = generation.driven.twist(motion);
             self.vector("omega", twist.angular);
             self.vector("v", twist.linear);
+            let Some(&meshing) = index.checked_sub(free).and_then(|k| own.get(k)) else { continue };
             self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0"));
-            let meshing = generation.tool.meshing(&generation.driven, motion);
+            let name = graph.listing(&[motion], self.style, "t").values[0].clone();
             let listing = graph.listing(&[meshing], self.style, "t");
             self.definitions(&listing.definitions);
             match self.style {
@@ -275,6 +298,10 @@ fn described(step: Step<'_>) -> String {
             format!("rotate([{x}, {y}, {z}], {})", angle_text(angle))
         }
         Step::Rigid(_) => "matrix(…)".to_string(),
+        Step::Mirror(Line::X) => "mirror_x()".to_string(),
+        Step::Mirror(Line::Y) => "mirror_y()".to_string(),
+        Step::Mirror(Line::Z) => "mirror_z()".to_string(),
+        Step::Mirror(Line::Along(Vector3([x, y, z]))) => format!("mirror([{x}, {y}, {z}])"),
     }
 }
 

@@ -26,6 +26,7 @@ enum Function {
     Hypot,
     Atan2,
     Involute,
+    ArcInvolute,
     /// Σ cₖ·xᵏ
     Poly,
     /// Σ aₖ·xᵏ/k!
@@ -35,7 +36,7 @@ enum Function {
     Norm,
 }
 
-const FUNCTIONS: [(&str, usize, Function); 23] = [
+const FUNCTIONS: [(&str, usize, Function); 27] = [
     ("sin", 1, Function::OfAngle(Unary::Sin)),
     ("cos", 1, Function::OfAngle(Unary::Cos)),
     ("tan", 1, Function::OfAngle(Unary::Tan)),
@@ -45,6 +46,9 @@ const FUNCTIONS: [(&str, usize, Function); 23] = [
     ("sinh", 1, Function::OfNumber(Unary::Sinh)),
     ("cosh", 1, Function::OfNumber(Unary::Cosh)),
     ("tanh", 1, Function::OfNumber(Unary::Tanh)),
+    ("asinh", 1, Function::OfNumber(Unary::Asinh)),
+    ("acosh", 1, Function::OfNumber(Unary::Acosh)),
+    ("atanh", 1, Function::OfNumber(Unary::Atanh)),
     ("exp", 1, Function::OfNumber(Unary::Exp)),
     ("ln", 1, Function::OfNumber(Unary::Ln)),
     ("abs", 1, Function::Abs),
@@ -54,6 +58,7 @@ const FUNCTIONS: [(&str, usize, Function); 23] = [
     ("hypot", 2, Function::Hypot),
     ("atan2", 2, Function::Atan2),
     ("inv", 1, Function::Involute),
+    ("arcinv", 1, Function::ArcInvolute),
     ("poly", 2, Function::Poly),
     ("taylor", 2, Function::Taylor),
     ("dot", 2, Function::Dot),
@@ -129,6 +134,13 @@ fn apply<'g>(
         Function::Involute => {
             let angle = one(context, D::ANGLE)?;
             Value::Scalar(angle.tan() - angle, D::ANGLE)
+        }
+        Function::ArcInvolute => {
+            let (involute, dimension) = any_scalar(context, &arguments[0], &what)?;
+            if dimension.length != 0 {
+                one(context, D::ANGLE)?;
+            }
+            Value::Scalar(involute.unary(Unary::Arcinv), D::ANGLE)
         }
         Function::Abs => {
             let (x, dimension) = any_scalar(context, &arguments[0], &what)?;

@@ -48,6 +48,7 @@ mod machine;
 mod model;
 mod render;
 mod sample;
+mod side;
 mod source;
 pub mod syntax;
 mod tool;
@@ -59,7 +60,7 @@ pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Sample,
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process, Sample, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flank_expr::Expr;
-use flank_expr::geometry::{Chain, Step, Surface};
+use flank_expr::geometry::{Chain, Edge, Step, Surface, Vector3};
 
 use crate::dimension::Dimension;
 
@@ -117,8 +117,8 @@ pub struct GeneratedSurface<'g> {
     pub doc: Vec<String>,
     /// The frame, as `m.table`.
     pub frame: String,
-    /// How it came about; `None` if it is an earlier surface moved.
-    pub generation: Option<Generation<'g>>,
+    /// How it came about.
+    pub generation: Generation<'g>,
     /// The surface, in motions and parameters.
     pub surface: Surface<'g>,
     /// Ranges of its unknowns, in the order of `surface.unknowns`.
@@ -127,13 +127,35 @@ pub struct GeneratedSurface<'g> {
     pub sample: Option<Sample<'g>>,
 }
 
+/// What a tool is, in its own frame.
+#[derive(Clone, Debug)]
+pub enum ToolShape<'g> {
+    /// A surface: an envelope takes it.
+    Surface(Surface<'g>),
+    /// A cutting edge: a sweep takes it.
+    Edge(Edge<'g>),
+}
+
+/// How a surface came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Process {
+    /// The envelope of a tool's surface.
+    Envelope,
+    /// The sweep of a cutting edge.
+    Sweep,
+    /// The tool's surface itself, seen from another frame.
+    Move,
+}
+
 /// The envelope that made a surface.
 #[derive(Clone, Debug)]
 pub struct Generation<'g> {
     /// The tool's surface, as `c.flank`.
     pub tool_name: String,
-    /// The tool's surface in its own frame.
-    pub tool: Surface<'g>,
+    /// How the surface came about.
+    pub process: Process,
+    /// The tool in its own frame.
+    pub tool: ToolShape<'g>,
     /// The frames from work to tool, as `m.table`, with the steps between each and the one before it.
     pub path: Vec<(String, Vec<Step<'g>>)>,
     /// The pose of the tool in the work, in axis variables.
@@ -166,6 +188,21 @@ pub struct Coordinate<'g> {
     pub value: Expr<'g>,
     /// Its dimension.
     pub dimension: Dimension,
+}
+
+impl<'g> Generation<'g> {
+    /// A point of the tool in its own frame.
+    pub fn position(&self) -> Vector3<'g> {
+        match &self.tool {
+            ToolShape::Surface(surface) => surface.position,
+            ToolShape::Edge(edge) => edge.position,
+        }
+    }
+
+    /// The frame that the tool is given in.
+    pub fn tool_frame(&self) -> &str {
+        self.path.last().map_or("", |(name, _)| name)
+    }
 }
 
 impl<'g> Job<'g> {

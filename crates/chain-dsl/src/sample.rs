@@ -1,7 +1,7 @@
 //! Which points of a surface are asked for.
 
 use crate::codes::Code;
-use crate::context::{Context, Scope, quoted};
+use crate::context::{Context, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::limits;
@@ -43,8 +43,8 @@ pub(crate) fn build<'g>(
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     };
-    let row_coordinate = coordinate(context, rows, surface);
-    let column_coordinate = coordinate(context, columns, surface);
+    let row_coordinate = coordinate(context, rows, surface, scope);
+    let column_coordinate = coordinate(context, columns, surface, scope);
     let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
     let row_values = values(context, rows, scope, row_coordinate.dimension);
     let column_values = values(context, columns, scope, column_coordinate.dimension);
@@ -86,7 +86,23 @@ fn coordinate<'g>(
     context: &mut Context<'g>,
     entry: &SampleEntry,
     surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
 ) -> Option<Coordinate<'g>> {
+    if let Some(definition) = &entry.definition {
+        let mut scope = scope.clone();
+        for known in surface.coordinates() {
+            scope.insert(known.name, Value::Scalar(known.value, known.dimension));
+        }
+        let value = context.evaluate(definition, &scope);
+        let Value::Scalar(value, dimension) = value else {
+            if !matches!(value, Value::Poison) {
+                let message = format!("a coordinate must be a number, a length or an angle, this is {}", value.described());
+                context.report(Diagnostic::new(Code::WrongDimension, definition.span, message));
+            }
+            return None;
+        };
+        return Some(Coordinate { name: entry.key.node.clone(), value, dimension });
+    }
     let found = surface.coordinate(&entry.key.node);
     if found.is_none() {
         let known = surface.coordinates();
@@ -212,7 +228,7 @@ fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scop
         context.report(Diagnostic::new(Code::SampleShape, entry.key.span, message));
         return None;
     };
-    let crate::context::Value::Vector(parts) = context.evaluate(written, scope) else {
+    let Value::Vector(parts) = context.evaluate(written, scope) else {
         let message = format!("{what} is a point `[z, rho]`");
         context.report(Diagnostic::new(Code::SampleShape, written.span, message));
         return None;

@@ -11,7 +11,7 @@ use crate::functions;
 use crate::source::Span;
 use crate::syntax::ast::{Call, Expression};
 
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 14] = [
     "translate",
     "translate_x",
     "translate_y",
@@ -22,7 +22,13 @@ const NAMES: [&str; 10] = [
     "rotate_z",
     "screw",
     "matrix",
+    "mirror",
+    "mirror_x",
+    "mirror_y",
+    "mirror_z",
 ];
+
+const AXES: [Axis<'static>; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// An explicit matrix may deviate this much from a rotation: it is written with finitely many digits.
 const RIGID_WITHIN: f64 = 1e-9;
@@ -39,6 +45,7 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
         "translate" => 3,
         "rotate" => 2,
         "screw" => 3,
+        "mirror_x" | "mirror_y" | "mirror_z" => 0,
         _ if NAMES.contains(&name) => 1,
         _ => {
             context.unknown(&call.function, "transform", NAMES.into_iter());
@@ -72,7 +79,7 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
         }
         "rotate_x" | "rotate_y" | "rotate_z" => {
             let angle = context.scalar(written[0], scope, Dimension::ANGLE, &what)?;
-            vec![Step::Rotate([Axis::X, Axis::Y, Axis::Z][axis_index(name)], angle)]
+            vec![Step::Rotate(AXES[axis_index(name)], angle)]
         }
         "rotate" => {
             let axis = unit_axis(context, written[0], scope)?;
@@ -87,6 +94,8 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
             let lead = context.scalar(written[2], scope, lead, "the lead of `screw` (such as `12 mm/rev`)")?;
             vec![Step::Rotate(Axis::Along(axis), angle), Step::Translate(axis.scaled(lead * angle))]
         }
+        "mirror_x" | "mirror_y" | "mirror_z" => vec![Step::Mirror(AXES[axis_index(name)])],
+        "mirror" => vec![Step::Mirror(Axis::Along(unit_axis(context, written[0], scope)?))],
         _ => vec![Step::Rigid(matrix(context, written[0], scope)?)],
     })
 }
@@ -165,7 +174,11 @@ fn check_rigid<'g>(context: &mut Context<'g>, rotation: Matrix3<'g>, span: Span)
                 format!("its rows are not unit vectors at right angles (off by {worst:.1e})")
             };
             let message = format!("this matrix is not a rigid motion: {reason}");
-            let help = "give at least 10 digits, or say it with `rotate` and `translate`";
+            let help = if (found[3] + 1.0).abs() < 1e-3 {
+                "for the other hand, say `mirror_x()`, `mirror_y()`, `mirror_z()` or `mirror([x, y, z])`"
+            } else {
+                "give at least 10 digits, or say it with `rotate` and `translate`"
+            };
             context.report(Diagnostic::new(Code::NotRigid, span, message).help(help));
             return None;
         }

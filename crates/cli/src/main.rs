@@ -6,6 +6,7 @@ mod derive;
 mod solve;
 mod spec;
 mod table;
+mod travel;
 
 use std::process::ExitCode;
 

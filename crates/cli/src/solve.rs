@@ -13,7 +13,7 @@ use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Format, Solve};
 use crate::table::{Solved, Table};
-use crate::{Ending, print, spec};
+use crate::{Ending, print, spec, travel};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
     let start = Instant::now();
@@ -41,8 +41,9 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         };
         let table = Table { job, spec: spec::shown(&arguments.which.file), solved: &solved, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
-        if !table.unsolved().is_empty() {
-            anstream::eprint!("{}", table.unsolved());
+        let told = table.unsolved() + &travel::beyond(job, &solved);
+        if !told.is_empty() {
+            anstream::eprint!("{told}");
             ending = Ending::Unsolved;
         }
     }

@@ -177,6 +177,17 @@ fn a_job_without_solution_exits_3_and_writes_statuses() {
     }
 }
 
+/// A gear too large for the machine: the radial axis would have to stand at 430 mm.
+#[test]
+fn an_axis_beyond_its_travel_is_told() {
+    let out = folder("travel");
+    let arguments = ["solve", "specs/hobbing/helical_gear.chain", "--no-picture", "--set", "teeth=241", "--out"];
+    let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stderr);
+    assert!(told.contains("beyond its travel: axis m.X runs from 428.6"), "{told}");
+}
+
 #[test]
 fn files_that_cannot_be_written_are_told() {
     let folder = folder("unwritable");

@@ -14,12 +14,14 @@
 //! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
 //! ```
 
+mod extent;
 mod grid;
 mod newton;
 mod start;
 mod surface;
 mod system;
 
+pub use extent::extent;
 pub use grid::{Effort, solve_grid};
 pub use newton::{Outcome, Range, Solution, TOLERANCE, solve};
 pub use surface::{SurfacePoint, SurfaceProblem};

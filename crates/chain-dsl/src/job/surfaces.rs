@@ -7,59 +7,57 @@ use crate::codes::Code;
 use crate::context::{Context, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::machine;
-use crate::model::{Bounded, GeneratedSurface, Generation};
+use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
 use crate::sample;
+use crate::side;
 use crate::source::Span;
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 
 use super::{Builder, FrameRef};
 
-/// A surface that an envelope may take as its tool.
+/// What a surface may be made from.
 struct Available<'g> {
-    surface: Surface<'g>,
+    shape: ToolShape<'g>,
     unknowns: Vec<Bounded<'g>>,
     frame: FrameRef,
+    /// Where the side of its steel is stated, for an edge.
+    named: Span,
 }
+
+/// The ways to make a surface, by the names of their functions.
+const PROCESSES: [(&str, Process); 3] =
+    [("envelope", Process::Envelope), ("sweep", Process::Sweep), ("move", Process::Move)];
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn surface(&mut self, context: &mut Context<'g>, written: &ast::GeneratedSurface) {
         let frame = self.frame(context, &written.frame);
-        let (tool, motions) = match &written.value.kind {
-            ExpressionKind::Call(call) if call.function.node == "envelope" => {
-                let Some(found) = self.envelope_arguments(context, call) else {
-                    return;
-                };
-                found
-            }
+        let call = match &written.value.kind {
+            ExpressionKind::Call(call) => call,
             ExpressionKind::Error => return,
-            ExpressionKind::Call(call) => {
-                context.unknown(&call.function, "way to make a surface", ["envelope"].into_iter());
-                return;
-            }
             _ => {
-                let message = "a surface is made by `envelope(tool.surface, over: motion)`";
-                context.report(Diagnostic::new(Code::WrongKind, written.value.span, message));
-                return;
+                let message = "a surface is made by `envelope(tool.surface, over: motion)`, `sweep` or `move`";
+                return context.report(Diagnostic::new(Code::WrongKind, written.value.span, message));
             }
         };
-        let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else {
-            return;
+        let Some((_, process)) = PROCESSES.iter().find(|(name, _)| *name == call.function.node) else {
+            return context.unknown(&call.function, "way to make a surface", PROCESSES.iter().map(|(name, _)| *name));
         };
-        let Some(path) = self.path_between(context, frame, available.frame, written.value.span) else {
-            return;
-        };
-        let graph = context.graph;
-        let t_work_tool = Chain::new(graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
+        let Some((tool, motions)) = self.process_arguments(context, call) else { return };
+        let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else { return };
+        let Some(path) = self.path_between(context, frame, available.frame, written.value.span) else { return };
+        let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
         if !self.check_motions(context, &driven, &motions, written, &available) {
             return;
         }
+        let unknowns: Vec<Bounded<'g>> =
+            available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
-        let surface = available.surface.envelope(&driven, &over);
-        let unknowns = available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
+        let Some(surface) = made(context, *process, call, &available, &driven, &over, &unknowns) else { return };
         let generation = Generation {
             tool_name: tool.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join("."),
-            tool: available.surface,
+            process: *process,
+            tool: available.shape,
             path,
             t_work_tool,
             driven,
@@ -70,7 +68,7 @@ impl<'g> Builder<'_, 'g> {
                 name: written.name.node.clone(),
                 doc: written.doc.clone(),
                 frame: self.frame_name(frame),
-                generation: Some(generation),
+                generation,
                 surface,
                 unknowns,
                 sample: None,
@@ -79,12 +77,13 @@ impl<'g> Builder<'_, 'g> {
         ));
     }
 
-    /// The tool's surface and the motions of `envelope(tool.surface, over: [motion, …])`.
-    fn envelope_arguments<'p>(
+    /// The tool's surface and the motions of `envelope(tool.surface, over: [motion, …])`, `sweep`, `move`.
+    fn process_arguments<'p>(
         &self,
         context: &mut Context<'g>,
         call: &'p ast::Call,
     ) -> Option<(&'p ast::Path, Vec<(Bounded<'g>, Span)>)> {
+        let process = call.function.node.as_str();
         let mut tool = None;
         let mut motions = Vec::new();
         for argument in &call.arguments {
@@ -101,18 +100,18 @@ impl<'g> Builder<'_, 'g> {
                     }
                 }
                 (Some(name), _) => {
-                    context.unknown(name, "argument of `envelope`", ["over"].into_iter());
+                    context.unknown(name, &format!("argument of `{process}`"), ["over"].into_iter());
                     return None;
                 }
                 (None, _) => {
-                    let message = "`envelope` takes a surface of a tool and `over:` its motions";
+                    let message = format!("`{process}` takes a surface of a tool and `over:` its motions");
                     context.report(Diagnostic::new(Code::WrongArguments, argument.value.span, message));
                     return None;
                 }
             }
         }
         if tool.is_none() {
-            let message = "`envelope` takes a surface of a tool: `envelope(c.flank, over: roll)`";
+            let message = format!("`{process}` takes a surface of a tool: `{process}(c.flank, over: roll)`");
             context.report(Diagnostic::new(Code::WrongArguments, call.span, message));
         }
         tool.map(|tool| (tool, motions))
@@ -164,7 +163,8 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             };
             let frame = mounted.map_or(Some(*frame), |(frame, _)| frame)?;
-            return Some(Available { surface: earlier.surface.clone(), unknowns: earlier.unknowns.clone(), frame });
+            let shape = ToolShape::Surface(earlier.surface.clone());
+            return Some(Available { shape, unknowns: earlier.unknowns.clone(), frame, named: path.span });
         }
         let Some((_, built)) = self.tools.iter().find(|(tool, _)| tool.node == owner.node) else {
             if !self.names.contains_key(&owner.node) {
@@ -186,8 +186,8 @@ impl<'g> Builder<'_, 'g> {
             context.report(Diagnostic::new(Code::NotMounted, owner.span, message).help(help));
             return None;
         };
-        let (surface, unknowns) = surface.surface.clone()?;
-        Some(Available { surface, unknowns, frame: frame? })
+        let (shape, unknowns) = surface.surface.clone()?;
+        Some(Available { shape, unknowns, frame: frame?, named: path.span })
     }
 
     fn frame_name(&self, (machine, frame): FrameRef) -> String {
@@ -284,5 +284,44 @@ impl<'g> Builder<'_, 'g> {
         }
         let sample = sample::build(context, written, &self.surfaces[index].0, &self.scope);
         self.surfaces[index].0.sample = sample;
+    }
+}
+
+/// The surface that a process makes of what is available.
+fn made<'g>(
+    context: &mut Context<'g>,
+    process: Process,
+    call: &ast::Call,
+    available: &Available<'g>,
+    driven: &Chain<'g>,
+    over: &[Expr<'g>],
+    unknowns: &[Bounded<'g>],
+) -> Option<Surface<'g>> {
+    let wrong = |context: &mut Context<'g>, span, message: &str, help: &str| {
+        context.report(Diagnostic::new(Code::WrongKind, span, message).help(help));
+        None
+    };
+    match (process, &available.shape) {
+        (Process::Envelope, ToolShape::Surface(surface)) => Some(surface.envelope(driven, over)),
+        (Process::Move, ToolShape::Surface(surface)) if over.is_empty() => Some(surface.moved(driven)),
+        (Process::Move, ToolShape::Surface(_)) => {
+            let help = "for what a moving tool leaves, say `envelope`";
+            wrong(context, call.span, "`move` shows a surface from a frame that stands still to it: it takes no motion", help)
+        }
+        (Process::Sweep, ToolShape::Edge(_)) if over.is_empty() => {
+            wrong(context, call.span, "`sweep` takes at least one motion", "say `over: motion`")
+        }
+        (Process::Sweep, ToolShape::Edge(edge)) => {
+            let raw = edge.raw_normal(driven, over[0]);
+            let flipped = side::is_flipped(context, available.named, unknowns, raw, edge.steel)?;
+            Some(edge.sweep(driven, over, flipped))
+        }
+        (Process::Sweep, ToolShape::Surface(_)) => {
+            let help = "for a surface, say `envelope`; an edge is a tool's surface with one parameter";
+            wrong(context, available.named, "`sweep` takes a cutting edge, this is a surface", help)
+        }
+        (Process::Envelope | Process::Move, ToolShape::Edge(_)) => {
+            wrong(context, available.named, "this is a cutting edge, not a surface", "for an edge, say `sweep`")
+        }
     }
 }

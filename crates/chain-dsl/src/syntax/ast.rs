@@ -297,8 +297,10 @@ pub struct Sample {
 /// `key: a .. b by n`, or `key: value`
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleEntry {
-    /// A coordinate (`z`, `rho`), an unknown, a corner of the outline.
+    /// A coordinate (`z`, `rho`), an unknown, a corner of the outline, or the name of a coordinate defined here.
     pub key: Name,
+    /// What it is, if it is defined here: `height = z * cos(root_angle): 1 mm .. 5 mm by 9`.
+    pub definition: Option<Expression>,
     /// Its values.
     pub values: SampleValues,
 }

@@ -219,7 +219,7 @@ impl Piece<'_> {
     }
 
     fn sample(&self, surface: Name) -> Sample {
-        let entry = SampleEntry { key: self.nameless(), values: SampleValues::Value(self.error()) };
+        let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
         Sample { surface, entries: vec![entry], span: self.span() }
     }
 

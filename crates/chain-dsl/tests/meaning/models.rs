@@ -76,7 +76,7 @@ fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
             surface s in m.work = envelope(b.face, over: turn)
         }";
     let compilation = compiled(&graph, text);
-    let generation = compilation.jobs[0].surfaces[0].generation.as_ref().expect("an envelope");
+    let generation = &compilation.jobs[0].surfaces[0].generation;
     let frames: Vec<&str> = generation.path.iter().map(|(frame, _)| frame.as_str()).collect();
     assert_eq!(frames, ["m.work", "m.bed", "m.slide"]);
     // p_work = Rz(−turn) · (p_tool + (0, 4, turn))

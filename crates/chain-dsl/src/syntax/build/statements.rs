@@ -185,6 +185,8 @@ impl Build<'_> {
     fn entry(&mut self, pair: Pair<'_, Rule>) -> SampleEntry {
         let mut parts = Parts::of(pair);
         let key = self.name(parts.required(Rule::name));
+        let definition = parts.optional(Rule::coordinate);
+        let definition = definition.map(|pair| self.expression(Parts::of(pair).required(Rule::expression)));
         let low = self.expression(parts.required(Rule::expression));
         let values = match parts.optional(Rule::expression) {
             None => SampleValues::Value(low),
@@ -194,6 +196,6 @@ impl Build<'_> {
                 SampleValues::Range(Range { low, high, span }, self.expression(parts.required(Rule::expression)))
             }
         };
-        SampleEntry { key, values }
+        SampleEntry { key, definition, values }
     }
 }

@@ -1,0 +1,59 @@
+//! Axes that leave their travel while the surfaces are made.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use flank_chain_dsl::{Dimension, Job};
+use flank_expr::{Expr, VariableId};
+use flank_solver::{Outcome, Range, extent};
+
+use crate::table::Solved;
+
+/// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
+pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+    let over = reached(job, solved);
+    let bindings = job.bindings();
+    let mut out = String::new();
+    for machine in &job.machines {
+        for axis in &machine.axes {
+            let Some((low, high)) = axis.travel else { continue };
+            // an axis whose motion no solved point has is at no place that could be told
+            let Ok(Some(found)) = extent(axis.law, &over, &bindings) else { continue };
+            // rounding of the law itself
+            let slack = 1e-9 * (high - low);
+            if found.low < low - slack || found.high > high + slack {
+                let (size, unit) = match axis.dimension {
+                    Dimension::ANGLE => (1f64.to_degrees(), "deg"),
+                    _ => (1.0, "mm"),
+                };
+                let _ = writeln!(
+                    out,
+                    "beyond its travel: axis {}.{} runs from {:.4} to {:.4} {unit}, its travel is {:.4} to {:.4} {unit}",
+                    machine.name,
+                    axis.name,
+                    size * found.low,
+                    size * found.high,
+                    size * low,
+                    size * high
+                );
+            }
+        }
+    }
+    out
+}
+
+/// The motions with the ranges that the solved points of all surfaces need.
+fn reached<'g>(job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<(Expr<'g>, Range)> {
+    let mut ends: HashMap<Option<VariableId>, Range> = HashMap::new();
+    for surface in solved {
+        for (k, unknown) in surface.surface.unknowns.iter().enumerate() {
+            for point in surface.points.iter().filter(|point| point.outcome == Outcome::Solved) {
+                let at = point.unknowns[k];
+                let range = ends.entry(unknown.variable.as_variable()).or_insert(Range { low: at, high: at });
+                *range = Range { low: range.low.min(at), high: range.high.max(at) };
+            }
+        }
+    }
+    let range = |variable: Expr<'g>| ends.get(&variable.as_variable()).map(|range| (variable, *range));
+    job.motions.iter().filter_map(|motion| range(motion.variable)).collect()
+}
