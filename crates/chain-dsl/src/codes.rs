@@ -38,6 +38,7 @@ codes! {
     CyclicUse         = "E0002" Error "files use each other in a circle";
     OutsideProject    = "E0003" Error "a `use` leaves the project folder";
     LimitExceeded     = "E0004" Error "a stated limit is exceeded";
+    WrongTable        = "E0005" Error "a table is not what its use says";
     // 01: text
     Syntax            = "E0101" Error "the text is not in the language";
     // 02: names

@@ -17,6 +17,7 @@ use crate::model::Job;
 use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{self, Item};
 use crate::syntax::parse_expression;
+use crate::tables::Tables;
 use crate::tool::{self, Tools};
 
 /// What became of a text.
@@ -50,8 +51,8 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 }
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
-    let Loaded { mut sources, files, diagnostics } = loaded;
-    let mut context = Context::new(graph);
+    let Loaded { mut sources, files, diagnostics, root } = loaded;
+    let mut context = Context::new(graph, Tables::new(root, &sources));
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);
     let items = Items::collect(&mut context, &files);

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
-use flank_expr::{Expr, Graph};
+use flank_expr::{CurveId, Expr, Graph};
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
@@ -11,6 +11,7 @@ use crate::dimension::Dimension;
 use crate::limits;
 use crate::source::{Name, Span};
 use crate::syntax::ast;
+use crate::tables::Tables;
 
 /// What a variable stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +41,8 @@ pub(crate) enum Value<'g> {
     /// `None` where the answer is not known yet: a definition checked without values.
     Truth(Option<bool>),
     Text,
+    /// A curve with the dimensions of its x and y.
+    Curve(CurveId, Dimension, Dimension),
     /// Something wrong that has been reported: whatever is made of it is silent.
     Poison,
 }
@@ -51,6 +54,7 @@ impl Value<'_> {
             Value::Scalar(_, dimension) => format!("{} {dimension}", article(*dimension)),
             Value::Vector(parts) => format!("a vector of {}", parts.len()),
             Value::Truth(_) => "a condition".to_string(),
+            Value::Curve(..) => "a curve".to_string(),
             Value::Text => "a text".to_string(),
             Value::Poison => "an error".to_string(),
         }
@@ -78,6 +82,7 @@ pub(crate) enum Constant {
 pub(crate) struct Context<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) functions: HashMap<String, ast::Function>,
+    pub(crate) tables: Tables,
     roles: Vec<Role>,
     values: Vec<f64>,
     diagnostics: Vec<Diagnostic>,
@@ -89,11 +94,12 @@ pub(crate) struct Context<'g> {
 }
 
 impl<'g> Context<'g> {
-    pub(crate) fn new(graph: &'g Graph) -> Context<'g> {
+    pub(crate) fn new(graph: &'g Graph, tables: Tables) -> Context<'g> {
         assert_eq!(graph.variable_count(), 0, "a compilation starts with a graph of its own");
         Context {
             graph,
             functions: HashMap::new(),
+            tables,
             roles: Vec::new(),
             values: Vec::new(),
             diagnostics: Vec::new(),
@@ -251,7 +257,7 @@ pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>)
         );
     match nearest {
         Some((_, candidate)) => Some(format!("did you mean `{candidate}`?")),
-        None if !known.is_empty() && known.len() <= 12 => Some(format!("there is: {}", quoted(&known))),
+        None if !known.is_empty() && known.len() <= 16 => Some(format!("there is: {}", quoted(&known))),
         None => None,
     }
 }

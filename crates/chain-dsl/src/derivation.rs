@@ -198,7 +198,9 @@ impl Page {
         for (index, &motion) in generation.motions.iter().enumerate() {
             let graph = motion.graph();
             let plain = motion.to_string();
-            self.text(&format!("twist along {plain}, of {tool_frame} against {frame}, in {tool_frame}: angular, linear:"));
+            self.text(&format!(
+                "twist along {plain}, of {tool_frame} against {frame}, in {tool_frame}: angular, linear:"
+            ));
             let twist = generation.driven.twist(motion);
             self.vector("omega", twist.angular);
             self.vector("v", twist.linear);

@@ -1,6 +1,6 @@
 //! Expressions of the text become symbolic scalars, their dimensions checked on the way.
 
-use flank_expr::Expr;
+use flank_expr::{CurveId, Expr};
 
 use crate::codes::Code;
 use crate::context::{Constant, Context, Scope, Value, article};
@@ -10,6 +10,7 @@ use crate::functions;
 use crate::limits;
 use crate::source::Span;
 use crate::syntax::ast::{self, BinaryOperator, Expression, ExpressionKind, Range, UnaryOperator};
+use crate::tables;
 
 impl<'g> Context<'g> {
     /// The value of an expression; what is wrong in it is reported and becomes poison.
@@ -378,6 +379,14 @@ impl<'g> Context<'g> {
     }
 
     fn call(&mut self, call: &ast::Call, scope: &Scope<'g>) -> Value<'g> {
+        if call.function.node == "curve" {
+            return tables::curve(self, call);
+        }
+        match scope.get(&call.function.node) {
+            Some(Value::Curve(curve, x, y)) => return self.on_curve(call, (*curve, *x, *y), scope),
+            Some(Value::Poison) => return Value::Poison,
+            _ => {}
+        }
         let Some(function) = self.functions.get(&call.function.node).cloned() else {
             return functions::call(self, call, scope);
         };
@@ -404,6 +413,20 @@ impl<'g> Context<'g> {
         let value = self.function_body(&function, inner);
         self.call_depth -= 1;
         value
+    }
+
+    fn on_curve(
+        &mut self,
+        call: &ast::Call,
+        (curve, x, y): (CurveId, Dimension, Dimension),
+        scope: &Scope<'g>,
+    ) -> Value<'g> {
+        let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
+        let what = format!("the argument of `{}`", call.function.node);
+        match self.require(&arguments[0].0, x, arguments[0].1, &what) {
+            Some(at) => Value::Scalar(at.on_curve(curve, 0), y),
+            None => Value::Poison,
+        }
     }
 
     /// The value of a function whose arguments are in the scope.

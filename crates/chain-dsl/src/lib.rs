@@ -51,6 +51,7 @@ mod sample;
 mod side;
 mod source;
 pub mod syntax;
+mod tables;
 mod tool;
 mod transforms;
 
@@ -60,7 +61,8 @@ pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process, Sample, ToolShape,
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process,
+    Sample, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

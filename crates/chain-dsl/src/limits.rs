@@ -12,6 +12,10 @@ pub const CALL_DEPTH: usize = 64;
 pub const EVALUATION_STEPS: usize = 2_000_000;
 /// Frames of one machine.
 pub const FRAMES: usize = 10_000;
+/// Size of a table that a curve is read from.
+pub const TABLE_BYTES: usize = 1 << 26;
+/// Rows of such a table.
+pub const TABLE_ROWS: usize = 100_000;
 /// Points of one sample.
 pub const SAMPLE_POINTS: usize = 20_000_000;
 /// Depth to which machines extend each other.

@@ -15,6 +15,8 @@ pub(crate) struct Loaded {
     pub(crate) sources: Sources,
     pub(crate) files: Vec<(FileId, File)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// The project folder; `None` for a text that is not a file.
+    pub(crate) root: Option<PathBuf>,
 }
 
 struct Loader {
@@ -31,7 +33,7 @@ struct Loader {
 /// `flank.toml`; else the current folder, if `path` lies in it; else the folder above that of `path`.
 pub(crate) fn load(path: &Path) -> Loaded {
     let mut loader = Loader {
-        loaded: Loaded { sources: Sources::default(), files: Vec::new(), diagnostics: Vec::new() },
+        loaded: Loaded { sources: Sources::default(), files: Vec::new(), diagnostics: Vec::new(), root: None },
         root: project_folder(path),
         known: HashMap::new(),
         open: Vec::new(),
@@ -42,6 +44,7 @@ pub(crate) fn load(path: &Path) -> Loaded {
         }
         Err(error) => loader.unreadable(path, &error, None),
     }
+    loader.loaded.root = Some(loader.root);
     loader.loaded
 }
 
@@ -59,7 +62,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
             ));
         }
     }
-    Loaded { sources, files: vec![(id, file)], diagnostics }
+    Loaded { sources, files: vec![(id, file)], diagnostics, root: None }
 }
 
 fn project_folder(path: &Path) -> PathBuf {
@@ -142,14 +145,7 @@ impl Loader {
 
     fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
         let span = self.place(shown, used_at);
-        let reason = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_string(),
-            std::io::ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
-            std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
-            std::io::ErrorKind::PermissionDenied => "reading it is not permitted".to_string(),
-            _ => error.to_string(),
-        };
-        let message = format!("cannot read `{}`: {reason}", shown.display());
+        let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
         self.loaded.diagnostics.push(Diagnostic::new(Code::UnreadableFile, span, message));
     }
 
@@ -186,4 +182,15 @@ fn tidy(path: &Path) -> PathBuf {
         }
     }
     out
+}
+
+/// Why a file cannot be read, in words.
+pub(crate) fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_string(),
+        std::io::ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
+        std::io::ErrorKind::PermissionDenied => "reading it is not permitted".to_string(),
+        _ => error.to_string(),
+    }
 }

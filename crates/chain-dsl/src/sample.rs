@@ -96,7 +96,8 @@ fn coordinate<'g>(
         let value = context.evaluate(definition, &scope);
         let Value::Scalar(value, dimension) = value else {
             if !matches!(value, Value::Poison) {
-                let message = format!("a coordinate must be a number, a length or an angle, this is {}", value.described());
+                let message =
+                    format!("a coordinate must be a number, a length or an angle, this is {}", value.described());
                 context.report(Diagnostic::new(Code::WrongDimension, definition.span, message));
             }
             return None;

@@ -306,7 +306,12 @@ fn made<'g>(
         (Process::Move, ToolShape::Surface(surface)) if over.is_empty() => Some(surface.moved(driven)),
         (Process::Move, ToolShape::Surface(_)) => {
             let help = "for what a moving tool leaves, say `envelope`";
-            wrong(context, call.span, "`move` shows a surface from a frame that stands still to it: it takes no motion", help)
+            wrong(
+                context,
+                call.span,
+                "`move` shows a surface from a frame that stands still to it: it takes no motion",
+                help,
+            )
         }
         (Process::Sweep, ToolShape::Edge(_)) if over.is_empty() => {
             wrong(context, call.span, "`sweep` takes at least one motion", "say `over: motion`")

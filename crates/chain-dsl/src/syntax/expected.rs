@@ -82,9 +82,15 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::dimension | Rule::dimension_factor | Rule::dimension_name | Rule::one => {
             "a dimension such as `length` or `angle`".to_owned()
         }
-        Rule::expression | Rule::operation | Rule::conditional | Rule::value | Rule::prefix | Rule::argument => {
-            "a value".to_owned()
-        }
+        Rule::expression
+        | Rule::operation
+        | Rule::conditional
+        | Rule::value
+        | Rule::prefix
+        | Rule::argument
+        | Rule::label
+        | Rule::dimension_word
+        | Rule::coordinate => "a value".to_owned(),
         Rule::range => "a range such as `0 mm .. 12 mm`".to_owned(),
         _ => sign(rule).map_or_else(|| "something else".to_owned(), |sign| format!("`{sign}`")),
     }

@@ -116,3 +116,72 @@ fn values_from_outside_win() {
     assert_eq!(codes(&file, &[("height", "3 *")]), [Code::Syntax]);
     assert_eq!(codes(&file, &[("m.height", "m.height")]), [Code::UnknownName]);
 }
+
+const TOOL: &str = r#"
+tool relieved {
+    let relief = curve("tables/relief.csv", s: length, depth: length)
+    let turn = curve("tables/relief.csv", s: length, turn: angle)
+    surface flank(s: length in 0 mm .. 4 mm, v: length in -5 mm .. 5 mm) {
+        at = [relief(s) + 1 mm / 1 rad * turn(s), s, v]
+        body towards [-1, 0, 0]
+    }
+}
+"#;
+
+/// depth = s² / 100 in mm, turn = s in degrees.
+const TABLE: &str = "# measured\ns [mm], depth [um], turn\n0, 0, 0\n1, 10, 1\n2, 40, 2\n4, 160, 4\n";
+
+#[test]
+fn a_curve_comes_from_two_columns_of_a_table() {
+    let job = format!(
+        "use \"library.chain\"\n{TOOL} job j {{
+            machine m = lathe(height: 3 mm)
+            tool t = relieved
+            mount t on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 0 mm
+            surface s in m.work = envelope(t.flank, over: turn)
+        }}"
+    );
+    let files = [("library.chain", LIBRARY), ("j.chain", job.as_str()), ("tables/relief.csv", TABLE)];
+    let folder = project("curve", &files);
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &folder.join("j.chain"), &[]);
+    assert!(compilation.diagnostics.is_empty(), "{:?}", compilation.diagnostics);
+    let surface = &compilation.jobs[0].surfaces[0];
+    let x = surface.generation.position().0[0];
+    let s = surface.unknowns[0].variable;
+    let mut values = vec![f64::NAN; graph.variable_count()];
+    values[s.as_variable().expect("a variable").index()] = 3.0;
+    let found = graph.evaluate(&[x, x.derivative(s), x.derivative(s).derivative(s)], &values);
+    let expected = [0.09 + 3f64.to_radians(), 0.06 + 1f64.to_radians(), 0.02];
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {expected:?}");
+}
+
+#[test]
+fn wrong_tables_are_told() {
+    let check = |name: &str, tool: &str, table: &str| {
+        let folder = project(name, &[("t.chain", tool), ("tables/relief.csv", table)]);
+        codes(&folder.join("t.chain"), &[])
+    };
+    assert_eq!(check("table-right", TOOL, TABLE), []);
+    assert_eq!(
+        check("table-missing", &TOOL.replace("relief.csv\", s: length, depth", "relif.csv\", s: length, depth"), TABLE),
+        [Code::UnreadableFile]
+    );
+    assert_eq!(
+        check("table-outside", &TOOL.replacen("tables/relief.csv", "/etc/hostname", 1), TABLE),
+        [Code::OutsideProject]
+    );
+    assert_eq!(check("table-column", TOOL, &TABLE.replace("depth", "height")), [Code::WrongTable]);
+    assert_eq!(check("table-number", TOOL, &TABLE.replace("40", "4o")), [Code::WrongTable]);
+    assert_eq!(check("table-order", TOOL, &TABLE.replace("2, 40", "1, 40")), [Code::WrongTable; 2]);
+    assert_eq!(check("table-unit", TOOL, &TABLE.replace("[um]", "[deg]")), [Code::WrongTable]);
+    assert_eq!(
+        check("table-dimension", &TOOL.replacen("s: length, depth", "s: lenght, depth", 1), TABLE),
+        [Code::UnknownName]
+    );
+    assert_eq!(check("table-argument", &TOOL.replace("relief(s)", "relief(2 deg)"), TABLE), [Code::WrongDimension]);
+    assert_eq!(check("table-shape", &TOOL.replacen(", depth: length", "", 1), TABLE), [Code::WrongArguments]);
+}

@@ -9,7 +9,7 @@ use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::source::{Name, Span, Spanned};
 
-use super::super::ast::{Argument, BinaryOperator, Call, Expression, ExpressionKind, UnaryOperator};
+use super::super::ast::{Argument, BinaryOperator, Call, Expression, ExpressionKind, Path, UnaryOperator};
 use super::super::grammar::Rule;
 use super::super::limits;
 use super::super::words;
@@ -157,11 +157,21 @@ impl Build<'_> {
         for pair in Parts::of(parts.required(Rule::arguments)).all(Rule::argument) {
             let mut parts = Parts::of(pair);
             let name = parts.optional(Rule::label).map(|label| self.name(Parts::of(label).required(Rule::name)));
-            let (value, own) = self.tree(parts.required(Rule::expression));
+            let (value, own) = match parts.optional(Rule::dimension_word) {
+                Some(word) => (self.dimension_argument(word), 1),
+                None => self.tree(parts.required(Rule::expression)),
+            };
             height = height.max(own);
             arguments.push(Argument { name, value });
         }
         (Call { function, arguments, span }, height)
+    }
+
+    /// `x: length`: the dimension of a table's column, as a path of one word.
+    fn dimension_argument(&self, word: Pair<'_, Rule>) -> Expression {
+        let segments = vec![self.name(word)];
+        let span = segments[0].span;
+        Expression { kind: ExpressionKind::Path(Path { segments, span }), span }
     }
 
     fn number(&mut self, pair: Pair<'_, Rule>) -> ExpressionKind {

@@ -1,0 +1,179 @@
+//! Tables beside the spec: `curve("file.csv", x: length, y: length)`.
+
+use std::collections::HashMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use flank_expr::{Curve, CurveId};
+
+use crate::codes::Code;
+use crate::context::{Context, Value};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::{self, Dimension};
+use crate::limits;
+use crate::source::{FileId, Name, Sources, Span};
+use crate::syntax::ast::{Argument, Call, ExpressionKind};
+
+/// Where tables are looked for, and those that have been read.
+#[derive(Default)]
+pub(crate) struct Tables {
+    /// The project folder; `None` for a text that is not a file.
+    root: Option<PathBuf>,
+    /// The folder of each source file.
+    folders: HashMap<FileId, PathBuf>,
+    /// Curves by path, columns and dimensions, so that one table is one curve however often it is named.
+    known: HashMap<(PathBuf, [String; 2], [Dimension; 2]), CurveId>,
+}
+
+impl Tables {
+    pub(crate) fn new(root: Option<PathBuf>, sources: &Sources) -> Tables {
+        let folder =
+            |path: &Path| std::fs::canonicalize(path).ok().and_then(|real| real.parent().map(Path::to_path_buf));
+        let folders = sources.files().filter_map(|(id, file)| Some((id, folder(&file.path)?))).collect();
+        Tables { root, folders, known: HashMap::new() }
+    }
+
+    /// The real path of a table named in a file, or why it may not be read.
+    fn locate(&self, named: &str, file: FileId) -> Result<PathBuf, (Code, String)> {
+        let Some(root) = &self.root else {
+            return Err((Code::UnreadableFile, "a text that is not a file cannot use files".to_string()));
+        };
+        let folder = self.folders.get(&file).cloned().unwrap_or_default();
+        let real = std::fs::canonicalize(folder.join(named)).map_err(|error| {
+            (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
+        })?;
+        if Path::new(named).is_absolute() || !real.starts_with(root) {
+            return Err((
+                Code::OutsideProject,
+                format!("`{named}` lies outside the project folder {}", root.display()),
+            ));
+        }
+        Ok(real)
+    }
+}
+
+/// The value of a call of `curve`.
+pub(crate) fn curve<'g>(context: &mut Context<'g>, call: &Call) -> Value<'g> {
+    read(context, call).unwrap_or(Value::Poison)
+}
+
+fn read<'g>(context: &mut Context<'g>, call: &Call) -> Option<Value<'g>> {
+    let [Argument { name: None, value: path }, x, y] = call.arguments.as_slice() else {
+        return shape(context, call.span);
+    };
+    let ExpressionKind::Text(named) = &path.kind else { return shape(context, path.span) };
+    let (x_name, x_dimension) = column(context, x)?;
+    let (y_name, y_dimension) = column(context, y)?;
+    let real = match context.tables.locate(named, path.span.file) {
+        Ok(real) => real,
+        Err((code, message)) => {
+            context.report(Diagnostic::new(code, path.span, message));
+            return None;
+        }
+    };
+    let key = (real.clone(), [x_name.node.clone(), y_name.node.clone()], [x_dimension, y_dimension]);
+    let known = context.tables.known.get(&key).copied();
+    let id = match known {
+        Some(id) => id,
+        None => {
+            let columns = [(x_name.node.as_str(), x_dimension), (y_name.node.as_str(), y_dimension)];
+            let curve = match table(&real, columns) {
+                Ok(curve) => curve,
+                Err((code, reason)) => {
+                    context.report(Diagnostic::new(code, path.span, format!("`{named}`: {reason}")));
+                    return None;
+                }
+            };
+            let id = context.graph.curve(curve);
+            context.tables.known.insert(key, id);
+            id
+        }
+    };
+    Some(Value::Curve(id, x_dimension, y_dimension))
+}
+
+fn shape<'g>(context: &mut Context<'g>, span: Span) -> Option<Value<'g>> {
+    let message = "`curve` takes a file and the names and dimensions of two of its columns";
+    let help = "for example `curve(\"profile.csv\", s: length, relief: length)`";
+    context.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
+    None
+}
+
+/// `name: dimension`; the dimension is written as an expression of dimension names.
+fn column<'a>(context: &mut Context<'_>, argument: &'a Argument) -> Option<(&'a Name, Dimension)> {
+    let (Some(name), ExpressionKind::Path(path)) = (&argument.name, &argument.value.kind) else {
+        shape(context, argument.value.span);
+        return None;
+    };
+    let [written] = path.segments.as_slice() else {
+        shape(context, path.span);
+        return None;
+    };
+    let Some(dimension) = dimension::named(&written.node) else {
+        context.unknown(written, "dimension", ["length", "angle", "number"].into_iter());
+        return None;
+    };
+    Some((name, dimension))
+}
+
+type Reason = (Code, String);
+
+/// The curve through two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
+fn table(path: &Path, columns: [(&str, Dimension); 2]) -> Result<Curve, Reason> {
+    let unreadable = |error: &std::io::Error| (Code::UnreadableFile, crate::load::reason(error));
+    let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
+    if !file.metadata().map_err(|error| unreadable(&error))?.is_file() {
+        return Err((Code::UnreadableFile, "it is not a plain file".to_string()));
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(file.take(limits::TABLE_BYTES as u64));
+    let wrong = |reason: String| (Code::WrongTable, reason);
+    let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let mut places = [(0, 1.0); 2];
+    for (place, (name, dimension)) in places.iter_mut().zip(columns) {
+        *place = found(&heads, name, dimension).map_err(wrong)?;
+    }
+    let mut points = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| wrong(error.to_string()))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |(column, size): (usize, f64)| {
+            let cell = record.get(column).unwrap_or("");
+            let value: f64 = cell.parse().map_err(|_| wrong(format!("line {line}: `{cell}` is not a number")))?;
+            Ok::<f64, Reason>(value * size)
+        };
+        points.push((number(places[0])?, number(places[1])?));
+        if points.len() > limits::TABLE_ROWS {
+            return Err((Code::LimitExceeded, format!("a table has at most {} rows", limits::TABLE_ROWS)));
+        }
+    }
+    Curve::through(columns[1].0, &points).map_err(|error| wrong(error.to_string()))
+}
+
+/// The column with a name, `s` or `s [mm]`, and the size of its unit: mm and degrees where none is given.
+fn found(heads: &csv::StringRecord, name: &str, dimension: Dimension) -> Result<(usize, f64), String> {
+    for (index, head) in heads.iter().enumerate() {
+        let (plain, unit) = match head.split_once('[') {
+            Some((plain, rest)) => (plain.trim(), Some(rest.trim_end_matches(']').trim())),
+            None => (head, None),
+        };
+        if plain != name {
+            continue;
+        }
+        let unit = unit.unwrap_or(match dimension {
+            Dimension::ANGLE => "deg",
+            Dimension::LENGTH => "mm",
+            _ => return Ok((index, 1.0)),
+        });
+        return match dimension::unit(unit) {
+            Some((size, found)) if found == dimension => Ok((index, size)),
+            Some((_, found)) => Err(format!("column `{name}` is a {found}, not a {dimension}")),
+            None if unit == "1" && dimension == Dimension::NUMBER => Ok((index, 1.0)),
+            None => Err(format!("column `{name}`: `{unit}` is not a unit")),
+        };
+    }
+    let known: Vec<&str> = heads.iter().collect();
+    Err(format!("there is no column `{name}`; there is: {}", known.join(", ")))
+}
