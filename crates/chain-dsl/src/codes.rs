@@ -70,4 +70,8 @@ codes! {
     IdleMotion        = "E0509" Error "a motion does not move the tool against the work";
     FreeMotion        = "E0510" Error "a motion moves the tool, but the envelope is not over it";
     CyclicCouple      = "E0511" Error "axes follow each other in a circle";
+    // warnings
+    UnusedParameter   = "W0001" Warning "a parameter is not used";
+    UnusedMotion      = "W0002" Warning "a motion moves nothing";
+    UnreachedFrame    = "W0003" Warning "a frame carries nothing";
 }

@@ -19,6 +19,7 @@ use crate::syntax::ast::{self, Item};
 use crate::syntax::parse_expression;
 use crate::tables::Tables;
 use crate::tool::{self, Tools};
+use crate::unused;
 
 /// What became of a text.
 #[derive(Clone, Debug)]
@@ -67,6 +68,11 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
         }
     }
     check_overrides(&mut context, &overrides, &jobs);
+    // a wrong text is not finished: what it does not use yet is no finding
+    if let Some((_, file)) = files.last().filter(|_| !context.has_errors()) {
+        let all: Vec<&Item> = files.iter().flat_map(|(_, file)| &file.items).collect();
+        unused::warn(&mut context, file, &all);
+    }
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));

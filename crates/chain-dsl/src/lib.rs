@@ -54,6 +54,7 @@ pub mod syntax;
 mod tables;
 mod tool;
 mod transforms;
+mod unused;
 
 pub use codes::Code;
 pub use compile::{Compilation, compile_file, compile_text};

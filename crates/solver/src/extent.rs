@@ -23,8 +23,11 @@ pub fn extent<'g>(
 ) -> Result<Option<Range>, TapeError> {
     let value = value.graph().substitute(&[value], bindings);
     let used = value[0].graph().variables_of(&value);
-    let over: Vec<(Expr<'g>, Range)> =
-        over.iter().copied().filter(|(variable, _)| variable.as_variable().is_some_and(|v| used.contains(&v))).collect();
+    let over: Vec<(Expr<'g>, Range)> = over
+        .iter()
+        .copied()
+        .filter(|(variable, _)| variable.as_variable().is_some_and(|v| used.contains(&v)))
+        .collect();
     let inputs: Vec<Expr<'g>> = over.iter().map(|(variable, _)| *variable).collect();
     let tape = Tape::new(&value, &inputs)?;
     let ranges: Vec<Range> = over.iter().map(|(_, range)| *range).collect();

@@ -5,7 +5,7 @@ mod files;
 mod fixtures;
 mod models;
 
-use flank_chain_dsl::{Diagnostic, compile_text};
+use flank_chain_dsl::{Diagnostic, Severity, compile_text};
 use flank_expr::Graph;
 
 use fixtures::check;
@@ -18,10 +18,19 @@ fn findings(text: &str) -> Vec<Diagnostic> {
     compile_text(&graph, "text", &format!("{text}{LIBRARY}"), &[]).diagnostics
 }
 
+fn errors(text: &str) -> Vec<Diagnostic> {
+    findings(text).into_iter().filter(|finding| finding.severity() == Severity::Error).collect()
+}
+
+#[test]
+fn what_nobody_uses_is_warned_about() {
+    assert!(check("meaning/mistakes/unused.txt", true, findings) > 4);
+}
+
 #[test]
 fn one_mistake_gives_one_report() {
     let files = ["names", "dimensions", "values", "machines", "jobs"];
-    let count: usize = files.iter().map(|file| check(&format!("meaning/mistakes/{file}.txt"), true, findings)).sum();
+    let count: usize = files.iter().map(|file| check(&format!("meaning/mistakes/{file}.txt"), true, errors)).sum();
     assert!(count > 90, "{count}");
 }
 
