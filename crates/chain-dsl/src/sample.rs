@@ -60,7 +60,7 @@ pub(crate) fn build<'g>(
 
 impl<'g> GeneratedSurface<'g> {
     /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
-    /// `angle` (about it, in (−π, π]), then its unknowns by their names.
+    /// `polar_angle` (about it, in (−π, π]), then its unknowns by their names.
     pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
         let [x, y, z] = self.surface.position.0;
         let of_position = [
@@ -68,7 +68,7 @@ impl<'g> GeneratedSurface<'g> {
             ("y", y, Dimension::LENGTH),
             ("z", z, Dimension::LENGTH),
             ("rho", (x * x + y * y).sqrt(), Dimension::LENGTH),
-            ("angle", y.atan2(x), Dimension::ANGLE),
+            ("polar_angle", y.atan2(x), Dimension::ANGLE),
         ];
         let unknowns = self.unknowns.iter().map(|u| (u.name.as_str(), u.variable, u.dimension));
         let coordinate =
