@@ -1,8 +1,12 @@
-//! Every block of the language's documentation means what the page says.
+//! Every block of the documentation means what its page says.
 
-use flank_chain_dsl::{Severity, compile_text, render};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use flank_chain_dsl::{Compilation, Severity, compile_file, compile_text, render};
 use flank_expr::Graph;
-use flank_tests::repository;
+use flank_solver::{Outcome, Range, SurfaceProblem};
+use flank_tests::{pages, repository};
 
 struct Block {
     line: usize,
@@ -25,41 +29,125 @@ fn blocks(page: &str) -> Vec<Block> {
                 let wrong = Some(announced.take().expect("a wrong block has its error above it"));
                 open = Some(Block { line: index + 1, text: String::new(), wrong });
             }
+            (None, fence) => assert!(!fence.starts_with("```chain"), "line {}: no such kind of block", index + 1),
             (Some(_), "```") => blocks.extend(open.take()),
             (Some(block), _) => {
                 block.text.push_str(line);
                 block.text.push('\n');
             }
-            (None, _) => {}
         }
     }
     assert!(open.is_none(), "a block is not closed");
     blocks
 }
 
+fn read(page: &Path) -> String {
+    fs::read_to_string(page).expect("the page is there")
+}
+
+/// The right blocks of a page as one text, by a blank line apart.
+fn whole(page: &Path) -> String {
+    let right = blocks(&read(page)).into_iter().filter(|block| block.wrong.is_none());
+    right.map(|block| block.text).collect::<Vec<_>>().join("\n")
+}
+
+/// A project folder of its own with a copy of the library, in which texts of pages stand as files at the top.
+struct Project(PathBuf);
+
+impl Project {
+    fn new(name: &str) -> Project {
+        let top = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        if top.exists() {
+            fs::remove_dir_all(&top).expect("the last run's folder can go");
+        }
+        copy(&repository("specs"), &top.join("specs"));
+        fs::write(top.join("flank.toml"), "").expect("the folder can be written to");
+        Project(top)
+    }
+
+    fn compile<'g>(&self, graph: &'g Graph, text: &str) -> Compilation<'g> {
+        let file = self.0.join("page.chain");
+        fs::write(&file, text).expect("the folder can be written to");
+        compile_file(graph, &file, &[])
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("the folder can be made");
+    for entry in fs::read_dir(from).expect("the folder is there") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            fs::copy(entry.path(), target).expect("the file can be copied");
+        }
+    }
+}
+
+/// A block is compiled together with the right ones before it on its page, in the repository's top folder.
 #[test]
 fn blocks_compile_one_after_the_other() {
-    let page = std::fs::read_to_string(repository("docs/language.md")).expect("the page is there");
-    let blocks = blocks(&page);
-    assert!(blocks.len() >= 7, "the page has its blocks");
-    let mut so_far = String::new();
-    for block in blocks {
-        let text = format!("{so_far}\n{}", block.text);
-        let graph = Graph::new();
-        let compilation = compile_text(&graph, "docs/language.md", &text, &[]);
-        let told = render(&compilation.diagnostics, &compilation.sources, false);
-        let errors: Vec<&str> = compilation
-            .diagnostics
-            .iter()
-            .filter(|finding| finding.severity() == Severity::Error)
-            .map(|finding| finding.code.as_str())
-            .collect();
-        match block.wrong {
-            Some(code) => assert_eq!(errors, [code], "block at line {}:\n{told}", block.line),
-            None => {
-                assert!(compilation.diagnostics.is_empty(), "block at line {}:\n{told}", block.line);
-                so_far = text;
+    let project = Project::new("blocks");
+    let mut count = 0;
+    for page in pages() {
+        let shown = page.display();
+        let mut so_far = String::new();
+        for block in blocks(&read(&page)) {
+            count += 1;
+            let text = format!("{so_far}\n{}", block.text);
+            let graph = Graph::new();
+            let compilation = project.compile(&graph, &text);
+            let told = render(&compilation.diagnostics, &compilation.sources, false);
+            let errors: Vec<&str> = compilation
+                .diagnostics
+                .iter()
+                .filter(|finding| finding.severity() == Severity::Error)
+                .map(|finding| finding.code.as_str())
+                .collect();
+            match block.wrong {
+                Some(code) => assert_eq!(errors, [code], "{shown}, block at line {}:\n{told}", block.line),
+                None => {
+                    assert!(compilation.diagnostics.is_empty(), "{shown}, block at line {}:\n{told}", block.line);
+                    so_far = text;
+                }
             }
         }
     }
+    assert!(count >= 20, "the pages have their blocks: {count}");
+}
+
+/// The page on the language needs nothing but itself.
+#[test]
+fn the_language_stands_alone() {
+    let graph = Graph::new();
+    let compilation = compile_text(&graph, "docs/language.md", &whole(&repository("docs/language.md")), &[]);
+    assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
+}
+
+/// Every point that a page asks for is there.
+#[test]
+fn samples_are_solved() {
+    let project = Project::new("samples");
+    for page in pages() {
+        let graph = Graph::new();
+        for job in project.compile(&graph, &whole(&page)).jobs {
+            for surface in &job.surfaces {
+                let Some(sample) = &surface.sample else { continue };
+                let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+                let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+                let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings());
+                let (points, _) = problem.expect("nothing is unbound").solve(&sample.targets, sample.counts);
+                let lost = points.iter().filter(|point| point.outcome != Outcome::Solved).count();
+                assert_eq!(lost, 0, "{}: {} of job {}", page.display(), surface.name, job.name);
+            }
+        }
+    }
+}
+
+/// The tutorial builds up the file that ships.
+#[test]
+fn the_tutorial_ends_with_its_file() {
+    let shipped = read(&repository("specs/tutorial/first_gear.chain"));
+    assert_eq!(whole(&repository("docs/tutorial.md")), shipped);
 }

@@ -1,6 +1,6 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Job, compile_file, render};
 use flank_expr::Graph;
@@ -10,6 +10,37 @@ use serde_json::Value;
 /// A path below the repository's top folder.
 pub fn repository(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// The pages of the book in `docs/`, in the order of their paths, without those on errors: each of these has a test of
+/// its own.
+///
+/// # Panics
+/// If the folder cannot be read.
+pub fn pages() -> Vec<PathBuf> {
+    let errors = repository("docs/errors");
+    markdown(&repository("docs")).into_iter().filter(|page| !page.starts_with(&errors)).collect()
+}
+
+/// All pages of the repository that people read.
+///
+/// # Panics
+/// If a folder cannot be read.
+pub fn all_pages() -> Vec<PathBuf> {
+    let top = ["README.md", "ARCHITECTURE.md"].map(repository);
+    top.into_iter().chain(markdown(&repository("docs"))).collect()
+}
+
+fn markdown(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.sort();
+    let below = |path: PathBuf| match path.extension() {
+        _ if path.is_dir() => markdown(&path),
+        Some(extension) if extension == "md" => vec![path],
+        _ => Vec::new(),
+    };
+    paths.into_iter().flat_map(below).collect()
 }
 
 /// The first job of a spec of the library, with some values replaced.
