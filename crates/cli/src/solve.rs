@@ -98,7 +98,7 @@ fn unit(dimension: Dimension) -> Unit {
 
 fn point(solved: &SurfacePoint) -> Point {
     if solved.outcome != flank_solver::Outcome::Solved {
-        return Point::unsolved(solved.outcome.word());
+        return Point::unsolved(solved.outcome.word(), solved.residual);
     }
     Point {
         outcome: Outcome::Solved,

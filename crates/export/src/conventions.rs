@@ -9,7 +9,7 @@ pub(crate) fn sentences(dataset: &Dataset) -> Vec<String> {
         "positions and unit normals are in the frame named with their surface",
         "a normal points out of the body that owns the surface: out of the gear's steel on a tooth flank",
         "row i and column j count from 0; what each runs over is named with its surface",
-        "a point that was not solved has a status that says why, and no numbers",
+        "a point that was not solved has a status that says why, the residual of the best attempt, and no other numbers",
     ];
     fixed
         .iter()

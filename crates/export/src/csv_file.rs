@@ -105,7 +105,7 @@ fn record(patch: &Patch, i: usize, j: usize, point: &Point, places: &[Option<usi
         Some(k) => number(patch.unknowns[k].unit, point.unknowns.get(k)),
         None => String::new(),
     }));
-    cells.push(number(Unit::One, Some(&point.residual)));
+    cells.push(point.known_residual().map_or_else(String::new, shortest));
     cells.push(point.outcome.word().to_owned());
     cells
 }

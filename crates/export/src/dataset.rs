@@ -92,8 +92,8 @@ pub struct Point {
 pub enum Outcome {
     /// Position, normal, unknowns and residual are those of a root.
     Solved,
-    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. The point's numbers are
-    /// never written.
+    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. Of the point's numbers
+    /// only the residual is written: what the best attempt left.
     Unsolved(&'static str),
 }
 
@@ -129,16 +129,22 @@ impl Outcome {
 }
 
 impl Point {
-    /// A point that was asked for and has no solution; `why` is its status word.
+    /// A point that was asked for and has no solution; `why` is its status word, `residual` what the best attempt left
+    /// (NaN if there was none).
     #[must_use]
-    pub fn unsolved(why: &'static str) -> Self {
+    pub fn unsolved(why: &'static str, residual: f64) -> Self {
         Point {
             outcome: Outcome::Unsolved(why),
             position: [f64::NAN; 3],
             normal: [f64::NAN; 3],
             unknowns: Vec::new(),
-            residual: f64::NAN,
+            residual,
         }
+    }
+
+    /// The residual, unless there was nothing to measure.
+    pub(crate) fn known_residual(&self) -> Option<f64> {
+        Some(self.residual).filter(|residual| residual.is_finite())
     }
 
     /// Whether the point's numbers mean anything.

@@ -16,7 +16,7 @@ pub const SCHEMA: &str = "flank.surfaces/1";
 
 /// Writes all points as JSON, one point a line, keys in a fixed order.
 ///
-/// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal`, `unknowns` and `residual` are
+/// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal` and `unknowns` are
 /// `null`.
 ///
 /// # Errors
@@ -133,7 +133,7 @@ fn point_out(patch: &Patch, i: usize, j: usize, point: &Point) -> PointOut {
         position: solved.then(|| point.position.map(plain)),
         normal: solved.then(|| point.normal.map(plain)),
         unknowns: solved.then(values),
-        residual: solved.then(|| plain(point.residual)),
+        residual: point.known_residual().map(plain),
     }
 }
 

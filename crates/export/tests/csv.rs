@@ -46,7 +46,7 @@ fn an_unsolved_point_has_a_status_and_no_number() {
     patch.points[0].position = [1.0, 2.0, 3.0];
     patch.points[0].unknowns = vec![4.0];
     let (_, records) = read(&text_of(&dataset("job", vec![patch.clone()])));
-    assert_eq!(&records[0].iter().collect::<Vec<_>>()[3..], ["", "", "", "", "", "", "", "", "", "outside"]);
+    assert_eq!(&records[0].iter().collect::<Vec<_>>()[3..], ["", "", "", "", "", "", "", "", "0.25", "outside"]);
     assert_eq!(&records[12 * 15 + 7][12], "singular");
     let empty = records.iter().filter(|record| record[3].is_empty()).count();
     assert_eq!(empty, patch.points.iter().filter(|point| !point.is_solved()).count());
@@ -122,7 +122,7 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     poor.points[3].unknowns.pop();
     assert_eq!(refusal(poor).to_string(), "surface `flank`, point (1, 1): 1 values for 2 unknowns");
     let mut invented = sound();
-    invented.points[4] = Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("outside") };
+    invented.points[4] = Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("outside", f64::NAN) };
     assert!(matches!(refusal(invented), Malformed::UnknownCount { .. }));
     let mut endless = sound();
     endless.points[4].normal[1] = f64::INFINITY;

@@ -150,7 +150,7 @@ pub(crate) fn without(mut patch: Patch, lost: impl Fn(usize, usize) -> Option<&'
     let columns = patch.columns.count;
     for (at, point) in patch.points.iter_mut().enumerate() {
         if let Some(why) = lost(at / columns, at % columns) {
-            *point = Point::unsolved(why);
+            *point = Point::unsolved(why, 0.25);
         }
     }
     patch
