@@ -49,6 +49,7 @@ mod model;
 mod render;
 mod sample;
 mod source;
+mod steel;
 pub mod syntax;
 mod tool;
 mod transforms;

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
+use flank_expr::Expr;
 use flank_expr::geometry::{Surface, Vector3};
-use flank_expr::{Expr, Graph};
 
 use crate::codes::Code;
 use crate::context::{Context, Role, Scope, Value};
@@ -11,6 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::model::{Bounded, Parameter};
+use crate::steel;
 use crate::syntax::ast::{self, Side, ToolStatement};
 
 /// All tools of a compilation by name.
@@ -111,7 +112,7 @@ fn build_surface<'g>(
         return None;
     };
     let (position, towards) = (Vector3(position?), Vector3(towards?));
-    let flipped = is_flipped(context, written, [u, v], position, towards)?;
+    let flipped = steel::is_flipped(context, written, [u, v], position, towards)?;
     Some((Surface::parametric([u.variable, v.variable], position, flipped), unknowns))
 }
 
@@ -148,77 +149,4 @@ pub(crate) fn bounded<'g>(
     let (low, high) = context.range(&parameter.range, scope, dimension, &what).unwrap_or((f64::NAN, f64::NAN));
     let variable = context.variable(name.clone(), role, f64::NAN);
     Some(Bounded { name, variable, dimension, low, high })
-}
-
-/// Points in each direction at which the side of the steel is looked at.
-const LOOKS: usize = 5;
-
-/// Whether `r_u × r_v` points into the steel: the same answer all over the surface, or an error.
-fn is_flipped<'g>(
-    context: &mut Context<'g>,
-    written: &ast::ToolSurface,
-    [u, v]: [&Bounded<'g>; 2],
-    position: Vector3<'g>,
-    towards: Vector3<'g>,
-) -> Option<bool> {
-    let graph: &'g Graph = context.graph;
-    let raw = Surface::raw_normal([u.variable, v.variable], position);
-    let zero = graph.constant(0.0);
-    // out of the steel
-    let outward = match &written.body.side {
-        Side::Inside => Vector3([position.0[0], position.0[1], zero]),
-        Side::Outside => -Vector3([position.0[0], position.0[1], zero]),
-        Side::Towards(_) => -towards,
-    };
-    let parts = [raw.dot(outward), raw.norm(), outward.norm()];
-    let (mut along, mut against) = (0, 0);
-    for k in 0..LOOKS * LOOKS {
-        let at = |bounded: &Bounded<'g>, step: usize| {
-            let share = (step as f64 + 0.5) / LOOKS as f64;
-            bounded.low + (bounded.high - bounded.low) * share
-        };
-        let mut values = context.values().to_vec();
-        values[u.variable.as_variable()?.index()] = at(u, k / LOOKS);
-        values[v.variable.as_variable()?.index()] = at(v, k % LOOKS);
-        let found = graph.evaluate(&parts, &values);
-        if found.iter().any(|value| value.is_nan()) {
-            continue;
-        }
-        let cosine = found[0] / (found[1] * found[2]);
-        along += usize::from(cosine > 1e-9);
-        against += usize::from(cosine < -1e-9);
-    }
-    match (along, against) {
-        (0, 0)
-            if [u.low, v.low, u.high, v.high].iter().any(|end| end.is_nan())
-                || unknown_values(context, &parts, [u, v]) =>
-        {
-            Some(false)
-        }
-        (0, 0) => {
-            let message = "this side is neither in front of the surface nor behind it";
-            let help = "name a direction that points into the steel: `body towards [0, 0, -1]`";
-            context.report(Diagnostic::new(Code::SteelSide, written.body.span, message).help(help));
-            None
-        }
-        (_, 0) => Some(false),
-        (0, _) => Some(true),
-        _ => {
-            let message = "this side is in front of some points of the surface and behind others";
-            let help = "name a direction that points into the steel everywhere (it may depend on the parameters): \
-                        `body towards [0, 0, -1]`";
-            context.report(Diagnostic::new(Code::SteelSide, written.body.span, message).help(help));
-            None
-        }
-    }
-}
-
-/// True if the expressions depend on parameters without values (a definition looked at by itself).
-fn unknown_values<'g>(context: &Context<'g>, parts: &[Expr<'g>], [u, v]: [&Bounded<'g>; 2]) -> bool {
-    let own = [u.variable.as_variable(), v.variable.as_variable()];
-    context
-        .graph
-        .variables_of(parts)
-        .iter()
-        .any(|variable| !own.contains(&Some(*variable)) && context.values()[variable.index()].is_nan())
 }
