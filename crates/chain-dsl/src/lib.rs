@@ -39,6 +39,7 @@ mod derivation;
 mod diagnostic;
 mod dimension;
 mod evaluate;
+mod explain;
 mod functions;
 mod instance;
 mod job;
@@ -59,6 +60,7 @@ pub use compile::{Compilation, compile_file, compile_text};
 pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
+pub use explain::UnknownCode;
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Sample,
 };
