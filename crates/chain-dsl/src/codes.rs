@@ -24,6 +24,11 @@ macro_rules! codes {
                 match self { $(Code::$name => $title),* }
             }
 
+            /// The page of `docs/errors` about it; a code without a page does not compile.
+            pub fn page(self) -> &'static str {
+                match self { $(Code::$name => include_str!(concat!("../../../docs/errors/", $code, ".md"))),* }
+            }
+
             /// Error or warning.
             pub fn severity(self) -> Severity {
                 match self { $(Code::$name => Severity::$severity),* }

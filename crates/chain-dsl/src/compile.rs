@@ -6,7 +6,7 @@ use std::path::Path;
 use flank_expr::Graph;
 
 use crate::codes::Code;
-use crate::context::{Context, Scope, Value};
+use crate::context::{Context, Scope, Value, did_you_mean};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::functions;
 use crate::instance::{Overrides, Source};
@@ -30,12 +30,46 @@ pub struct Compilation<'g> {
     pub diagnostics: Vec<Diagnostic>,
     /// The jobs of the file itself (not those of the files it uses); none if there is an error.
     pub jobs: Vec<Job<'g>>,
+    main: Option<FileId>,
 }
 
-impl Compilation<'_> {
+impl<'g> Compilation<'g> {
     /// True if the text means nothing.
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error)
+    }
+
+    /// Takes the job of a name out, or all jobs if none is asked for.
+    ///
+    /// # Errors
+    /// The finding if there is no such job, or no job at all.
+    pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Diagnostic> {
+        let mut jobs = std::mem::take(&mut self.jobs);
+        let known: Vec<String> = jobs.iter().map(|job| job.name.clone()).collect();
+        if let Some(wanted) = wanted {
+            jobs.retain(|job| job.name == wanted);
+        }
+        if jobs.is_empty() { Err(self.no_job(wanted, &known)) } else { Ok(jobs) }
+    }
+
+    fn no_job(&mut self, wanted: Option<&str>, known: &[String]) -> Diagnostic {
+        let main = self.main.unwrap_or(FileId(0));
+        let file = self.sources.file(main).path.display().to_string().replace('\\', "/");
+        match wanted {
+            Some(wanted) if !known.is_empty() => {
+                let asked = self.sources.add("--job", wanted);
+                let span = Span { file: asked, start: 0, end: wanted.len() as u32 };
+                let message = format!("there is no job `{wanted}` in {file}");
+                let mut diagnostic = Diagnostic::new(Code::NoJob, span, message);
+                diagnostic.help = did_you_mean(wanted, known.iter().map(String::as_str));
+                diagnostic
+            }
+            _ => {
+                let span = Span { file: main, start: 0, end: 0 };
+                let help = "a machine or a tool by itself makes no surface; ask for a file with a `job`";
+                Diagnostic::new(Code::NoJob, span, format!("there is no job in {file}")).help(help)
+            }
+        }
     }
 }
 
@@ -62,6 +96,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let main = files.last().map(|(id, _)| *id);
     let mut jobs = Vec::new();
     for (file, written) in &items.jobs {
+        context.begin_item();
         let job = job::build(&mut context, written, &definitions, &sources.file(*file).path);
         if Some(*file) == main {
             jobs.push(job);
@@ -76,7 +111,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
-    Compilation { sources, diagnostics, jobs: if failed { Vec::new() } else { jobs } }
+    Compilation { sources, diagnostics, jobs: if failed { Vec::new() } else { jobs }, main }
 }
 
 /// The items of all files by name.
@@ -137,6 +172,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     let mut functions: Vec<ast::Function> = context.functions.values().cloned().collect();
     functions.sort_by_key(|function| function.name.span);
     for function in functions {
+        context.begin_item();
         let mut scope = Scope::new();
         for (name, written) in &function.arguments {
             let value = match context.dimension(written) {
@@ -153,6 +189,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     let mut machines: Vec<&ast::Machine> = items.machines.values().collect();
     machines.sort_by_key(|machine| machine.name.span);
     for machine in machines {
+        context.begin_item();
         if let Some(flat) = machine::flatten(context, &items.machines, machine) {
             flat.build(context, &machine.name, Source::Definition, &nothing);
         }
@@ -160,6 +197,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     let mut tools: Vec<&ast::Tool> = items.tools.values().collect();
     tools.sort_by_key(|tool| tool.name.span);
     for tool in tools {
+        context.begin_item();
         tool::build(context, tool, Source::Definition, &nothing);
     }
 }

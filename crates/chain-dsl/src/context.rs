@@ -25,10 +25,10 @@ pub(crate) enum Role {
 impl Role {
     pub(crate) fn described(self) -> &'static str {
         match self {
-            Role::Parameter => "a parameter",
-            Role::Axis => "an axis",
-            Role::Motion => "a motion",
-            Role::SurfaceParameter => "a surface parameter",
+            Role::Parameter => "parameter",
+            Role::Axis => "axis",
+            Role::Motion => "motion",
+            Role::SurfaceParameter => "surface parameter",
         }
     }
 }
@@ -87,6 +87,8 @@ pub(crate) struct Context<'g> {
     values: Vec<f64>,
     diagnostics: Vec<Diagnostic>,
     reported: HashSet<(Code, Span)>,
+    /// Names that the item being looked at uses without their being defined.
+    unknown: HashSet<String>,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
     steps: Cell<usize>,
     exhausted: bool,
@@ -104,6 +106,7 @@ impl<'g> Context<'g> {
             values: Vec::new(),
             diagnostics: Vec::new(),
             reported: HashSet::new(),
+            unknown: HashSet::new(),
             steps: Cell::new(0),
             exhausted: false,
             call_depth: 0,
@@ -161,7 +164,7 @@ impl<'g> Context<'g> {
         let variables = self.graph.variables_of(&[expr]);
         if let Some(moving) = variables.iter().find(|variable| self.roles[variable.index()] != Role::Parameter) {
             let role = self.roles[moving.index()].described();
-            return Constant::Moves(format!("`{}`, {role}", self.graph.variable_name(*moving)));
+            return Constant::Moves(format!("the {role} `{}`", self.graph.variable_name(*moving)));
         }
         if variables.iter().any(|variable| self.values[variable.index()].is_nan()) {
             return Constant::Unknown;
@@ -174,7 +177,15 @@ impl<'g> Context<'g> {
         match self.constant(expr) {
             Constant::Known(value) if value.is_finite() => Some(value),
             Constant::Known(value) => {
-                self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} is {value}, not a finite number")));
+                let (reason, help) = if value.is_nan() {
+                    (
+                        "cannot be computed",
+                        "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0",
+                    )
+                } else {
+                    ("is infinite", "look for a division by zero, or a value that grows too large")
+                };
+                self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
                 None
             }
             Constant::Unknown => None,
@@ -202,10 +213,15 @@ impl<'g> Context<'g> {
         }
     }
 
-    /// Reports an unknown name with the nearest known one.
+    /// Begins with a machine, tool, job or function.
+    pub(crate) fn begin_item(&mut self) {
+        self.unknown.clear();
+    }
+
+    /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.
     pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
         // the parser has reported a missing name
-        if name.node.is_empty() {
+        if name.node.is_empty() || !self.unknown.insert(name.node.clone()) {
             return;
         }
         let message = format!("there is no {kind} `{}`", name.node);
@@ -249,6 +265,9 @@ pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>)
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
+    if let Some(same) = known.iter().find(|candidate| candidate.to_lowercase() == name.to_lowercase()) {
+        return Some(format!("did you mean `{same}`?"));
+    }
     let nearest =
         known.iter().map(|candidate| (strsim::damerau_levenshtein(name, candidate), *candidate)).min().filter(
             |(distance, candidate)| {

@@ -117,6 +117,16 @@ pub(crate) fn convert(value: f64, name: &str, exponent: i32) -> Option<f64> {
     })
 }
 
+/// A value as people read it: `3 mm`, `20 deg`, `5`.
+pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
+    match dimension {
+        // a billionth of a degree: what was written in degrees comes back as written
+        Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e9).round() / 1e9),
+        Dimension::LENGTH => format!("{value} mm"),
+        _ => value.to_string(),
+    }
+}
+
 /// A base dimension by its name in the language.
 pub(crate) fn named(name: &str) -> Option<Dimension> {
     match name {

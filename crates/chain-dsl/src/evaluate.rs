@@ -95,19 +95,8 @@ impl<'g> Context<'g> {
             high.and_then(|high| self.require_constant(high, range.high.span, &format!("the range of {what}")));
         let (low_value, high_value) = (low_value?, high_value?);
         if low_value >= high_value {
-            let shown = |value: f64| {
-                if wanted == Dimension::ANGLE { value.to_degrees() } else { value }
-            };
-            let unit = match wanted {
-                Dimension::ANGLE => " deg",
-                Dimension::LENGTH => " mm",
-                _ => "",
-            };
-            let message = format!(
-                "the range of {what} is empty: {}{unit} is not below {}{unit}",
-                shown(low_value),
-                shown(high_value)
-            );
+            let [low, high] = [low_value, high_value].map(|value| dimension::shown(value, wanted));
+            let message = format!("the range of {what} is empty: {low} is not below {high}");
             let help = if low_value > high_value { "put the smaller end first" } else { "give it two different ends" };
             self.report(Diagnostic::new(Code::EmptyRange, range.span, message).help(help));
             return None;
@@ -267,10 +256,7 @@ impl<'g> Context<'g> {
         let mut diagnostic = Diagnostic::new(Code::WrongDimension, operator_span, message)
             .note(spans.0, Value::Scalar(a, da).described())
             .note(spans.1, Value::Scalar(b, db).described());
-        if mixed {
-            diagnostic.help =
-                Some("give the number its unit (`20 deg`), or make the angle a number by `/ 1 rad`".to_string());
-        }
+        diagnostic.help = missing_unit((a, da), (b, db));
         self.report(diagnostic);
         Value::Poison
     }
@@ -321,7 +307,9 @@ impl<'g> Context<'g> {
     ) -> Value<'g> {
         if da.sum(db).is_none() {
             let message = format!("cannot compare {da} and {db}");
-            self.report(Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message));
+            let mut diagnostic = Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message);
+            diagnostic.help = missing_unit((a, da), (b, db));
+            self.report(diagnostic);
             return Value::Poison;
         }
         for (side, span) in [(a, spans.0), (b, spans.1)] {
@@ -356,7 +344,8 @@ impl<'g> Context<'g> {
             Value::Poison => return Value::Poison,
             other => {
                 let message = format!("this must be a condition, it is {}", other.described());
-                self.report(Diagnostic::new(Code::WrongDimension, condition.span, message));
+                let help = "compare it with something, as in `if a > 0 then …`";
+                self.report(Diagnostic::new(Code::WrongDimension, condition.span, message).help(help));
                 return Value::Poison;
             }
         };
@@ -369,7 +358,8 @@ impl<'g> Context<'g> {
                 if let (Value::Scalar(_, a), Value::Scalar(_, b)) = (&yes_value, &no_value)
                     && a.sum(*b).is_none()
                 {
-                    let message = format!("the two ways give {a} and {b}");
+                    let message =
+                        format!("`then` gives {}, but `else` gives {}", yes_value.described(), no_value.described());
                     self.report(Diagnostic::new(Code::WrongDimension, no.span, message));
                     return Value::Poison;
                 }
@@ -392,7 +382,8 @@ impl<'g> Context<'g> {
         };
         if self.call_depth >= limits::CALL_DEPTH {
             let message = format!("functions call each other more than {} deep", limits::CALL_DEPTH);
-            self.report(Diagnostic::new(Code::LimitExceeded, call.function.span, message));
+            let help = "a function cannot call itself, nor others that lead back to it";
+            self.report(Diagnostic::new(Code::LimitExceeded, call.function.span, message).help(help));
             return Value::Poison;
         }
         let Some(arguments) = functions::arguments(self, call, function.arguments.len(), scope) else {
@@ -447,6 +438,23 @@ impl<'g> Context<'g> {
             Some(expr) => Value::Scalar(expr, wanted),
             None => Value::Poison,
         }
+    }
+}
+
+/// What to write where a plain number meets a length or an angle.
+fn missing_unit<'g>((a, da): (Expr<'g>, Dimension), (b, db): (Expr<'g>, Dimension)) -> Option<String> {
+    let (number, other) = match (da, db) {
+        (Dimension::NUMBER, other) => (a, other),
+        (other, Dimension::NUMBER) => (b, other),
+        _ => return None,
+    };
+    let value = number.as_constant();
+    match (other, value) {
+        (Dimension::LENGTH, Some(value)) => Some(format!("give the number its unit: `{value} mm`")),
+        (Dimension::ANGLE, Some(value)) => {
+            Some(format!("give the number its unit (`{value} deg`), or make the angle a number by `/ 1 rad`"))
+        }
+        _ => None,
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::codes::Code;
 use crate::context::{Constant, Context, Role, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
+use crate::dimension::shown;
 use crate::functions::plural;
 use crate::model::Parameter;
 use crate::source::Name;
@@ -18,7 +19,7 @@ pub(crate) enum Source<'a, 'g> {
     /// A definition by itself: no values unless by default.
     Definition,
     /// `machine m = definition(setting: value, …)` in a job.
-    Instance { name: &'a Name, settings: &'a [Argument], job: &'a Scope<'g> },
+    Instance { name: &'a Name, definition: &'a str, settings: &'a [Argument], job: &'a Scope<'g> },
     /// The job itself.
     Job,
 }
@@ -113,7 +114,7 @@ impl<'a, 'g> Binder<'a, 'g> {
     ) {
         let is_count = param.dimension.factors.iter().any(|(name, _)| name.node == "count");
         if is_count && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
-            let message = format!("`{}` is a count: it must be a whole number, not {value}", param.name.node);
+            let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
         }
         let Some(range) = &param.range else { return };
@@ -125,7 +126,8 @@ impl<'a, 'g> Binder<'a, 'g> {
             return;
         };
         if value < low || value > high {
-            let message = format!("{what} is outside its range");
+            let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
+            let message = format!("{what} is {value}, outside its range {low} .. {high}");
             let diagnostic =
                 Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");
             context.report(diagnostic);
@@ -144,10 +146,14 @@ impl<'a, 'g> Binder<'a, 'g> {
                     context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
                 }
             }
-            Source::Instance { name, settings, .. } => {
-                if !names.is_empty() {
+            Source::Instance { name, definition, settings, .. } => {
+                let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
+                let unknown = unknown.filter(|name| known.iter().all(|param| param.name.node != name.node)).count();
+                // a misspelt setting is one mistake, not also a missing one
+                if names.len() > unknown {
                     let message = format!("`{}` needs {}", name.node, quoted(&names));
-                    let help = format!("give the value{}: `({}: …)`", plural(names.len()), names.join(": …, "));
+                    let help =
+                        format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
                     context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
                 }
                 check_settings(context, settings, known);

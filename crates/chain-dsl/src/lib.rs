@@ -39,6 +39,7 @@ mod derivation;
 mod diagnostic;
 mod dimension;
 mod evaluate;
+mod explain;
 mod functions;
 mod instance;
 mod job;
@@ -48,8 +49,8 @@ mod machine;
 mod model;
 mod render;
 mod sample;
-mod side;
 mod source;
+mod steel;
 pub mod syntax;
 mod tables;
 mod tool;
@@ -61,6 +62,7 @@ pub use compile::{Compilation, compile_file, compile_text};
 pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
+pub use explain::UnknownCode;
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process,
     Sample, ToolShape,

@@ -6,6 +6,12 @@ pub const FILE_BYTES: usize = 1 << 20;
 pub const USE_DEPTH: usize = 32;
 /// Depth of brackets, conditionals and signs in an expression.
 pub const NESTING: usize = 64;
+/// Words and signs in one statement.
+pub const STATEMENT_TOKENS: usize = 1 << 16;
+/// Operations that hang on each other in one expression: the height of its tree, which later stages walk recursively.
+pub const OPERATIONS: usize = 256;
+/// Mistakes in the syntax of one file before the rest of it is left unread.
+pub const MISTAKES: usize = 100;
 /// Depth to which functions call each other.
 pub const CALL_DEPTH: usize = 64;
 /// Steps of evaluating expressions in one compilation.

@@ -86,8 +86,9 @@ impl Loader {
             Err(ReadError::Io(error)) => return self.unreadable(shown, &error, used_at),
             Err(ReadError::TooLarge) => {
                 let span = self.place(shown, used_at);
-                let message = format!("`{}` is larger than {} bytes", shown.display(), limits::FILE_BYTES);
-                return self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, span, message));
+                let message = format!("`{}` is larger than {} MiB", shown.display(), limits::FILE_BYTES >> 20);
+                let help = "split it with `use`";
+                return self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, span, message).help(help));
             }
         };
         let id = self.loaded.sources.add(shown, text);
@@ -146,7 +147,11 @@ impl Loader {
     fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
         let span = self.place(shown, used_at);
         let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
-        self.loaded.diagnostics.push(Diagnostic::new(Code::UnreadableFile, span, message));
+        let mut diagnostic = Diagnostic::new(Code::UnreadableFile, span, message);
+        if used_at.is_some() && error.kind() == std::io::ErrorKind::NotFound {
+            diagnostic = diagnostic.help("the path starts from the folder of the file that says `use`");
+        }
+        self.loaded.diagnostics.push(diagnostic);
     }
 
     /// Where a file is asked for; the start of an empty text of its own if on the command line.

@@ -6,7 +6,7 @@ use flank_expr::Expr;
 use flank_expr::geometry::Step;
 
 use crate::codes::Code;
-use crate::context::{Context, Role, Scope, Value};
+use crate::context::{Constant, Context, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
@@ -25,6 +25,8 @@ pub(crate) struct Flat<'a> {
     constants: Vec<&'a MachineStatement>,
     axes: Vec<&'a ast::Axis>,
     laws: Vec<(&'a ast::Assignment, LawKind)>,
+    /// Laws beside the first of their axis: perhaps meant for another one.
+    repeated_laws: usize,
     frames: Vec<&'a ast::Frame>,
 }
 
@@ -41,6 +43,10 @@ pub(crate) struct Built<'g> {
     pub(crate) scope: Scope<'g>,
     pub(crate) axes: Vec<BuiltAxis<'g>>,
     pub(crate) frames: Vec<Frame<'g>>,
+    /// Names of all frames that the text declares, also those that could not be built.
+    pub(crate) declared_frames: Vec<String>,
+    /// Laws that belong to no axis (and have been reported).
+    pub(crate) lost_laws: usize,
 }
 
 /// An axis, perhaps with a law.
@@ -72,7 +78,8 @@ pub(crate) fn flatten<'a, 'g>(
                 let through = if line.len() == 1 { String::new() } else { format!(" through `{}`", line[1].name.node) };
                 let message = format!("`{}` extends itself{through}", machine.name.node);
                 let at = machine.extends.as_ref().map_or(machine.name.span, |name| name.span);
-                context.report(Diagnostic::new(Code::CyclicExtends, at, message));
+                let help = "a machine must stand by itself in the end, without `extends`";
+                context.report(Diagnostic::new(Code::CyclicExtends, at, message).help(help));
             }
             return None;
         }
@@ -85,7 +92,7 @@ pub(crate) fn flatten<'a, 'g>(
     }
     let mut flat = Flat::default();
     for machine in line.into_iter().rev() {
-        check_duplicates(context, machine);
+        flat.repeated_laws += check_duplicates(context, machine);
         machine.statements.iter().for_each(|statement| flat.add(statement));
     }
     Some(flat)
@@ -102,7 +109,9 @@ fn defined(statement: &MachineStatement) -> (&Name, &'static str) {
     }
 }
 
-fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) {
+/// Reports what is defined twice; gives the number of laws among it.
+fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) -> usize {
+    let mut laws = 0;
     let mut seen: HashMap<(&str, &str), Span> = HashMap::new();
     for statement in &machine.statements {
         let (name, kind) = defined(statement);
@@ -111,12 +120,14 @@ fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) {
             continue;
         };
         if kind == "law" && !name.node.is_empty() {
-            let message = format!("axis `{}` has two laws", name.node);
+            laws += 1;
+            let message = format!("axis `{}` is fixed or coupled twice", name.node);
             context.report(Diagnostic::new(Code::DrivenTwice, name.span, message).note(first, "first here"));
         } else {
             context.duplicate(name, first);
         }
     }
+    laws
 }
 
 /// Puts `new` in the place of what has the same name, else at the end.
@@ -185,9 +196,10 @@ impl<'a> Flat<'a> {
         for axis in &axes {
             scope.insert(axis.name.node.clone(), Value::Scalar(axis.variable, axis.dimension));
         }
-        self.build_laws(context, &scope, &mut axes);
+        let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         let frames = self.build_frames(context, machine, &scope);
-        Built { parameters, scope, axes, frames }
+        let declared_frames = self.frames.iter().map(|frame| frame.name.node.clone()).collect();
+        Built { parameters, scope, axes, frames, declared_frames, lost_laws }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
@@ -205,24 +217,30 @@ impl<'a> Flat<'a> {
         axes
     }
 
-    fn build_laws<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, axes: &mut [BuiltAxis<'g>]) {
+    /// Gives the axes their laws; the number of laws for axes that are not there (and reported).
+    fn build_laws<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, axes: &mut [BuiltAxis<'g>]) -> usize {
+        let mut lost = 0;
         for (law, kind) in &self.laws {
             let target = &law.target.segments[0];
             let Some(index) = axes.iter().position(|axis| axis.name.node == target.node) else {
                 context.unknown(target, "axis", axes.iter().map(|axis| axis.name.node.as_str()));
+                lost += 1;
                 continue;
             };
             let what = format!("axis `{}`", target.node);
             let dimension = axes[index].dimension;
             let mut value = context.scalar(&law.value, scope, dimension, &what);
             if let (Some(expr), LawKind::Fix) = (value, kind)
-                && matches!(context.constant(expr), crate::context::Constant::Moves(_))
+                && let Constant::Moves(name) = context.constant(expr)
             {
-                context.require_constant(expr, law.value.span, &what);
+                let message = format!("{what} is fixed and must stand still, but depends on {name}");
+                let help = format!("an axis that follows another one is coupled: `couple {} = …`", target.node);
+                context.report(Diagnostic::new(Code::NotConstant, law.value.span, message).help(help));
                 value = None;
             }
             axes[index].law = Some((value, *kind, law.target.span));
         }
+        lost
     }
 
     /// The frames, parents before children.
@@ -279,9 +297,14 @@ impl<'a> Flat<'a> {
                     .collect();
                 let message = format!("frames hang on each other in a circle: {} → {}", names.join(" → "), names[0]);
                 let place = self.frames[k].parent.as_ref().map_or(self.frames[k].name.span, |parent| parent.span);
-                let diagnostic = Diagnostic::new(Code::CyclicFrames, place, message)
-                    .help("one frame must hang on nothing: `frame bed`");
-                context.report(diagnostic);
+                let root = self.frames.iter().find(|frame| frame.parent.is_none());
+                let help = match root.map(|root| &root.name.node) {
+                    Some(root) => {
+                        format!("hang one of them on a frame outside the circle: `frame {} in {root} = …`", names[0])
+                    }
+                    None => "one frame must hang on nothing: `frame bed`".to_string(),
+                };
+                context.report(Diagnostic::new(Code::CyclicFrames, place, message).help(help));
             }
             way.into_iter().for_each(|k| state[k] = 2);
         }

@@ -38,7 +38,7 @@ pub(crate) fn build<'g>(
         return outline(context, written, surface, scope);
     }
     let [rows, columns] = written.entries.as_slice() else {
-        let message = format!("a sample gives two coordinates, this one {}", written.entries.len());
+        let message = format!("a sample takes two coordinates, this one has {}", written.entries.len());
         let help = "for example `sample flank { z: -5 mm .. 5 mm by 11, rho: 48 mm .. 52 mm by 9 }`";
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
@@ -196,14 +196,15 @@ fn outline<'g>(
     }
     let missing: Vec<&str> = (0..4).filter(|&k| corners[k][0].is_nan()).map(|k| CORNERS[k]).collect();
     if !missing.is_empty() {
-        let message = format!("an outline has four corners; {} missing", quoted(&missing));
+        let verb = if missing.len() == 1 { "is" } else { "are" };
+        let message = format!("an outline has four corners: {} {verb} missing", quoted(&missing));
         let help = "a corner is `[z, rho]`: `toe_root: [92 mm, 25.7 mm]`";
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     }
     let (Some(profile), Some(length)) = (profile, length) else {
-        let message = "an outline is divided in two directions, given as shares from root to tip and from toe to heel";
-        let help = "for example `profilewise: 0.05 .. 0.95 by 9` and `lengthwise: 0.05 .. 0.95 by 15`";
+        let message = "an outline is divided twice: `profilewise` from root to tip, `lengthwise` from toe to heel";
+        let help = "give both as shares: `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     };
@@ -229,13 +230,17 @@ fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scop
         context.report(Diagnostic::new(Code::SampleShape, entry.key.span, message));
         return None;
     };
-    let Value::Vector(parts) = context.evaluate(written, scope) else {
-        let message = format!("{what} is a point `[z, rho]`");
-        context.report(Diagnostic::new(Code::SampleShape, written.span, message));
-        return None;
+    let parts = match context.evaluate(written, scope) {
+        Value::Vector(parts) => parts,
+        Value::Poison => return None,
+        other => {
+            let message = format!("{what} must be a point `[z, rho]`, this is {}", other.described());
+            context.report(Diagnostic::new(Code::SampleShape, written.span, message));
+            return None;
+        }
     };
     let [z, rho] = parts.as_slice() else {
-        let message = format!("{what} is a point `[z, rho]`, this is a vector of {}", parts.len());
+        let message = format!("{what} must be a point `[z, rho]`, this is a vector of {}", parts.len());
         context.report(Diagnostic::new(Code::SampleShape, written.span, message));
         return None;
     };

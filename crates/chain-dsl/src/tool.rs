@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::model::{Bounded, Parameter, ToolShape};
-use crate::side;
+use crate::steel;
 use crate::syntax::ast::{self, Side, ToolStatement};
 
 /// All tools of a compilation by name.
@@ -124,7 +124,7 @@ fn build_surface<'g>(
         (2, [u, v]) => {
             let parameters = [u.variable, v.variable];
             let raw = Surface::raw_normal(parameters, position);
-            let flipped = side::is_flipped(context, written.body.span, &unknowns, raw, -steel)?;
+            let flipped = steel::is_flipped(context, [written.at.span, written.body.span], &unknowns, raw, -steel)?;
             ToolShape::Surface(Surface::parametric(parameters, position, flipped))
         }
         // the range of a parameter is wrong, and reported

@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::functions;
 use crate::source::Span;
-use crate::syntax::ast::{Call, Expression};
+use crate::syntax::ast::{Call, Expression, ExpressionKind};
 
 const NAMES: [&str; 14] = [
     "translate",
@@ -32,6 +32,9 @@ const AXES: [Axis<'static>; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// An explicit matrix may deviate this much from a rotation: it is written with finitely many digits.
 const RIGID_WITHIN: f64 = 1e-9;
+
+/// A matrix that is off by less than this was meant as a rigid motion and written with too few digits.
+const NEARLY: f64 = 1e-2;
 
 /// The steps that calls in a row amount to; what is wrong is reported and left out.
 pub(crate) fn steps<'g>(context: &mut Context<'g>, calls: &[Call], scope: &Scope<'g>) -> Vec<Step<'g>> {
@@ -66,11 +69,15 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
     let what = format!("the argument of `{name}`");
     Some(match name {
         "translate" if count == 1 => {
-            vec![Step::Translate(Vector3(context.vector3(written[0], scope, Dimension::LENGTH, &what)?))]
+            vec![Step::Translate(Vector3(context.vector3(written[0], scope, Dimension::LENGTH, "`translate`")?))]
         }
         "translate" => {
-            let parts: Vec<Option<Expr<'g>>> =
-                written.iter().map(|part| context.scalar(part, scope, Dimension::LENGTH, &what)).collect();
+            let names = ["x of `translate`", "y of `translate`", "z of `translate`"];
+            let parts: Vec<Option<Expr<'g>>> = written
+                .iter()
+                .zip(names)
+                .map(|(part, name)| context.scalar(part, scope, Dimension::LENGTH, name))
+                .collect();
             vec![Step::Translate(Vector3([parts[0]?, parts[1]?, parts[2]?]))]
         }
         "translate_x" | "translate_y" | "translate_z" => {
@@ -122,23 +129,31 @@ fn unit_axis<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<
 /// Three rows of four (rotation and translation), perhaps with a last row `[0, 0, 0, 1]`.
 fn matrix<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>) -> Option<Pose<'g>> {
     let shape = "`matrix` takes three rows `[r, r, r, t]` of three numbers and a length";
-    let Value::Vector(rows) = context.evaluate(written, scope) else {
-        context.report(Diagnostic::new(Code::WrongArguments, written.span, shape));
-        return None;
+    let rows = match context.evaluate(written, scope) {
+        Value::Vector(rows) => rows,
+        Value::Poison => return None,
+        _ => {
+            context.report(Diagnostic::new(Code::WrongArguments, written.span, shape));
+            return None;
+        }
     };
     let mut turned = Vec::new();
     let mut moved = Vec::new();
-    for row in rows.iter().take(3) {
-        let Value::Vector(entries) = row else { break };
-        let [a, b, c, t] = entries.as_slice() else {
-            break;
+    for (k, row) in rows.iter().take(3).enumerate() {
+        let entries = match row {
+            Value::Vector(entries) if entries.len() == 4 => entries,
+            Value::Poison => return None,
+            _ => break,
         };
+        let place = |column| entry_place(written, k, column);
         let mut numbers = Vec::new();
-        for entry in [a, b, c] {
-            numbers.push(context.require(entry, Dimension::NUMBER, written.span, "a rotation entry of `matrix`")?);
+        for (column, entry) in entries[..3].iter().enumerate() {
+            let what = "a rotation entry of `matrix`";
+            numbers.push(context.require(entry, Dimension::NUMBER, place(column), what)?);
         }
         turned.push(Vector3([numbers[0], numbers[1], numbers[2]]));
-        moved.push(context.require(t, Dimension::LENGTH, written.span, "the last entry of a row of `matrix`")?);
+        let what = "the last entry of a row of `matrix`";
+        moved.push(context.require(&entries[3], Dimension::LENGTH, place(3), what)?);
     }
     if turned.len() != 3 || rows.len() > 4 {
         context.report(Diagnostic::new(Code::WrongArguments, written.span, shape));
@@ -147,6 +162,18 @@ fn matrix<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>
     let rotation = Matrix3([turned[0], turned[1], turned[2]]);
     check_rigid(context, rotation, written.span)?;
     Some(Pose { rotation, translation: Vector3([moved[0], moved[1], moved[2]]) })
+}
+
+/// Where an entry of a matrix stands: its own place if rows are written out, else the whole matrix.
+fn entry_place(written: &Expression, row: usize, column: usize) -> Span {
+    part(written, row).and_then(|row| part(row, column)).map_or(written.span, |entry| entry.span)
+}
+
+fn part(vector: &Expression, index: usize) -> Option<&Expression> {
+    match &vector.kind {
+        ExpressionKind::Vector(parts) => parts.get(index),
+        _ => None,
+    }
 }
 
 /// Rows of unit length, at right angles, right-handed: looked at for a few values of whatever it depends on.
@@ -168,17 +195,17 @@ fn check_rigid<'g>(context: &mut Context<'g>, rotation: Matrix3<'g>, span: Span)
         let off = found[..4].iter().map(|x| (x - 1.0).abs()).chain(found[4..].iter().map(|x| x.abs()));
         let worst = off.fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
         if worst.is_nan() || worst > RIGID_WITHIN {
-            let reason = if (found[3] + 1.0).abs() < 1e-3 {
-                "it turns a right hand into a left one".to_string()
+            let (reason, help) = if (found[3] + 1.0).abs() < NEARLY {
+                (
+                    "it turns a right hand into a left one".to_string(),
+                    "for the other hand, say `mirror_x()`, `mirror_y()`, `mirror_z()` or `mirror([x, y, z])`",
+                )
             } else {
-                format!("its rows are not unit vectors at right angles (off by {worst:.1e})")
+                let reason = format!("its rows are not unit vectors at right angles (off by {worst:.1e})");
+                let rounded = "give at least 10 digits, or say it with `rotate` and `translate`";
+                (reason, if worst < NEARLY { rounded } else { "say it with `rotate` and `translate`" })
             };
             let message = format!("this matrix is not a rigid motion: {reason}");
-            let help = if (found[3] + 1.0).abs() < 1e-3 {
-                "for the other hand, say `mirror_x()`, `mirror_y()`, `mirror_z()` or `mirror([x, y, z])`"
-            } else {
-                "give at least 10 digits, or say it with `rotate` and `translate`"
-            };
             context.report(Diagnostic::new(Code::NotRigid, span, message).help(help));
             return None;
         }

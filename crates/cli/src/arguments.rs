@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use flank_chain_dsl::Code;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Print what was built: matrices, vector parts, twists, the equation of meshing
     Derive(Derive),
+    /// What an error means, with an example and how to mend it
+    Explain(Explain),
 }
 
 /// Which job of which file, with which values.
@@ -113,4 +116,18 @@ pub(crate) struct Derive {
     /// Print LaTeX instead of text
     #[arg(long)]
     pub(crate) latex: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank explain                 all codes
+  flank explain E0301           the page about one of them
+  flank explain --json E0301")]
+pub(crate) struct Explain {
+    /// The code, as a report shows it; without one, all codes are listed
+    pub(crate) code: Option<Code>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }

@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod derive;
+mod explain;
 mod solve;
 mod spec;
 mod table;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
     };
     ExitCode::from(match ending {
         Ending::Done => 0,

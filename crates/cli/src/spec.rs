@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{Code, Compilation, Diagnostic, Job, Severity, compile_file, render};
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Severity, compile_file, render};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -16,31 +16,16 @@ pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'
     if compilation.has_errors() {
         return Err(Ending::Wrong);
     }
-    let mut jobs = std::mem::take(&mut compilation.jobs);
-    let names: Vec<String> = jobs.iter().map(|job| format!("`{}`", job.name)).collect();
-    if let Some(wanted) = &which.job {
-        jobs.retain(|job| job.name == *wanted);
-    }
-    if jobs.is_empty() {
-        let file = which.file.display();
-        match &which.job {
-            Some(wanted) if !names.is_empty() => {
-                anstream::eprintln!("error[{}]: there is no job `{wanted}` in {file}", Code::NoJob.as_str());
-                anstream::eprintln!("  help: there is: {}", names.join(", "));
-            }
-            _ => {
-                anstream::eprintln!("error[{}]: there is no job in {file}", Code::NoJob.as_str());
-                anstream::eprintln!(
-                    "  help: a machine or a tool by itself makes no surface; solve a file with a `job`"
-                );
-            }
+    match compilation.take_jobs(which.job.as_deref()) {
+        Ok(jobs) => Ok((compilation, jobs)),
+        Err(finding) => {
+            tell(&[finding], &compilation);
+            Err(Ending::Wrong)
         }
-        return Err(Ending::Wrong);
     }
-    Ok((compilation, jobs))
 }
 
-/// Shows findings with the source underlined.
+/// Shows findings with the source underlined, and where to read more about the first error.
 pub(crate) fn tell(diagnostics: &[Diagnostic], compilation: &Compilation<'_>) {
     if diagnostics.is_empty() {
         return;
@@ -54,6 +39,9 @@ pub(crate) fn tell(diagnostics: &[Diagnostic], compilation: &Compilation<'_>) {
         (errors, warnings) => {
             anstream::eprintln!("{}, {}", of(errors, "error"), of(warnings, "warning"))
         }
+    }
+    if let Some(first) = diagnostics.iter().find(|finding| finding.severity() == Severity::Error) {
+        anstream::eprintln!("`flank explain {}` tells more", first.code.as_str());
     }
 }
 

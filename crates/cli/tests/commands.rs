@@ -218,3 +218,40 @@ fn a_file_without_a_job_cannot_be_solved() {
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).contains("there is: `spur_gear`"), "{}", text(&run.stderr));
 }
+
+#[test]
+fn explain_prints_pages_and_lists_codes() {
+    let page = flank(&["explain", "E0301"]);
+    assert_eq!(page.status.code(), Some(0), "{}", text(&page.stderr));
+    let written = std::fs::read_to_string(top().join("docs/errors/E0301.md")).unwrap();
+    assert_eq!(text(&page.stdout), written);
+    assert_eq!(text(&flank(&["explain", "e0301"]).stdout), written);
+    let list = text(&flank(&["explain"]).stdout);
+    assert!(list.contains("E0001  a file cannot be read\n") && list.contains("E0511  "), "{list}");
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&flank(&[&["explain", "--json"], arguments].concat()).stdout).expect("JSON")
+    };
+    assert_eq!(json(&["E0301"])["page"], written);
+    let all = json(&[]);
+    assert_eq!([&all["schema"], &all["codes"][0]["code"]], ["flank.explain/1", "E0001"]);
+}
+
+#[test]
+fn explain_of_an_unknown_code_is_a_wrong_command_line() {
+    for (code, words) in [("E301", "did you mean `E0301`"), ("dimension", "`flank explain` lists all codes")] {
+        let run = flank(&["explain", code]);
+        assert_eq!(run.status.code(), Some(2), "{}", text(&run.stdout));
+        assert!(text(&run.stderr).contains(words), "{}", text(&run.stderr));
+    }
+}
+
+#[test]
+fn errors_end_with_where_to_read_more() {
+    let folder = folder("more");
+    let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n    param r : length = 3 deg\n}\n");
+    let told = text(&flank(&["check", &wrong]).stderr);
+    assert!(told.ends_with("3 errors\n`flank explain E0201` tells more\n"), "{told}");
+    assert_eq!(told.matches("flank explain").count(), 1);
+    let right = text(&flank(&["check", "specs/machines/cradle.chain"]).stderr);
+    assert!(!right.contains("flank explain"), "{right}");
+}

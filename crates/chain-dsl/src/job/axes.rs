@@ -8,6 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::machine::LawKind;
 use crate::model::{Axis, LawSource, Machine};
+use crate::source::Span;
 use crate::syntax::ast;
 
 use super::Builder;
@@ -15,11 +16,13 @@ use super::Builder;
 impl<'g> Builder<'_, 'g> {
     pub(super) fn drive(&mut self, context: &mut Context<'g>, drive: &ast::Assignment) {
         let Some((machine, member)) = self.machine_member(context, &drive.target, "an axis") else {
+            (0..self.machines.len()).for_each(|machine| self.lose_law(machine));
             return;
         };
         let (instance, _, built) = &self.machines[machine];
         let Some(axis) = built.axes.iter().find(|axis| axis.name.node == member.node) else {
             context.unknown(member, "axis", built.axes.iter().map(|axis| axis.name.node.as_str()));
+            self.lose_law(machine);
             return;
         };
         let what = format!("axis `{}.{}`", instance.node, member.node);
@@ -29,6 +32,7 @@ impl<'g> Builder<'_, 'g> {
             context.report(
                 Diagnostic::new(Code::DrivenTwice, drive.target.span, message).note(*span, format!("{how} here")),
             );
+            self.lose_law(machine);
             return;
         }
         let value = context.scalar(&drive.value, &self.scope, axis.dimension, &what);
@@ -37,10 +41,16 @@ impl<'g> Builder<'_, 'g> {
             let message = format!("{what} is driven twice");
             let diagnostic =
                 Diagnostic::new(Code::DrivenTwice, drive.target.span, message).note(*first, "first driven here");
-            context.report(diagnostic);
+            context.report(diagnostic.help("an axis has one law: take one away, or drive it with the sum of both"));
+            self.lose_law(machine);
             return;
         }
         self.drives.insert(key, (value, drive.target.span));
+    }
+
+    /// A law that gives no axis its motion: an axis without one was perhaps meant, and is no second mistake.
+    fn lose_law(&mut self, machine: usize) {
+        *self.lost_laws.entry(machine).or_default() += 1;
     }
 
     /// Every axis has exactly one law; what follows other axes is written in motions.
@@ -60,6 +70,9 @@ impl<'g> Builder<'_, 'g> {
                     }
                 };
                 // a broken law has been reported: the axis stays a variable of its own
+                if law.is_none() {
+                    self.unsettled.insert(index);
+                }
                 let law = law.unwrap_or(axis.variable);
                 axes.push(Axis {
                     name: axis.name.node.clone(),
@@ -70,7 +83,11 @@ impl<'g> Builder<'_, 'g> {
                     travel: axis.travel,
                 });
             }
-            if !idle.is_empty() {
+            let lost = self.lost_laws.get(&index).copied().unwrap_or(0);
+            if lost > 0 {
+                self.unsettled.insert(index);
+            }
+            if idle.len() > lost {
                 let (noun, verb) = if idle.len() == 1 { ("axis", "is") } else { ("axes", "are") };
                 let message = format!("{noun} {} of `{}` {verb} not driven", quoted(&idle), name.node);
                 let zero = built
@@ -84,8 +101,50 @@ impl<'g> Builder<'_, 'g> {
             let frames = built.frames.clone();
             machines.push(Machine { name: name.node.clone(), definition: definition.clone(), axes, frames });
         }
+        self.report_circles(context, &machines);
         self.write_laws_in_motions(context, &mut machines);
         machines
+    }
+
+    /// Axes whose laws lead back to themselves; each circle once, at the law of its first axis.
+    fn report_circles(&self, context: &mut Context<'g>, machines: &[Machine<'g>]) {
+        let axes: Vec<(usize, &Axis<'g>)> = machines
+            .iter()
+            .enumerate()
+            .flat_map(|(index, machine)| machine.axes.iter().map(move |axis| (index, axis)))
+            .collect();
+        let followed = |axis: &Axis<'g>| -> Vec<usize> {
+            let inside = context.graph.variables_of(&[axis.law]);
+            let is_inside = |other: &Axis<'g>| other.variable.as_variable().is_some_and(|own| inside.contains(&own));
+            (0..axes.len()).filter(|&k| axis.law != axis.variable && is_inside(axes[k].1)).collect()
+        };
+        let leads_to: Vec<Vec<usize>> = axes.iter().map(|(_, axis)| followed(axis)).collect();
+        let mut told = vec![false; axes.len()];
+        for start in 0..axes.len() {
+            let Some(circle) = circle_through(start, &leads_to) else { continue };
+            if circle.iter().any(|&k| std::mem::replace(&mut told[k], true)) {
+                continue;
+            }
+            let name = |&k: &usize| format!("`{}.{}`", machines[axes[k].0].name, axes[k].1.name);
+            let names: Vec<String> = circle.iter().chain([&start]).map(name).collect();
+            let (message, help) = match circle.len() {
+                1 => (format!("axis {} follows itself", names[0]), "let it follow a motion, or stand still"),
+                _ => {
+                    let message = format!("axes follow each other in a circle: {}", names.join(" → "));
+                    (message, "one of them must follow a motion, or stand still")
+                }
+            };
+            let place = self.place_of_law(axes[start].0, &axes[start].1.name);
+            context.report(Diagnostic::new(Code::CyclicCouple, place, message).help(help));
+        }
+    }
+
+    /// Where an axis gets its law; the machine's name if nowhere.
+    fn place_of_law(&self, machine: usize, axis: &str) -> Span {
+        let (name, _, built) = &self.machines[machine];
+        let own = built.axes.iter().find(|built| built.name.node == axis).and_then(|axis| axis.law.as_ref());
+        let driven = self.drives.get(&(machine, axis.to_string())).map(|(_, span)| *span);
+        own.map(|(_, _, span)| *span).or(driven).unwrap_or(name.span)
     }
 
     fn write_laws_in_motions(&mut self, context: &mut Context<'g>, machines: &mut [Machine<'g>]) {
@@ -97,7 +156,7 @@ impl<'g> Builder<'_, 'g> {
             .map(|axis| (axis.variable, axis.law))
             .collect();
         let variables: Vec<_> = laws.iter().map(|(variable, _)| variable.as_variable()).collect();
-        for (machine, (name, ..)) in machines.iter_mut().zip(&self.machines) {
+        for (index, machine) in machines.iter_mut().enumerate() {
             for axis in &mut machine.axes {
                 if axis.law == axis.variable {
                     continue;
@@ -112,9 +171,9 @@ impl<'g> Builder<'_, 'g> {
                     law = graph.substitute(&[law], &laws)[0];
                     rounds += 1;
                 }
+                // a circle, which has been reported: the axis stays a variable of its own
                 if follows(law) {
-                    let message = format!("axis `{}.{}` follows itself", name.node, axis.name);
-                    context.report(Diagnostic::new(Code::CyclicCouple, name.span, message));
+                    self.unsettled.insert(index);
                     law = axis.variable;
                 }
                 axis.law = law;
@@ -127,4 +186,25 @@ impl<'g> Builder<'_, 'g> {
             .map(|axis| (axis.variable, axis.law))
             .collect();
     }
+}
+
+/// The shortest way from a node back to itself, beginning with it.
+fn circle_through(start: usize, leads_to: &[Vec<usize>]) -> Option<Vec<usize>> {
+    let mut before: Vec<Option<usize>> = vec![None; leads_to.len()];
+    let mut queue = std::collections::VecDeque::from([start]);
+    while let Some(at) = queue.pop_front() {
+        for &next in &leads_to[at] {
+            if next == start {
+                let back = std::iter::successors(Some(at), |&k| if k == start { None } else { before[k] });
+                let mut circle: Vec<usize> = back.collect();
+                circle.reverse();
+                return Some(circle);
+            }
+            if before[next].is_none() {
+                before[next] = Some(at);
+                queue.push_back(next);
+            }
+        }
+    }
+    None
 }

@@ -3,7 +3,7 @@
 mod axes;
 mod surfaces;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use flank_expr::Expr;
@@ -36,8 +36,14 @@ struct Builder<'a, 'g> {
     tools: Vec<(Name, BuiltTool<'g>)>,
     motions: Vec<Bounded<'g>>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
+    /// `mount` statements that mount nothing (and have been reported).
+    lost_mounts: usize,
     drives: HashMap<(usize, String), (Option<Expr<'g>>, Span)>,
+    /// Laws of each machine that belong to no axis, or to one that has a law already (and have been reported).
+    lost_laws: HashMap<usize, usize>,
     laws: Vec<(Expr<'g>, Expr<'g>)>,
+    /// Machines with an axis that has no law (which has been reported).
+    unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
 }
 
@@ -56,8 +62,11 @@ pub(crate) fn build<'g>(
         tools: Vec::new(),
         motions: Vec::new(),
         mounts: HashMap::new(),
+        lost_mounts: 0,
         drives: HashMap::new(),
+        lost_laws: HashMap::new(),
         laws: Vec::new(),
+        unsettled: HashSet::new(),
         surfaces: Vec::new(),
     };
     let mut binder = Binder::new(Source::Job, definitions.overrides);
@@ -152,9 +161,10 @@ impl<'g> Builder<'_, 'g> {
         let Some(flat) = machine::flatten(context, machines, definition) else {
             return;
         };
-        let source = Source::Instance { name: &instance.name, settings: &instance.settings, job: &self.scope };
+        let source = self.source(instance);
         let built = flat.build(context, &definition.name, source, self.definitions.overrides);
         self.expose(&instance.name, &built.scope);
+        self.lost_laws.insert(self.machines.len(), built.lost_laws);
         self.machines.push((instance.name.clone(), definition.name.node.clone(), built));
     }
 
@@ -165,10 +175,15 @@ impl<'g> Builder<'_, 'g> {
             context.unknown(&instance.definition, "tool", tools.keys().map(String::as_str));
             return;
         };
-        let source = Source::Instance { name: &instance.name, settings: &instance.settings, job: &self.scope };
+        let source = self.source(instance);
         let built = tool::build(context, definition, source, self.definitions.overrides);
         self.expose(&instance.name, &built.scope);
         self.tools.push((instance.name.clone(), built));
+    }
+
+    fn source<'s>(&'s self, instance: &'s ast::Instance) -> Source<'s, 'g> {
+        let definition = &instance.definition.node;
+        Source::Instance { name: &instance.name, definition, settings: &instance.settings, job: &self.scope }
     }
 
     /// Settings, constants and axes of a machine or tool can be read in the job as `m.name`.
@@ -190,8 +205,12 @@ impl<'g> Builder<'_, 'g> {
         what: &str,
     ) -> Option<(usize, &'p Name)> {
         let [machine, member] = path.segments.as_slice() else {
-            let message = format!("{what} is named as `machine.name`");
-            context.report(Diagnostic::new(Code::WrongKind, path.span, message));
+            let written = path.segments.last().map_or("name", |name| name.node.as_str());
+            let names = self.instance_names();
+            let machine = names.first().map_or("m", String::as_str);
+            let message = format!("{what} is named together with its machine");
+            let help = format!("write `{machine}.{written}`");
+            context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));
             return None;
         };
         match self.machines.iter().position(|(name, ..)| name.node == machine.node) {
@@ -214,15 +233,12 @@ impl<'g> Builder<'_, 'g> {
 
     fn frame(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<FrameRef> {
         let (machine, member) = self.machine_member(context, path, "a frame")?;
-        let frames = &self.machines[machine].2.frames;
-        match frames.iter().position(|frame| frame.name == member.node) {
-            Some(frame) => Some((machine, frame)),
-            None if frames.is_empty() => None,
-            None => {
-                context.unknown(member, "frame", frames.iter().map(|frame| frame.name.as_str()));
-                None
-            }
+        let built = &self.machines[machine].2;
+        let found = built.frames.iter().position(|frame| frame.name == member.node);
+        if found.is_none() && !built.declared_frames.contains(&member.node) {
+            context.unknown(member, "frame", built.declared_frames.iter().map(String::as_str));
         }
+        found.map(|frame| (machine, frame))
     }
 
     fn mount(&mut self, context: &mut Context<'g>, name: &Name, frame: &ast::Path, job: &ast::Job) {
@@ -234,6 +250,7 @@ impl<'g> Builder<'_, 'g> {
         let mountable: Vec<&str> = surfaces.collect();
         if !mountable.contains(&name.node.as_str()) {
             context.unknown(name, "tool", mountable.into_iter());
+            self.lost_mounts += 1;
             return;
         }
         let place = self.frame(context, frame);
@@ -241,6 +258,7 @@ impl<'g> Builder<'_, 'g> {
             let message = format!("`{}` is mounted twice", name.node);
             let first = *first;
             context.report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here"));
+            self.lost_mounts += 1;
             return;
         }
         self.mounts.insert(name.node.clone(), (place, name.span));

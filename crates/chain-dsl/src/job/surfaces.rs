@@ -9,8 +9,8 @@ use crate::diagnostic::Diagnostic;
 use crate::machine;
 use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
 use crate::sample;
-use crate::side;
-use crate::source::Span;
+use crate::source::{Name, Span};
+use crate::steel;
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 
 use super::{Builder, FrameRef};
@@ -140,7 +140,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// A surface of a tool, or an earlier surface of the job, and the frame it is fixed to.
-    fn available(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<Available<'g>> {
+    fn available(&mut self, context: &mut Context<'g>, path: &ast::Path) -> Option<Available<'g>> {
         let owner = &path.segments[0];
         let mounted = self.mounts.get(&owner.node).copied();
         if let [name] = path.segments.as_slice() {
@@ -180,14 +180,34 @@ impl<'g> Builder<'_, 'g> {
             context.unknown(member, "surface", built.surfaces.iter().map(|surface| surface.name.as_str()));
             return None;
         };
+        let surface = surface.surface.clone();
         let Some((frame, _)) = mounted else {
-            let message = format!("`{}` is not mounted on any frame", owner.node);
-            let help = format!("say where it sits: `mount {} on m.spindle`", owner.node);
-            context.report(Diagnostic::new(Code::NotMounted, owner.span, message).help(help));
+            self.not_mounted(context, owner);
             return None;
         };
-        let (shape, unknowns) = surface.surface.clone()?;
+        let (shape, unknowns) = surface?;
         Some(Available { shape, unknowns, frame: frame?, named: path.span })
+    }
+
+    /// Reports a tool without a frame, once for all its surfaces, unless a misspelt `mount` was meant for it.
+    fn not_mounted(&mut self, context: &mut Context<'g>, tool: &Name) {
+        self.mounts.insert(tool.node.clone(), (None, tool.span));
+        if self.lost_mounts > 0 {
+            return;
+        }
+        let message = format!("`{}` is not mounted on any frame", tool.node);
+        let frames = self.frames_to_choose_from().unwrap_or_default();
+        let help = format!("say on which frame it sits: `mount {} on …`{frames}", tool.node);
+        context.report(Diagnostic::new(Code::NotMounted, tool.span, message).help(help));
+    }
+
+    /// The frames that a tool may sit on, unless they are too many to read.
+    fn frames_to_choose_from(&self) -> Option<String> {
+        const READABLE: usize = 12;
+        let all = (0..self.machines.len()).flat_map(|m| (0..self.machines[m].2.frames.len()).map(move |k| (m, k)));
+        let names: Vec<String> = all.map(|frame| self.frame_name(frame)).take(READABLE + 1).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        (1..=READABLE).contains(&names.len()).then(|| format!("; there is: {}", quoted(&names)))
     }
 
     fn frame_name(&self, (machine, frame): FrameRef) -> String {
@@ -208,7 +228,8 @@ impl<'g> Builder<'_, 'g> {
                 self.frame_name(from),
                 self.frame_name(to)
             );
-            context.report(Diagnostic::new(Code::UnrelatedFrames, span, message));
+            let help = "describe both as frames of one machine";
+            context.report(Diagnostic::new(Code::UnrelatedFrames, span, message).help(help));
             return None;
         }
         let hops = machine::path(&self.machines[from.0].2.frames, from.1, to.1);
@@ -238,6 +259,11 @@ impl<'g> Builder<'_, 'g> {
                 context.report(Diagnostic::new(Code::DuplicateName, *span, message));
                 fine = false;
             } else if driven.twist(motion.variable).is_zero() {
+                // an axis whose law is missing or broken has been reported, and the motion was perhaps meant for it
+                if self.unsettled.contains(&available.frame.0) {
+                    fine = false;
+                    continue;
+                }
                 let message =
                     format!("`{}` does not move `{}` against the work", motion.name, self.frame_name(available.frame));
                 let help = "drive an axis with it, or leave it out of `over:`";
@@ -249,7 +275,7 @@ impl<'g> Builder<'_, 'g> {
             let taken = motions.iter().any(|(over, _)| over.variable == motion.variable)
                 || available.unknowns.iter().any(|unknown| unknown.variable == motion.variable);
             if !taken && !driven.twist(motion.variable).is_zero() {
-                let message = format!("the tool also moves with `{}`, which the envelope is not over", motion.name);
+                let message = format!("the tool also moves with `{}`, but the envelope is not over it", motion.name);
                 let help = format!("add it: `over: [{}]`", {
                     let mut names: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).collect();
                     names.push(&motion.name);
@@ -318,7 +344,7 @@ fn made<'g>(
         }
         (Process::Sweep, ToolShape::Edge(edge)) => {
             let raw = edge.raw_normal(driven, over[0]);
-            let flipped = side::is_flipped(context, available.named, unknowns, raw, edge.steel)?;
+            let flipped = steel::is_flipped(context, [available.named; 2], unknowns, raw, edge.steel)?;
             Some(edge.sweep(driven, over, flipped))
         }
         (Process::Sweep, ToolShape::Surface(_)) => {

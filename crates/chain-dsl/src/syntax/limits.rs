@@ -4,19 +4,10 @@ use std::ops::Range;
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
-use crate::limits::{FILE_BYTES, NESTING};
+use crate::limits::{FILE_BYTES, NESTING, STATEMENT_TOKENS};
 use crate::source::{FileId, Span};
 
 use super::scan::{Kind, Scan};
-
-/// Words and signs in one statement.
-const STATEMENT: usize = 1 << 16;
-
-/// Operations that hang on each other in one expression: the height of its tree, which later stages walk recursively.
-pub(super) const OPERATIONS: usize = 256;
-
-/// Mistakes in one file.
-pub(super) const MISTAKES: usize = 100;
 
 /// The report on a file that is too long.
 pub(super) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
@@ -40,8 +31,8 @@ pub(super) fn first_excess(scan: &Scan, range: Range<usize>) -> Option<Diagnosti
         nesting.meet(scan, index);
         let message = if nesting.depth > NESTING {
             format!("nested deeper than {NESTING} levels")
-        } else if length > STATEMENT {
-            format!("a statement of more than {STATEMENT} words and signs")
+        } else if length > STATEMENT_TOKENS {
+            format!("a statement of more than {STATEMENT_TOKENS} words and signs")
         } else {
             continue;
         };

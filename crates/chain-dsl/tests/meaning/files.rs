@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Code, compile_file};
+use flank_chain_dsl::{Code, compile_file, render};
 use flank_expr::Graph;
 
 /// A project folder of its own with some files.
@@ -184,4 +184,27 @@ fn wrong_tables_are_told() {
     );
     assert_eq!(check("table-argument", &TOOL.replace("relief(s)", "relief(2 deg)"), TABLE), [Code::WrongDimension]);
     assert_eq!(check("table-shape", &TOOL.replacen(", depth: length", "", 1), TABLE), [Code::WrongArguments]);
+}
+
+#[test]
+fn jobs_are_taken_by_name() {
+    let two = format!("{JOB}{}", JOB.replace("job j", "job other").replace("use", "//"));
+    let folder = project("jobs", &[("library.chain", LIBRARY), ("jobs/j.chain", &two)]);
+    let taken = |file: &str, wanted: Option<&str>| {
+        let graph = Graph::new();
+        let mut compilation = compile_file(&graph, &folder.join(file), &[]);
+        assert!(!compilation.has_errors());
+        let jobs = compilation.take_jobs(wanted).map_err(|finding| {
+            let _ = render(std::slice::from_ref(&finding), &compilation.sources, false);
+            (vec![finding.code], finding.help.unwrap_or_default())
+        });
+        jobs.map(|jobs| jobs.iter().map(|job| job.name.clone()).collect::<Vec<_>>())
+    };
+    assert_eq!(taken("jobs/j.chain", None), Ok(vec!["j".to_string(), "other".to_string()]));
+    assert_eq!(taken("jobs/j.chain", Some("other")), Ok(vec!["other".to_string()]));
+    let (codes, help) = taken("jobs/j.chain", Some("othr")).expect_err("no such job");
+    assert_eq!(codes, [Code::NoJob]);
+    assert_eq!(help, "did you mean `other`?");
+    let (codes, _) = taken("library.chain", Some("j")).expect_err("no job");
+    assert_eq!(codes, [Code::NoJob]);
 }

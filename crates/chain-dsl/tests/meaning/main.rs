@@ -1,5 +1,6 @@
 //! What texts mean: mistakes of meaning with what is said of them, files that use each other, values from outside.
 
+mod coverage;
 mod files;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
@@ -32,6 +33,18 @@ fn one_mistake_gives_one_report() {
     let files = ["names", "dimensions", "values", "machines", "jobs"];
     let count: usize = files.iter().map(|file| check(&format!("meaning/mistakes/{file}.txt"), true, errors)).sum();
     assert!(count > 90, "{count}");
+}
+
+#[test]
+fn several_mistakes_give_one_report_each() {
+    let count = check("meaning/mistakes/several.txt", false, findings);
+    assert!(count > 20, "{count}");
+    for text in include_str!("mistakes/several.txt").split("//---- ").skip(1) {
+        let (title, rest) = text.split_once('\n').expect("a text below its title");
+        let wanted = ["one", "two", "three", "four"].iter().position(|number| title.starts_with(number));
+        let marks = rest.lines().filter_map(|line| line.strip_prefix("//")).filter(|line| line.trim().starts_with('^'));
+        assert_eq!(wanted.map(|index| index + 1), Some(marks.count()), "{title}");
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use pest::iterators::Pair;
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
+use crate::limits::MISTAKES;
 
 use super::ast::{Expression, ExpressionKind, File, Item};
 use super::build::Build;
@@ -82,12 +83,12 @@ impl<'s> Recover<'s> {
 
     /// Whether there is more to read, and not too many mistakes yet.
     fn goes_on(&mut self) -> bool {
-        if self.build.diagnostics.len() > limits::MISTAKES {
+        if self.build.diagnostics.len() > MISTAKES {
             return false;
         }
-        let full = self.build.diagnostics.len() == limits::MISTAKES;
+        let full = self.build.diagnostics.len() == MISTAKES;
         if full && self.at < self.scan.tokens.len() {
-            let message = format!("more than {} mistakes: the rest of the file is not read", limits::MISTAKES);
+            let message = format!("more than {} mistakes: the rest of the file is not read", MISTAKES);
             let diagnostic = Diagnostic::new(Code::LimitExceeded, self.scan.place(self.at), message);
             self.build.diagnostics.push(diagnostic);
         }
