@@ -181,10 +181,11 @@ fn the_page_about_limits_lists_them_all() {
         limits::CALL_DEPTH,
         limits::EVALUATION_STEPS,
         limits::FRAMES,
+        limits::TABLE_ROWS,
         limits::SAMPLE_POINTS,
         limits::MISTAKES,
     ];
-    let mut expected = vec![format!("{} MiB", limits::FILE_BYTES >> 20)];
+    let mut expected = [limits::FILE_BYTES, limits::TABLE_BYTES].map(|bytes| format!("{} MiB", bytes >> 20)).to_vec();
     expected.extend(in_order.map(grouped));
     assert_eq!(stated, expected);
 }
