@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Severity, compile_file, compile_text, render};
+use flank_chain_dsl::{Compilation, GeneratedSurface, Job, Severity, compile_file, compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Outcome, Range, SurfaceProblem};
-use flank_tests::{pages, repository};
+use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_tests::{assert_point, pages, repository};
 
 struct Block {
     line: usize,
@@ -125,6 +125,23 @@ fn the_language_stands_alone() {
     assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
 }
 
+/// The points that a surface is asked for.
+fn solved(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec<SurfacePoint> {
+    let Some(sample) = &surface.sample else { return Vec::new() };
+    let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings());
+    problem.expect("nothing is unbound").solve(&sample.targets, sample.counts).0
+}
+
+/// All surfaces of a job on a page with their points.
+fn surfaces_of(page: &str, name: &str) -> Vec<Vec<SurfacePoint>> {
+    let graph = Graph::new();
+    let jobs = Project::new(name).compile(&graph, &whole(&repository(page))).jobs;
+    let job = jobs.iter().find(|job| job.name == name).expect("the job is on the page");
+    job.surfaces.iter().map(|surface| solved(job, surface)).collect()
+}
+
 /// Every point that a page asks for is there.
 #[test]
 fn samples_are_solved() {
@@ -133,15 +150,33 @@ fn samples_are_solved() {
         let graph = Graph::new();
         for job in project.compile(&graph, &whole(&page)).jobs {
             for surface in &job.surfaces {
-                let Some(sample) = &surface.sample else { continue };
-                let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-                let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-                let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings());
-                let (points, _) = problem.expect("nothing is unbound").solve(&sample.targets, sample.counts);
-                let lost = points.iter().filter(|point| point.outcome != Outcome::Solved).count();
+                let lost = solved(&job, surface).iter().filter(|point| point.outcome != Outcome::Solved).count();
                 assert_eq!(lost, 0, "{}: {} of job {}", page.display(), surface.name, job.name);
             }
         }
+    }
+}
+
+/// The tutorial's closed form: each normal touches the base circle.
+#[test]
+fn the_first_gear_is_an_involute() {
+    for points in surfaces_of("docs/tutorial.md", "first_gear") {
+        assert_eq!(points.len(), 45);
+        for SurfacePoint { position: [x, y, _], normal: [nx, ny, _], .. } in points {
+            let moment = (x * ny - y * nx).abs();
+            assert!((moment - 40.0 * 20f64.to_radians().cos()).abs() < 1e-12, "{moment}");
+        }
+    }
+}
+
+/// Theory: a cradle machine and its conversion to a free-form machine.
+#[test]
+fn two_machines_cut_one_flank() {
+    let surfaces = surfaces_of("docs/theory.md", "two_machines");
+    let [on_cradle, on_free_form] = surfaces.as_slice() else { panic!("two surfaces") };
+    assert_eq!(on_cradle.len(), 119);
+    for (a, b) in on_cradle.iter().zip(on_free_form) {
+        assert_point(b, a.position, a.normal, "the same point");
     }
 }
 
