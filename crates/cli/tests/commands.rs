@@ -160,17 +160,17 @@ fn derive_prints_every_stage() {
     assert_eq!(latex.matches("\\left(").count(), latex.matches("\\right)").count());
 }
 
-/// A rack that is too far away to touch the radii that are asked for.
+/// A cutter whose centre is set so far out that it never reaches the blank.
 #[test]
 fn a_job_without_solution_exits_3_and_writes_statuses() {
     let out = folder("unsolved");
-    let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--set", "profile_shift=8", "--out"];
+    let arguments = ["solve", "specs/bevel/pinion_19x62.chain", "--set", "m.radial_distance=400 mm", "--out"];
     let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
-    assert!(text(&run.stderr).contains("not solved: 275 of 275 points of flank_plus"), "{}", text(&run.stderr));
-    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
-    let flank_rows: Vec<&str> = csv.lines().filter(|line| line.starts_with("flank_plus,")).collect();
-    assert_eq!(flank_rows.len(), 275);
+    assert!(text(&run.stderr).contains("not solved: 465 of 465 points of concave\n"), "{}", text(&run.stderr));
+    let csv = std::fs::read_to_string(out.join("pinion_19x62.csv")).unwrap();
+    let flank_rows: Vec<&str> = csv.lines().filter(|line| line.starts_with("concave,")).collect();
+    assert_eq!(flank_rows.len(), 465);
     for row in flank_rows {
         assert!(row.ends_with(",outside") || row.ends_with(",not converged") || row.ends_with(",singular"), "{row}");
         assert!(row.contains(",,,,,,"), "no position is invented: {row}");

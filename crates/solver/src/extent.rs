@@ -2,7 +2,7 @@
 
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
-use crate::newton::Range;
+use crate::Range;
 
 /// Points along each variable in one round.
 const STEPS: usize = 33;

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 
 use crate::Outcome;
-use crate::newton::{Range, Solution, distance, solve_with};
+use crate::newton::solve_with;
+use crate::solution::{Range, Solution, distance};
 use crate::start::{Scan, roots};
 use crate::system::{Evaluation, System};
 
@@ -13,9 +14,9 @@ const ANCHOR: Scan = Scan { probes: 1024, starts: 64 };
 const MOST_ANCHORS: usize = 9;
 /// Parts into which the way to a neighbour is divided where one step is too long.
 const SUBSTEPS: [u32; 3] = [1, 4, 16];
-/// A corrected point may lie this many times farther from where it started than the tangent says; beyond, it may be on
-/// another branch.
-const JUMP: f64 = 3.0;
+/// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
+/// branch, and the step is divided. The last step to where a branch turns back like a parabola has one.
+const ASTRAY: f64 = 0.75;
 /// Distances below this share of the ranges are never a jump.
 const NEAR: f64 = 1e-3;
 
@@ -24,8 +25,8 @@ const NEAR: f64 = 1e-3;
 pub struct Effort {
     /// Evaluations of residuals with Jacobian.
     pub evaluations: u64,
-    /// Roots that were found in the ranges at the anchor; more than one means that the ranges hold several branches, and
-    /// the one that reaches the most points was taken.
+    /// Roots that were found in the ranges at the anchor; more than one means that the ranges hold several branches. The
+    /// one that reaches the most points was taken, of several such the one nearest the middle of the ranges.
     pub branches: u32,
 }
 
@@ -62,12 +63,8 @@ pub fn solve_grid(
             failures[anchor] = found.into_iter().next();
             continue;
         }
-        let fillings = found.into_iter().map(|root| grid.fill(anchor, root));
-        let solved =
-            |filling: &Vec<Option<Solution>>| filling.iter().flatten().filter(|point| point.is_solved()).count();
-        // the first of the best: `max_by_key` takes the last
-        let best = fillings.reduce(|best, next| if solved(&next) > solved(&best) { next } else { best });
-        return (grid.completed(best.unwrap_or_default()), grid.effort);
+        let best = grid.best_filling(anchor, found);
+        return (grid.completed(best), grid.effort);
     }
     (grid.completed(failures), grid.effort)
 }
@@ -101,6 +98,26 @@ impl Grid<'_> {
         found
     }
 
+    /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
+    /// which branch is taken depends on the ranges, not on the order in which a scan finds roots.
+    fn best_filling(&mut self, anchor: usize, mut roots: Vec<Solution>) -> Vec<Option<Solution>> {
+        let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
+        let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
+        roots.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        let (mut best, mut most) = (Vec::new(), 0);
+        for root in roots {
+            let filling = self.fill(anchor, root);
+            let solved = filling.iter().flatten().filter(|point| point.is_solved()).count();
+            if solved > most {
+                (best, most) = (filling, solved);
+            }
+            if most == self.targets.len() {
+                break;
+            }
+        }
+        best
+    }
+
     /// Everything that can be reached from the anchor, ring by ring; what is not reached stays `None`.
     fn fill(&mut self, anchor: usize, root: Solution) -> Vec<Option<Solution>> {
         let mut found: Vec<Option<Solution>> = vec![None; self.targets.len()];
@@ -117,8 +134,9 @@ impl Grid<'_> {
                 }
                 let far = self.index(i - di, j - dj).and_then(|far| found[far].as_ref()).filter(|far| far.is_root());
                 let Some(near) = &found[point] else { continue };
-                let start = extrapolated(near, far);
-                let solution = self.step(point, next, &near.unknowns.clone(), &start);
+                let near = near.unknowns.clone();
+                let start = extrapolated(&near, far.map(|far| &far.unknowns[..]));
+                let solution = self.step(point, next, &near, &start);
                 let is_root = solution.is_root();
                 found[next] = Some(match found[next].take() {
                     Some(earlier) => earlier.better(solution),
@@ -142,17 +160,21 @@ impl Grid<'_> {
         let (a, b) = (self.targets[from], self.targets[to]);
         let mut last = None;
         for parts in SUBSTEPS {
-            let mut at = near.to_vec();
+            let (mut at, mut reached) = (near.to_vec(), a);
+            // straight on as before: where branches cross, the way leads across
+            let first_step = |(near, start): (&f64, &f64)| near + (start - near) / f64::from(parts);
+            let mut first: Vec<f64> = near.iter().zip(start).map(first_step).collect();
             let mut stepped = None;
             for part in 1..=parts {
                 let share = f64::from(part) / f64::from(parts);
-                let target = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
-                self.evaluation.set_parameters(if part == parts { &b } else { &target });
-                let first = if parts == 1 { start } else { &at };
-                let solution = solve_with(&mut self.evaluation, self.ranges, first);
+                let target = if part == parts { b } else { [0, 1].map(|k| a[k] + (b[k] - a[k]) * share) };
+                self.evaluation.set_parameters(&target);
+                let solution = solve_with(&mut self.evaluation, self.ranges, &first);
                 self.effort.evaluations += u64::from(solution.iterations);
-                let stays = solution.is_root() && self.stays_near(&at, &solution.unknowns);
+                let stays = solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target]);
+                first = extrapolated(&solution.unknowns, Some(&at));
                 at.clone_from(&solution.unknowns);
+                reached = target;
                 stepped = Some((solution, stays));
                 if !stays {
                     break;
@@ -172,15 +194,18 @@ impl Grid<'_> {
         lost
     }
 
-    /// Whether a corrected point is as near to where it came from as the tangent there says.
-    fn stays_near(&mut self, from: &[f64], to: &[f64]) -> bool {
-        let moved = distance(from, to, self.ranges);
-        if moved <= NEAR {
-            return true;
-        }
-        self.evaluation.at(from);
-        self.effort.evaluations += 1;
-        moved <= JUMP * self.evaluation.tangent_step(self.ranges) + NEAR
+    /// Whether the tangents at both of two solved points lead to the other one. One tangent is not enough: where branches
+    /// cross or turn back it allows any step.
+    fn stays_near(&mut self, points: [&[f64]; 2], targets: [&[f64; 2]; 2]) -> bool {
+        distance(points[0], points[1], self.ranges) <= NEAR
+            || (0..2).all(|k| {
+                self.evaluation.set_parameters(targets[1 - k]);
+                self.evaluation.at(points[k]);
+                self.effort.evaluations += 1;
+                let led = self.evaluation.tangent_point(self.ranges);
+                let allowed = ASTRAY * distance(points[k], &led, self.ranges) + NEAR;
+                distance(&led, points[1 - k], self.ranges) <= allowed
+            })
     }
 
     /// A verdict for every point: those that nothing leads to are not converged.
@@ -190,9 +215,9 @@ impl Grid<'_> {
 }
 
 /// The start for the next point in line: straight on from the two before it, or the one before it.
-fn extrapolated(near: &Solution, far: Option<&Solution>) -> Vec<f64> {
+fn extrapolated(near: &[f64], far: Option<&[f64]>) -> Vec<f64> {
     match far {
-        Some(far) => near.unknowns.iter().zip(&far.unknowns).map(|(a, b)| 2.0 * a - b).collect(),
-        None => near.unknowns.clone(),
+        Some(far) => near.iter().zip(far).map(|(a, b)| 2.0 * a - b).collect(),
+        None => near.to_vec(),
     }
 }

@@ -17,12 +17,14 @@
 mod extent;
 mod grid;
 mod newton;
+mod solution;
 mod start;
 mod surface;
 mod system;
 
 pub use extent::extent;
 pub use grid::{Effort, solve_grid};
-pub use newton::{Outcome, Range, Solution, TOLERANCE, solve};
+pub use newton::{TOLERANCE, solve};
+pub use solution::{Outcome, Range, Solution};
 pub use surface::{SurfacePoint, SurfaceProblem};
 pub use system::System;

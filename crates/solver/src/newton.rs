@@ -3,132 +3,27 @@
 use faer::Mat;
 use faer::linalg::solvers::{FullPivLu, Solve, Svd};
 
+use crate::solution::{Range, Solution, verdict};
 use crate::system::{Evaluation, System};
 
 /// A point is solved when no residual is larger: mm, or mm per radian of a motion.
 ///
 /// Residuals of gears of 100 mm carry rounding errors of about 1e-13; this leaves two orders of room, and Newton goes on
-/// past it until nothing gets better.
+/// past it until nothing gets better. Residuals of very large things are allowed [`OF_SIZE`] of their size.
 pub const TOLERANCE: f64 = 1e-11;
+/// Share of an equation's size (see [`Evaluation::size_of`]) that its rounding errors stay below.
+const OF_SIZE: f64 = 1e-14;
+/// No tolerance is larger, however large the thing: points are good to 1e-9 mm or not solved.
+const LARGEST_TOLERANCE: f64 = 1e-10;
 
-/// Iterations after which a start is given up.
-const MOST_ITERATIONS: u32 = 60;
+/// Steps after which a start is given up.
+const MOST_STEPS: usize = 40;
+/// Halvings of a step that are tried until the residuals get smaller.
+const MOST_HALVINGS: i32 = 12;
 /// No unknown moves by more than this share of its range in one step, so that a step does not jump to another branch.
 const LONGEST_STEP: f64 = 0.35;
-/// How far outside its range an unknown may wander on its way, as a share of the range.
-const MARGIN: f64 = 0.25;
-/// An unknown is inside its range if it is outside by less than this share of it: rounding of the ends themselves.
-const ROUNDING: f64 = 1e-12;
 /// Below this pivot (unknowns scaled by their ranges, equations by their size) a Jacobian counts as singular.
 const SINGULAR_BELOW: f64 = 1e-12;
-
-/// Where an unknown is looked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-impl Range {
-    pub(crate) fn width(self) -> f64 {
-        self.high - self.low
-    }
-
-    /// By how much a value is outside; zero inside.
-    fn excess(self, value: f64) -> f64 {
-        (self.low - value).max(value - self.high).max(0.0)
-    }
-
-    fn widened(self, value: f64) -> f64 {
-        let margin = MARGIN * self.width();
-        value.clamp(self.low - margin, self.high + margin)
-    }
-}
-
-/// What became of a point that was asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// All residuals are within [`TOLERANCE`] and all unknowns in their ranges.
-    Solved,
-    /// There is a root, but one of the unknowns lies outside its range.
-    Outside {
-        /// Index of the unknown that is farthest outside, relative to its range.
-        unknown: usize,
-        /// By how much, in its own unit.
-        by: f64,
-    },
-    /// The Jacobian has no inverse where the iteration ended.
-    Singular,
-    /// The iteration ended without a root.
-    NotConverged,
-}
-
-impl Outcome {
-    /// One word for tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Outcome::Solved => "solved",
-            Outcome::Outside { .. } => "outside",
-            Outcome::Singular => "singular",
-            Outcome::NotConverged => "not converged",
-        }
-    }
-
-    /// Which of two outcomes says more.
-    fn rank(self) -> u8 {
-        match self {
-            Outcome::Solved => 3,
-            Outcome::Outside { .. } => 2,
-            Outcome::Singular => 1,
-            Outcome::NotConverged => 0,
-        }
-    }
-}
-
-/// The end of an iteration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
-    /// The verdict.
-    pub outcome: Outcome,
-    /// The unknowns where the iteration ended.
-    pub unknowns: Vec<f64>,
-    /// The largest residual there.
-    pub residual: f64,
-    /// Evaluations of the system.
-    pub iterations: u32,
-}
-
-impl Solution {
-    /// A point that no iteration came near.
-    pub(crate) fn never_reached(ranges: &[Range]) -> Solution {
-        let middle = ranges.iter().map(|range| 0.5 * (range.low + range.high)).collect();
-        Solution { outcome: Outcome::NotConverged, unknowns: middle, residual: f64::NAN, iterations: 0 }
-    }
-
-    pub(crate) fn is_solved(&self) -> bool {
-        self.outcome == Outcome::Solved
-    }
-
-    /// Solved, or solved outside the ranges.
-    pub(crate) fn is_root(&self) -> bool {
-        matches!(self.outcome, Outcome::Solved | Outcome::Outside { .. })
-    }
-
-    /// The one of two that says more: solved before outside before singular before not converged, then the smaller
-    /// residual.
-    pub(crate) fn better(self, other: Solution) -> Solution {
-        let (mine, its) = (self.outcome.rank(), other.outcome.rank());
-        let no_worse = self.residual <= other.residual || other.residual.is_nan();
-        if mine > its || (mine == its && no_worse) { self } else { other }
-    }
-}
-
-/// The largest difference of two sets of unknowns, as a share of their ranges.
-pub(crate) fn distance(a: &[f64], b: &[f64], ranges: &[Range]) -> f64 {
-    a.iter().zip(b).zip(ranges).map(|((a, b), range)| (a - b).abs() / range.width()).fold(0.0, f64::max)
-}
 
 /// Newton from a start value, damped so that the residuals never grow.
 ///
@@ -139,21 +34,26 @@ pub fn solve(system: &System, ranges: &[Range], parameters: &[f64], start: &[f64
 }
 
 pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], start: &[f64]) -> Solution {
-    let mut p = start.to_vec();
+    let mut p: Vec<f64> = start.iter().zip(ranges).map(|(start, range)| range.widened(*start)).collect();
     evaluation.at(&p);
     let mut residual = evaluation.worst_residual();
     let mut norm = squared_norm(evaluation);
     let mut iterations = 1;
     let mut singular = false;
     let mut sizes = vec![0.0; ranges.len()];
-    while norm.is_finite() && iterations < MOST_ITERATIONS {
+    for _ in 0..MOST_STEPS {
+        if !norm.is_finite() {
+            break;
+        }
         let step = newton_step(evaluation, ranges, &mut sizes);
         singular = step.singular;
-        let was_solved = residual <= TOLERANCE;
-        let Some(trial) = descend(evaluation, ranges, &p, &step.by, norm, &mut iterations) else {
+        let was_solved = evaluation.is_at_root();
+        // below the tolerance go on only while it pays: the floor is the rounding of the residuals
+        let halvings = if was_solved { 1 } else { MOST_HALVINGS };
+        let Some(trial) = descend(evaluation, ranges, Start { p: &p, norm }, &step.by, halvings, &mut iterations)
+        else {
             break;
         };
-        // below the tolerance go on only while it pays: the floor is the rounding of the residuals
         let gain = trial.residual < 0.5 * residual;
         (p, residual, norm) = (trial.p, trial.residual, trial.norm);
         if (was_solved && !gain) || residual == 0.0 {
@@ -161,33 +61,16 @@ pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], star
         }
     }
     evaluation.at(&p);
-    if residual <= TOLERANCE {
+    let is_root = evaluation.is_at_root();
+    if is_root {
         singular = newton_step(evaluation, ranges, &mut sizes).singular;
     }
-    let outcome = verdict(&p, ranges, residual, singular);
+    let outcome = verdict(&p, ranges, is_root, singular);
     Solution { outcome, unknowns: p, residual, iterations }
 }
 
 fn squared_norm(evaluation: &Evaluation<'_>) -> f64 {
     evaluation.residuals().iter().map(|r| r * r).sum()
-}
-
-fn verdict(p: &[f64], ranges: &[Range], residual: f64, singular: bool) -> Outcome {
-    if residual.is_nan() || residual > TOLERANCE {
-        return if singular { Outcome::Singular } else { Outcome::NotConverged };
-    }
-    let share = |(range, value): (&Range, &f64)| range.excess(*value) / range.width();
-    let farthest = ranges
-        .iter()
-        .zip(p)
-        .map(share)
-        .enumerate()
-        .fold((0, 0.0), |worst, (k, share)| if share > worst.1 { (k, share) } else { worst });
-    if farthest.1 > ROUNDING {
-        let unknown = farthest.0;
-        return Outcome::Outside { unknown, by: ranges[unknown].excess(p[unknown]) };
-    }
-    if singular { Outcome::Singular } else { Outcome::Solved }
 }
 
 struct Step {
@@ -246,10 +129,25 @@ fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
 }
 
 impl Evaluation<'_> {
-    /// How far the tangent at the point of the last evaluation says that the root lies, as a share of the ranges.
-    pub(crate) fn tangent_step(&self, ranges: &[Range]) -> f64 {
+    /// Whether no residual at the point of the last evaluation is larger than its tolerance; never where one is NaN.
+    fn is_at_root(&self) -> bool {
+        self.residuals().iter().enumerate().all(|(i, residual)| {
+            let tolerance = (OF_SIZE * self.size_of(i)).clamp(TOLERANCE, LARGEST_TOLERANCE);
+            residual.abs() <= tolerance
+        })
+    }
+
+    /// How large the terms are that cancel in a residual: what a change of each unknown by its own size, or by a radian or
+    /// a millimetre, makes of it. For a rotation that is the radius at which it carries the point.
+    fn size_of(&self, row: usize) -> f64 {
+        let unknowns = self.unknowns().iter().enumerate();
+        unknowns.map(|(column, p)| self.jacobian(row, column).abs() * p.abs().max(1.0)).sum()
+    }
+
+    /// Where the tangent at the point of the last evaluation says that the root lies.
+    pub(crate) fn tangent_point(&self, ranges: &[Range]) -> Vec<f64> {
         let step = newton_step(self, ranges, &mut vec![0.0; ranges.len()]);
-        step.by.iter().zip(ranges).map(|(by, range)| by.abs() / range.width()).fold(0.0, f64::max)
+        self.unknowns().iter().zip(&step.by).map(|(p, by)| p + by).collect()
     }
 }
 
@@ -259,29 +157,34 @@ struct Trial {
     norm: f64,
 }
 
-/// The longest of the step's halves, quarters, … that makes the residuals smaller; `None` if none does.
+/// Where a step begins.
+#[derive(Clone, Copy)]
+struct Start<'p> {
+    p: &'p [f64],
+    norm: f64,
+}
+
+/// The longest of the step, its half, its quarter, … that makes the residuals smaller; `None` if none does.
 fn descend(
     evaluation: &mut Evaluation<'_>,
     ranges: &[Range],
-    p: &[f64],
+    start: Start<'_>,
     step: &[f64],
-    norm: f64,
-    iterations: &mut u32,
+    halvings: i32,
+    evaluations: &mut u32,
 ) -> Option<Trial> {
-    const MOST_HALVINGS: i32 = 12;
     let longest = step.iter().zip(ranges).map(|(s, range)| s.abs() / range.width()).fold(0.0, f64::max);
     let first = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
-    for halving in 0..MOST_HALVINGS {
+    for halving in 0..halvings {
         let share = first * 0.5f64.powi(halving);
-        let trial: Vec<f64> =
-            p.iter().zip(step).zip(ranges).map(|((p, s), range)| range.widened(p + share * s)).collect();
+        let moved = start.p.iter().zip(step).zip(ranges);
+        let trial: Vec<f64> = moved.map(|((p, s), range)| range.widened(p + share * s)).collect();
         evaluation.at(&trial);
-        *iterations += 1;
+        *evaluations += 1;
         let new = squared_norm(evaluation);
-        if new < norm * (1.0 - 1e-4 * share) {
+        if new < start.norm * (1.0 - 1e-4 * share) {
             return Some(Trial { p: trial, residual: evaluation.worst_residual(), norm: new });
         }
     }
-    evaluation.at(p);
     None
 }

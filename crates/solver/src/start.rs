@@ -1,6 +1,7 @@
 //! Start values: the ranges are scanned, no user supplies a guess.
 
-use crate::newton::{Range, Solution, distance, solve_with};
+use crate::newton::solve_with;
+use crate::solution::{Range, Solution, distance};
 use crate::system::Evaluation;
 
 /// Bases of the Halton sequence: one for each unknown.

@@ -4,7 +4,7 @@ use flank_expr::geometry::Surface;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
 use crate::grid::{Effort, solve_grid};
-use crate::newton::{Outcome, Range};
+use crate::solution::{Outcome, Range};
 use crate::system::System;
 
 /// A surface under constraint with two coordinates that points are asked for by.

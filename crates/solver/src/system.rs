@@ -62,6 +62,10 @@ impl Evaluation<'_> {
         self.inputs[self.size..].copy_from_slice(parameters);
     }
 
+    pub(crate) fn unknowns(&self) -> &[f64] {
+        &self.inputs[..self.size]
+    }
+
     pub(crate) fn residuals(&self) -> &[f64] {
         &self.outputs[..self.size]
     }

@@ -148,3 +148,52 @@ fn points_of_a_sphere_by_height_and_angle() {
         assert!(point.normal.iter().zip(&outward).all(|(n, o)| (n - o).abs() < 1e-12), "{point:?}");
     }
 }
+
+/// Two spacings of numbers at 1e5 are more than the tolerance of small things.
+#[test]
+fn a_converged_point_of_a_very_large_thing_is_solved() {
+    let graph = Graph::new();
+    let (x, target) = (graph.variable("x"), graph.variable("t"));
+    let system = System::new(&[1e5 * x.sin() - target], &[x], &[target]).expect("nothing is unbound");
+    for k in 0..200 {
+        let angle = 0.2 + 0.005 * f64::from(k);
+        let solution = solve(&system, &[range(0.0, 1.5)], &[1e5 * angle.sin()], &[0.7]);
+        assert_eq!(solution.outcome, Outcome::Solved, "{solution:?}");
+        assert!((solution.unknowns[0] - angle).abs() < 1e-14);
+    }
+}
+
+/// However many roots the ranges hold and however wide they are, the branch around their middle is taken.
+#[test]
+fn of_branches_that_reach_as_far_the_middle_one_is_taken() {
+    let graph = Graph::new();
+    let (x, y) = (graph.variable("x"), graph.variable("y"));
+    let targets = [graph.variable("s"), graph.variable("t")];
+    let system = System::new(&[x.sin() - targets[0], y - targets[1]], &[x, y], &targets).expect("nothing is unbound");
+    for width in [4.0, 11.0, 37.0] {
+        let ranges = [range(0.4 - width, 0.4 + width), range(-1.0, 1.0)];
+        let (points, effort) = solve_grid(&system, &ranges, &[[0.2, 0.0], [0.3, 0.0], [0.4, 0.0]], [3, 1]);
+        assert!(effort.branches > 1);
+        for (point, sine) in points.iter().zip([0.2f64, 0.3, 0.4]) {
+            assert_eq!(point.outcome, Outcome::Solved);
+            assert!((point.unknowns[0] - sine.asin()).abs() < 1e-12, "{point:?}");
+        }
+    }
+}
+
+/// y = x and y = -x cross at zero; a grid that starts on one of them stays on it across the crossing.
+#[test]
+fn a_grid_goes_straight_on_where_branches_cross() {
+    let graph = Graph::new();
+    let (x, y) = (graph.variable("x"), graph.variable("y"));
+    let targets = [graph.variable("s"), graph.variable("t")];
+    let (z, crossing) = (graph.variable("z"), (y - x) * (y + x));
+    let system = System::new(&[crossing, x - targets[0], z - targets[1]], &[x, y, z], &targets).expect("all bound");
+    for count in [6, 10, 40] {
+        let rows: Vec<[f64; 2]> = (0..count).map(|k| [f64::from(2 * k + 1) / f64::from(count) - 1.0, 0.5]).collect();
+        let (points, _) = solve_grid(&system, &[range(-2.0, 2.0); 3], &rows, [rows.len(), 1]);
+        let slopes: Vec<f64> = points.iter().map(|point| (point.unknowns[1] / point.unknowns[0]).round()).collect();
+        assert!(points.iter().all(|point| point.outcome == Outcome::Solved), "{points:?}");
+        assert!(slopes.iter().all(|slope| *slope == slopes[0]), "{slopes:?}");
+    }
+}

@@ -1,0 +1,138 @@
+//! Ranges, and what becomes of a point that is looked for in them.
+
+/// How far outside its range an unknown may wander on its way, as a share of the range.
+const MARGIN: f64 = 0.25;
+/// An unknown is inside its range if it is outside by less than this share of it: rounding of the ends themselves, and of
+/// targets that lie on them.
+const ROUNDING: f64 = 1e-10;
+
+/// Where an unknown is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Range {
+    pub(crate) fn width(self) -> f64 {
+        self.high - self.low
+    }
+
+    pub(crate) fn middle(self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// By how much a value is outside; zero inside.
+    fn excess(self, value: f64) -> f64 {
+        (self.low - value).max(value - self.high).max(0.0)
+    }
+
+    pub(crate) fn widened(self, value: f64) -> f64 {
+        let margin = MARGIN * self.width();
+        value.clamp(self.low - margin, self.high + margin)
+    }
+}
+
+/// What became of a point that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// All residuals are within their tolerance ([`TOLERANCE`](crate::TOLERANCE)) and all unknowns in their ranges.
+    Solved,
+    /// There is a root, but one of the unknowns lies outside its range.
+    Outside {
+        /// Index of the unknown that is farthest outside, relative to its range.
+        unknown: usize,
+        /// By how much, in its own unit.
+        by: f64,
+    },
+    /// The Jacobian has no inverse where the iteration ended.
+    Singular,
+    /// The iteration ended without a root.
+    NotConverged,
+}
+
+impl Outcome {
+    /// One word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Solved => "solved",
+            Outcome::Outside { .. } => "outside",
+            Outcome::Singular => "singular",
+            Outcome::NotConverged => "not converged",
+        }
+    }
+
+    /// Which of two outcomes says more.
+    fn rank(self) -> u8 {
+        match self {
+            Outcome::Solved => 3,
+            Outcome::Outside { .. } => 2,
+            Outcome::Singular => 1,
+            Outcome::NotConverged => 0,
+        }
+    }
+}
+
+/// The end of an iteration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The verdict.
+    pub outcome: Outcome,
+    /// The unknowns where the iteration ended.
+    pub unknowns: Vec<f64>,
+    /// The largest residual there.
+    pub residual: f64,
+    /// Evaluations of the system.
+    pub iterations: u32,
+}
+
+impl Solution {
+    /// A point that no iteration came near.
+    pub(crate) fn never_reached(ranges: &[Range]) -> Solution {
+        let middle = ranges.iter().map(|range| range.middle()).collect();
+        Solution { outcome: Outcome::NotConverged, unknowns: middle, residual: f64::NAN, iterations: 0 }
+    }
+
+    pub(crate) fn is_solved(&self) -> bool {
+        self.outcome == Outcome::Solved
+    }
+
+    /// Solved, or solved outside the ranges.
+    pub(crate) fn is_root(&self) -> bool {
+        matches!(self.outcome, Outcome::Solved | Outcome::Outside { .. })
+    }
+
+    /// The one of two that says more: solved before outside before singular before not converged, then the smaller
+    /// residual.
+    pub(crate) fn better(self, other: Solution) -> Solution {
+        let (mine, its) = (self.outcome.rank(), other.outcome.rank());
+        let no_worse = self.residual <= other.residual || other.residual.is_nan();
+        if mine > its || (mine == its && no_worse) { self } else { other }
+    }
+}
+
+/// The largest difference of two sets of unknowns, as a share of their ranges.
+pub(crate) fn distance(a: &[f64], b: &[f64], ranges: &[Range]) -> f64 {
+    a.iter().zip(b).zip(ranges).map(|((a, b), range)| (a - b).abs() / range.width()).fold(0.0, f64::max)
+}
+
+/// What the end of an iteration means.
+pub(crate) fn verdict(p: &[f64], ranges: &[Range], is_root: bool, singular: bool) -> Outcome {
+    if !is_root {
+        return if singular { Outcome::Singular } else { Outcome::NotConverged };
+    }
+    let share = |(range, value): (&Range, &f64)| range.excess(*value) / range.width();
+    let farthest = ranges
+        .iter()
+        .zip(p)
+        .map(share)
+        .enumerate()
+        .fold((0, 0.0), |worst, (k, share)| if share > worst.1 { (k, share) } else { worst });
+    if farthest.1 > ROUNDING {
+        let unknown = farthest.0;
+        return Outcome::Outside { unknown, by: ranges[unknown].excess(p[unknown]) };
+    }
+    if singular { Outcome::Singular } else { Outcome::Solved }
+}
