@@ -70,6 +70,15 @@ impl Page {
         }
     }
 
+    /// A value with its unit.
+    fn amount(&self, value: f64, dimension: Dimension) -> String {
+        let shown = shown(value, dimension);
+        match (self.style, shown.split_once(' ')) {
+            (Style::Latex, Some((number, unit))) => format!("{number}\\,\\mathrm{{{unit}}}"),
+            _ => shown,
+        }
+    }
+
     fn parameters(&mut self, job: &Job<'_>) {
         if job.parameters.is_empty() {
             return;
@@ -78,7 +87,7 @@ impl Page {
         for parameter in &job.parameters {
             let listing =
                 parameter.variable.graph().listing(&[parameter.variable, parameter.definition], self.style, "p");
-            let shown = shown(parameter.value, parameter.dimension);
+            let shown = self.amount(parameter.value, parameter.dimension);
             let value = match (parameter.definition.as_constant(), listing.definitions.is_empty()) {
                 (None, true) => format!("{} = {shown}", listing.values[1]),
                 _ => shown,
@@ -139,11 +148,11 @@ impl Page {
         self.text("unknowns:");
         for unknown in &surface.unknowns {
             let name = unknown.variable.graph().listing(&[unknown.variable], self.style, "u").values[0].clone();
-            let (low, high) = (shown(unknown.low, unknown.dimension), shown(unknown.high, unknown.dimension));
-            self.text(&format!(
-                "  {} in {low} .. {high}",
-                if self.style == Style::Text { name } else { format!("${name}$") }
-            ));
+            let [low, high] = [unknown.low, unknown.high].map(|end| self.amount(end, unknown.dimension));
+            match self.style {
+                Style::Text => self.line(&format!("  {name} in {low} .. {high}")),
+                Style::Latex => self.line(&format!("\\[ {low} \\le {name} \\le {high} \\]")),
+            }
         }
         self.counts(surface);
     }
@@ -325,10 +334,17 @@ pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
     }
 }
 
+/// Text in which nothing is a command of LaTeX.
 fn escaped(text: &str) -> String {
-    text.replace('\\', "\\textbackslash ")
-        .replace('_', "\\_")
-        .replace('&', "\\&")
-        .replace('%', "\\%")
-        .replace('#', "\\#")
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\\' => out.push_str("\\textbackslash{}"),
+            '^' => out.push_str("\\textasciicircum{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '_' | '&' | '%' | '#' | '$' | '{' | '}' => out.extend(['\\', letter]),
+            _ => out.push(letter),
+        }
+    }
+    out
 }
