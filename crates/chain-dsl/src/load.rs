@@ -167,6 +167,11 @@ enum ReadError {
 
 fn read_limited(path: &Path) -> Result<String, ReadError> {
     use std::io::Read;
+    // a pipe would make the reader wait, a device never end
+    let kind = std::fs::metadata(path).map_err(ReadError::Io)?;
+    if !kind.is_file() && !kind.is_dir() {
+        return Err(ReadError::Io(std::io::Error::other("it is not a plain file")));
+    }
     let file = std::fs::File::open(path).map_err(ReadError::Io)?;
     let mut text = String::new();
     let limit = limits::FILE_BYTES as u64;

@@ -121,10 +121,10 @@ type Reason = (Code, String);
 /// The curve through two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
 fn table(path: &Path, columns: [(&str, Dimension); 2]) -> Result<Curve, Reason> {
     let unreadable = |error: &std::io::Error| (Code::UnreadableFile, crate::load::reason(error));
-    let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
-    if !file.metadata().map_err(|error| unreadable(&error))?.is_file() {
+    if !std::fs::metadata(path).map_err(|error| unreadable(&error))?.is_file() {
         return Err((Code::UnreadableFile, "it is not a plain file".to_string()));
     }
+    let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)

@@ -99,6 +99,13 @@ fn unreadable_files_are_told() {
     assert_eq!(codes(&folder.join("large.chain"), &[]), [Code::LimitExceeded]);
 }
 
+/// A device without an end: neither waited for nor read.
+#[cfg(unix)]
+#[test]
+fn only_plain_files_are_read() {
+    assert_eq!(codes(Path::new("/dev/zero"), &[]), [Code::UnreadableFile]);
+}
+
 #[test]
 fn values_from_outside_win() {
     let folder = project("outside", &[("library.chain", LIBRARY), ("jobs/j.chain", JOB)]);
