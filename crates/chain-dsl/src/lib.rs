@@ -40,6 +40,7 @@ mod diagnostic;
 mod dimension;
 mod evaluate;
 mod explain;
+mod format;
 mod functions;
 mod instance;
 mod job;
@@ -63,6 +64,8 @@ pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use explain::UnknownCode;
+pub use format::format;
+pub use load::read_file;
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process,
     Sample, ToolShape,

@@ -42,10 +42,21 @@ pub(crate) fn load(path: &Path) -> Loaded {
         Ok(found) => {
             loader.read(path, &found, None);
         }
-        Err(error) => loader.unreadable(path, &error, None),
+        Err(error) => loader.unreadable(path, &ReadError::Io(error), None),
     }
     loader.loaded.root = Some(loader.root);
     loader.loaded
+}
+
+/// Reads one file, without those that it uses.
+///
+/// # Errors
+/// Says why it cannot be read; the place is an empty text of the file's name.
+pub fn read_file(sources: &mut Sources, path: &Path) -> Result<FileId, Diagnostic> {
+    match read_limited(path) {
+        Ok(text) => Ok(sources.add(path, text)),
+        Err(error) => Err(error.report(path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
+    }
 }
 
 /// Parses one text that uses no other file.
@@ -83,13 +94,7 @@ impl Loader {
     fn read(&mut self, shown: &Path, real: &Path, used_at: Option<Span>) {
         let text = match read_limited(real) {
             Ok(text) => text,
-            Err(ReadError::Io(error)) => return self.unreadable(shown, &error, used_at),
-            Err(ReadError::TooLarge) => {
-                let span = self.place(shown, used_at);
-                let message = format!("`{}` is larger than {} MiB", shown.display(), limits::FILE_BYTES >> 20);
-                let help = "split it with `use`";
-                return self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, span, message).help(help));
-            }
+            Err(error) => return self.unreadable(shown, &error, used_at),
         };
         let id = self.loaded.sources.add(shown, text);
         self.known.insert(real.to_path_buf(), id);
@@ -117,7 +122,7 @@ impl Loader {
             Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.root) => {
                 return self.outside(used);
             }
-            Err(error) => return self.unreadable(&shown, &error, Some(used.span)),
+            Err(error) => return self.unreadable(&shown, &ReadError::Io(error), Some(used.span)),
         };
         if !real.starts_with(&self.root) {
             return self.outside(used);
@@ -144,11 +149,11 @@ impl Loader {
         self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
     }
 
-    fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
+    fn unreadable(&mut self, shown: &Path, error: &ReadError, used_at: Option<Span>) {
         let span = self.place(shown, used_at);
-        let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
-        let mut diagnostic = Diagnostic::new(Code::UnreadableFile, span, message);
-        if used_at.is_some() && error.kind() == std::io::ErrorKind::NotFound {
+        let mut diagnostic = error.report(shown, span);
+        let is_missing = matches!(error, ReadError::Io(error) if error.kind() == std::io::ErrorKind::NotFound);
+        if used_at.is_some() && is_missing {
             diagnostic = diagnostic.help("the path starts from the folder of the file that says `use`");
         }
         self.loaded.diagnostics.push(diagnostic);
@@ -163,6 +168,21 @@ impl Loader {
 enum ReadError {
     Io(std::io::Error),
     TooLarge,
+}
+
+impl ReadError {
+    fn report(&self, shown: &Path, span: Span) -> Diagnostic {
+        match self {
+            ReadError::Io(error) => {
+                let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
+                Diagnostic::new(Code::UnreadableFile, span, message)
+            }
+            ReadError::TooLarge => {
+                let message = format!("`{}` is larger than {} MiB", shown.display(), limits::FILE_BYTES >> 20);
+                Diagnostic::new(Code::LimitExceeded, span, message).help("split it with `use`")
+            }
+        }
+    }
 }
 
 fn read_limited(path: &Path) -> Result<String, ReadError> {

@@ -15,6 +15,7 @@ Examples:
   flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
   flank check specs/machines/*.chain                    is it right, and if not, where and why
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
+  flank fmt specs/tools/*.chain                         the settled layout
 
 Exit codes: 0 done; 1 the spec is wrong, or a file cannot be read or written; 2 usage; 3 done, but something asked for
 could not be solved, and it is listed."
@@ -34,6 +35,8 @@ pub(crate) enum Command {
     Derive(Derive),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
+    /// Lay out specs as all of them are laid out; comments stay
+    Fmt(Fmt),
 }
 
 /// Which job of which file, with which values.
@@ -130,4 +133,21 @@ pub(crate) struct Explain {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Prints the files that changed. A file that does not parse is told so and stays as it is.
+
+Examples:
+  flank fmt my_machine.chain
+  flank fmt --check specs/*/*.chain    changes nothing; exit code 1 if something would change, and what
+  flank fmt - < draft.chain            from stdin to stdout")]
+pub(crate) struct Fmt {
+    /// The files; - for stdin to stdout
+    #[arg(required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Change nothing, list the files that would change
+    #[arg(long)]
+    pub(crate) check: bool,
 }

@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Check) -> Ending {
                 compilation.diagnostics.iter().map(|finding| as_json(finding, &compilation.sources)).collect();
             files.push(json!({ "file": shown(file), "ok": !wrong, "findings": findings }));
         } else {
-            tell(&compilation.diagnostics, &compilation);
+            tell(&compilation.diagnostics, &compilation.sources);
             print(&format!("{}: {}\n", shown(file), if wrong { "wrong" } else { "ok" }));
         }
     }

@@ -4,6 +4,7 @@ mod arguments;
 mod check;
 mod derive;
 mod explain;
+mod fmt;
 mod solve;
 mod spec;
 mod table;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Fmt(arguments) => fmt::run(&arguments),
     };
     ExitCode::from(match ending {
         Ending::Done => 0,

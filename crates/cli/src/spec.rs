@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{Compilation, Diagnostic, Job, Severity, compile_file, render};
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Severity, Sources, compile_file, render};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -12,25 +12,25 @@ use crate::arguments::Which;
 /// The jobs that are asked for; what is wrong has been told.
 pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'g>, Vec<Job<'g>>), Ending> {
     let mut compilation = compile_file(graph, &which.file, &which.set);
-    tell(&compilation.diagnostics, &compilation);
+    tell(&compilation.diagnostics, &compilation.sources);
     if compilation.has_errors() {
         return Err(Ending::Wrong);
     }
     match compilation.take_jobs(which.job.as_deref()) {
         Ok(jobs) => Ok((compilation, jobs)),
         Err(finding) => {
-            tell(&[finding], &compilation);
+            tell(&[finding], &compilation.sources);
             Err(Ending::Wrong)
         }
     }
 }
 
 /// Shows findings with the source underlined, and where to read more about the first error.
-pub(crate) fn tell(diagnostics: &[Diagnostic], compilation: &Compilation<'_>) {
+pub(crate) fn tell(diagnostics: &[Diagnostic], sources: &Sources) {
     if diagnostics.is_empty() {
         return;
     }
-    anstream::eprint!("{}", render(diagnostics, &compilation.sources, true));
+    anstream::eprint!("{}", render(diagnostics, sources, true));
     let count = |severity| diagnostics.iter().filter(|finding| finding.severity() == severity).count();
     let of = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     match (count(Severity::Error), count(Severity::Warning)) {

@@ -131,7 +131,7 @@ fn every_spec_of_the_library_is_right() {
 
 #[test]
 fn a_missing_file_is_told() {
-    for command in ["check", "solve", "derive"] {
+    for command in ["check", "solve", "derive", "fmt"] {
         let run = flank(&[command, "specs/no_such_file.chain"]);
         assert_eq!(run.status.code(), Some(1));
         assert!(text(&run.stderr).contains("there is no such file"), "{}", text(&run.stderr));

@@ -6,6 +6,7 @@
 pub mod ast;
 
 mod build;
+mod concrete;
 mod expected;
 mod explain;
 mod grammar;
@@ -19,9 +20,10 @@ mod scan;
 mod tests;
 mod words;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::FileId;
 
+pub(crate) use concrete::{Kind, Part};
 pub use scan::{Comment, CommentKind};
 
 /// Reads a text. Never fails: what did not parse is reported, and what stands around it is in the tree.
@@ -52,6 +54,21 @@ pub fn parse_expression(text: &str, file: FileId, start: u32) -> (ast::Expressio
     }
     let blank = " ".repeat(start);
     recover::expression(&scan::Scan::new(&format!("{blank}{}", &text[start..]), file), start)
+}
+
+/// The items of a text with all their words and signs, or everything that is wrong with it.
+pub(crate) fn concrete(text: &str, file: FileId) -> Result<Vec<Part<'_>>, Vec<Diagnostic>> {
+    let (_, diagnostics) = parse(text, file);
+    if diagnostics.iter().any(|finding| finding.severity() == Severity::Error) {
+        return Err(diagnostics);
+    }
+    let pairs = grammar::strict(grammar::Rule::file, text);
+    Ok(pairs.map_or_else(|_| unreachable!("what parses obeys the grammar"), concrete::items))
+}
+
+/// The report on a text that is longer than a file may be.
+pub(crate) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
+    limits::too_long(text, file)
 }
 
 /// All comments of a text, in order.

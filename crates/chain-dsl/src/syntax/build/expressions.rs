@@ -19,8 +19,8 @@ use super::{Build, Parts};
 type Tree = (Expression, usize);
 
 /// How tightly a sign before an operand holds it, between `and` and the comparisons, and between `*` and `^`.
-const NOT: u8 = 3;
-const NEGATE: u8 = 7;
+pub(in super::super) const NOT: u8 = 3;
+pub(in super::super) const NEGATE: u8 = 7;
 
 impl Build<'_> {
     /// A whole expression.
@@ -66,8 +66,8 @@ impl Build<'_> {
         self.level += 1;
         let mut left = self.operand(row);
         let mut compared: Option<Span> = None;
-        while let Some(next) = row.next_if(|part| operator(part).1 >= least) {
-            let (kind, strength) = operator(&next);
+        while let Some(next) = row.next_if(|part| operator(part.as_str()).1 >= least) {
+            let (kind, strength) = operator(next.as_str());
             let place = self.span(&next);
             if strength == operator_strength(BinaryOperator::Less) {
                 self.not_chained(compared, place);
@@ -217,9 +217,9 @@ impl Build<'_> {
 /// A flat row of operands, operators, and signs before operands.
 type Row<'i> = Peekable<IntoIter<Pair<'i, Rule>>>;
 
-/// Which operator a part is, and how tightly it holds.
-fn operator(part: &Pair<'_, Rule>) -> (BinaryOperator, u8) {
-    let operator = match part.as_str() {
+/// Which operator this is, and how tightly it holds.
+pub(in super::super) fn operator(text: &str) -> (BinaryOperator, u8) {
+    let operator = match text {
         "or" => BinaryOperator::Or,
         "and" => BinaryOperator::And,
         "<" => BinaryOperator::Less,

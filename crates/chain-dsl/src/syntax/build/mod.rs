@@ -6,6 +6,7 @@ mod items;
 mod statements;
 mod surfaces;
 
+pub(super) use expressions::{NEGATE, NOT, operator};
 pub(super) use items::Head;
 pub(super) use surfaces::SurfaceParts;
 
