@@ -80,7 +80,12 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
     let kind = match pair.as_rule() {
         Rule::EOI => return,
         Rule::number => return parts.push(number(pair)),
-        Rule::machine_head | Rule::tool_head | Rule::job_head | Rule::tool_surface_head | Rule::label | Rule::coordinate => {
+        Rule::machine_head
+        | Rule::tool_head
+        | Rule::job_head
+        | Rule::tool_surface_head
+        | Rule::label
+        | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
         }
         // the grammar looks beyond the sign, and takes in white space and comments on the way
