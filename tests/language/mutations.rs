@@ -3,17 +3,7 @@
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
 use flank_solver::{Range, SurfaceProblem};
-use flank_tests::repository;
-
-/// Numerical Recipes' generator: the same mutations in every run.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, below: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % below.max(1)
-    }
-}
+use flank_tests::{Dice, repository};
 
 /// A spec and what it uses as one text.
 fn whole(parts: &[&str]) -> String {

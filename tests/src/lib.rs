@@ -1,11 +1,16 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
+mod dice;
+pub mod targets;
+
 use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Job, compile_file, render};
 use flank_expr::Graph;
 use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
 use serde_json::Value;
+
+pub use dice::Dice;
 
 /// A path below the repository's top folder.
 pub fn repository(path: &str) -> PathBuf {

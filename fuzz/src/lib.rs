@@ -1,0 +1,4 @@
+//! The functions that are fuzzed; they are kept with the tests, which call them too.
+
+#[path = "../../tests/src/targets.rs"]
+pub mod targets;

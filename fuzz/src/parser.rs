@@ -1,0 +1,4 @@
+//! Fuzzes the parser.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| flank_fuzz::targets::fuzz_parser(data));
