@@ -9,7 +9,7 @@ use crate::system::{Evaluation, System};
 /// A point is solved when no residual is larger: mm, or mm per radian of a motion.
 ///
 /// Residuals of gears of 100 mm carry rounding errors of about 1e-13; this leaves two orders of room, and Newton goes on
-/// past it until nothing gets better. Residuals of very large things are allowed [`OF_SIZE`] of their size.
+/// past it until nothing gets better. Residuals of very large things are allowed a share of their size.
 pub const TOLERANCE: f64 = 1e-11;
 /// Share of an equation's size (see [`Evaluation::size_of`]) that its rounding errors stay below.
 const OF_SIZE: f64 = 1e-14;
