@@ -92,6 +92,13 @@ impl Table<'_, '_, '_> {
             let line = format!("  {name:<a$}  {asked:>b$}  {found:>c$}  {worst:>d$}  {reached}");
             let _ = writeln!(out, "{}", line.trim_end());
         }
+        for solved in self.solved.iter().filter(|solved| solved.effort.branches > 1) {
+            let (name, branches) = (&solved.surface.name, solved.effort.branches);
+            let _ = writeln!(
+                out,
+                "\n{name}: the ranges hold {branches} branches; all points are on the one that reaches most"
+            );
+        }
         let points: usize = self.solved.iter().map(|solved| solved.points.len()).sum();
         let _ = writeln!(out, "\n{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3);
         let _ = writeln!(out, "wrote {}", self.written.join(", "));
@@ -152,13 +159,10 @@ fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
         reasons.push(format!("{singular}: singular, the equations do not fix a single point there"));
     }
     let open = solved.points.iter().filter(|point| point.outcome == Outcome::NotConverged);
-    let residuals: Vec<f64> = open.map(|point| point.residual).collect();
-    if !residuals.is_empty() {
-        let least = residuals.iter().copied().fold(f64::INFINITY, f64::min);
-        reasons.push(format!(
-            "{}: not converged (smallest residual {least:.1e}): no point of the surface there within the ranges",
-            residuals.len()
-        ));
+    let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
+    if count > 0 {
+        let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
+        reasons.push(format!("{count}: not converged{near}: no point of this branch was found there"));
     }
     reasons
 }

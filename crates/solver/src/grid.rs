@@ -188,8 +188,9 @@ impl Grid<'_> {
         }
         let mut lost = last.unwrap_or_else(|| Solution::never_reached(self.ranges));
         if lost.is_root() {
-            // a root, but not one that the way leads to
+            // a root, but not one that the way leads to, or not of this target: its residual would mislead
             lost.outcome = Outcome::NotConverged;
+            lost.residual = f64::NAN;
         }
         lost
     }
