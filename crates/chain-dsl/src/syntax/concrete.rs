@@ -105,7 +105,9 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::definition | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
         Rule::range => Kind::Operation,
         Rule::dimension => Kind::Dimension,
-        _ => return parts.push(Part::leaf(Kind::Token, &pair)),
+        Rule::path => return parts.push(Part::leaf(Kind::Token, &pair)),
+        _ if pair.clone().into_inner().next().is_none() => return parts.push(Part::leaf(Kind::Token, &pair)),
+        _ => Kind::Statement,
     };
     let is_sample = pair.as_rule() == Rule::sample;
     let mut inner = inner(pair);

@@ -82,7 +82,8 @@ fn shipped_specs_are_laid_out() {
     assert!(specs.len() >= 9);
     for (path, text) in specs {
         assert_eq!(format(&text, FILE).as_ref(), Ok(&text), "run `flank fmt {}`", path.display());
-        assert!(text.lines().all(|line| line.chars().count() <= 120), "{}", path.display());
+        let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        assert_eq!(code.filter(|line| line.chars().count() > 110).count(), 0, "{}", path.display());
     }
 }
 
@@ -117,8 +118,8 @@ fn documentation_keeps_meaning_and_comments() {
 
 #[test]
 fn generated_texts_keep_meaning_and_comments() {
-    let parsed = (0..2500).filter(|&seed| check(&generate::text(seed), &std::format!("seed {seed}"))).count();
-    assert!(parsed > 2000, "{parsed}");
+    let parsed = (0..2000).filter(|&seed| check(&generate::text(seed), &std::format!("seed {seed}"))).count();
+    assert!(parsed > 1700, "{parsed}");
 }
 
 /// Comments put between any two words of the shipped specs.
