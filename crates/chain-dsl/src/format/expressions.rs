@@ -1,8 +1,8 @@
 //! Where expressions are broken: one level at a time, from the outside.
 
-use super::STEP;
 use super::print::Printer;
 use super::tree::{List, Node, Piece, Place, Shape, lead};
+use super::{STEP, WIDTH};
 
 impl Printer<'_> {
     /// Writes a node on one line if it fits, otherwise broken.
@@ -117,18 +117,21 @@ impl Printer<'_> {
     /// Whether only the last element needs to be broken, as in `taylor(roll, [ … ])`.
     fn holds_last(&self, node: &Node, list: &List, at: Place) -> bool {
         let Some((last, others)) = list.elements.split_last() else { return false };
-        let bare = match &last.node.shape {
+        let vector = match &last.node.shape {
             Shape::Row(pieces) => pieces.last().map_or(&last.node, |piece| &piece.node),
             _ => &last.node,
         };
-        let is_vector = self.tokens[bare.first].text == "[" && matches!(&bare.shape, Shape::List(_));
-        let quiet = |from: usize, to: usize| self.tokens[from].comments_before == self.tokens[to].comments_before;
-        let label = bare.first - last.node.first;
+        let is_vector = matches!(&vector.shape, Shape::List(_)) && self.tokens[vector.first].text == "[";
         let others: Option<usize> = others.iter().map(|other| other.node.width.map(|width| width + ", ".len())).sum();
-        let label: usize =
-            (0..label).map(|offset| self.tokens[last.node.first + offset].text.chars().count() + 1).sum();
-        let fits = others.is_some_and(|others| self.column(bare.first, at.indent) + others + label < super::WIDTH);
-        !list.broken && is_vector && fits && quiet(node.first, bare.first) && quiet(last.node.last, node.last)
+        let column = self.column(list.elements[0].node.first, at.indent);
+        let fits = others.is_some_and(|others| column + others + last.node.lead() <= WIDTH);
+        let is_quiet = self.is_quiet(node.first, vector.first) && self.is_quiet(vector.last, node.last);
+        !list.broken && is_vector && fits && is_quiet
+    }
+
+    /// Whether no comment stands between two tokens.
+    pub(super) fn is_quiet(&self, first: usize, last: usize) -> bool {
+        self.tokens[first].comments_before == self.tokens[last].comments_before
     }
 
     fn list_around_last(&mut self, node: &Node, list: &List, at: Place) {
@@ -190,20 +193,20 @@ impl Printer<'_> {
     fn ends_in_brackets(&self, parts: &[Node], at: Place) -> bool {
         let Some((last, before)) = parts.split_last() else { return false };
         let Some(opening) = last.opening_width() else { return false };
-        let quiet = self.tokens[parts[0].first].comments_before == self.tokens[last.first].comments_before;
+        let is_quiet = self.is_quiet(parts[0].first, last.first);
         let before: Option<usize> = before.iter().map(|part| part.width.map(|width| width + 1)).sum();
         let column = self.column(parts[0].first, at.indent);
-        let fits = before.is_some_and(|before| column + before + opening <= super::WIDTH);
-        quiet && fits && (is_product_of_two(parts, self) || !self.fit_on_lines(parts, at))
+        let fits = before.is_some_and(|before| column + before + opening <= WIDTH);
+        is_quiet && fits && (is_product_of_two(parts, self) || !self.fit_on_lines(parts, at))
     }
 
     fn fit_on_lines(&self, parts: &[Node], at: Place) -> bool {
         let lines = at.indent + at.hang;
         let operators = parts[1..].iter().step_by(2);
-        let others = operators.zip(parts[2..].iter().step_by(2));
+        let mut others = operators.zip(parts[2..].iter().step_by(2));
         let rest = |operand: &Node| if operand.last == parts[parts.len() - 1].last { at.rest } else { 0 };
         parts[0].fits(self.column(parts[0].first, at.indent), 0)
-            && others.into_iter().all(|(operator, operand)| {
+            && others.all(|(operator, operand)| {
                 operator.width.is_some_and(|width| operand.fits(lines + width + 1, rest(operand)))
             })
     }
@@ -226,8 +229,8 @@ impl Printer<'_> {
         let lines = at.indent + at.hang;
         let width: Option<usize> = parts.iter().map(|part| part.width.map(|width| width + 1)).sum();
         let column = self.column(parts[0].first, at.indent);
-        let quiet = self.tokens[parts[0].first].comments_before == self.tokens[parts[3].last].comments_before;
-        let fits = quiet && width.is_some_and(|width| column + width <= super::WIDTH + 1);
+        let fits =
+            self.is_quiet(parts[0].first, parts[3].last) && width.is_some_and(|width| column + width <= WIDTH + 1);
         self.token(parts[0].first, at.indent);
         self.space();
         self.node(&parts[1], Place::on_line(lines, 0));

@@ -42,8 +42,9 @@ impl Printer<'_> {
 
     fn block(&mut self, block: &Block, indent: usize) {
         self.pieces(&block.head, Place::on_line(indent, 0));
+        let open = block.head[block.head.len() - 1].node.last;
         match block.items.as_slice() {
-            [] if self.is_quiet(block) => self.token(block.close, indent),
+            [] if self.is_quiet(open, block.close) => self.token(block.close, indent),
             [Item::Statement(only)] if self.stays_on_line(block, only) => {
                 self.space();
                 self.inline(only, indent);
@@ -60,18 +61,12 @@ impl Printer<'_> {
         }
     }
 
-    /// Whether no comment stands between the braces.
-    fn is_quiet(&self, block: &Block) -> bool {
-        let open = block.head[block.head.len() - 1].node.last;
-        self.tokens[open].comments_before == self.tokens[block.close].comments_before
-    }
-
     /// Whether a block was written on one line and fits on one.
     fn stays_on_line(&self, block: &Block, only: &Statement) -> bool {
         let first = only.head[0].node.first;
         let width = only.width.map(|width| self.column(first, 0) + width + "  }".len());
         let was_on_line = !self.tokens[first..=block.close].iter().any(|token| token.starts_line);
-        was_on_line && self.is_quiet(block) && width.is_some_and(|width| width <= WIDTH)
+        was_on_line && self.is_quiet(first - 1, block.close) && width.is_some_and(|width| width <= WIDTH)
     }
 
     fn statement(&mut self, statement: &Statement, indent: usize) {
