@@ -70,13 +70,11 @@ impl<'g> Context<'g> {
                 return None;
             }
         };
-        let spans: Vec<Span> = match &expression.kind {
-            ExpressionKind::Vector(written) => written.iter().map(|part| part.span).collect(),
-            _ => vec![expression.span; 3],
-        };
+        let written = expression.parts(3);
         let names = ["x", "y", "z"];
-        let found: Vec<Option<Expr<'g>>> =
-            (0..3).map(|k| self.require(&parts[k], wanted, spans[k], &format!("{} of {what}", names[k]))).collect();
+        let found: Vec<Option<Expr<'g>>> = (0..3)
+            .map(|k| self.require(&parts[k], wanted, written[k].span, &format!("{} of {what}", names[k])))
+            .collect();
         Some([found[0]?, found[1]?, found[2]?])
     }
 
@@ -386,16 +384,21 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::LimitExceeded, call.function.span, message).help(help));
             return Value::Poison;
         }
+        // it did not parse: how many arguments it takes is not known
+        if matches!(function.body.kind, ExpressionKind::Error) {
+            call.arguments.iter().for_each(|argument| drop(self.evaluate(&argument.value, scope)));
+            return Value::Poison;
+        }
         let Some(arguments) = functions::arguments(self, call, function.arguments.len(), scope) else {
             return Value::Poison;
         };
         let mut inner = Scope::new();
-        for ((value, span), (name, written)) in arguments.into_iter().zip(&function.arguments) {
+        for ((value, given), (name, written)) in arguments.into_iter().zip(&function.arguments) {
             let Some(wanted) = self.dimension(written) else {
                 return Value::Poison;
             };
             let what = format!("`{}` of `{}`", name.node, function.name.node);
-            let Some(expr) = self.require(&value, wanted, span, &what) else {
+            let Some(expr) = self.require(&value, wanted, given.span, &what) else {
                 return Value::Poison;
             };
             inner.insert(name.node.clone(), Value::Scalar(expr, wanted));
@@ -414,7 +417,7 @@ impl<'g> Context<'g> {
     ) -> Value<'g> {
         let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
         let what = format!("the argument of `{}`", call.function.node);
-        match self.require(&arguments[0].0, x, arguments[0].1, &what) {
+        match self.require(&arguments[0].0, x, arguments[0].1.span, &what) {
             Some(at) => Value::Scalar(at.on_curve(curve, 0), y),
             None => Value::Poison,
         }

@@ -7,7 +7,6 @@ use crate::codes::Code;
 use crate::context::{Context, Scope, Value, article};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
-use crate::source::Span;
 use crate::syntax::ast;
 
 /// What a function takes and gives.
@@ -71,16 +70,16 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|(name, ..)| *name)
 }
 
-/// A value and where it stands.
-pub(crate) type Argument<'g> = (Value<'g>, Span);
+/// A value and what it is written as.
+pub(crate) type Argument<'a, 'g> = (Value<'g>, &'a ast::Expression);
 
 /// The arguments of a call that takes `count` of them by position.
-pub(crate) fn arguments<'g>(
+pub(crate) fn arguments<'a, 'g>(
     context: &mut Context<'g>,
-    call: &ast::Call,
+    call: &'a ast::Call,
     count: usize,
     scope: &Scope<'g>,
-) -> Option<Vec<Argument<'g>>> {
+) -> Option<Vec<Argument<'a, 'g>>> {
     let name = &call.function.node;
     if call.arguments.len() != count {
         let message = format!("`{name}` takes {count} argument{}, not {}", plural(count), call.arguments.len());
@@ -92,9 +91,7 @@ pub(crate) fn arguments<'g>(
         context.report(Diagnostic::new(Code::WrongArguments, named.span, message));
         return None;
     }
-    Some(
-        call.arguments.iter().map(|argument| (context.evaluate(&argument.value, scope), argument.value.span)).collect(),
-    )
+    Some(call.arguments.iter().map(|argument| (context.evaluate(&argument.value, scope), &argument.value)).collect())
 }
 
 pub(crate) fn plural(count: usize) -> &'static str {
@@ -122,11 +119,11 @@ fn apply<'g>(
     context: &mut Context<'g>,
     function: Function,
     name: &str,
-    arguments: &[Argument<'g>],
+    arguments: &[Argument<'_, 'g>],
 ) -> Option<Value<'g>> {
     use Dimension as D;
     let what = format!("the argument of `{name}`");
-    let one = |context: &mut Context<'g>, wanted| context.require(&arguments[0].0, wanted, arguments[0].1, &what);
+    let one = |context: &mut Context<'g>, wanted| context.require(&arguments[0].0, wanted, arguments[0].1.span, &what);
     Some(match function {
         Function::OfAngle(op) => Value::Scalar(one(context, D::ANGLE)?.unary(op), D::NUMBER),
         Function::ToAngle(op) => Value::Scalar(as_number(context, &arguments[0], &what)?.unary(op), D::ANGLE),
@@ -150,7 +147,7 @@ fn apply<'g>(
             let (x, dimension) = any_scalar(context, &arguments[0], &what)?;
             let Some(root) = dimension.root().or((dimension.length == 0).then_some(D::NUMBER)) else {
                 let message = format!("there is no square root of a {dimension}");
-                context.report(Diagnostic::new(Code::WrongDimension, arguments[0].1, message));
+                context.report(Diagnostic::new(Code::WrongDimension, arguments[0].1.span, message));
                 return None;
             };
             Value::Scalar(x.sqrt(), root)
@@ -179,20 +176,20 @@ fn apply<'g>(
 }
 
 /// A number; an angle is one where a function wants a number.
-fn as_number<'g>(context: &mut Context<'g>, argument: &Argument<'g>, what: &str) -> Option<Expr<'g>> {
+fn as_number<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, what: &str) -> Option<Expr<'g>> {
     match argument.0 {
         Value::Scalar(expr, dimension) if dimension.length == 0 => Some(expr),
-        _ => context.require(&argument.0, Dimension::NUMBER, argument.1, what),
+        _ => context.require(&argument.0, Dimension::NUMBER, argument.1.span, what),
     }
 }
 
-fn any_scalar<'g>(context: &mut Context<'g>, argument: &Argument<'g>, what: &str) -> Option<(Expr<'g>, Dimension)> {
+fn any_scalar<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, what: &str) -> Option<(Expr<'g>, Dimension)> {
     match &argument.0 {
         Value::Scalar(expr, dimension) => Some((*expr, *dimension)),
         Value::Poison => None,
         other => {
             let message = format!("{what} must be a number, a length or an angle, this is {}", other.described());
-            context.report(Diagnostic::new(Code::WrongDimension, argument.1, message));
+            context.report(Diagnostic::new(Code::WrongDimension, argument.1.span, message));
             None
         }
     }
@@ -202,14 +199,14 @@ fn any_scalar<'g>(context: &mut Context<'g>, argument: &Argument<'g>, what: &str
 fn alike<'g>(
     context: &mut Context<'g>,
     name: &str,
-    arguments: &[Argument<'g>],
+    arguments: &[Argument<'_, 'g>],
 ) -> Option<(Expr<'g>, Expr<'g>, Dimension)> {
     let what = format!("the argument of `{name}`");
     let (a, da) = any_scalar(context, &arguments[0], &what)?;
     let (b, db) = any_scalar(context, &arguments[1], &what)?;
     let Some(dimension) = da.sum(db) else {
         let message = format!("`{name}` takes two values of one dimension, not {da} and {db}");
-        context.report(Diagnostic::new(Code::WrongDimension, arguments[1].1, message));
+        context.report(Diagnostic::new(Code::WrongDimension, arguments[1].1.span, message));
         return None;
     };
     Some((a, b, dimension))
@@ -218,24 +215,25 @@ fn alike<'g>(
 /// By Horner's scheme; the terms must add up in dimension.
 fn polynomial<'g>(
     context: &mut Context<'g>,
-    arguments: &[Argument<'g>],
+    arguments: &[Argument<'_, 'g>],
     name: &str,
     factorials: bool,
 ) -> Option<Value<'g>> {
     let (x, x_dimension) = any_scalar(context, &arguments[0], &format!("the variable of `{name}`"))?;
     let Value::Vector(coefficients) = &arguments[1].0 else {
         let message = format!("`{name}` takes a list of coefficients `[c0, c1, …]`");
-        context.report(Diagnostic::new(Code::WrongArguments, arguments[1].1, message));
+        context.report(Diagnostic::new(Code::WrongArguments, arguments[1].1.span, message));
         return None;
     };
     let mut dimension: Option<Dimension> = None;
     let mut terms = Vec::new();
-    for (k, coefficient) in (0i32..).zip(coefficients) {
+    for ((k, coefficient), written) in (0i32..).zip(coefficients).zip(arguments[1].1.parts(coefficients.len())) {
         let what = format!("coefficient {k} of `{name}`");
-        let (c, c_dimension) = any_scalar(context, &(coefficient.clone(), arguments[1].1), &what)?;
+        let (c, c_dimension) = any_scalar(context, &(coefficient.clone(), written), &what)?;
         let term = c_dimension.times(x_dimension.power(k));
         dimension = match dimension {
-            _ if c.is_zero() => dimension,
+            // nothing of any dimension
+            _ if c.is_zero() && c_dimension == Dimension::NUMBER => dimension,
             None => Some(term),
             Some(so_far) => match so_far.sum(term) {
                 Some(sum) => Some(sum),
@@ -243,7 +241,7 @@ fn polynomial<'g>(
                     let (this, before) = (article(term), article(so_far));
                     let message =
                         format!("term {k} of `{name}` is {this} {term}, the terms before it are {before} {so_far}");
-                    context.report(Diagnostic::new(Code::WrongDimension, arguments[1].1, message));
+                    context.report(Diagnostic::new(Code::WrongDimension, written.span, message));
                     return None;
                 }
             },
@@ -256,24 +254,24 @@ fn polynomial<'g>(
     Some(Value::Scalar(sum, dimension.unwrap_or(Dimension::NUMBER)))
 }
 
-fn vector<'g>(context: &mut Context<'g>, argument: &Argument<'g>, name: &str) -> Option<(Vector3<'g>, Dimension)> {
+fn vector<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, name: &str) -> Option<(Vector3<'g>, Dimension)> {
     let what = format!("the argument of `{name}`");
     let parts = match &argument.0 {
         Value::Vector(parts) if parts.len() == 3 => parts,
         Value::Poison => return None,
         other => {
             let message = format!("{what} must be a vector of 3, this is {}", other.described());
-            context.report(Diagnostic::new(Code::WrongDimension, argument.1, message));
+            context.report(Diagnostic::new(Code::WrongDimension, argument.1.span, message));
             return None;
         }
     };
     let mut components = Vec::new();
     let mut dimension: Option<Dimension> = None;
-    for part in parts {
-        let (expr, found) = any_scalar(context, &(part.clone(), argument.1), &what)?;
+    for (part, written) in parts.iter().zip(argument.1.parts(3)) {
+        let (expr, found) = any_scalar(context, &(part.clone(), written), &what)?;
         let Some(sum) = dimension.unwrap_or(found).sum(found) else {
             let message = format!("the components of {what} have different dimensions");
-            context.report(Diagnostic::new(Code::WrongDimension, argument.1, message));
+            context.report(Diagnostic::new(Code::WrongDimension, written.span, message));
             return None;
         };
         dimension = Some(sum);
@@ -286,7 +284,7 @@ fn product<'g>(
     context: &mut Context<'g>,
     function: Function,
     name: &str,
-    arguments: &[Argument<'g>],
+    arguments: &[Argument<'_, 'g>],
 ) -> Option<Value<'g>> {
     let (a, da) = vector(context, &arguments[0], name)?;
     let (b, db) = vector(context, &arguments[1], name)?;

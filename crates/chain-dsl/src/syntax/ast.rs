@@ -373,6 +373,17 @@ pub struct Expression {
     pub span: Span,
 }
 
+impl Expression {
+    /// What the elements of a value that is a vector of this length are written as: itself for each, unless it is written as
+    /// a vector.
+    pub(crate) fn parts(&self, length: usize) -> Vec<&Expression> {
+        match &self.kind {
+            ExpressionKind::Vector(parts) if parts.len() == length => parts.iter().collect(),
+            _ => vec![self; length],
+        }
+    }
+}
+
 /// Kinds of expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExpressionKind {

@@ -63,6 +63,24 @@ fn coupled_axes_follow_through_others() {
 }
 
 #[test]
+fn a_zero_with_a_unit_is_a_coefficient_like_others() {
+    for first in ["0 mm", "1 mm", "0"] {
+        let text = format!(
+            "job j {{
+                machine m = lathe(height: 4 mm)
+                tool b = ball
+                mount b on m.slide
+                motion turn : angle in 0 deg .. 90 deg
+                drive m.C = taylor(turn, [0 deg, 1 rad/rad])
+                drive m.Z = taylor(turn, [{first}, 2 mm, 3 mm])
+                surface s in m.work = envelope(b.face, over: turn)
+            }}"
+        );
+        assert_eq!(laws(&text)[1], "C = turn");
+    }
+}
+
+#[test]
 fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     let graph = Graph::new();
     let text = "
