@@ -1,8 +1,7 @@
 //! Exact derivatives and substitution, both on the shared graph.
 
-use std::collections::HashMap;
-
 use crate::graph::{Expr, Graph, Node, NodeId, VariableId};
+use crate::hash::{NodeMap, NodeSet};
 use crate::op::{Binary, Unary};
 
 impl<'g> Expr<'g> {
@@ -109,7 +108,7 @@ fn blend<'g>(side: Expr<'g>, positive: Expr<'g>, negative: Expr<'g>) -> Expr<'g>
 
 impl Graph {
     fn reachable_without_derivative(&self, root: NodeId, variable: VariableId) -> Vec<NodeId> {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = NodeSet::default();
         let mut stack = vec![root];
         while let Some(id) = stack.pop() {
             if self.known_derivative(variable, id).is_none() && seen.insert(id) {
@@ -126,11 +125,11 @@ impl Graph {
     /// # Panics
     /// If a key of `replacements` is not a variable.
     pub fn substitute<'g>(&'g self, roots: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
-        let table: HashMap<VariableId, Expr<'g>> = replacements
+        let table: NodeMap<VariableId, Expr<'g>> = replacements
             .iter()
             .map(|(variable, value)| (variable.as_variable().expect("only variables are replaced"), *value))
             .collect();
-        let mut image: HashMap<NodeId, Expr<'g>> = HashMap::new();
+        let mut image: NodeMap<NodeId, Expr<'g>> = NodeMap::default();
         for id in self.reachable(roots.iter().map(|root| root.id)) {
             let new = match self.node(id) {
                 Node::Constant(_) => self.expr(id),

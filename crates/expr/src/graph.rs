@@ -1,12 +1,12 @@
 //! A graph in which equal expressions are one node.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use crate::curve::Curve;
+use crate::hash::{NodeMap, NodeSet};
 use crate::op::{Binary, Unary};
 use crate::rules;
 
@@ -70,10 +70,10 @@ impl Node {
 #[derive(Default)]
 struct Store {
     nodes: Vec<Node>,
-    index: HashMap<Node, NodeId>,
+    index: NodeMap<Node, NodeId>,
     variables: Vec<String>,
     curves: Vec<Arc<Curve>>,
-    derivatives: HashMap<(VariableId, NodeId), NodeId>,
+    derivatives: NodeMap<(VariableId, NodeId), NodeId>,
 }
 
 /// The arena of all symbolic scalars of one model.
@@ -187,7 +187,7 @@ impl Graph {
     /// Every node that the roots are made of, operands before what is made of them.
     pub(crate) fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let store = self.store.borrow();
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = NodeSet::default();
         let mut stack: Vec<NodeId> = roots.into_iter().collect();
         while let Some(id) = stack.pop() {
             if seen.insert(id) {
@@ -202,7 +202,7 @@ impl Graph {
     /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.
     pub fn count(&self, roots: &[Expr<'_>]) -> NodeCount {
         let order = self.reachable(roots.iter().map(|root| root.id));
-        let mut written: HashMap<NodeId, f64> = HashMap::with_capacity(order.len());
+        let mut written: NodeMap<NodeId, f64> = NodeMap::default();
         for &id in &order {
             let below: f64 = self.node(id).operands().map(|operand| written[&operand]).sum();
             written.insert(id, below + 1.0);

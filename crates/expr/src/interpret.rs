@@ -1,8 +1,7 @@
 //! The oracle: evaluation node by node, slow and plain.
 
-use std::collections::HashMap;
-
 use crate::graph::{Expr, Graph, Node, NodeId};
+use crate::hash::NodeMap;
 
 impl Graph {
     /// Values of the expressions; `values` holds one number per variable of the graph, in order of creation.
@@ -12,7 +11,7 @@ impl Graph {
     /// # Panics
     /// If an expression depends on a variable beyond the end of `values`.
     pub fn evaluate(&self, roots: &[Expr<'_>], values: &[f64]) -> Vec<f64> {
-        let mut known: HashMap<NodeId, f64> = HashMap::new();
+        let mut known: NodeMap<NodeId, f64> = NodeMap::default();
         for id in self.reachable(roots.iter().map(|root| root.id)) {
             let value = match self.node(id) {
                 Node::Constant(bits) => f64::from_bits(bits),

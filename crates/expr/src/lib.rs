@@ -23,6 +23,7 @@ mod derivative;
 mod evaluate;
 pub mod geometry;
 mod graph;
+mod hash;
 mod interpret;
 mod op;
 mod print;

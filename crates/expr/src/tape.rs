@@ -1,12 +1,12 @@
 //! Expressions laid out as a list of instructions.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use thiserror::Error;
 
 use crate::curve::Curve;
 use crate::graph::{CurveId, Expr, Graph, Node, NodeId};
+use crate::hash::NodeMap;
 use crate::op::{Binary, Unary};
 
 /// What an instruction does with its registers.
@@ -150,8 +150,8 @@ impl Tape {
 
 /// Which node lives in which register, and which registers are free.
 struct Registers {
-    place: HashMap<NodeId, u32>,
-    uses: HashMap<NodeId, u32>,
+    place: NodeMap<NodeId, u32>,
+    uses: NodeMap<NodeId, u32>,
     free: Vec<u32>,
     /// Curves in the order in which the tape numbers them.
     curves: Vec<CurveId>,
@@ -160,11 +160,10 @@ struct Registers {
 
 impl Registers {
     fn new(graph: &Graph, order: &[NodeId], outputs: &[Expr<'_>]) -> Registers {
-        let mut uses = HashMap::with_capacity(order.len());
+        let mut uses = NodeMap::with_capacity_and_hasher(order.len(), Default::default());
         for &id in order {
-            let mut operands: Vec<NodeId> = graph.node(id).operands().collect();
-            operands.dedup();
-            for operand in operands {
+            let mut before = None;
+            for operand in graph.node(id).operands().filter(|&operand| before.replace(operand) != Some(operand)) {
                 *uses.entry(operand).or_insert(0) += 1;
             }
         }
@@ -178,7 +177,7 @@ impl Registers {
                 uses.insert(id, u32::MAX);
             }
         }
-        Registers { place: HashMap::new(), uses, free: Vec::new(), curves: Vec::new(), next: 0 }
+        Registers { place: NodeMap::default(), uses, free: Vec::new(), curves: Vec::new(), next: 0 }
     }
 
     /// The instruction of a node; none for a leaf, which is in its register from the start.
