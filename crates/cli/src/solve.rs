@@ -58,7 +58,7 @@ fn solve_surface<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Op
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
         .expect("a job without errors leaves nothing unbound");
     let (points, effort) = problem.solve(&sample.targets, sample.counts);
-    Some(Solved { surface, sample, points, effort })
+    Some(Solved { surface, sample, points, effort, fields: Vec::new() })
 }
 
 fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {
@@ -85,6 +85,7 @@ fn patch(solved: &Solved<'_, '_>) -> Patch {
         columns: axis(1),
         unknowns: unknowns.map(|u| Unknown { name: u.name.clone(), unit: unit(u.dimension) }).collect(),
         points: solved.points.iter().map(point).collect(),
+        fields: solved.fields.clone(),
     }
 }
 

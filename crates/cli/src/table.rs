@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
+use flank_export::Field;
 use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
@@ -13,6 +14,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) sample: &'j Sample<'g>,
     pub(crate) points: Vec<SurfacePoint>,
     pub(crate) effort: Effort,
+    /// What more is known of the points; files show it after the status.
+    pub(crate) fields: Vec<Field>,
 }
 
 /// A job's surfaces.

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Patch, Point, Unit, Unknown};
+use crate::dataset::{Dataset, Field, Patch, Point, Unit, Unknown};
 use crate::error::WriteError;
 use crate::number::shortest;
 use crate::tally::Tally;
@@ -14,9 +14,11 @@ const LAST: [&str; 2] = ["residual", "status"];
 /// Writes all points as CSV.
 ///
 /// `# ` lines state the conventions. The columns are `surface, i, j, x, y, z, nx, ny, nz`, then the unknowns of all
-/// patches in order of first appearance, then `residual, status`. Positions are mm, angles degrees, numbers the shortest
-/// text that reads back as the same bits. Cells are empty where a patch has no such unknown and where a point is not
-/// solved. An unknown whose name is taken by another column is written as `name [unit]`.
+/// patches in order of first appearance, then `residual, status`, then the fields of all patches (three columns for a
+/// vector). Positions are mm, angles degrees, numbers the shortest
+/// text that reads back as the same bits. Cells are empty where a patch has no such unknown or field, where a field is
+/// not defined and where a point is not solved. An unknown or a field whose title is taken by another column is written as
+/// `name [unit]`.
 ///
 /// # Errors
 /// When the dataset is malformed, or the stream refuses.
@@ -24,15 +26,19 @@ pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     dataset.check()?;
     write_head(dataset, out)?;
     let unknowns = union_of_unknowns(&dataset.patches);
+    let fields = union_of_fields(&dataset.patches);
     let mut table = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(out);
-    let names = unknowns.iter().map(|unknown| column_name(unknown, &unknowns));
-    let titles = FIRST.iter().map(|&name| name.to_owned()).chain(names).chain(LAST.iter().map(|&name| name.to_owned()));
-    table.write_record(titles).map_err(io::Error::from)?;
+    table.write_record(titles(&unknowns, &fields)).map_err(io::Error::from)?;
     for patch in &dataset.patches {
         let places: Vec<Option<usize>> =
             unknowns.iter().map(|wanted| patch.unknowns.iter().position(|unknown| unknown == *wanted)).collect();
+        let own: Vec<Option<&Field>> =
+            fields.iter().map(|wanted| patch.fields.iter().find(|field| field.shares_columns(wanted))).collect();
         for (i, j, point) in patch.indexed_points() {
-            table.write_record(record(patch, i, j, point, &places)).map_err(io::Error::from)?;
+            let mut cells = record(patch, i, j, point, &places);
+            let at = i * patch.columns.count + j;
+            cells.extend(fields.iter().zip(&own).flat_map(|(wanted, own)| field_cells(wanted, *own, at, point)));
+            table.write_record(cells).map_err(io::Error::from)?;
         }
     }
     table.flush()?;
@@ -49,6 +55,10 @@ fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
     }
     for unknown in union_of_unknowns(&dataset.patches) {
         writeln!(out, "# unknown `{}` in {}", one_line(&unknown.name), unknown.unit.symbol())?;
+    }
+    for field in union_of_fields(&dataset.patches) {
+        let [name, unit, meaning] = [&field.name, &field.unit, &field.meaning].map(|text| one_line(text));
+        writeln!(out, "# field `{name}` in {unit}: {meaning}")?;
     }
     for patch in &dataset.patches {
         writeln!(
@@ -87,10 +97,37 @@ fn union_of_unknowns(patches: &[Patch]) -> Vec<&Unknown> {
     union
 }
 
-fn column_name(unknown: &Unknown, all: &[&Unknown]) -> String {
-    let taken = FIRST.iter().chain(&LAST).any(|&fixed| fixed == unknown.name);
-    let shared = all.iter().filter(|other| other.name == unknown.name).count() > 1;
-    if taken || shared { format!("{} [{}]", unknown.name, unknown.unit.symbol()) } else { unknown.name.clone() }
+fn union_of_fields(patches: &[Patch]) -> Vec<&Field> {
+    let mut union: Vec<&Field> = Vec::new();
+    for field in patches.iter().flat_map(|patch| &patch.fields) {
+        if !union.iter().any(|known| known.shares_columns(field)) {
+            union.push(field);
+        }
+    }
+    union
+}
+
+/// The titles of all columns; those of unknowns and fields that are not unique have the unit behind them.
+fn titles(unknowns: &[&Unknown], fields: &[&Field]) -> Vec<String> {
+    let fixed = |names: &[&str]| names.iter().map(|&name| (name.to_owned(), None)).collect::<Vec<_>>();
+    let of_unknowns = unknowns.iter().map(|unknown| (unknown.name.clone(), Some(unknown.unit.symbol())));
+    let of_fields = fields.iter().flat_map(|field| field.columns().into_iter().map(|name| (name, Some(&*field.unit))));
+    let all: Vec<(String, Option<&str>)> =
+        fixed(&FIRST).into_iter().chain(of_unknowns).chain(fixed(&LAST)).chain(of_fields).collect();
+    let shared = |name: &str| all.iter().filter(|(other, _)| other == name).count() > 1;
+    let title = |(name, unit): &(String, Option<&str>)| match unit {
+        Some(unit) if shared(name) => format!("{name} [{unit}]"),
+        _ => name.clone(),
+    };
+    all.iter().map(title).collect()
+}
+
+/// What a point has in the columns of a field; empty cells if the point's patch has no such field.
+fn field_cells(wanted: &Field, own: Option<&Field>, at: usize, point: &Point) -> Vec<String> {
+    match own.map(|field| field.values.at(at)) {
+        Some(numbers) if point.is_solved() && !numbers.is_empty() => numbers.iter().copied().map(shortest).collect(),
+        _ => vec![String::new(); wanted.columns().len()],
+    }
 }
 
 fn record(patch: &Patch, i: usize, j: usize, point: &Point, places: &[Option<usize>]) -> Vec<String> {

@@ -41,6 +41,30 @@ pub struct Patch {
     pub unknowns: Vec<Unknown>,
     /// The points, row by row: point `(i, j)` is at `i * columns.count + j`.
     pub points: Vec<Point>,
+    /// What more is known of the points, in the order it appears in files.
+    pub fields: Vec<Field>,
+}
+
+/// Something more that is known of each solved point of a patch: a curvature, a direction, a sensitivity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Its name, such as `k1`: the title of its column. A vector's columns are `name_x`, `name_y`, `name_z`.
+    pub name: String,
+    /// The unit that its values are handed over and written in, such as `1/mm`; `1` for a plain number or a direction.
+    pub unit: String,
+    /// One sentence for the head of files, with the sign convention.
+    pub meaning: String,
+    /// One value for each point, in the order of the points.
+    pub values: Values,
+}
+
+/// The values of a field. `None` where it is not defined; what a point that is not solved has is not written.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// A number for each point.
+    Scalars(Vec<Option<f64>>),
+    /// A vector in the patch's frame for each point.
+    Vectors(Vec<Option<[f64; 3]>>),
 }
 
 /// One direction of a grid.
@@ -117,6 +141,38 @@ impl Unit {
     }
 }
 
+impl Field {
+    /// The titles of its columns: its name, or that with `_x`, `_y`, `_z`.
+    pub(crate) fn columns(&self) -> Vec<String> {
+        match self.values {
+            Values::Scalars(_) => vec![self.name.clone()],
+            Values::Vectors(_) => ["x", "y", "z"].map(|axis| format!("{}_{axis}", self.name)).into(),
+        }
+    }
+
+    /// Whether another field's values go into the same columns.
+    pub(crate) fn shares_columns(&self, other: &Field) -> bool {
+        self.name == other.name && self.unit == other.unit && self.columns().len() == other.columns().len()
+    }
+}
+
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Values::Scalars(values) => values.len(),
+            Values::Vectors(values) => values.len(),
+        }
+    }
+
+    /// The numbers of one point: one or three, none where there is no value.
+    pub(crate) fn at(&self, point: usize) -> &[f64] {
+        match self {
+            Values::Scalars(values) => values[point].as_slice(),
+            Values::Vectors(values) => values[point].as_ref().map_or(&[], <[f64; 3]>::as_slice),
+        }
+    }
+}
+
 impl Outcome {
     /// The word in a file's status column; `solved` if it is.
     #[must_use]
@@ -179,6 +235,14 @@ impl Patch {
                 points: self.points.len(),
             });
         }
+        if let Some(field) = self.fields.iter().find(|field| field.values.len() != self.points.len()) {
+            return Err(Malformed::FieldLength {
+                surface: self.name.clone(),
+                field: field.name.clone(),
+                values: field.values.len(),
+                points: self.points.len(),
+            });
+        }
         for (i, j, point) in self.indexed_points().filter(|(_, _, point)| point.is_solved()) {
             if point.unknowns.len() != self.unknowns.len() {
                 return Err(Malformed::UnknownCount {
@@ -189,9 +253,9 @@ impl Patch {
                     named: self.unknowns.len(),
                 });
             }
-            let mut numbers =
-                point.position.iter().chain(&point.normal).chain(&point.unknowns).chain([&point.residual]);
-            if !numbers.all(|number| number.is_finite()) {
+            let of_fields = self.fields.iter().flat_map(|field| field.values.at(i * self.columns.count + j));
+            let of_point = point.position.iter().chain(&point.normal).chain(&point.unknowns).chain([&point.residual]);
+            if !of_point.chain(of_fields).all(|number| number.is_finite()) {
                 return Err(Malformed::NotANumber { surface: self.name.clone(), i, j });
             }
         }

@@ -32,6 +32,18 @@ pub enum Malformed {
         /// Unknowns the patch names.
         named: usize,
     },
+    /// A field has not one value for each point.
+    #[error("surface `{surface}`, field `{field}`: {values} values for {points} points")]
+    FieldLength {
+        /// Name of the patch.
+        surface: String,
+        /// Name of the field.
+        field: String,
+        /// Values it has.
+        values: usize,
+        /// Points the patch has.
+        points: usize,
+    },
     /// A solved point has an infinity or a NaN somewhere.
     #[error("surface `{surface}`, point ({i}, {j}) is said to be solved, but not all of its numbers are finite")]
     NotANumber {

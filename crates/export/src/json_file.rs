@@ -1,4 +1,4 @@
-//! Points as JSON, by the schema `schema/surfaces-1.schema.json`.
+//! Points as JSON, by the schema `schema/surfaces-2.schema.json`.
 
 use std::io::{self, Write};
 
@@ -6,18 +6,18 @@ use serde::Serialize;
 use serde_json::ser::Formatter;
 
 use crate::conventions::sentences;
-use crate::dataset::{Axis, Dataset, Patch, Point};
+use crate::dataset::{Axis, Dataset, Field, Patch, Point, Values};
 use crate::error::WriteError;
 use crate::number::plain;
 use crate::tally::Tally;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
-pub const SCHEMA: &str = "flank.surfaces/1";
+pub const SCHEMA: &str = "flank.surfaces/2";
 
 /// Writes all points as JSON, one point a line, keys in a fixed order.
 ///
-/// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal` and `unknowns` are
-/// `null`.
+/// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal`, `unknowns`
+/// and `fields` are `null`; of a solved one, a field that is not defined there is.
 ///
 /// # Errors
 /// When the dataset is malformed, or the stream refuses.
@@ -75,6 +75,7 @@ struct SurfaceOut<'a> {
     rows: AxisOut<'a>,
     columns: AxisOut<'a>,
     unknowns: Vec<UnknownOut<'a>>,
+    fields: Vec<FieldOut<'a>>,
     #[serde(flatten)]
     tally: TallyOut,
     points: Vec<PointOut>,
@@ -93,6 +94,21 @@ struct UnknownOut<'a> {
 }
 
 #[derive(Serialize)]
+struct FieldOut<'a> {
+    name: &'a str,
+    unit: &'a str,
+    components: usize,
+    meaning: &'a str,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ValueOut {
+    Scalar(Option<f64>),
+    Vector(Option<[f64; 3]>),
+}
+
+#[derive(Serialize)]
 struct PointOut {
     i: usize,
     j: usize,
@@ -101,6 +117,7 @@ struct PointOut {
     normal: Option<[f64; 3]>,
     unknowns: Option<Vec<f64>>,
     residual: Option<f64>,
+    fields: Option<Vec<ValueOut>>,
 }
 
 impl TallyOut {
@@ -117,14 +134,28 @@ fn surface<'a>(patch: &'a Patch) -> SurfaceOut<'a> {
         rows: axis(&patch.rows),
         columns: axis(&patch.columns),
         unknowns: patch.unknowns.iter().map(|u| UnknownOut { name: &u.name, unit: u.unit.symbol() }).collect(),
+        fields: patch.fields.iter().map(field).collect(),
         tally: TallyOut::of(&Tally::of([patch])),
         points: patch.indexed_points().map(|(i, j, point)| point_out(patch, i, j, point)).collect(),
+    }
+}
+
+fn field(field: &Field) -> FieldOut<'_> {
+    FieldOut { name: &field.name, unit: &field.unit, components: field.columns().len(), meaning: &field.meaning }
+}
+
+fn value_out(values: &Values, point: usize) -> ValueOut {
+    match values {
+        Values::Scalars(values) => ValueOut::Scalar(values[point].map(plain)),
+        Values::Vectors(values) => ValueOut::Vector(values[point].map(|vector| vector.map(plain))),
     }
 }
 
 fn point_out(patch: &Patch, i: usize, j: usize, point: &Point) -> PointOut {
     let values =
         || patch.unknowns.iter().zip(&point.unknowns).map(|(u, &value)| plain(u.unit.written(value))).collect();
+    let at = i * patch.columns.count + j;
+    let fields = || patch.fields.iter().map(|field| value_out(&field.values, at)).collect();
     let solved = point.is_solved();
     PointOut {
         i,
@@ -134,6 +165,7 @@ fn point_out(patch: &Patch, i: usize, j: usize, point: &Point) -> PointOut {
         normal: solved.then(|| point.normal.map(plain)),
         unknowns: solved.then(values),
         residual: point.known_residual().map(plain),
+        fields: solved.then(fields),
     }
 }
 

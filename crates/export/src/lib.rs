@@ -7,7 +7,7 @@
 //! was not solved is written as such: no file and no picture invents a position for it.
 //!
 //! ```
-//! use flank_export::{Axis, Dataset, Header, Outcome, Patch, Point, Unit, Unknown, write_csv};
+//! use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values, write_csv};
 //!
 //! let point = |z: f64| Point {
 //!     outcome: Outcome::Solved,
@@ -31,6 +31,12 @@
 //!         columns: Axis { label: "rho".into(), count: 1 },
 //!         unknowns: vec![Unknown { name: "phi".into(), unit: Unit::Degree }],
 //!         points: vec![point(-0.0), point(0.1)],
+//!         fields: vec![Field {
+//!             name: "k1".into(),
+//!             unit: "1/mm".into(),
+//!             meaning: "larger principal curvature, positive where the body is convex".into(),
+//!             values: Values::Scalars(vec![Some(1.0 / 32.0), None]),
+//!         }],
 //!     }],
 //! };
 //!
@@ -38,9 +44,9 @@
 //! write_csv(&dataset, &mut file)?;
 //! let text = String::from_utf8(file)?;
 //! let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
-//! assert_eq!(rows[0], "surface,i,j,x,y,z,nx,ny,nz,phi,residual,status");
-//! assert_eq!(rows[1], "side,0,0,30,0,0,1,0,0,90,0,solved");
-//! assert_eq!(rows[2], "side,1,0,30,0,0.1,1,0,0,90,0,solved");
+//! assert_eq!(rows[0], "surface,i,j,x,y,z,nx,ny,nz,phi,residual,status,k1");
+//! assert_eq!(rows[1], "side,0,0,30,0,0,1,0,0,90,0,solved,0.03125");
+//! assert_eq!(rows[2], "side,1,0,30,0,0.1,1,0,0,90,0,solved,");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -60,7 +66,7 @@ mod vector;
 
 pub use atomic_file::write_atomically;
 pub use csv_file::write_csv;
-pub use dataset::{Axis, Dataset, Header, Outcome, Patch, Point, Unit, Unknown};
+pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
 pub use picture::{Picture, PictureOptions, picture};

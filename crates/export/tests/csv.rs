@@ -2,8 +2,8 @@
 
 mod synthetic;
 
-use flank_export::{Dataset, Malformed, Patch, Point, Unit, Unknown, WriteError, write_csv};
-use synthetic::{Gear, bevel, dataset, holes, plane, without};
+use flank_export::{Dataset, Malformed, Patch, Point, Unit, Unknown, Values, WriteError, write_csv};
+use synthetic::{Gear, bevel, dataset, holes, plane, with_fields, without};
 
 const SPUR: Gear = Gear { helix: 0.0, width: 20.0 };
 
@@ -92,6 +92,27 @@ fn unknowns_are_united_and_told_apart() {
 }
 
 #[test]
+fn fields_follow_the_status() {
+    let first = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("outside")));
+    let mut second = with_fields(plane([1, 1], [0.0; 3], 1.0));
+    // the unit of another field of that name, and the name of an unknown
+    second.fields[0].unit = "1/um".into();
+    second.fields[1].name = "phi".into();
+    second.fields[1].values = Values::Scalars(vec![Some(0.5)]);
+    let text = text_of(&dataset("job", vec![first, second]));
+    let (titles, records) = read(&text);
+    let last = ["d1_x", "d1_y", "d1_z", "k1 [1/um]", "phi [1]"];
+    assert_eq!(titles[9..13], ["phi [deg]", "s", "residual", "status"]);
+    assert_eq!(titles[13..], [&["k1 [1/mm]"], &last[..]].concat());
+    let cells = |at: usize| records[at].iter().skip(13).collect::<Vec<_>>();
+    assert_eq!(cells(0), ["", "0", "0", "0", "", ""]);
+    assert_eq!(cells(3), ["3", "0", "0", "3", "", ""]);
+    assert_eq!(cells(4), ["", "", "", "", "", ""]);
+    assert_eq!(cells(6), ["", "", "", "", "", "0.5"]);
+    assert!(text.contains("\n# field `d1` in 1: d1 of the tests\n"));
+}
+
+#[test]
 fn names_cannot_break_the_file() {
     let mut patch = plane([2, 1], [0.0; 3], 1.0);
     patch.name = "#1, \"left\"\nflank".into();
@@ -127,6 +148,12 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     let mut endless = sound();
     endless.points[4].normal[1] = f64::INFINITY;
     assert_eq!(refusal(endless), Malformed::NotANumber { surface: "flank".into(), i: 2, j: 0 });
+    let mut partial = with_fields(sound());
+    partial.fields[1].values = Values::Vectors(vec![None; 5]);
+    assert_eq!(refusal(partial).to_string(), "surface `flank`, field `d1`: 5 values for 6 points");
+    let mut undefined = with_fields(sound());
+    undefined.fields[0].values = Values::Scalars(vec![Some(f64::NAN); 6]);
+    assert_eq!(refusal(undefined), Malformed::NotANumber { surface: "flank".into(), i: 0, j: 0 });
     let mut huge = sound();
     huge.rows.count = usize::MAX;
     assert!(matches!(refusal(huge), Malformed::PointCount { .. }));

@@ -4,9 +4,9 @@ mod synthetic;
 
 use flank_export::{Dataset, SCHEMA, write_json};
 use serde_json::Value;
-use synthetic::{Gear, dataset, gallery, holes, without};
+use synthetic::{Gear, bevel, dataset, gallery, holes, with_fields, without};
 
-const SCHEMA_FILE: &str = include_str!("../schema/surfaces-1.schema.json");
+const SCHEMA_FILE: &str = include_str!("../schema/surfaces-2.schema.json");
 
 fn text_of(dataset: &Dataset) -> String {
     let mut bytes = Vec::new();
@@ -110,7 +110,7 @@ fn the_check_of_the_schema_can_fail() {
     let sound: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch]))).unwrap();
     type Spoil = fn(&mut Value);
     let spoilers: [(Spoil, &str); 6] = [
-        (|d| d["schema"] = "flank.surfaces/2".into(), "/schema: const"),
+        (|d| d["schema"] = "flank.surfaces/3".into(), "/schema: const"),
         (|d| d["more"] = 1.into(), ": extra more"),
         (|d| d["surfaces"][0]["points"][1]["normal"] = vec![1.0, 0.0].into(), "/surfaces/0/points/1/normal: minItems"),
         (|d| d["surfaces"][0]["unknowns"][0]["unit"] = "rad".into(), "/surfaces/0/unknowns/0/unit: enum"),
@@ -144,10 +144,28 @@ fn numbers_come_back_and_holes_are_null() {
 }
 
 #[test]
+fn fields_stand_with_their_points() {
+    let patch = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("outside")));
+    let document: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch]))).unwrap();
+    let surface = &document["surfaces"][0];
+    assert_eq!(
+        surface["fields"],
+        serde_json::json!([
+            { "name": "k1", "unit": "1/mm", "components": 1, "meaning": "k1 of the tests" },
+            { "name": "d1", "unit": "1", "components": 3, "meaning": "d1 of the tests" },
+        ])
+    );
+    let fields = |at: usize| &surface["points"][at]["fields"];
+    assert_eq!(fields(0), &serde_json::json!([null, [0.0, 0.0, 0.0]]));
+    assert_eq!(fields(3), &serde_json::json!([3.0, [0.0, 0.0, 3.0]]));
+    assert!(fields(4).is_null());
+}
+
+#[test]
 fn a_point_takes_a_line_and_keys_keep_their_order() {
     let text = text_of(&dataset("job", vec![synthetic::plane([2, 1], [-0.0, 1.0, 2.0], 0.5)]));
     let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines[1], "  \"schema\": \"flank.surfaces/1\",");
+    assert_eq!(lines[1], "  \"schema\": \"flank.surfaces/2\",");
     let points: Vec<&&str> = lines.iter().filter(|line| line.contains("\"i\"")).collect();
     assert_eq!(points.len(), 2);
     assert!(points[0].contains("\"status\": \"solved\", \"position\": [0.0, 1.25, 2.0]"), "{}", points[0]);

@@ -1,7 +1,7 @@
 //! Surfaces in closed form, to be written to files in tests. Lengths are mm, angles radians.
 #![allow(dead_code, reason = "each test binary uses some of them")]
 
-use flank_export::{Axis, Dataset, Header, Outcome, Patch, Point, Unit, Unknown};
+use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 
 type Vector = [f64; 3];
 
@@ -38,7 +38,24 @@ pub(crate) fn grid(
             Unknown { name: "s".into(), unit: Unit::Millimetre },
         ],
         points: points.collect(),
+        fields: Vec::new(),
     }
+}
+
+/// The patch with a scalar field (the number of each point; not defined for the first) and a vector field.
+pub(crate) fn with_fields(mut patch: Patch) -> Patch {
+    let count = patch.points.len();
+    let field = |name: &str, unit: &str, values| Field {
+        name: name.into(),
+        unit: unit.into(),
+        meaning: format!("{name} of the tests"),
+        values,
+    };
+    patch.fields = vec![
+        field("k1", "1/mm", Values::Scalars((0..count).map(|at| (at > 0).then_some(at as f64)).collect())),
+        field("d1", "1", Values::Vectors((0..count).map(|at| Some([0.0, -0.0, at as f64])).collect())),
+    ];
+    patch
 }
 
 pub(crate) fn point(position: Vector, normal: Vector, unknowns: [f64; 2]) -> Point {
@@ -194,6 +211,7 @@ pub(crate) fn gallery() -> Vec<(&'static str, Dataset)> {
     let ring = |k: usize| turned_patch(&flank, 2.0 * std::f64::consts::PI * k as f64 / 24.0, &format!("flank {k}"));
     vec![
         ("spur", dataset("spur flank with fillet", vec![flank.clone(), spur.fillet("fillet", [25, 9])])),
+        ("fields", dataset("flank with fields", vec![with_fields(without(flank.clone(), holes)), bevel([3, 2])])),
         ("helical", dataset("helical flank", vec![helical.flank("right flank", [41, 25])])),
         ("bevel", dataset("bevel flank", vec![bevel([21, 11])])),
         ("holes", dataset("flank with holes", vec![without(spur.flank("right flank", [25, 15]), holes)])),
