@@ -2,7 +2,7 @@
 # Makes the seed corpora from the specs, the fixtures of the tests, and the inputs that were found before.
 set -eu
 cd "$(dirname "$0")/.."
-for target in parser meaning; do
+for target in parser layout meaning; do
     mkdir -p "fuzz/corpus/$target"
     find specs crates/chain-dsl/tests tests/language/fuzz_inputs -type f \( -name '*.chain' -o -name '*.txt' -o -name '*.input' \) |
         while read -r file; do

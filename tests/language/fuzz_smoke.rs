@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use flank_tests::targets::{fuzz_meaning, fuzz_parser};
+use flank_tests::targets::{fuzz_layout, fuzz_meaning, fuzz_parser};
 use flank_tests::{Dice, repository};
 
 /// Mutated inputs for each target.
@@ -85,6 +85,7 @@ fn inputs_found_before() {
     assert!(!inputs.is_empty());
     for input in inputs {
         fuzz_parser(&input);
+        fuzz_layout(&input);
         fuzz_meaning(&input);
     }
 }
@@ -92,6 +93,11 @@ fn inputs_found_before() {
 #[test]
 fn parser() {
     storm(fuzz_parser, 1);
+}
+
+#[test]
+fn layout() {
+    storm(fuzz_layout, 3);
 }
 
 #[test]

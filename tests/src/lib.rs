@@ -1,6 +1,7 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
 mod dice;
+pub mod layout;
 pub mod targets;
 
 use std::path::{Path, PathBuf};

@@ -1,10 +1,12 @@
-//! What is fuzzed: two functions that take any bytes and must return.
+//! What is fuzzed: functions that take any bytes and must return.
 //!
-//! The fuzzers in `fuzz/` and the smoke test in `tests/language/fuzz_smoke.rs` call the same two.
+//! The fuzzers in `fuzz/` and the smoke test in `tests/language/fuzz_smoke.rs` call the same ones.
 
 use flank_chain_dsl::syntax::{comments, parse, parse_expression};
 use flank_chain_dsl::{Diagnostic, FileId, Sources, Span, compile_text, derivation, render};
 use flank_expr::{Graph, Style};
+
+use crate::layout::check_layout;
 
 const FILE: FileId = FileId(0);
 
@@ -37,6 +39,11 @@ pub fn fuzz_meaning(data: &[u8]) {
         derivation(job, Style::Text);
         job.bindings();
     }
+}
+
+/// Whatever parses is laid out; the layout means the same, keeps the comments, and is its own layout.
+pub fn fuzz_layout(data: &[u8]) {
+    check_layout(&String::from_utf8_lossy(data), "fuzzed");
 }
 
 fn places_lie_in(text: &str, diagnostics: &[Diagnostic]) {

@@ -1,13 +1,16 @@
 //! The settled layout: it keeps the meaning and every comment, it is its own layout, and it looks like the shipped specs.
 
 mod generate;
+#[allow(unreachable_pub)] // another crate's, where it is public
+#[path = "../../../../tests/src/layout.rs"]
+mod layout;
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::syntax::{comments, parse};
 use flank_chain_dsl::{Code, FileId, format};
 
 use generate::Random;
+use layout::{check_layout, meaning};
 
 const FILE: FileId = FileId(0);
 
@@ -31,51 +34,6 @@ fn files(folder: &Path, extension: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The tree of a text without its places, if it has one.
-fn meaning(text: &str) -> Option<String> {
-    let (file, diagnostics) = parse(text, FILE);
-    diagnostics.is_empty().then(|| without_spans(&std::format!("{file:?}")))
-}
-
-fn without_spans(tree: &str) -> String {
-    const SPAN: &str = "Span { file: FileId(0), start: ";
-    let mut parts = tree.split(SPAN);
-    let first = parts.next().unwrap_or_default().to_owned();
-    parts.fold(first, |text, part| text + part.split_once('}').expect("the end of a span").1)
-}
-
-/// What each comment says and of what kind it is.
-fn remarks(text: &str) -> Vec<String> {
-    let found = comments(text, FILE).into_iter();
-    found
-        .map(|comment| {
-            let said = &text[comment.span.start as usize..comment.span.end as usize];
-            std::format!("{said} {:?} {}", comment.kind, comment.own_line)
-        })
-        .collect()
-}
-
-/// Asks of the layout of a text what must hold for all; false if the text does not parse.
-fn check(text: &str, name: &str) -> bool {
-    let Some(meaning) = meaning(text) else {
-        assert!(format(text, FILE).is_err(), "{name}");
-        return false;
-    };
-    let laid_out = format(text, FILE).expect("a text that parses");
-    assert_eq!(self::meaning(&laid_out).as_ref(), Some(&meaning), "{name}\n{text}\n-----\n{laid_out}");
-    assert_eq!(remarks(&laid_out), remarks(text), "{name}\n{text}\n-----\n{laid_out}");
-    let again = format(&laid_out, FILE).expect("a layout parses");
-    let change = laid_out.lines().zip(again.lines()).find(|(once, twice)| once != twice);
-    assert!(laid_out == again, "{name}: laid out again, it changes at {change:#?}\n{text}\n-----\n{laid_out}");
-    assert!(
-        !laid_out.contains("\r\n") && !laid_out.contains(" \n") && !laid_out.contains("\n\n\n"),
-        "{name}\n{laid_out}"
-    );
-    assert!(laid_out.is_empty() || laid_out.ends_with('\n') && !laid_out.ends_with("\n\n"), "{name}");
-    assert!(!laid_out.starts_with(['\u{feff}', '\n', ' ']), "{name}");
-    true
-}
-
 #[test]
 fn shipped_specs_are_laid_out() {
     let specs = files(&folder("../../specs"), "chain");
@@ -93,9 +51,9 @@ fn specs_keep_meaning_and_comments() {
     assert!(texts.len() >= 14);
     for (path, text) in texts {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
-        assert!(check(&text, &path.display().to_string()));
-        assert!(check(&std::format!("\u{feff}{}", text.replace('\n', "\r\n")), &path.display().to_string()));
-        assert!(check(&text.replace("    ", "\t"), &path.display().to_string()));
+        assert!(check_layout(&text, &path.display().to_string()));
+        assert!(check_layout(&std::format!("\u{feff}{}", text.replace('\n', "\r\n")), &path.display().to_string()));
+        assert!(check_layout(&text.replace("    ", "\t"), &path.display().to_string()));
     }
 }
 
@@ -104,7 +62,8 @@ fn specs_keep_meaning_and_comments() {
 fn fixtures_keep_meaning_and_comments() {
     let fixtures = files(&folder("tests"), "txt");
     let texts = fixtures.iter().flat_map(|(path, text)| text.split("//---- ").map(move |text| (path, text)));
-    let count = texts.filter(|(path, text)| check(&std::format!("// {text}"), &path.display().to_string())).count();
+    let count =
+        texts.filter(|(path, text)| check_layout(&std::format!("// {text}"), &path.display().to_string())).count();
     assert!(count > 80, "{count}");
 }
 
@@ -112,13 +71,13 @@ fn fixtures_keep_meaning_and_comments() {
 fn documentation_keeps_meaning_and_comments() {
     let page = std::fs::read_to_string(folder("../../docs/language.md")).expect("the page");
     let blocks = page.split("```chain").skip(1).filter_map(|block| block.split_once('\n')?.1.split_once("```"));
-    let count = blocks.filter(|(block, _)| check(block, "docs/language.md")).count();
+    let count = blocks.filter(|(block, _)| check_layout(block, "docs/language.md")).count();
     assert!(count >= 7, "{count}");
 }
 
 #[test]
 fn generated_texts_keep_meaning_and_comments() {
-    let parsed = (0..2000).filter(|&seed| check(&generate::text(seed), &std::format!("seed {seed}"))).count();
+    let parsed = (0..2000).filter(|&seed| check_layout(&generate::text(seed), &std::format!("seed {seed}"))).count();
     assert!(parsed > 1700, "{parsed}");
 }
 
@@ -135,7 +94,7 @@ fn comments_in_odd_places_are_kept() {
                 let comment = [" // a\n", "\n// a\n", "\n/// a\n", " /// a\n\n", "\n\n//! a\n\n"][random.below(5)];
                 words.insert(place, comment.to_owned());
             }
-            parsed += usize::from(check(&words.concat(), &path.display().to_string()));
+            parsed += usize::from(check_layout(&words.concat(), &path.display().to_string()));
         }
     }
     assert!(parsed > 100, "{parsed}");
@@ -182,7 +141,7 @@ fn brackets_stay_where_they_matter() {
     ] {
         let text = std::format!("job j {{\n    let x = {text}\n}}\n");
         assert_eq!(format(&text, FILE).as_ref(), Ok(&text));
-        assert!(check(&text, &text));
+        assert!(check_layout(&text, &text));
     }
 }
 
