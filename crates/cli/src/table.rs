@@ -157,6 +157,12 @@ fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
             reasons.push(format!("{count}: {} outside its range, by up to {:.6}{unit}", unknown.name, size * most));
         }
     }
+    let cut_away = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway).count();
+    if cut_away > 0 {
+        reasons.push(format!(
+            "{cut_away}: cut away by the tool itself, beyond the singular line of the envelope (undercut)"
+        ));
+    }
     let singular = solved.points.iter().filter(|point| point.outcome == Outcome::Singular).count();
     if singular > 0 {
         reasons.push(format!("{singular}: singular, the equations do not fix a single point there"));

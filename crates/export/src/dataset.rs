@@ -116,7 +116,7 @@ pub struct Point {
 pub enum Outcome {
     /// Position, normal, unknowns and residual are those of a root.
     Solved,
-    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. Of the point's numbers
+    /// There is no such point, and the word says why: `cut away`, `outside`, `singular`, `not converged`. Of the point's numbers
     /// only the residual is written: what the best attempt left.
     Unsolved(&'static str),
 }

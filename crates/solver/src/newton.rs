@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::linalg::solvers::{FullPivLu, Solve, Svd};
 
-use crate::solution::{Range, Solution, verdict};
+use crate::solution::{Outcome, Range, Solution, verdict};
 use crate::system::{Evaluation, System};
 
 /// A point is solved when no residual is larger: mm, or mm per radian of a motion.
@@ -65,7 +65,10 @@ pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], star
     if is_root {
         singular = newton_step(evaluation, ranges, &mut sizes).singular;
     }
-    let outcome = verdict(&p, ranges, is_root, singular);
+    let outcome = match verdict(&p, ranges, is_root, singular) {
+        Outcome::Solved => evaluation.side(),
+        other => other,
+    };
     Solution { outcome, unknowns: p, residual, iterations }
 }
 

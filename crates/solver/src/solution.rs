@@ -40,6 +40,9 @@ impl Range {
 pub enum Outcome {
     /// All residuals are within their tolerance ([`TOLERANCE`](crate::TOLERANCE)) and all unknowns in their ranges.
     Solved,
+    /// There is a root in the ranges, but not of the finished work: the tool cuts it away before or after it generates it
+    /// (undercut; see [`Surface::clearance_minors`](flank_expr::geometry::Surface::clearance_minors)).
+    CutAway,
     /// There is a root, but one of the unknowns lies outside its range.
     Outside {
         /// Index of the unknown that is farthest outside, relative to its range.
@@ -58,6 +61,7 @@ impl Outcome {
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
+            Outcome::CutAway => "cut away",
             Outcome::Outside { .. } => "outside",
             Outcome::Singular => "singular",
             Outcome::NotConverged => "not converged",
@@ -67,7 +71,8 @@ impl Outcome {
     /// Which of two outcomes says more.
     fn rank(self) -> u8 {
         match self {
-            Outcome::Solved => 3,
+            Outcome::Solved => 4,
+            Outcome::CutAway => 3,
             Outcome::Outside { .. } => 2,
             Outcome::Singular => 1,
             Outcome::NotConverged => 0,
@@ -99,12 +104,12 @@ impl Solution {
         self.outcome == Outcome::Solved
     }
 
-    /// Solved, or solved outside the ranges.
+    /// A root, whether or not it is one that is looked for.
     pub(crate) fn is_root(&self) -> bool {
-        matches!(self.outcome, Outcome::Solved | Outcome::Outside { .. })
+        matches!(self.outcome, Outcome::Solved | Outcome::CutAway | Outcome::Outside { .. })
     }
 
-    /// The one of two that says more: solved before outside before singular before not converged, then the smaller
+    /// The one of two that says more: solved before cut away before outside before singular before not converged, then the smaller
     /// residual.
     pub(crate) fn better(self, other: Solution) -> Solution {
         let (mine, its) = (self.outcome.rank(), other.outcome.rank());

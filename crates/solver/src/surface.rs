@@ -49,12 +49,17 @@ impl SurfaceProblem {
         let graph = coordinates[0].graph();
         let targets = [graph.variable("target 1"), graph.variable("target 2")];
         let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
+        let surface = surface.bound(bindings);
+        let on_target = graph.substitute(&on_target.collect::<Vec<_>>(), bindings);
         let residuals: Vec<Expr<'g>> = surface.constraints.iter().copied().chain(on_target).collect();
-        let residuals = graph.substitute(&residuals, bindings);
         let point: Vec<Expr<'g>> = surface.position.0.into_iter().chain(surface.normal.0).collect();
-        let point = graph.substitute(&point, bindings);
+        let conditions = surface.clearance_minors();
         Ok(SurfaceProblem {
-            system: System::new(&residuals, &surface.unknowns, &targets)?,
+            system: System::new(&residuals, &surface.unknowns, &targets)?.with_conditions(
+                &conditions,
+                &surface.unknowns,
+                &targets,
+            )?,
             point: Tape::new(&point, &surface.unknowns)?,
             ranges,
         })

@@ -2,11 +2,15 @@
 
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
+use crate::solution::Outcome;
+
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
 pub struct System {
     size: usize,
     tape: Tape,
+    /// What must be positive at a root for it to be one of the thing that is looked for.
+    conditions: Tape,
 }
 
 impl System {
@@ -22,7 +26,22 @@ impl System {
         let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
         let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
-        Ok(System { size: unknowns.len(), tape: Tape::new(&outputs, &inputs)? })
+        Ok(System { size: unknowns.len(), tape: Tape::new(&outputs, &inputs)?, conditions: Tape::new(&[], &inputs)? })
+    }
+
+    /// The same system, whose roots are [`Outcome::CutAway`](crate::Outcome::CutAway) where one of `conditions`, functions of
+    /// the unknowns and parameters it was made with, is negative, and singular where one is zero.
+    ///
+    /// # Errors
+    /// If a condition depends on another variable.
+    pub fn with_conditions(
+        self,
+        conditions: &[Expr<'_>],
+        unknowns: &[Expr<'_>],
+        parameters: &[Expr<'_>],
+    ) -> Result<System, TapeError> {
+        let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
+        Ok(System { conditions: Tape::new(conditions, &inputs)?, ..self })
     }
 
     /// Number of unknowns.
@@ -40,13 +59,22 @@ impl System {
         let mut inputs = vec![0.0; self.size];
         inputs.extend_from_slice(parameters);
         let outputs = vec![0.0; self.tape.output_count()];
-        Evaluation { evaluator: ScalarEvaluator::new(&self.tape), size: self.size, inputs, outputs }
+        Evaluation {
+            evaluator: ScalarEvaluator::new(&self.tape),
+            conditions: ScalarEvaluator::new(&self.conditions),
+            met: vec![0.0; self.conditions.output_count()],
+            size: self.size,
+            inputs,
+            outputs,
+        }
     }
 }
 
 /// Residuals and Jacobian at a point.
 pub(crate) struct Evaluation<'s> {
     evaluator: ScalarEvaluator<'s>,
+    conditions: ScalarEvaluator<'s>,
+    met: Vec<f64>,
     size: usize,
     inputs: Vec<f64>,
     outputs: Vec<f64>,
@@ -56,6 +84,18 @@ impl Evaluation<'_> {
     pub(crate) fn at(&mut self, unknowns: &[f64]) {
         self.inputs[..self.size].copy_from_slice(unknowns);
         self.evaluator.run(&self.inputs, &mut self.outputs);
+    }
+
+    /// What a root at the point of the last evaluation is by the conditions.
+    pub(crate) fn side(&mut self) -> Outcome {
+        self.conditions.run(&self.inputs, &mut self.met);
+        if self.met.iter().any(|condition| *condition < 0.0) {
+            Outcome::CutAway
+        } else if self.met.iter().all(|condition| *condition > 0.0) {
+            Outcome::Solved
+        } else {
+            Outcome::Singular
+        }
     }
 
     pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {

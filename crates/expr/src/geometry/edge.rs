@@ -27,7 +27,8 @@ impl<'g> Edge<'g> {
     /// What the edge leaves on a work that it moves against: swept over the first motion, enveloped over the others.
     ///
     /// The normal is along [`Edge::raw_normal`] of the first motion (or against it, if `flipped`) and should point to the
-    /// tool's steel, out of the work's. Further motions add `n · v = 0`, which is `det(r_u, v₁, v₂) = 0` for a second one.
+    /// tool's steel, out of the work's. Further motions add `n · v = 0` (with n out of the tool's steel, as for an
+    /// envelope), which is `det(r_u, v₁, v₂) = 0` for a second one.
     ///
     /// # Panics
     /// If there is no motion.
@@ -36,7 +37,7 @@ impl<'g> Edge<'g> {
         let normal = if flipped { -normal } else { normal };
         let unknowns = [self.parameter].into_iter().chain(motions.iter().copied()).collect();
         let swept = Surface { unknowns, position: self.position, normal, constraints: Vec::new() };
-        let constraints = motions[1..].iter().map(|&motion| swept.meshing(t_work_tool, motion)).collect();
+        let constraints = motions[1..].iter().map(|&motion| -swept.meshing(t_work_tool, motion)).collect();
         Surface { constraints, ..swept.moved(t_work_tool) }
     }
 }

@@ -1,6 +1,7 @@
 //! Rigid motions and surfaces over symbolic scalars.
 
 mod chain;
+mod clearance;
 mod edge;
 mod pose;
 mod surface;

@@ -41,6 +41,19 @@ impl<'g> Surface<'g> {
         }
     }
 
+    /// The same surface with parameters replaced by values.
+    pub fn bound(&self, bindings: &[(Expr<'g>, Expr<'g>)]) -> Surface<'g> {
+        let parts: Vec<Expr<'g>> =
+            self.position.0.into_iter().chain(self.normal.0).chain(self.constraints.iter().copied()).collect();
+        let parts = self.normal.0[0].graph().substitute(&parts, bindings);
+        Surface {
+            unknowns: self.unknowns.clone(),
+            position: Vector3([parts[0], parts[1], parts[2]]),
+            normal: Vector3([parts[3], parts[4], parts[5]]),
+            constraints: parts[6..].to_vec(),
+        }
+    }
+
     /// What this surface, as a tool, leaves on a work that it moves against.
     ///
     /// `t_work_tool` is the pose of the tool in the work and depends on `motions`. Each motion adds itself as an unknown

@@ -1,0 +1,59 @@
+//! Whether a tool leaves the points that it generates: second order contact of tool and work.
+
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::Vector3;
+use crate::graph::{Expr, Graph};
+
+impl<'g> Surface<'g> {
+    /// The leading minors of the Hessian of the clearance, one for each constraint: all positive where the tool leaves the
+    /// point that it generates.
+    ///
+    /// The clearance of a point of the work is its distance from the tool's steel as a function of the motions. Where the
+    /// tool generates the point, it is zero and stationary. The point stays only if that is a minimum, so if the Hessian
+    /// is positive definite; else the tool, a little before or after, cuts the point away. The last minor is zero on the
+    /// singular line. The k-th has the unit mm^k / (product of the squares of the first k motions' units); for one motion it
+    /// is the second derivative of the clearance, mm/rad².
+    ///
+    /// With δ_k the determinant of ∂c/∂p and ∂r/∂p bordered by n, restricted to the first k constraints and k + 2
+    /// unknowns, the k-th minor is (−1)^k δ_k / δ_0. They are found from c, r and n alone, for the k-th constraint belongs
+    /// to the motion that is unknown k + 2 and is −n · ∂r/∂motion. For an envelope of an envelope the later minors are those
+    /// of the later motions times the last of the earlier ones.
+    pub fn clearance_minors(&self) -> Vec<Expr<'g>> {
+        let graph = self.normal.0[0].graph();
+        let slopes: Vec<Vector3<'g>> = self.unknowns.iter().map(|&p| self.position.derivative(p)).collect();
+        let rows: Vec<Vec<Expr<'g>>> =
+            self.constraints.iter().map(|c| self.unknowns.iter().map(|&p| c.derivative(p)).collect()).collect();
+        let area = self.oriented_area(graph, &rows[..0], &slopes[..2]);
+        (1..=rows.len())
+            .map(|k| {
+                let bordered = self.oriented_area(graph, &rows[..k], &slopes[..k + 2]);
+                (if k % 2 == 0 { bordered } else { -bordered }) / area
+            })
+            .collect()
+    }
+
+    /// det [∂c/∂p 0; ∂r/∂p n], by Laplace's expansion: the minors of ∂c/∂p against (r_a × r_b) · n.
+    fn oriented_area(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>], slopes: &[Vector3<'g>]) -> Expr<'g> {
+        let mut sum = graph.constant(0.0);
+        for a in 0..slopes.len() {
+            for b in a + 1..slopes.len() {
+                let others: Vec<usize> = (0..slopes.len()).filter(|&k| k != a && k != b).collect();
+                let term = determinant(graph, rows, &others) * slopes[a].cross(slopes[b]).dot(self.normal);
+                sum = if (a + b) % 2 == 1 { sum + term } else { sum - term };
+            }
+        }
+        sum
+    }
+}
+
+/// Of the columns of `rows` that are named.
+fn determinant<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>], columns: &[usize]) -> Expr<'g> {
+    let Some((first, rest)) = rows.split_first() else { return graph.constant(1.0) };
+    let mut sum = graph.constant(0.0);
+    for (k, &column) in columns.iter().enumerate() {
+        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
+        let term = first[column] * determinant(graph, rest, &others);
+        sum = if k % 2 == 0 { sum + term } else { sum - term };
+    }
+    sum
+}
