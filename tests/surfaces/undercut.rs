@@ -1,13 +1,58 @@
 //! Undercut: where the tool cuts away what it generates, by the sign of the clearance's Hessian.
 
-use flank_chain_dsl::{GeneratedSurface, Job, ToolShape};
+use flank_chain_dsl::{GeneratedSurface, Job, ToolShape, compile_text, render};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph};
-use flank_solver::{Outcome, Range, SurfacePoint, System, solve};
-use flank_tests::{job, points};
+use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem, System, solve};
+use flank_tests::{difference, job, number, points, reference_json};
 
 const SPUR: &str = "specs/hobbing/spur_gear.chain";
+/// z = 20, m = 1, α = 20°, x = 0, h_aP0 = 1.25, ρ_aP0 = 0.25.
+const MESYS: [(&str, &str); 5] = [
+    ("teeth", "20"),
+    ("module", "1 mm"),
+    ("profile_shift", "0"),
+    ("r.tip_height", "1.25 mm"),
+    ("r.tip_radius", "0.25 mm"),
+];
+/// The flank's sample: along the root cone from its middle, and the height over it.
+const CRADLE_PINION: &str = "
+machine cradle {
+    axis Q : rotary
+    axis R : rotary
+    frame bed
+    frame cradle in bed = translate_x(1 mm) rotate_y(15.9 deg) translate_z(-1 mm) translate_y(4 mm) rotate_z(Q)
+    frame cutter in cradle = rotate_z(64 deg) translate_x(74.8 mm) rotate_z(30 deg) rotate_y(2 deg)
+    frame work in bed = rotate_y(90 deg) rotate_z(R)
+}
+tool cone {
+    surface blade(s: length in -3 mm .. 12 mm, theta: angle in -2.9 rad .. -2 rad) {
+        let radius = 76 mm - s * sin(20 deg)
+        at = [radius * cos(theta), radius * sin(theta), -s * cos(20 deg)]
+        body outside
+    }
+}
+job pinion {
+    machine m = cradle
+    tool c = cone
+    mount c on m.cutter
+    motion roll : angle in -0.6 rad .. 0.2 rad
+    drive m.Q = roll
+    drive m.R = 3.24 * (roll - 0.01 * roll^2 / 1 rad - 0.005 * roll^3 / 1 rad^2)
+    surface flank in m.work = envelope(c.blade, over: roll)
+    sample flank {
+        along = z * cos(15.9 deg) + rho * sin(15.9 deg) - 85 mm: -12.5 mm .. 12.5 mm by 9
+        height = rho * cos(15.9 deg) - z * sin(15.9 deg): 1 mm .. 9 mm by 5
+    }
+}";
 const UNDERCUT: [(&str, &str); 2] = [("teeth", "10"), ("profile_shift", "0")];
+
+fn compiled<'g>(graph: &'g Graph, text: &str) -> Job<'g> {
+    let mut compilation = compile_text(graph, "text", text, &[]);
+    let told = render(&compilation.diagnostics, &compilation.sources, false);
+    assert!(!compilation.has_errors(), "{told}");
+    compilation.jobs.swap_remove(0)
+}
 
 fn surface<'j, 'g>(job: &'j Job<'g>, name: &str) -> &'j GeneratedSurface<'g> {
     job.surfaces.iter().find(|surface| surface.name == name).expect("the surface is in the job")
@@ -119,15 +164,11 @@ fn the_minors_are_those_of_the_clearance() {
         let job = job(&graph, spec, set);
         let generated = surface(&job, name);
         let clearance = Clearance::new(&job, generated);
-        let minors = generated.surface.bound(&job.bindings()).clearance_minors();
+        let minors = generated.surface.clearance_minors();
         for point in points(&job, name, coordinates, targets) {
             let what = format!("{name} at {:?}", point.unknowns);
             assert!(matches!(point.outcome, Outcome::Solved | Outcome::CutAway), "{what}: {:?}", point.outcome);
-            let mut values = vec![f64::NAN; graph.variable_count()];
-            for (unknown, value) in generated.surface.unknowns.iter().zip(&point.unknowns) {
-                values[unknown.as_variable().expect("a variable").index()] = *value;
-            }
-            let found = graph.evaluate(&minors, &values);
+            let found = values(&job, name, &minors, &point.unknowns);
             let h = clearance.hessian(&point, steps);
             let expected: Vec<f64> = match h.as_slice() {
                 [one] => vec![one[0]],
@@ -162,4 +203,177 @@ fn beyond_the_singular_line_points_are_cut_away() {
         assert_eq!(point.outcome, Outcome::Solved);
         assert!(point.unknowns[0] < limit);
     }
+}
+
+fn coordinate<'g>(job: &Job<'g>, name: &str, coordinate: &str) -> Expr<'g> {
+    surface(job, name).coordinate(coordinate).expect("a coordinate of the surface").value
+}
+
+/// Numbers for expressions at a point of a surface.
+fn values<'g>(job: &Job<'g>, name: &str, expressions: &[Expr<'g>], unknowns: &[f64]) -> Vec<f64> {
+    let graph = expressions[0].graph();
+    let mut values = vec![f64::NAN; graph.variable_count()];
+    for (unknown, value) in surface(job, name).surface.unknowns.iter().zip(unknowns) {
+        values[unknown.as_variable().expect("a variable").index()] = *value;
+    }
+    graph.evaluate(&graph.substitute(expressions, &job.bindings()), &values)
+}
+
+/// Points of a line on a surface at values of a coordinate.
+fn line<'g>(job: &Job<'g>, name: &str, limit: &str, along: Expr<'g>, values: &[f64]) -> Vec<SurfacePoint> {
+    let generated = surface(job, name);
+    let quantity = match limit {
+        "singular" => generated.surface.clearance_minors().pop(),
+        _ => generated.surface.contact_limit(),
+    };
+    let ranges = generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let problem = SurfaceProblem::line(&generated.surface, quantity.expect("motions"), along, ranges, &job.bindings());
+    let targets: Vec<[f64; 2]> = values.iter().map(|&value| [0.0, value]).collect();
+    problem.expect("nothing is unbound").solve(&targets, [1, values.len()]).0
+}
+
+#[test]
+fn the_singular_line_meets_the_table() {
+    let reference = reference_json("spur_rack.json");
+    let graph = Graph::new();
+    let job = job(&graph, SPUR, &UNDERCUT);
+    for (name, side) in [("flank_plus", 1.0), ("flank_minus", -1.0)] {
+        for point in line(&job, name, "singular", coordinate(&job, name, "v"), &[-10.0, -3.0, 0.0, 7.5]) {
+            assert_eq!(point.outcome, Outcome::Solved);
+            let [u, _, phi] = point.unknowns[..] else { panic!("three unknowns") };
+            assert!((u - number(&reference["undercut"], "limit_u")).abs() < 1e-9);
+            assert!((side * phi - number(&reference["undercut"], "limit_phi")).abs() < 1e-9);
+            let base_radius = 15.0 * 20f64.to_radians().cos();
+            assert!((point.position[0].hypot(point.position[1]) - base_radius).abs() < 1e-9);
+        }
+    }
+    // the tip's rounding and the gear with 24 teeth have none
+    for point in line(&job, "fillet_plus", "singular", coordinate(&job, "fillet_plus", "v"), &[0.0, 5.0]) {
+        assert_ne!(point.outcome, Outcome::Solved);
+    }
+}
+
+/// The least profile shift without undercut: the singular point is where the rack's straight flank ends. The shift is one
+/// more unknown.
+fn least_shift(set: &[(&str, &str)]) -> f64 {
+    let graph = Graph::new();
+    let job = job(&graph, SPUR, set);
+    let generated = surface(&job, "flank_plus");
+    let shift = job.parameters.iter().find(|p| p.name == "profile_shift").expect("a parameter").variable;
+    let bindings: Vec<_> = job.bindings().into_iter().filter(|(variable, _)| *variable != shift).collect();
+    let bound = generated.surface.bound(&bindings);
+    let [u, v, _] = bound.unknowns[..] else { panic!("three unknowns") };
+    let singular = bound.clearance_minors().pop().expect("a motion");
+    let residuals = [bound.constraints[0], singular, u - generated.unknowns[0].high, v];
+    let unknowns: Vec<Expr<'_>> = bound.unknowns.iter().copied().chain([shift]).collect();
+    let system = System::new(&residuals, &unknowns, &[]).expect("nothing is unbound");
+    let ranges: Vec<Range> = generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let ranges = [ranges, vec![Range { low: -2.0, high: 2.0 }]].concat();
+    let solution = solve(&system, &ranges, &[], &[ranges[0].high, 0.0, 0.0, 0.0]);
+    assert_eq!(solution.outcome, Outcome::Solved);
+    solution.unknowns[3]
+}
+
+#[test]
+fn the_least_profile_shift_meets_table_and_published_value() {
+    let reference = reference_json("spur_rack.json");
+    let found = least_shift(&UNDERCUT);
+    assert!((found - number(&reference["undercut"], "x_min")).abs() < 1e-9, "{found}");
+    // MESYS, online calculator, default case: xEmin printed as -0.0843
+    let published = least_shift(&MESYS);
+    assert_eq!(format!("{published:.4}"), "-0.0843");
+}
+
+/// MESYS, online calculator, default case: the root form diameter is printed as 18.8003. The rack's flank ends where its
+/// rounding begins, and both touch there, so fillet and involute meet in the same point.
+#[test]
+fn the_root_form_diameter_is_the_published_one() {
+    let graph = Graph::new();
+    let job = job(&graph, SPUR, &MESYS);
+    let end = surface(&job, "flank_plus").unknowns[0].high;
+    let flank = points(&job, "flank_plus", ["u", "v"], &[[end, 1.0]]);
+    let fillet = points(&job, "fillet_plus", ["theta", "v"], &[[20f64.to_radians(), 1.0]]);
+    for point in [&flank[0], &fillet[0]] {
+        assert_eq!(point.outcome, Outcome::Solved);
+        let diameter = 2.0 * point.position[0].hypot(point.position[1]);
+        assert_eq!(format!("{diameter:.4}"), "18.8003");
+    }
+    assert!(difference(&flank[0].position, &fillet[0].position) < 1e-12);
+}
+
+/// A plane that turns by t and is fed by a t: its equation of meshing is y = a cos t, so it has contact only where |y| ≤ a.
+#[test]
+fn the_contact_of_a_turning_plane_ends_at_its_feed() {
+    let graph = Graph::new();
+    let job = compiled(
+        &graph,
+        "machine mill {
+            axis X : linear
+            axis B : rotary
+            frame bed
+            frame slide in bed = translate_x(X)
+            frame head in slide = rotate_z(B)
+        }
+        tool plate {
+            surface face(y: length in -9 mm .. 9 mm, z: length in -5 mm .. 5 mm) {
+                at = [0 mm, y, z]
+                body towards [-1, 0, 0]
+            }
+        }
+        job groove {
+            machine m = mill
+            tool p = plate
+            mount p on m.head
+            motion t : angle in -1 rad .. 1 rad
+            drive m.X = 6 mm/rad * t
+            drive m.B = t
+            surface face in m.bed = envelope(p.face, over: t)
+        }",
+    );
+    let points = line(&job, "face", "contact", coordinate(&job, "face", "z"), &[-4.0, 0.0, 3.0]);
+    for point in points {
+        assert_eq!(point.outcome, Outcome::Solved);
+        assert!((point.unknowns[0] - 6.0).abs() < 1e-12 && point.unknowns[2].abs() < 1e-12, "{point:?}");
+    }
+    // the meshing of a rack is linear in its rotation: no limit
+    let graph = Graph::new();
+    let rack = flank_tests::job(&graph, SPUR, &UNDERCUT);
+    assert!(
+        line(&rack, "flank_plus", "contact", coordinate(&rack, "flank_plus", "v"), &[0.0])
+            .iter()
+            .all(|point| point.outcome != Outcome::Solved)
+    );
+}
+
+/// A pinion on a cradle machine with tilt, offset and modified roll, whose teeth are cut under near the root: a point is cut
+/// away exactly where it lies on the other side of the singular line.
+#[test]
+fn a_cradle_pinion_is_cut_under_along_its_root() {
+    let graph = Graph::new();
+    let job = compiled(&graph, CRADLE_PINION);
+    let [along, height] = surface(&job, "flank")
+        .sample
+        .as_ref()
+        .expect("a sample")
+        .coordinates
+        .each_ref()
+        .map(|coordinate| coordinate.value);
+    let lengths = [-12.5, -5.0, 0.0, 5.0, 12.5];
+    let singular = line(&job, "flank", "singular", along, &lengths);
+    for (length, point) in lengths.iter().zip(&singular) {
+        assert_eq!(point.outcome, Outcome::Solved, "at {length}: {point:?}");
+        let [s, theta, _] = point.unknowns[..] else { panic!("three unknowns") };
+        let beside = points(&job, "flank", ["s", "theta"], &[[s + 1e-5, theta], [s - 1e-5, theta]]);
+        let outcomes: Vec<Outcome> = beside.iter().map(|point| point.outcome).collect();
+        assert_eq!(outcomes, [Outcome::Solved, Outcome::CutAway], "at {length}");
+    }
+    // all that the sample asks for lies above the line
+    let sample = surface(&job, "flank").sample.as_ref().expect("a sample");
+    for point in &singular {
+        assert!(values(&job, "flank", &[height], &point.unknowns)[0] < 0.5);
+    }
+    let ranges = surface(&job, "flank").unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let problem = SurfaceProblem::new(&surface(&job, "flank").surface, [along, height], ranges, &job.bindings());
+    let (asked, _) = problem.expect("nothing is unbound").solve(&sample.targets, sample.counts);
+    assert!(asked.iter().all(|point| point.outcome == Outcome::Solved));
 }

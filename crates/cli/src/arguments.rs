@@ -77,6 +77,9 @@ pub(crate) struct Solve {
     /// Files with the points: csv, json, stl, or several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<Format>,
+    /// Also find where each surface turns back (the singular line of undercut) and where the tool's contact ends
+    #[arg(long)]
+    pub(crate) limits: bool,
     /// Write no picture (otherwise a PNG and an SVG)
     #[arg(long)]
     pub(crate) no_picture: bool,

@@ -5,6 +5,7 @@ mod check;
 mod derive;
 mod explain;
 mod fmt;
+mod limits;
 mod solve;
 mod spec;
 mod table;

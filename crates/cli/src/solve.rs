@@ -12,6 +12,7 @@ use flank_expr::Graph;
 use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Format, Solve};
+use crate::limits::{self, Line};
 use crate::table::{Solved, Table};
 use crate::{Ending, print, spec, travel};
 
@@ -31,7 +32,11 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         }
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve_surface(job, surface)).collect();
-        let dataset = dataset(job, &solved, &hash, arguments);
+        let lines: Vec<Line<'_, '_>> = match arguments.limits {
+            true => job.surfaces.iter().flat_map(|surface| limits::lines(job, surface)).collect(),
+            false => Vec::new(),
+        };
+        let dataset = dataset(job, &solved, &lines, &hash, arguments);
         let written = match write_files(&dataset, &job.name, arguments) {
             Ok(written) => written,
             Err(reason) => {
@@ -39,7 +44,8 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
                 return Ending::Wrong;
             }
         };
-        let table = Table { job, spec: spec::shown(&arguments.which.file), solved: &solved, written, since: start };
+        let spec = spec::shown(&arguments.which.file);
+        let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
         let told = table.unsolved() + &travel::beyond(job, &solved);
         if !told.is_empty() {
@@ -61,7 +67,12 @@ fn solve_surface<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Op
     Some(Solved { surface, sample, points, effort, fields: Vec::new() })
 }
 
-fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {
+fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[Line<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {
+    let surfaces = solved.iter().map(|solved| {
+        let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
+        let patch = patch(&solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
+        Patch { fields: solved.fields.clone(), ..patch }
+    });
     let settings = arguments.which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Dataset {
         header: Header {
@@ -71,21 +82,26 @@ fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], hash: &str, arguments: &Sol
             job: job.name.clone(),
             conventions: settings.collect(),
         },
-        patches: solved.iter().map(patch).collect(),
+        patches: surfaces.chain(lines.iter().filter_map(Line::patch)).collect(),
     }
 }
 
-fn patch(solved: &Solved<'_, '_>) -> Patch {
-    let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
-    let unknowns = solved.surface.unknowns.iter();
+/// A grid of points of a surface, without further fields.
+pub(crate) fn patch(
+    name: &str,
+    surface: &GeneratedSurface<'_>,
+    [rows, columns]: [Axis; 2],
+    points: &[SurfacePoint],
+) -> Patch {
+    let unknowns = surface.unknowns.iter();
     Patch {
-        name: solved.surface.name.clone(),
-        frame: solved.surface.frame.clone(),
-        rows: axis(0),
-        columns: axis(1),
+        name: name.to_string(),
+        frame: surface.frame.clone(),
+        rows,
+        columns,
         unknowns: unknowns.map(|u| Unknown { name: u.name.clone(), unit: unit(u.dimension) }).collect(),
-        points: solved.points.iter().map(point).collect(),
-        fields: solved.fields.clone(),
+        points: points.iter().map(point).collect(),
+        fields: Vec::new(),
     }
 }
 

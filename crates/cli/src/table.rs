@@ -8,6 +8,8 @@ use flank_export::Field;
 use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
+use crate::limits::Line;
+
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
     pub(crate) surface: &'j GeneratedSurface<'g>,
@@ -23,6 +25,7 @@ pub(crate) struct Table<'a, 'j, 'g> {
     pub(crate) job: &'a Job<'g>,
     pub(crate) spec: String,
     pub(crate) solved: &'a [Solved<'j, 'g>],
+    pub(crate) lines: &'a [Line<'j, 'g>],
     pub(crate) written: Vec<String>,
     pub(crate) since: Instant,
 }
@@ -34,7 +37,15 @@ struct Reached {
     ends: Option<(f64, f64)>,
 }
 
-impl Solved<'_, '_> {
+/// The points of one row of the table, whatever they are points of.
+#[derive(Clone, Copy)]
+struct Row<'a, 'g> {
+    name: &'a str,
+    surface: &'a GeneratedSurface<'g>,
+    points: &'a [SurfacePoint],
+}
+
+impl Row<'_, '_> {
     fn count(&self) -> usize {
         self.roots().count()
     }
@@ -69,24 +80,69 @@ impl Solved<'_, '_> {
         }
         all
     }
+
+    /// Cells of the table, two ranges to a line.
+    fn cells(&self) -> Vec<[String; 5]> {
+        let residual = self.worst_residual().map_or("-".to_string(), |worst| format!("{worst:.1e}"));
+        let mut first = [self.name.to_string(), self.points.len().to_string(), self.count().to_string(), residual];
+        if self.count() == 0 {
+            let [name, asked, found, worst] = first;
+            return vec![[name, asked, found, worst, "none within the ranges".to_string()]];
+        }
+        let reached = self.reached();
+        let lines = reached.chunks(2).map(|pair| {
+            let reached: Vec<String> = pair.iter().map(Reached::text).collect();
+            let [name, asked, found, worst] = std::mem::take(&mut first);
+            [name, asked, found, worst, reached.join("   ")]
+        });
+        lines.collect()
+    }
+
+    fn json(&self) -> Map<String, Value> {
+        let mut outcomes = Map::new();
+        for point in self.points {
+            let count = outcomes.entry(point.outcome.word()).or_insert(json!(0));
+            *count = json!(count.as_u64().unwrap_or(0) + 1);
+        }
+        let reached: Vec<Value> = self
+            .reached()
+            .iter()
+            .map(|reached| {
+                let (low, high) = reached.ends.unzip();
+                json!({ "name": reached.name, "unit": reached.unit, "low": low, "high": high })
+            })
+            .collect();
+        let entries = [
+            ("name", json!(self.name)),
+            ("frame", json!(self.surface.frame)),
+            ("asked", json!(self.points.len())),
+            ("solved", json!(self.count())),
+            ("outcomes", Value::Object(outcomes)),
+            ("worst_residual", json!(self.worst_residual())),
+            ("ranges_reached", json!(reached)),
+        ];
+        entries.map(|(key, value)| (key.to_string(), value)).into_iter().collect()
+    }
+}
+
+impl<'g> Solved<'_, 'g> {
+    fn row(&self) -> Row<'_, 'g> {
+        Row { name: &self.surface.name, surface: self.surface, points: &self.points }
+    }
+}
+
+impl<'g> Line<'_, 'g> {
+    fn row(&self) -> Row<'_, 'g> {
+        Row { name: &self.name, surface: self.surface, points: &self.points }
+    }
 }
 
 impl Table<'_, '_, '_> {
     pub(crate) fn text(&self) -> String {
         let mut out = format!("job {} ({})\n\n", self.job.name, self.spec);
         let mut rows = vec![["surface", "asked", "solved", "worst residual", "ranges reached"].map(String::from)];
-        for solved in self.solved {
-            let residual = solved.worst_residual().map_or("-".to_string(), |worst| format!("{worst:.1e}"));
-            let mut name = solved.surface.name.clone();
-            let mut counts = [solved.points.len().to_string(), solved.count().to_string(), residual];
-            for pair in solved.reached().chunks(2) {
-                let reached: Vec<String> = pair.iter().map(Reached::text).collect();
-                let [asked, found, worst] = counts;
-                rows.push([name, asked, found, worst, reached.join("   ")]);
-                name = String::new();
-                counts = [const { String::new() }; 3];
-            }
-        }
+        let all = self.solved.iter().map(Solved::row).chain(self.lines.iter().map(Line::row));
+        rows.extend(all.flat_map(|row| row.cells()));
         let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
         let widths: [usize; 5] = std::array::from_fn(width);
         for row in &rows {
@@ -115,6 +171,7 @@ impl Table<'_, '_, '_> {
             "job": self.job.name,
             "spec": self.spec,
             "surfaces": surfaces,
+            "lines": self.lines.iter().map(|line| line.row().json()).collect::<Vec<_>>(),
             "files": self.written,
             "seconds": self.since.elapsed().as_secs_f64(),
         });
@@ -126,7 +183,7 @@ impl Table<'_, '_, '_> {
         let mut out = String::new();
         for solved in self.solved {
             let asked = solved.points.len();
-            let missing = asked - solved.count();
+            let missing = asked - solved.row().count();
             if missing > 0 {
                 let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
                 reasons(solved).iter().for_each(|reason| {
@@ -180,34 +237,14 @@ impl Reached {
     fn text(&self) -> String {
         match self.ends {
             Some((low, high)) => format!("{} {low:.4} .. {high:.4} {}", self.name, self.unit).trim_end().to_string(),
-            None => format!("{} -", self.name),
+            None => self.name.clone(),
         }
     }
 }
 
 fn surface_json(solved: &Solved<'_, '_>) -> Value {
-    let mut outcomes = Map::new();
-    for point in &solved.points {
-        let count = outcomes.entry(point.outcome.word()).or_insert(json!(0));
-        *count = json!(count.as_u64().unwrap_or(0) + 1);
-    }
-    let reached: Vec<Value> = solved
-        .reached()
-        .iter()
-        .map(|reached| {
-            let (low, high) = reached.ends.unzip();
-            json!({ "name": reached.name, "unit": reached.unit, "low": low, "high": high })
-        })
-        .collect();
-    json!({
-        "name": solved.surface.name,
-        "frame": solved.surface.frame,
-        "asked": solved.points.len(),
-        "solved": solved.count(),
-        "outcomes": outcomes,
-        "worst_residual": solved.worst_residual(),
-        "ranges_reached": reached,
-        "evaluations": solved.effort.evaluations,
-        "branches": solved.effort.branches,
-    })
+    let mut entries = solved.row().json();
+    entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
+    entries.insert("branches".to_string(), json!(solved.effort.branches));
+    Value::Object(entries)
 }

@@ -55,6 +55,28 @@ fn solve_writes_points_and_pictures() {
     assert_eq!(csv.lines().filter(|line| line.ends_with(",solved")).count(), 1302);
 }
 
+/// Ten teeth are cut under: the singular line is on the base circle, at u = r sin²α / cos α.
+#[test]
+fn limits_are_listed_and_written() {
+    let out = folder("limits");
+    let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--set", "teeth=10", "--set", "module=5 mm", "--limits"];
+    let more = ["--set", "profile_shift=0", "--set", "r.tip_height=6.25 mm", "--set", "r.tip_radius=1.9 mm", "--json"];
+    let run = flank(&[&arguments[..], &more[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let lines = table["lines"].as_array().expect("lines");
+    let line = |name: &str| lines.iter().find(|line| line["name"] == name).expect("the line is listed");
+    assert_eq!(line("flank_plus.singular_line")["solved"], 25);
+    assert_eq!(line("fillet_plus.singular_line")["solved"], 0);
+    assert_eq!(line("flank_plus.contact_limit")["solved"], 0);
+    let u = line("flank_plus.singular_line")["ranges_reached"][2]["low"].as_f64().unwrap();
+    let alpha = 20f64.to_radians();
+    assert!((u - 25.0 * alpha.sin().powi(2) / alpha.cos()).abs() < 1e-9, "{u}");
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus.singular_line,")).count(), 25);
+    assert!(!csv.contains("contact_limit,"));
+}
+
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let [a, b] = ["bytes-a", "bytes-b"].map(folder);

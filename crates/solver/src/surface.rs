@@ -45,22 +45,51 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
+        let bound = surface.bound(bindings);
+        let conditions = bound.clearance_minors();
+        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions)
+    }
+
+    /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
+    /// targets `[0, value]`. The singular line has the last of [`Surface::clearance_minors`] as its quantity, the limit of
+    /// the contact on the tool [`Surface::contact_limit`].
+    ///
+    /// No point of the line is cut away or singular by the clearance's Hessian: the line is where that changes. The rest is
+    /// as for [`SurfaceProblem::new`].
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    ///
+    /// # Panics
+    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
+    pub fn line<'g>(
+        surface: &Surface<'g>,
+        quantity: Expr<'g>,
+        along: Expr<'g>,
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SurfaceProblem, TapeError> {
+        SurfaceProblem::of(&surface.bound(bindings), [quantity, along], ranges, bindings, &[])
+    }
+
+    fn of<'g>(
+        bound: &Surface<'g>,
+        coordinates: [Expr<'g>; 2],
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+        conditions: &[Expr<'g>],
+    ) -> Result<SurfaceProblem, TapeError> {
+        assert_eq!(bound.unknowns.len(), ranges.len(), "one range for each unknown");
         let graph = coordinates[0].graph();
         let targets = [graph.variable("target 1"), graph.variable("target 2")];
+        let coordinates = graph.substitute(&coordinates, bindings);
         let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
-        let surface = surface.bound(bindings);
-        let on_target = graph.substitute(&on_target.collect::<Vec<_>>(), bindings);
-        let residuals: Vec<Expr<'g>> = surface.constraints.iter().copied().chain(on_target).collect();
-        let point: Vec<Expr<'g>> = surface.position.0.into_iter().chain(surface.normal.0).collect();
-        let conditions = surface.clearance_minors();
+        let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(on_target).collect();
+        let point: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
+        let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
-            system: System::new(&residuals, &surface.unknowns, &targets)?.with_conditions(
-                &conditions,
-                &surface.unknowns,
-                &targets,
-            )?,
-            point: Tape::new(&point, &surface.unknowns)?,
+            system: system.with_conditions(conditions, &bound.unknowns, &targets)?,
+            point: Tape::new(&point, &bound.unknowns)?,
             ranges,
         })
     }

@@ -32,6 +32,16 @@ impl<'g> Surface<'g> {
             .collect()
     }
 
+    /// The determinant of the constraints' derivatives by the motions: zero where the lines of contact have an envelope on the
+    /// tool. Beyond that line no point of the tool generates anything. `None` without motions.
+    pub fn contact_limit(&self) -> Option<Expr<'g>> {
+        let motions = self.unknowns.get(2..).filter(|motions| !motions.is_empty())?;
+        let rows: Vec<Vec<Expr<'g>>> =
+            self.constraints.iter().map(|c| motions.iter().map(|&motion| c.derivative(motion)).collect()).collect();
+        let columns: Vec<usize> = (0..motions.len()).collect();
+        Some(determinant(motions[0].graph(), &rows, &columns))
+    }
+
     /// det [∂c/∂p 0; ∂r/∂p n], by Laplace's expansion: the minors of ∂c/∂p against (r_a × r_b) · n.
     fn oriented_area(&self, graph: &'g Graph, rows: &[Vec<Expr<'g>>], slopes: &[Vector3<'g>]) -> Expr<'g> {
         let mut sum = graph.constant(0.0);

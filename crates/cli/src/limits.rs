@@ -1,0 +1,70 @@
+//! `flank solve --limits`: the lines at which a surface, or the tool's contact with it, ends.
+
+use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_export::{Axis, Patch};
+use flank_expr::Expr;
+use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+
+use crate::solve;
+
+/// A line on a surface, at values of one of the two coordinates that the surface's points are asked for by.
+pub(crate) struct Line<'j, 'g> {
+    pub(crate) surface: &'j GeneratedSurface<'g>,
+    /// `flank.singular_line` or `flank.contact_limit`.
+    pub(crate) name: String,
+    kind: &'static str,
+    /// The coordinate.
+    along: String,
+    pub(crate) points: Vec<SurfacePoint>,
+}
+
+/// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
+pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Vec<Line<'j, 'g>> {
+    let Some(sample) = &surface.sample else { return Vec::new() };
+    let singular = surface.surface.clearance_minors().pop();
+    [("singular line", singular), ("contact limit", surface.surface.contact_limit())]
+        .into_iter()
+        .filter_map(|(kind, quantity)| {
+            let quantity = quantity?;
+            // along the coordinate that follows the line farther: it may run across the other one
+            let [first, second] = [0, 1].map(|k| line(job, surface, sample, kind, quantity, k));
+            Some(if second.count() > first.count() { second } else { first })
+        })
+        .collect()
+}
+
+fn line<'j, 'g>(
+    job: &Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+    kind: &'static str,
+    quantity: Expr<'g>,
+    k: usize,
+) -> Line<'j, 'g> {
+    let ends = sample.targets.iter().map(|target| target[k]);
+    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let steps = sample.counts.into_iter().max().unwrap_or(1).max(2) - 1;
+    let share = |step: usize| step as f64 / steps as f64;
+    let targets: Vec<[f64; 2]> =
+        (0..=steps).map(|step| [0.0, low * (1.0 - share(step)) + high * share(step)]).collect();
+    let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
+    let along = &sample.coordinates[k];
+    let problem = SurfaceProblem::line(&surface.surface, quantity, along.value, ranges, &job.bindings())
+        .expect("a job without errors leaves nothing unbound");
+    let points = problem.solve(&targets, [1, targets.len()]).0;
+    let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
+    Line { surface, name, kind, along: along.name.clone(), points }
+}
+
+impl Line<'_, '_> {
+    fn count(&self) -> usize {
+        self.points.iter().filter(|point| point.outcome == Outcome::Solved).count()
+    }
+
+    /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
+    pub(crate) fn patch(&self) -> Option<Patch> {
+        let rows = Axis { label: self.kind.to_string(), count: 1 };
+        let columns = Axis { label: self.along.clone(), count: self.points.len() };
+        (self.count() > 0).then(|| solve::patch(&self.name, self.surface, [rows, columns], &self.points))
+    }
+}
