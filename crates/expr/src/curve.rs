@@ -77,14 +77,12 @@ impl Curve {
     ///
     /// At a knot the third derivative is that of the interval to the right.
     pub fn value(&self, order: u8, x: f64) -> f64 {
-        let (low, high) = self.ends();
-        let margin = MARGIN * (high - low);
-        if x.is_nan() || x < low - margin || x > high + margin {
+        let (low, high) = self.domain();
+        if x.is_nan() || x < low || x > high {
             return f64::NAN;
         }
-        let interval = self.knots.partition_point(|knot| *knot <= x).clamp(1, self.pieces.len()) - 1;
-        let [a, b, c, d] = self.pieces[interval];
-        let t = x - self.knots[interval];
+        let (knot, [a, b, c, d]) = self.piece(self.piece_at(x));
+        let t = x - knot;
         match order {
             0 => a + t * (b + t * (c + t * d)),
             1 => b + t * (2.0 * c + t * 3.0 * d),
@@ -92,6 +90,26 @@ impl Curve {
             3 => 6.0 * d,
             _ => 0.0,
         }
+    }
+}
+
+/// Pieces, for whoever evaluates it.
+impl Curve {
+    /// Where it has a value: its ends with the margin for their rounding.
+    pub(crate) fn domain(&self) -> (f64, f64) {
+        let (low, high) = self.ends();
+        let margin = MARGIN * (high - low);
+        (low - margin, high + margin)
+    }
+
+    /// The piece that has the value at x: at a knot the one to the right.
+    pub(crate) fn piece_at(&self, x: f64) -> usize {
+        self.knots.partition_point(|knot| *knot <= x).clamp(1, self.pieces.len()) - 1
+    }
+
+    /// Left knot of a piece, and the coefficients of its cubic in the distance from there, constant first.
+    pub(crate) fn piece(&self, index: usize) -> (f64, [f64; 4]) {
+        (self.knots[index], self.pieces[index])
     }
 }
 

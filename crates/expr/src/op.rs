@@ -77,12 +77,13 @@ impl Unary {
             Unary::Asin => a.asin(),
             Unary::Acos => a.acos(),
             Unary::Atan => a.atan(),
-            Unary::Sinh => a.sinh(),
-            Unary::Cosh => a.cosh(),
-            Unary::Tanh => a.tanh(),
-            Unary::Asinh => a.asinh(),
-            Unary::Acosh => a.acosh(),
-            Unary::Atanh => a.atanh(),
+            // the standard library's are off by several units in the last place
+            Unary::Sinh => core_math::sinh(a),
+            Unary::Cosh => core_math::cosh(a),
+            Unary::Tanh => core_math::tanh(a),
+            Unary::Asinh => core_math::asinh(a),
+            Unary::Acosh => core_math::acosh(a),
+            Unary::Atanh => core_math::atanh(a),
             Unary::Arcinv => inverse_involute(a),
             Unary::Exp => a.exp(),
             Unary::Ln => a.ln(),
@@ -103,6 +104,7 @@ impl Unary {
             Unary::Asin => "asin",
             Unary::Acos => "acos",
             Unary::Atan => "atan",
+            // the standard library's are off by several units in the last place
             Unary::Sinh => "sinh",
             Unary::Cosh => "cosh",
             Unary::Tanh => "tanh",
@@ -180,7 +182,7 @@ fn involute(a: f64) -> f64 {
 
 /// The angle in (−π/2, π/2) with tan a − a = x, by Newton from above, where the involute function is convex; good to a few
 /// units in the last place.
-fn inverse_involute(x: f64) -> f64 {
+pub(crate) fn inverse_involute(x: f64) -> f64 {
     let target = x.abs();
     if target == 0.0 || !target.is_finite() {
         return if target.is_infinite() { x.signum() * std::f64::consts::FRAC_PI_2 } else { x };

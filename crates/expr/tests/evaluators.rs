@@ -4,7 +4,7 @@
 mod suite;
 mod support;
 
-use flank_expr::{Graph, ScalarEvaluator, Tape};
+use flank_expr::{Graph, Interval, IntervalEvaluator, ScalarEvaluator, Tape};
 use suite::Subject;
 
 struct Scalar;
@@ -30,6 +30,33 @@ impl Subject for Scalar {
 }
 
 evaluator_suite!(scalar, Scalar);
+
+/// Boxes that are points.
+struct Points;
+
+impl Subject for Points {
+    type Value = Interval;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<Interval>> {
+        let mut evaluator = IntervalEvaluator::new(tape);
+        points
+            .iter()
+            .map(|point| {
+                let inputs: Vec<Interval> = point.iter().copied().map(Interval::point).collect();
+                let mut outputs = vec![Interval::EMPTY; tape.output_count()];
+                evaluator.run(&inputs, &mut outputs);
+                outputs
+            })
+            .collect()
+    }
+
+    /// What is not a number is never claimed to be one.
+    fn agrees(expected: f64, found: &Interval) -> bool {
+        if expected.is_nan() { !found.continuous } else { found.contains(expected) }
+    }
+}
+
+evaluator_suite!(intervals, Points);
 
 /// Evaluators that are wrong in one way each: the suite must notice.
 mod the_suite_notices {
