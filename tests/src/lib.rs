@@ -7,8 +7,8 @@ pub mod targets;
 use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Job, compile_file, render};
-use flank_expr::Graph;
-use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem};
 use serde_json::Value;
 
 pub use dice::Dice;
@@ -49,16 +49,28 @@ fn markdown(folder: &Path) -> Vec<PathBuf> {
     paths.into_iter().flat_map(below).collect()
 }
 
-/// The first job of a spec of the library, with some values replaced.
+/// The first job of a spec, with some values replaced.
 ///
 /// # Panics
 /// With the diagnostics, if there are errors.
 pub fn job<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Job<'g> {
+    jobs(graph, spec, set).swap_remove(0)
+}
+
+/// One of several jobs of a spec.
+///
+/// # Panics
+/// With the diagnostics, if there are errors; if there is no such job.
+pub fn job_named<'g>(graph: &'g Graph, spec: &str, name: &str) -> Job<'g> {
+    jobs(graph, spec, &[]).into_iter().find(|job| job.name == name).expect("the job is in the spec")
+}
+
+fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> {
     let set: Vec<(String, String)> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
-    let mut compilation = compile_file(graph, &repository(spec), &set);
+    let compilation = compile_file(graph, &repository(spec), &set);
     let told = render(&compilation.diagnostics, &compilation.sources, false);
     assert!(!compilation.has_errors(), "{spec} is wrong:\n{told}");
-    compilation.jobs.swap_remove(0)
+    compilation.jobs
 }
 
 /// Points of a surface at given values of two of its coordinates, in the order given.
@@ -71,6 +83,41 @@ pub fn points(job: &Job<'_>, surface: &str, coordinates: [&str; 2], targets: &[[
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&surface.surface, [a, b], ranges, &job.bindings()).expect("nothing is unbound");
     problem.solve(targets, [1, targets.len()]).0
+}
+
+/// A surface at values of its unknowns that another source says solve its equations.
+#[derive(Clone, Debug)]
+pub struct Evaluated {
+    /// Position, mm.
+    pub position: [f64; 3],
+    /// Unit normal.
+    pub normal: [f64; 3],
+    /// The largest of the constraints.
+    pub residual: f64,
+    /// Curvatures, contact, metric in z and rho.
+    pub geometry: PointGeometry,
+}
+
+/// A surface of a job at values of its unknowns.
+///
+/// # Panics
+/// If there is no such surface.
+pub fn evaluated(job: &Job<'_>, surface: &str, unknowns: &[Vec<f64>]) -> Vec<Evaluated> {
+    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let [z, rho] = ["z", "rho"].map(|name| surface.coordinate(name).expect("every surface has it").value);
+    let (made, bindings) = (&surface.surface, job.bindings());
+    let geometry = SurfaceGeometry::new(made, &surface.generation.motions, [z, rho], &bindings).expect("all bound");
+    let outputs = made.position.0.into_iter().chain(made.normal.0).chain(made.constraints.iter().copied());
+    let outputs: Vec<Expr<'_>> = outputs.collect();
+    let tape = Tape::new(&z.graph().substitute(&outputs, &bindings), &made.unknowns).expect("all bound");
+    let evaluate = |at: &Vec<f64>| {
+        let mut out = vec![0.0; tape.output_count()];
+        ScalarEvaluator::new(&tape).run(at, &mut out);
+        let vector = |first: usize| [out[first], out[first + 1], out[first + 2]];
+        let residual = difference(&out[6..], &vec![0.0; out.len() - 6]);
+        Evaluated { position: vector(0), normal: vector(3), residual, geometry: geometry.at(at) }
+    };
+    unknowns.iter().map(evaluate).collect()
 }
 
 /// A JSON file of `tests/reference`.

@@ -15,6 +15,7 @@
 //! ```
 
 mod extent;
+mod geometry;
 mod grid;
 mod newton;
 mod solution;
@@ -23,6 +24,7 @@ mod surface;
 mod system;
 
 pub use extent::extent;
+pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};
 pub use newton::{TOLERANCE, solve};
 pub use solution::{Outcome, Range, Solution};
