@@ -67,6 +67,7 @@ Examples:
   flank solve specs/hobbing/helical_gear.chain
   flank solve specs/hobbing/helical_gear.chain --set teeth=37 --set helix_angle=\"15 deg\"
   flank solve specs/bevel/pinion_19x62.chain --out /tmp/pinion --format csv,json,stl
+  flank solve specs/bevel/pinion_19x62.chain --geometry
   flank solve specs/hobbing/spur_gear.chain --json --no-picture")]
 pub(crate) struct Solve {
     #[command(flatten)]
@@ -83,6 +84,10 @@ pub(crate) struct Solve {
     /// Write no picture (otherwise a PNG and an SVG)
     #[arg(long)]
     pub(crate) no_picture: bool,
+    /// Add to each point: principal curvatures and directions (k1, k2, d1, d2), sliding velocity, contact line and the angle
+    /// between them, curvatures of the gap between tool and work (induced_*), the metric of the sampled coordinates
+    #[arg(long)]
+    pub(crate) geometry: bool,
     /// Print the table as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -12,6 +12,7 @@ use flank_expr::Graph;
 use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Format, Solve};
+use crate::geometry;
 use crate::limits::{self, Line};
 use crate::table::{Solved, Table};
 use crate::{Ending, print, spec, travel};
@@ -31,7 +32,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
             return Ending::Wrong;
         }
         let solved: Vec<Solved<'_, '_>> =
-            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface)).collect();
+            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, arguments)).collect();
         let lines: Vec<Line<'_, '_>> = match arguments.limits {
             true => job.surfaces.iter().flat_map(|surface| limits::lines(job, surface)).collect(),
             false => Vec::new(),
@@ -57,14 +58,22 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
 }
 
 /// The points of one surface, if any are asked for.
-fn solve_surface<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Option<Solved<'j, 'g>> {
+fn solve_surface<'j, 'g>(
+    job: &Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    arguments: &Solve,
+) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
     let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
         .expect("a job without errors leaves nothing unbound");
     let (points, effort) = problem.solve(&sample.targets, sample.counts);
-    Some(Solved { surface, sample, points, effort, fields: Vec::new() })
+    let mut fields = Vec::new();
+    if arguments.geometry {
+        fields.extend(geometry::fields(job, surface, sample, &points));
+    }
+    Some(Solved { surface, sample, points, effort, fields })
 }
 
 fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[Line<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {

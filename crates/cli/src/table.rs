@@ -8,6 +8,7 @@ use flank_export::Field;
 use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
+use crate::fields;
 use crate::limits::Line;
 
 /// One surface with its points.
@@ -143,14 +144,8 @@ impl Table<'_, '_, '_> {
         let mut rows = vec![["surface", "asked", "solved", "worst residual", "ranges reached"].map(String::from)];
         let all = self.solved.iter().map(Solved::row).chain(self.lines.iter().map(Line::row));
         rows.extend(all.flat_map(|row| row.cells()));
-        let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
-        let widths: [usize; 5] = std::array::from_fn(width);
-        for row in &rows {
-            let [name, asked, found, worst, reached] = row;
-            let [a, b, c, d, _] = widths;
-            let line = format!("  {name:<a$}  {asked:>b$}  {found:>c$}  {worst:>d$}  {reached}");
-            let _ = writeln!(out, "{}", line.trim_end());
-        }
+        out.push_str(&aligned(&rows, "<>>>"));
+        out.push_str(&fields::text(self.solved));
         for solved in self.solved.iter().filter(|solved| solved.effort.branches > 1) {
             let (name, branches) = (&solved.surface.name, solved.effort.branches);
             let _ = writeln!(
@@ -193,6 +188,17 @@ impl Table<'_, '_, '_> {
         }
         out
     }
+}
+
+/// Rows with their cells below each other, all to the left but those whose place in `sides` holds a `>`.
+pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> String {
+    let widths: [usize; N] = std::array::from_fn(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0));
+    let cell = |k: usize, text: &str| match sides.as_bytes().get(k) {
+        Some(b'>') => format!("  {text:>0$}", widths[k]),
+        _ => format!("  {text:<0$}", widths[k]),
+    };
+    let line = |row: &[String; N]| (0..N).map(|k| cell(k, &row[k])).collect::<String>();
+    rows.iter().map(|row| line(row).trim_end().to_string() + "\n").collect()
 }
 
 /// Why points of a surface were not solved, with the number of points for each reason.
@@ -245,6 +251,7 @@ impl Reached {
 fn surface_json(solved: &Solved<'_, '_>) -> Value {
     let mut entries = solved.row().json();
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
+    entries.insert("fields".to_string(), fields::json(solved));
     entries.insert("branches".to_string(), json!(solved.effort.branches));
     Value::Object(entries)
 }

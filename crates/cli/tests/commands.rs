@@ -77,6 +77,40 @@ fn limits_are_listed_and_written() {
     assert!(!csv.contains("contact_limit,"));
 }
 
+/// The flank of a spur gear bends as 1/√(R² − r_b²), and the whole tooth along its length not at all.
+#[test]
+fn geometry_is_listed_and_written() {
+    let out = folder("geometry");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--geometry", "--no-picture", "--out", out.to_str().unwrap()];
+    let run = flank(&base);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in ["flank_plus", "k1", "1/mm", "sliding_angle", "90.000000  deg", "induced_k1", "metric_e"] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    assert!(!table.contains("-0.000000 ") && !table.contains("NaN"), "{table}");
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    let rows: Vec<Vec<&str>> =
+        csv.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|title| *title == name).expect("a column");
+    let number = |row: &[&str], name: &str| -> f64 { row[column(name)].parse().expect("a number") };
+    let base_radius = 36.0 * 20f64.to_radians().cos();
+    let points: Vec<&Vec<&str>> = rows.iter().filter(|row| row[0] == "flank_plus").collect();
+    assert_eq!(points.len(), 275);
+    for row in points {
+        let involute = 1.0 / (number(row, "x").hypot(number(row, "y")).powi(2) - base_radius.powi(2)).sqrt();
+        assert!((number(row, "k1") / involute - 1.0).abs() < 1e-9 && number(row, "k2").abs() < 1e-12);
+        assert!((number(row, "d2_z").abs() - 1.0).abs() < 1e-9 && (number(row, "contact_line_z") - 1.0).abs() < 1e-9);
+    }
+    let json = flank(&[&base[..], &["--json"]].concat());
+    let table: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    let field = &table["surfaces"][0]["fields"][0];
+    assert_eq!(
+        (field["name"].as_str(), field["unit"].as_str(), field["undefined"].as_u64()),
+        (Some("k1"), Some("1/mm"), Some(0))
+    );
+}
+
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let [a, b] = ["bytes-a", "bytes-b"].map(folder);

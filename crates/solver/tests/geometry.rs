@@ -134,6 +134,7 @@ fn an_involute_bends_as_it_unwinds() {
         let [x, y, z] = point.contact.sliding[0].expect("finite");
         close(x.hypot(y), (radius * angle).abs() * alpha.cos(), "sliding velocity");
         close(z, 0.0, "no sliding along the tooth");
+        close(point.contact.sliding_angle().expect("it slides"), FRAC_PI_2, "across the contact line");
     }
 }
 

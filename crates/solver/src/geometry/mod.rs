@@ -90,6 +90,17 @@ pub struct Metric {
     pub g: f64,
 }
 
+impl Contact {
+    /// The angle between the contact line and the sliding velocity, from 0 to π/2. `None` without a contact line, and where
+    /// nothing slides.
+    pub fn sliding_angle(&self) -> Option<f64> {
+        let (line, [Some(velocity)]) = (Vector3::from(self.line?), self.sliding.as_slice()) else { return None };
+        let velocity = Vector3::from(*velocity);
+        let across = line.cross(&velocity).norm();
+        (velocity.norm() > 0.0).then(|| across.atan2(line.dot(&velocity).abs()))
+    }
+}
+
 impl SurfaceGeometry {
     /// The geometry of `surface`, made over `motions`, in two `coordinates` (functions of its unknowns). `bindings` replace
     /// the remaining variables (parameters) by numbers.

@@ -1,0 +1,67 @@
+//! What `flank solve` tells of the further fields of points.
+
+use flank_export::Values;
+use flank_solver::Outcome;
+use serde_json::{Value, json};
+
+use crate::table::{Solved, aligned};
+
+/// The values of one field of numbers over the solved points of a surface.
+struct FieldRange<'a> {
+    name: &'a str,
+    unit: &'a str,
+    /// The smallest and the largest.
+    ends: Option<(f64, f64)>,
+    /// Points at which there is no value.
+    undefined: usize,
+}
+
+/// Vectors have no range.
+fn ranges<'a>(solved: &'a Solved<'_, '_>) -> impl Iterator<Item = FieldRange<'a>> {
+    solved.fields.iter().filter_map(|field| {
+        let Values::Scalars(values) = &field.values else { return None };
+        let mut range = FieldRange { name: &field.name, unit: &field.unit, ends: None, undefined: 0 };
+        let of_solved = solved.points.iter().zip(values).filter(|(point, _)| point.outcome == Outcome::Solved);
+        for (_, value) in of_solved {
+            match value {
+                Some(x) => range.ends = Some(range.ends.map_or((*x, *x), |(low, high)| (low.min(*x), high.max(*x)))),
+                None => range.undefined += 1,
+            }
+        }
+        Some(range)
+    })
+}
+
+/// A line for each field of each surface; empty if there is none.
+pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
+    let mut rows = Vec::new();
+    for solved in solved {
+        let mut name = solved.surface.name.clone();
+        for range in ranges(solved) {
+            let ends = range.ends.map(|(low, high)| format!("{} .. {}", six_digits(low), six_digits(high)));
+            let unit = if range.unit == "1" { "" } else { range.unit };
+            let open = match range.undefined {
+                0 => String::new(),
+                count => format!("not defined at {count} points"),
+            };
+            let ends = ends.unwrap_or("-".to_string());
+            rows.push([std::mem::take(&mut name), range.name.to_string(), ends, unit.to_string(), open]);
+        }
+    }
+    if rows.is_empty() { String::new() } else { format!("\n{}", aligned(&rows, "")) }
+}
+
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    let all = ranges(solved).map(|range| {
+        let (low, high) = range.ends.unzip();
+        json!({ "name": range.name, "unit": range.unit, "low": low, "high": high, "undefined": range.undefined })
+    });
+    all.collect()
+}
+
+/// Six digits behind the point; a zero has no sign.
+fn six_digits(x: f64) -> String {
+    let text = format!("{x:.6}");
+    let zero = text.strip_prefix('-').filter(|digits| digits.chars().all(|c| matches!(c, '0' | '.')));
+    zero.map(str::to_string).unwrap_or(text)
+}
