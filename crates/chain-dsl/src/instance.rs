@@ -99,7 +99,8 @@ impl<'a, 'g> Binder<'a, 'g> {
         let variable = context.variable(full_name.clone(), Role::Parameter, value);
         scope.insert(name.clone(), Value::Scalar(variable, dimension));
         if let Some((definition, _)) = definition {
-            self.parameters.push(Parameter { name: full_name, variable, dimension, definition, value });
+            let is_count = is_count(param);
+            self.parameters.push(Parameter { name: full_name, variable, dimension, definition, value, is_count });
         }
     }
 
@@ -112,8 +113,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         scope: &Scope<'g>,
         span: crate::source::Span,
     ) {
-        let is_count = param.dimension.factors.iter().any(|(name, _)| name.node == "count");
-        if is_count && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
+        if is_count(param) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
             let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
         }
@@ -161,6 +161,10 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
         self.parameters
     }
+}
+
+fn is_count(param: &Param) -> bool {
+    param.dimension.factors.iter().any(|(name, _)| name.node == "count")
 }
 
 fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &[&Param]) {

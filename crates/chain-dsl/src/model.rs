@@ -39,6 +39,8 @@ pub struct Parameter<'g> {
     pub definition: Expr<'g>,
     /// Its value, mm or radians.
     pub value: f64,
+    /// Whether it counts something: then it is a whole number and does not change by little.
+    pub is_count: bool,
 }
 
 /// A variable that is looked for in a range.
