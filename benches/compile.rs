@@ -76,14 +76,7 @@ job j {{
     text
 }
 
-/// Seconds that this thread has had: others on the machine do not count. Where that is not known, seconds since `start`.
-fn spent(start: Instant) -> f64 {
-    let scheduled = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds: Option<f64> = scheduled.and_then(|text| text.split(' ').next()?.parse().ok());
-    nanoseconds.map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
-}
-
-/// Least-squares slope of log(time) over log(frames): 1 is linear.
+/// Least-squares slope of log(time) over log(frames): 1 is linear. Of each the fastest run, in which nobody else disturbed.
 fn print_growth() {
     const RUNS: usize = 15;
     let points: Vec<(f64, f64)> = FRAMES
@@ -93,9 +86,8 @@ fn print_growth() {
             let best = (0..RUNS)
                 .map(|_| {
                     let start = Instant::now();
-                    let before = spent(start);
                     black_box(tape_of(&text));
-                    spent(start) - before
+                    start.elapsed().as_secs_f64()
                 })
                 .fold(f64::INFINITY, f64::min);
             println!("{frames:5} frames: {:8.3} ms, {} instructions", best * 1e3, tape_of(&text));

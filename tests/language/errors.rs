@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Code, Compilation, Diagnostic, compile_file, compile_text, limits, render};
+use flank_chain_dsl::{Code, Compilation, Diagnostic, compile_file, compile_text, limits::Limit, render};
 use flank_expr::Graph;
 use flank_tests::repository;
 
@@ -167,32 +167,19 @@ fn pages_are_readable_in_a_terminal() {
     }
 }
 
+/// The same table on the page of the error and in the language reference, made from the limits themselves.
 #[test]
-fn the_page_about_limits_lists_them_all() {
-    let page = Code::LimitExceeded.page();
-    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && !line.contains("---")).skip(1).collect();
-    let stated: Vec<&str> = rows.iter().filter_map(|row| row.trim_end_matches(" |").rsplit("| ").next()).collect();
-    let in_order = [
-        limits::USE_DEPTH,
-        limits::EXTENDS_DEPTH,
-        limits::NESTING,
-        limits::OPERATIONS,
-        limits::STATEMENT_TOKENS,
-        limits::CALL_DEPTH,
-        limits::EVALUATION_STEPS,
-        limits::FRAMES,
-        limits::TABLE_ROWS,
-        limits::SAMPLE_POINTS,
-        limits::MISTAKES,
-    ];
-    let mut expected = [limits::FILE_BYTES, limits::TABLE_BYTES].map(|bytes| format!("{} MiB", bytes >> 20)).to_vec();
-    expected.extend(in_order.map(grouped));
-    assert_eq!(stated, expected);
-}
-
-/// A number with commas between its thousands.
-fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|group| str::from_utf8(group).ok()).collect();
-    groups.join(",")
+fn the_limits_are_stated_as_they_are() {
+    let rows = Limit::ALL.iter().map(|limit| format!("| {} | {} |\n", limit.what, limit.stated()));
+    let table = format!("| what | at most |\n| --- | --- |\n{}\n", rows.collect::<String>());
+    for path in ["docs/errors/E0004.md", "docs/language.md"] {
+        let mut page = std::fs::read_to_string(repository(path)).expect("the page is there").replace('\r', "") + "\n";
+        if std::env::var_os("UPDATE_PAGES").is_some() {
+            let start = page.find("| what | at most |").expect("a table of limits");
+            let end = start + page[start..].find("\n\n").expect("the end of the table") + 2;
+            page.replace_range(start..end, &table);
+            std::fs::write(repository(path), page.trim_end().to_string() + "\n").expect("a writable page");
+        }
+        assert!(page.contains(&table), "the table of limits in {path} should be\n{table}");
+    }
 }

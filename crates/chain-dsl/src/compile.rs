@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 use flank_expr::Graph;
 
@@ -11,6 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::functions;
 use crate::instance::{Overrides, Source};
 use crate::job::{self, Definitions};
+use crate::limits;
 use crate::load::{self, Loaded};
 use crate::machine::{self, Machines};
 use crate::model::Job;
@@ -87,6 +89,7 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
     let Loaded { mut sources, files, diagnostics, root } = loaded;
+    graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(root, &sources));
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);
@@ -97,7 +100,12 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let mut jobs = Vec::new();
     for (file, written) in &items.jobs {
         context.begin_item();
+        if written.statements.len() > limits::JOB_STATEMENTS.most {
+            context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
+            continue;
+        }
         let job = job::build(&mut context, written, &definitions, &sources.file(*file).path);
+        context.step(written.name.span);
         if Some(*file) == main {
             jobs.push(job);
         }
@@ -108,6 +116,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
         let all: Vec<&Item> = files.iter().flat_map(|(_, file)| &file.items).collect();
         unused::warn(&mut context, file, &all);
     }
+    graph.set_room(None);
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
@@ -152,7 +161,7 @@ impl Items {
                     let message = format!("`{}` is a function of the language", function.name.node);
                     context.report(Diagnostic::new(Code::DuplicateName, function.name.span, message));
                 } else {
-                    context.functions.insert(function.name.node.clone(), function.clone());
+                    context.functions.insert(function.name.node.clone(), Rc::new(function.clone()));
                 }
             }
             Item::Machine(machine) => {
@@ -169,7 +178,7 @@ impl Items {
 /// Definitions are looked at by themselves, with parameters that have no values, so that a mistake shows without a use.
 fn check_definitions(context: &mut Context<'_>, items: &Items) {
     let nothing = Overrides::new();
-    let mut functions: Vec<ast::Function> = context.functions.values().cloned().collect();
+    let mut functions: Vec<Rc<ast::Function>> = context.functions.values().cloned().collect();
     functions.sort_by_key(|function| function.name.span);
     for function in functions {
         context.begin_item();
@@ -199,6 +208,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     for tool in tools {
         context.begin_item();
         tool::build(context, tool, Source::Definition, &nothing);
+        context.step(tool.name.span);
     }
 }
 

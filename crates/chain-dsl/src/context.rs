@@ -2,11 +2,12 @@
 
 use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use flank_expr::{CurveId, Expr, Graph};
 
 use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::dimension::Dimension;
 use crate::limits;
 use crate::source::{Name, Span};
@@ -48,6 +49,14 @@ pub(crate) enum Value<'g> {
 }
 
 impl Value<'_> {
+    /// Number of values inside it.
+    pub(crate) fn size(&self) -> usize {
+        match self {
+            Value::Vector(parts) => parts.iter().map(|part| part.size() + 1).sum(),
+            _ => 0,
+        }
+    }
+
     pub(crate) fn described(&self) -> String {
         match self {
             Value::Scalar(_, dimension) if *dimension == Dimension::NUMBER => "a number".to_string(),
@@ -81,17 +90,22 @@ pub(crate) enum Constant {
 /// The state of one compilation.
 pub(crate) struct Context<'g> {
     pub(crate) graph: &'g Graph,
-    pub(crate) functions: HashMap<String, ast::Function>,
+    pub(crate) functions: HashMap<String, Rc<ast::Function>>,
     pub(crate) tables: Tables,
     roles: Vec<Role>,
     values: Vec<f64>,
     diagnostics: Vec<Diagnostic>,
+    /// Errors among them.
+    errors: usize,
     reported: HashSet<(Code, Span)>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
     steps: Cell<usize>,
+    /// A limit on the work has been exceeded and reported.
     exhausted: bool,
+    /// Points of the samples so far.
+    pub(crate) sample_points: usize,
     pub(crate) call_depth: usize,
 }
 
@@ -105,10 +119,12 @@ impl<'g> Context<'g> {
             roles: Vec::new(),
             values: Vec::new(),
             diagnostics: Vec::new(),
+            errors: 0,
             reported: HashSet::new(),
             unknown: HashSet::new(),
             steps: Cell::new(0),
             exhausted: false,
+            sample_points: 0,
             call_depth: 0,
         }
     }
@@ -122,9 +138,20 @@ impl<'g> Context<'g> {
     }
 
     /// Keeps a finding, unless the same was found at the same place before (a definition is looked at once by itself and
-    /// once for each use).
+    /// once for each use), or there are enough of them.
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
-        if self.reported.insert((diagnostic.code, diagnostic.span)) {
+        if diagnostic.severity() == Severity::Warning || self.errors < limits::MISTAKES.most {
+            self.keep(diagnostic);
+        } else if self.errors == limits::MISTAKES.most {
+            self.keep(limits::MISTAKES.exceeded(diagnostic.span));
+        }
+    }
+
+    fn keep(&mut self, diagnostic: Diagnostic) {
+        // formulas that were cut off are wrong in ways that nobody wrote
+        let is_own_fault = diagnostic.code == Code::LimitExceeded || !self.graph.is_full();
+        if is_own_fault && self.reported.insert((diagnostic.code, diagnostic.span)) {
+            self.errors += usize::from(diagnostic.severity() == Severity::Error);
             self.diagnostics.push(diagnostic);
         }
     }
@@ -134,7 +161,7 @@ impl<'g> Context<'g> {
     }
 
     pub(crate) fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == crate::Severity::Error)
+        self.errors > 0
     }
 
     /// Number of findings so far, to ask later whether there are new ones.
@@ -157,7 +184,7 @@ impl<'g> Context<'g> {
         if let Some(value) = expr.as_constant() {
             return Constant::Known(value);
         }
-        if self.steps.get() > limits::EVALUATION_STEPS {
+        if self.steps.get() > limits::EVALUATION_STEPS.most {
             return Constant::Unknown;
         }
         self.steps.set(self.steps.get() + self.graph.count(&[expr]).shared);
@@ -213,6 +240,11 @@ impl<'g> Context<'g> {
         }
     }
 
+    /// Whether another mistake would be told: looking for a near name among many takes long.
+    pub(crate) fn tells_more(&self) -> bool {
+        self.errors <= limits::MISTAKES.most
+    }
+
     /// Begins with a machine, tool, job or function.
     pub(crate) fn begin_item(&mut self) {
         self.unknown.clear();
@@ -221,7 +253,7 @@ impl<'g> Context<'g> {
     /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.
     pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
         // the parser has reported a missing name
-        if name.node.is_empty() || !self.unknown.insert(name.node.clone()) {
+        if name.node.is_empty() || !self.tells_more() || !self.unknown.insert(name.node.clone()) {
             return;
         }
         let message = format!("there is no {kind} `{}`", name.node);
@@ -232,14 +264,23 @@ impl<'g> Context<'g> {
 
     /// Counts one step of evaluation; false (reported once) when a text asks for too many.
     pub(crate) fn step(&mut self, span: Span) -> bool {
-        self.steps.set(self.steps.get() + 1);
-        let within = self.steps.get() <= limits::EVALUATION_STEPS;
-        if !within && !self.exhausted {
-            self.exhausted = true;
-            let message = format!("the text takes more than {} steps to evaluate", limits::EVALUATION_STEPS);
-            self.report(Diagnostic::new(Code::LimitExceeded, span, message));
+        self.spend(1, span)
+    }
+
+    /// The same for many steps.
+    pub(crate) fn spend(&mut self, steps: usize, span: Span) -> bool {
+        self.steps.set(self.steps.get().saturating_add(steps));
+        let exceeded = if self.steps.get() > limits::EVALUATION_STEPS.most {
+            limits::EVALUATION_STEPS
+        } else if self.graph.is_full() {
+            limits::GRAPH_OPERATIONS
+        } else {
+            return true;
+        };
+        if !std::mem::replace(&mut self.exhausted, true) {
+            self.report(exceeded.exceeded(span));
         }
-        within
+        false
     }
 }
 

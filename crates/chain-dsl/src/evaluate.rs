@@ -133,14 +133,14 @@ impl<'g> Context<'g> {
     fn path(&mut self, path: &ast::Path, scope: &Scope<'g>) -> Value<'g> {
         let joined = path.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".");
         if let Some(value) = scope.get(&joined) {
-            return value.clone();
+            // lists of lists of lists: what is copied is paid for
+            return if self.spend(value.size(), path.span) { value.clone() } else { Value::Poison };
         }
         if joined == "pi" {
             return Value::Scalar(self.graph.constant(std::f64::consts::PI), Dimension::NUMBER);
         }
         let name = crate::source::Spanned { node: joined, span: path.span };
-        let known: Vec<String> = scope.keys().cloned().collect();
-        self.unknown(&name, "value", known.iter().map(String::as_str));
+        self.unknown(&name, "value", scope.keys().map(String::as_str));
         Value::Poison
     }
 
@@ -378,10 +378,8 @@ impl<'g> Context<'g> {
         let Some(function) = self.functions.get(&call.function.node).cloned() else {
             return functions::call(self, call, scope);
         };
-        if self.call_depth >= limits::CALL_DEPTH {
-            let message = format!("functions call each other more than {} deep", limits::CALL_DEPTH);
-            let help = "a function cannot call itself, nor others that lead back to it";
-            self.report(Diagnostic::new(Code::LimitExceeded, call.function.span, message).help(help));
+        if self.call_depth >= limits::CALL_DEPTH.most {
+            self.report(limits::CALL_DEPTH.exceeded(call.function.span));
             return Value::Poison;
         }
         // it did not parse: how many arguments it takes is not known

@@ -1,6 +1,6 @@
 //! Parameters of machines and tools get their values.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::codes::Code;
 use crate::context::{Constant, Context, Role, Scope, Value, quoted};
@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::shown;
 use crate::functions::plural;
 use crate::model::Parameter;
-use crate::source::Name;
+use crate::source::{Name, Span};
 use crate::syntax::ast::{Argument, Expression, Param};
 
 /// Values from outside the text, by full name (`ratio`, `m.swivel`): they win over what the text says.
@@ -30,11 +30,20 @@ pub(crate) struct Binder<'a, 'g> {
     pub(crate) overrides: &'a Overrides,
     pub(crate) parameters: Vec<Parameter<'g>>,
     pub(crate) missing: Vec<Name>,
+    /// The settings of an instance by name.
+    settings: HashMap<&'a str, &'a Expression>,
 }
 
 impl<'a, 'g> Binder<'a, 'g> {
     pub(crate) fn new(source: Source<'a, 'g>, overrides: &'a Overrides) -> Binder<'a, 'g> {
-        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new() }
+        let given: &[Argument] = match source {
+            Source::Instance { settings, .. } => settings,
+            Source::Definition | Source::Job => &[],
+        };
+        let named = given.iter().filter_map(|setting| Some((setting.name.as_ref()?.node.as_str(), &setting.value)));
+        // of two with one name the first counts: the second is reported
+        let settings = named.rev().collect();
+        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new(), settings }
     }
 
     /// One parameter.
@@ -50,13 +59,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         };
         // the short name: a default is looked at once by itself and once for each use, and both must say the same
         let what = format!("`{name}`");
-        let setting = match &self.source {
-            Source::Instance { settings, .. } => settings
-                .iter()
-                .find(|setting| setting.name.as_ref().is_some_and(|given| given.node == *name))
-                .map(|setting| &setting.value),
-            Source::Definition | Source::Job => None,
-        };
+        let setting = self.settings.get(name.as_str()).copied();
         let overridden = match self.source {
             Source::Definition => None,
             _ => self.overrides.get(&full_name),
@@ -105,14 +108,7 @@ impl<'a, 'g> Binder<'a, 'g> {
     }
 
     /// Counts are whole, values lie in the declared range.
-    fn check_value(
-        &self,
-        context: &mut Context<'g>,
-        param: &Param,
-        value: f64,
-        scope: &Scope<'g>,
-        span: crate::source::Span,
-    ) {
+    fn check_value(&self, context: &mut Context<'g>, param: &Param, value: f64, scope: &Scope<'g>, span: Span) {
         if is_count(param) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
             let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
@@ -147,8 +143,9 @@ impl<'a, 'g> Binder<'a, 'g> {
                 }
             }
             Source::Instance { name, definition, settings, .. } => {
+                let known: HashSet<&str> = known.iter().map(|param| param.name.node.as_str()).collect();
                 let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
-                let unknown = unknown.filter(|name| known.iter().all(|param| param.name.node != name.node)).count();
+                let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
                 // a misspelt setting is one mistake, not also a missing one
                 if names.len() > unknown {
                     let message = format!("`{}` needs {}", name.node, quoted(&names));
@@ -156,7 +153,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                         format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
                     context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
                 }
-                check_settings(context, settings, known);
+                check_settings(context, settings, &known);
             }
         }
         self.parameters
@@ -167,25 +164,26 @@ fn is_count(param: &Param) -> bool {
     param.dimension.factors.iter().any(|(name, _)| name.node == "count")
 }
 
-fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &[&Param]) {
-    for (index, setting) in settings.iter().enumerate() {
+fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &HashSet<&str>) {
+    let mut seen: HashMap<&str, Span> = HashMap::new();
+    for setting in settings {
         match &setting.name {
             None => {
                 let message = "a setting has a name: `name: value`";
                 context.report(Diagnostic::new(Code::WrongArguments, setting.value.span, message));
             }
-            Some(name) if !known.iter().any(|param| param.name.node == name.node) => {
-                context.unknown(name, "setting", known.iter().map(|param| param.name.node.as_str()));
+            Some(name) if !known.contains(name.node.as_str()) => {
+                context.unknown(name, "setting", known.iter().copied());
             }
-            Some(name) => {
-                let earlier = settings[..index].iter().filter_map(|setting| setting.name.as_ref());
-                if let Some(first) = earlier.into_iter().find(|earlier| earlier.node == name.node) {
+            Some(name) => match seen.get(name.node.as_str()) {
+                Some(&first) => {
                     let message = format!("`{}` is given twice", name.node);
                     let diagnostic =
-                        Diagnostic::new(Code::DuplicateName, name.span, message).note(first.span, "first given here");
+                        Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first given here");
                     context.report(diagnostic);
                 }
-            }
+                None => drop(seen.insert(&name.node, name.span)),
+            },
         }
     }
 }

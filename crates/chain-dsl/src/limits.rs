@@ -1,28 +1,110 @@
-//! The limits of the language, in one place.
+//! The limits of the language, in one place. Each is far above what machines and gears need; all together keep any text, also
+//! a hostile one, within seconds and a few hundred megabytes.
 
-/// Size of one file.
-pub const FILE_BYTES: usize = 1 << 20;
-/// Depth to which files use each other.
-pub const USE_DEPTH: usize = 32;
-/// Depth of brackets, conditionals and signs in an expression.
-pub const NESTING: usize = 64;
-/// Words and signs in one statement.
-pub const STATEMENT_TOKENS: usize = 1 << 16;
-/// Operations that hang on each other in one expression: the height of its tree, which later stages walk recursively.
-pub const OPERATIONS: usize = 256;
-/// Mistakes in the syntax of one file before the rest of it is left unread.
-pub const MISTAKES: usize = 100;
-/// Depth to which functions call each other.
-pub const CALL_DEPTH: usize = 64;
-/// Steps of evaluating expressions in one compilation.
-pub const EVALUATION_STEPS: usize = 2_000_000;
-/// Frames of one machine.
-pub const FRAMES: usize = 10_000;
-/// Size of a table that a curve is read from.
-pub const TABLE_BYTES: usize = 1 << 26;
-/// Rows of such a table.
-pub const TABLE_ROWS: usize = 100_000;
-/// Points of one sample.
-pub const SAMPLE_POINTS: usize = 20_000_000;
-/// Depth to which machines extend each other.
-pub const EXTENDS_DEPTH: usize = 64;
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::source::Span;
+
+/// What a text may ask for at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// The greatest number that is allowed.
+    pub most: usize,
+    /// What is counted, as the tables of the documentation say it.
+    pub what: &'static str,
+    unit: Unit,
+    /// What is told who goes beyond, `{}` being the greatest number.
+    message: &'static str,
+    /// The way out.
+    help: &'static str,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Unit {
+    Pieces,
+    Bytes,
+}
+
+impl Limit {
+    /// The greatest number as it is written: `65,536`, `1 MiB`.
+    pub fn stated(self) -> String {
+        if self.unit == Unit::Bytes {
+            return format!("{} MiB", self.most >> 20);
+        }
+        let digits = self.most.to_string();
+        let groups = digits.as_bytes().rchunks(3).rev().map(|group| String::from_utf8_lossy(group));
+        groups.collect::<Vec<_>>().join(",")
+    }
+
+    /// The one report on whatever goes beyond the limit.
+    pub(crate) fn exceeded(self, place: Span) -> Diagnostic {
+        let message = self.message.replacen("{}", &self.stated(), 1);
+        Diagnostic::new(Code::LimitExceeded, place, message).help(self.help)
+    }
+}
+
+macro_rules! limits {
+    ($($name:ident = $most:expr, $unit:ident, $what:literal, $message:literal, $help:literal;)*) => {
+        $(
+            #[doc = concat!("At most this: ", $what, ".")]
+            pub const $name: Limit =
+                Limit { most: $most, unit: Unit::$unit, what: $what, message: $message, help: $help };
+        )*
+
+        impl Limit {
+            /// All limits, in the order of the documentation's tables.
+            pub const ALL: &[Limit] = &[$($name),*];
+        }
+    };
+}
+
+limits! {
+    FILE_BYTES = 1 << 20, Bytes, "size of a file",
+        "a file of more than {}", "put tables of numbers into a CSV file, and split the rest with `use`";
+    FILES = 256, Pieces, "files that a file uses, with those that they use",
+        "more than {} files are used", "use only what is needed; a file may hold many machines and tools";
+    ALL_BYTES = 4 << 20, Bytes, "size of all these files together",
+        "the files that are used are more than {} together",
+        "use only what is needed, and put tables of numbers into CSV files";
+    USE_DEPTH = 32, Pieces, "files that use each other in a line",
+        "files use each other more than {} deep", "let one file use the others side by side";
+    WORD = 1_000, Pieces, "characters of a name, a number or a text in quotes",
+        "a word of more than {} characters", "shorten it, or look for a missing space or `\"`";
+    STATEMENT_TOKENS = 1 << 16, Pieces, "words and signs of one statement",
+        "a statement of more than {} words and signs", "give the parts names with `let`";
+    NESTING = 64, Pieces, "brackets, conditions and signs inside each other in an expression",
+        "nested deeper than {} levels", "give the parts names with `let`";
+    OPERATIONS = 256, Pieces, "operations that hang on each other in an expression",
+        "more than {} operations hang on each other", "give the parts names with `let`";
+    MISTAKES = 100, Pieces, "mistakes before the rest is left unread",
+        "more than {} mistakes: the rest is not looked at", "begin with the first one; it may cause the others";
+    CALL_DEPTH = 64, Pieces, "functions that call each other in a line",
+        "functions call each other more than {} deep",
+        "a function cannot call itself, nor others that lead back to it";
+    EVALUATION_STEPS = 1_000_000, Pieces, "steps to evaluate a text",
+        "the text takes more than {} steps to evaluate",
+        "look for functions that call others many times over, and give repeated parts names with `let`";
+    GRAPH_OPERATIONS = 4_000_000, Pieces, "operations written while formulas are derived",
+        "deriving the formulas takes more than {} operations",
+        "split the text into files with fewer frames and surfaces";
+    EXTENDS_DEPTH = 64, Pieces, "machines that extend each other in a line",
+        "machines extend each other more than {} deep", "write what they share into one machine that all extend";
+    FRAMES = 10_000, Pieces, "frames of a machine",
+        "a machine of more than {} frames",
+        "put several transforms into one frame: `frame a in b = rotate_x(A) translate_y(Y)`";
+    AXES = 256, Pieces, "axes of a machine, and of all machines of a job",
+        "more than {} axes", "what never moves is a `param` or a `let`, not an axis";
+    JOB_STATEMENTS = 4_000, Pieces, "statements of a job",
+        "a job of more than {} statements",
+        "split it into several jobs, or take what they share into machines, tools and functions";
+    MOTIONS = 32, Pieces, "motions of a job",
+        "a job of more than {} motions", "what depends on another motion is a `let`, not a motion";
+    SURFACE_UNKNOWNS = 8, Pieces, "unknowns of a surface: parameters of its tool and motions",
+        "a surface of more than {} unknowns", "let some axes follow one motion: `drive m.X = 2 mm/rad * roll`";
+    SAMPLE_POINTS = 10_000_000, Pieces, "points of all samples together",
+        "samples of more than {} points", "`by` is followed by a number of points, not by a distance";
+    TABLE_BYTES = 16 << 20, Bytes, "size of all tables that curves are read from, each reading counted",
+        "the tables are more than {} together", "keep only the columns and rows that are needed";
+    TABLE_ROWS = 100_000, Pieces, "rows of a table",
+        "a table of more than {} rows", "a curve needs only as many points as it has bends: thin the table out";
+}

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
-use crate::limits;
+use crate::limits::{self, Limit};
 use crate::source::{FileId, Name, Sources, Span, Spanned};
 use crate::syntax::ast::{File, Item};
 use crate::syntax::parse;
@@ -23,6 +23,8 @@ struct Loader {
     loaded: Loaded,
     root: PathBuf,
     known: HashMap<PathBuf, FileId>,
+    /// Size of what has been read.
+    bytes: usize,
     /// Files on the way from the first one to the one being read.
     open: Vec<FileId>,
 }
@@ -36,6 +38,7 @@ pub(crate) fn load(path: &Path) -> Loaded {
         loaded: Loaded { sources: Sources::default(), files: Vec::new(), diagnostics: Vec::new(), root: None },
         root: project_folder(path),
         known: HashMap::new(),
+        bytes: 0,
         open: Vec::new(),
     };
     match std::fs::canonicalize(path) {
@@ -96,6 +99,7 @@ impl Loader {
             Ok(text) => text,
             Err(error) => return self.unreadable(shown, &error, used_at),
         };
+        self.bytes += text.len();
         let id = self.loaded.sources.add(shown, text);
         self.known.insert(real.to_path_buf(), id);
         let (file, diagnostics) = parse(&self.loaded.sources.file(id).text, id);
@@ -135,12 +139,15 @@ impl Loader {
                 self.loaded.diagnostics.push(diagnostic);
             }
             Some(_) => {}
-            None if self.open.len() >= limits::USE_DEPTH => {
-                let message = format!("files use each other more than {} deep", limits::USE_DEPTH);
-                self.loaded.diagnostics.push(Diagnostic::new(Code::LimitExceeded, used.span, message));
-            }
+            None if self.open.len() >= limits::USE_DEPTH.most => self.exceeded(limits::USE_DEPTH, used),
+            None if self.known.len() >= limits::FILES.most => self.exceeded(limits::FILES, used),
+            None if self.bytes > limits::ALL_BYTES.most => self.exceeded(limits::ALL_BYTES, used),
             None => self.read(&shown, &real, Some(used.span)),
         }
+    }
+
+    fn exceeded(&mut self, limit: Limit, used: &Name) {
+        self.loaded.diagnostics.push(limit.exceeded(used.span));
     }
 
     fn outside(&mut self, used: &Name) {
@@ -177,10 +184,7 @@ impl ReadError {
                 let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
                 Diagnostic::new(Code::UnreadableFile, span, message)
             }
-            ReadError::TooLarge => {
-                let message = format!("`{}` is larger than {} MiB", shown.display(), limits::FILE_BYTES >> 20);
-                Diagnostic::new(Code::LimitExceeded, span, message).help("split it with `use`")
-            }
+            ReadError::TooLarge => limits::FILE_BYTES.exceeded(span),
         }
     }
 }
@@ -194,7 +198,7 @@ fn read_limited(path: &Path) -> Result<String, ReadError> {
     }
     let file = std::fs::File::open(path).map_err(ReadError::Io)?;
     let mut text = String::new();
-    let limit = limits::FILE_BYTES as u64;
+    let limit = limits::FILE_BYTES.most as u64;
     file.take(limit + 1).read_to_string(&mut text).map_err(ReadError::Io)?;
     if text.len() as u64 > limit { Err(ReadError::TooLarge) } else { Ok(text) }
 }

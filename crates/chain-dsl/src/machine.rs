@@ -1,6 +1,7 @@
 //! Machines: what `extends` amounts to, axes and their laws, the tree of frames.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use flank_expr::Expr;
 use flank_expr::geometry::Step;
@@ -16,18 +17,25 @@ use crate::source::{Name, Span};
 use crate::syntax::ast::{self, AxisKind, MachineStatement};
 use crate::transforms;
 
+/// What a statement of a machine costs each time that the machine is built: it is looked for twins, replaces others, gets a
+/// value, finds its place in the tree.
+const STEPS_PER_STATEMENT: usize = 4;
+
+/// Names that a reader takes in at once.
+const READABLE: usize = 12;
+
 /// All machines of a compilation by name.
 pub(crate) type Machines = HashMap<String, ast::Machine>;
 
 /// A machine with everything it inherits, each thing once.
 #[derive(Default)]
 pub(crate) struct Flat<'a> {
-    constants: Vec<&'a MachineStatement>,
-    axes: Vec<&'a ast::Axis>,
-    laws: Vec<(&'a ast::Assignment, LawKind)>,
+    constants: Named<'a, &'a MachineStatement>,
+    axes: Named<'a, &'a ast::Axis>,
+    laws: Named<'a, (&'a ast::Assignment, LawKind)>,
     /// Laws beside the first of their axis: perhaps meant for another one.
     repeated_laws: usize,
-    frames: Vec<&'a ast::Frame>,
+    frames: Named<'a, &'a ast::Frame>,
 }
 
 /// A law that the machine itself states.
@@ -83,17 +91,23 @@ pub(crate) fn flatten<'a, 'g>(
             }
             return None;
         }
-        if line.len() >= limits::EXTENDS_DEPTH {
-            let message = format!("machines extend each other more than {} deep", limits::EXTENDS_DEPTH);
-            context.report(Diagnostic::new(Code::LimitExceeded, parent.span, message));
+        if line.len() >= limits::EXTENDS_DEPTH.most {
+            context.report(limits::EXTENDS_DEPTH.exceeded(parent.span));
             return None;
         }
         line.push(next);
     }
     let mut flat = Flat::default();
     for machine in line.into_iter().rev() {
+        if !context.spend(STEPS_PER_STATEMENT * machine.statements.len(), machine.name.span) {
+            return None;
+        }
         flat.repeated_laws += check_duplicates(context, machine);
         machine.statements.iter().for_each(|statement| flat.add(statement));
+    }
+    if let Some(axis) = flat.axes.list.get(limits::AXES.most) {
+        context.report(limits::AXES.exceeded(axis.name.span));
+        return None;
     }
     Some(flat)
 }
@@ -130,35 +144,46 @@ fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) -> usize 
     laws
 }
 
-/// Puts `new` in the place of what has the same name, else at the end.
-fn replace_or_push<T>(list: &mut Vec<T>, new: T, same: impl Fn(&T) -> bool) {
-    match list.iter().position(same) {
-        Some(index) => list[index] = new,
-        None => list.push(new),
+/// Things by name, in the order in which their names came up first.
+struct Named<'a, T> {
+    list: Vec<T>,
+    places: HashMap<&'a str, usize>,
+}
+
+impl<T> Default for Named<'_, T> {
+    fn default() -> Self {
+        Named { list: Vec::new(), places: HashMap::new() }
+    }
+}
+
+impl<'a, T> Named<'a, T> {
+    /// Puts something in the place of what has the same name, else at the end.
+    fn put(&mut self, name: &'a Name, new: T) {
+        match self.places.entry(&name.node) {
+            Entry::Occupied(known) => self.list[*known.get()] = new,
+            Entry::Vacant(free) => {
+                free.insert(self.list.len());
+                self.list.push(new);
+            }
+        }
     }
 }
 
 impl<'a> Flat<'a> {
     fn add(&mut self, statement: &'a MachineStatement) {
-        let name = &defined(statement).0.node;
+        let name = defined(statement).0;
         match statement {
-            MachineStatement::Param(_) | MachineStatement::Let(_) => {
-                replace_or_push(&mut self.constants, statement, |old| defined(old).0.node == *name);
-            }
-            MachineStatement::Axis(axis) => replace_or_push(&mut self.axes, axis, |old| old.name.node == *name),
-            MachineStatement::Frame(frame) => replace_or_push(&mut self.frames, frame, |old| old.name.node == *name),
-            MachineStatement::Fix(law) => self.add_law(law, LawKind::Fix),
-            MachineStatement::Couple(law) => self.add_law(law, LawKind::Couple),
+            MachineStatement::Param(_) | MachineStatement::Let(_) => self.constants.put(name, statement),
+            MachineStatement::Axis(axis) => self.axes.put(name, axis),
+            MachineStatement::Frame(frame) => self.frames.put(name, frame),
+            MachineStatement::Fix(law) => self.laws.put(name, (law, LawKind::Fix)),
+            MachineStatement::Couple(law) => self.laws.put(name, (law, LawKind::Couple)),
         }
-    }
-
-    fn add_law(&mut self, law: &'a ast::Assignment, kind: LawKind) {
-        let target = &law.target.segments[0].node;
-        replace_or_push(&mut self.laws, (law, kind), |(old, _)| old.target.segments[0].node == *target);
     }
 
     fn params(&self) -> Vec<&'a ast::Param> {
         self.constants
+            .list
             .iter()
             .filter_map(|statement| match statement {
                 MachineStatement::Param(param) => Some(param),
@@ -181,7 +206,7 @@ impl<'a> Flat<'a> {
         };
         let mut binder = Binder::new(source, overrides);
         let mut scope = Scope::new();
-        for statement in &self.constants {
+        for statement in &self.constants.list {
             match statement {
                 MachineStatement::Param(param) => binder.bind(context, param, &mut scope),
                 MachineStatement::Let(binding) => {
@@ -198,13 +223,13 @@ impl<'a> Flat<'a> {
         }
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         let frames = self.build_frames(context, machine, &scope);
-        let declared_frames = self.frames.iter().map(|frame| frame.name.node.clone()).collect();
+        let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
         Built { parameters, scope, axes, frames, declared_frames, lost_laws }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
         let mut axes = Vec::new();
-        for axis in &self.axes {
+        for axis in &self.axes.list {
             let dimension = match axis.kind {
                 AxisKind::Linear => Dimension::LENGTH,
                 AxisKind::Rotary => Dimension::ANGLE,
@@ -220,7 +245,7 @@ impl<'a> Flat<'a> {
     /// Gives the axes their laws; the number of laws for axes that are not there (and reported).
     fn build_laws<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, axes: &mut [BuiltAxis<'g>]) -> usize {
         let mut lost = 0;
-        for (law, kind) in &self.laws {
+        for (law, kind) in &self.laws.list {
             let target = &law.target.segments[0];
             let Some(index) = axes.iter().position(|axis| axis.name.node == target.node) else {
                 context.unknown(target, "axis", axes.iter().map(|axis| axis.name.node.as_str()));
@@ -245,12 +270,11 @@ impl<'a> Flat<'a> {
 
     /// The frames, parents before children.
     fn build_frames<'g>(&self, context: &mut Context<'g>, machine: &Name, scope: &Scope<'g>) -> Vec<Frame<'g>> {
-        if self.frames.len() > limits::FRAMES {
-            let message = format!("`{}` has more than {} frames", machine.node, limits::FRAMES);
-            context.report(Diagnostic::new(Code::LimitExceeded, machine.span, message));
+        if self.frames.list.len() > limits::FRAMES.most {
+            context.report(limits::FRAMES.exceeded(machine.span));
             return Vec::new();
         }
-        let roots: Vec<&&ast::Frame> = self.frames.iter().filter(|frame| frame.parent.is_none()).collect();
+        let roots: Vec<&&ast::Frame> = self.frames.list.iter().filter(|frame| frame.parent.is_none()).collect();
         if let Some(second) = roots.get(1) {
             let message = format!("`{}` hangs on nothing, and so does `{}`", second.name.node, roots[0].name.node);
             let diagnostic = Diagnostic::new(Code::FrameTree, second.name.span, message)
@@ -259,8 +283,8 @@ impl<'a> Flat<'a> {
             context.report(diagnostic);
         }
         let index: HashMap<&str, usize> =
-            self.frames.iter().enumerate().map(|(k, frame)| (frame.name.node.as_str(), k)).collect();
-        for frame in &self.frames {
+            self.frames.list.iter().enumerate().map(|(k, frame)| (frame.name.node.as_str(), k)).collect();
+        for frame in &self.frames.list {
             if let Some(parent) = &frame.parent
                 && !index.contains_key(parent.node.as_str())
             {
@@ -271,7 +295,7 @@ impl<'a> Flat<'a> {
         self.order_frames(&index)
             .into_iter()
             .map(|(k, parent)| {
-                let frame = self.frames[k];
+                let frame = self.frames.list[k];
                 let steps = transforms::steps(context, &frame.transforms, scope);
                 Frame { name: frame.name.node.clone(), parent, steps }
             })
@@ -280,24 +304,29 @@ impl<'a> Flat<'a> {
 
     fn report_circles(&self, context: &mut Context<'_>, index: &HashMap<&str, usize>) {
         // 0 not seen, 1 on the way up from the frame being looked at, 2 done
-        let mut state = vec![0u8; self.frames.len()];
-        for start in 0..self.frames.len() {
+        let mut state = vec![0u8; self.frames.list.len()];
+        for start in 0..self.frames.list.len() {
             let mut way = Vec::new();
             let mut at = Some(start);
             while let Some(k) = at.filter(|k| state[*k] == 0) {
                 state[k] = 1;
                 way.push(k);
-                at = self.frames[k].parent.as_ref().and_then(|parent| index.get(parent.node.as_str()).copied());
+                at = self.frames.list[k].parent.as_ref().and_then(|parent| index.get(parent.node.as_str()).copied());
             }
             if let Some(k) = at.filter(|k| state[*k] == 1) {
                 let names: Vec<&str> = way
                     .iter()
                     .skip_while(|other| **other != k)
-                    .map(|other| self.frames[*other].name.node.as_str())
+                    .map(|other| self.frames.list[*other].name.node.as_str())
                     .collect();
-                let message = format!("frames hang on each other in a circle: {} → {}", names.join(" → "), names[0]);
-                let place = self.frames[k].parent.as_ref().map_or(self.frames[k].name.span, |parent| parent.span);
-                let root = self.frames.iter().find(|frame| frame.parent.is_none());
+                let shown = match names.get(..READABLE) {
+                    Some(first) => format!("{} → …", first.join(" → ")),
+                    None => names.join(" → "),
+                };
+                let message = format!("frames hang on each other in a circle: {shown} → {}", names[0]);
+                let place =
+                    self.frames.list[k].parent.as_ref().map_or(self.frames.list[k].name.span, |parent| parent.span);
+                let root = self.frames.list.iter().find(|frame| frame.parent.is_none());
                 let help = match root.map(|root| &root.name.node) {
                     Some(root) => {
                         format!("hang one of them on a frame outside the circle: `frame {} in {root} = …`", names[0])
@@ -312,9 +341,9 @@ impl<'a> Flat<'a> {
 
     /// Indices of the frames, parents first, with the new index of each one's parent; circles are left out.
     fn order_frames(&self, index: &HashMap<&str, usize>) -> Vec<(usize, Option<usize>)> {
-        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.frames.len()];
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.frames.list.len()];
         let mut order: Vec<(usize, Option<usize>)> = Vec::new();
-        for (k, frame) in self.frames.iter().enumerate() {
+        for (k, frame) in self.frames.list.iter().enumerate() {
             match frame.parent.as_ref().map(|parent| index.get(parent.node.as_str())) {
                 Some(Some(&parent)) => children[parent].push(k),
                 Some(None) => {}

@@ -55,7 +55,7 @@ fn snippet<'a>(
 ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
     let source = sources.file(file);
     let lines = lines(&source.text, marks);
-    let first_line = source.text[..lines.start].matches('\n').count() + 1;
+    let (first_line, _) = source.line(lines.start);
     // carriage returns would be shown as signs of their own
     let text = &source.text[lines.clone()];
     let place = |at: u32| {

@@ -89,6 +89,9 @@ fn coordinate<'g>(
     scope: &Scope<'g>,
 ) -> Option<Coordinate<'g>> {
     if let Some(definition) = &entry.definition {
+        if !context.spend(scope.len(), definition.span) {
+            return None;
+        }
         let mut scope = scope.clone();
         for known in surface.coordinates() {
             scope.insert(known.name, Value::Scalar(known.value, known.dimension));
@@ -133,9 +136,8 @@ fn values<'g>(
                 context.report(Diagnostic::new(Code::SampleShape, by.span, message));
                 return None;
             }
-            if count > limits::SAMPLE_POINTS as f64 {
-                let message = format!("a sample has at most {} points", limits::SAMPLE_POINTS);
-                context.report(Diagnostic::new(Code::LimitExceeded, by.span, message));
+            if count > limits::SAMPLE_POINTS.most as f64 {
+                context.report(limits::SAMPLE_POINTS.exceeded(by.span));
                 return None;
             }
             Some(spaced(ends?, count as usize))
@@ -158,11 +160,11 @@ fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
 }
 
 fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {
-    if rows.saturating_mul(columns) <= limits::SAMPLE_POINTS {
+    context.sample_points = context.sample_points.saturating_add(rows.saturating_mul(columns));
+    if context.sample_points <= limits::SAMPLE_POINTS.most {
         return Some(());
     }
-    let message = format!("a sample has at most {} points, this one {rows} × {columns}", limits::SAMPLE_POINTS);
-    context.report(Diagnostic::new(Code::LimitExceeded, written.surface.span, message));
+    context.report(limits::SAMPLE_POINTS.exceeded(written.surface.span));
     None
 }
 

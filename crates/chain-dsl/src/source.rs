@@ -43,6 +43,16 @@ pub struct SourceFile {
     pub path: PathBuf,
     /// The whole text.
     pub text: String,
+    /// Where its lines begin.
+    lines: Vec<usize>,
+}
+
+impl SourceFile {
+    /// The line that a byte lies in, from 1, and where that line begins.
+    pub(crate) fn line(&self, at: usize) -> (usize, usize) {
+        let number = self.lines.partition_point(|&start| start <= at);
+        (number, self.lines[number - 1])
+    }
 }
 
 /// All texts of one compilation.
@@ -55,7 +65,9 @@ impl Sources {
     /// Adds a text.
     pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<String>) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).expect("fewer than 2^32 files"));
-        self.files.push(SourceFile { path: path.into(), text: text.into() });
+        let text: String = text.into();
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        self.files.push(SourceFile { path: path.into(), text, lines });
         id
     }
 
@@ -77,9 +89,8 @@ impl Sources {
     /// Path, line and column (both from 1, columns in characters) of the start of a range.
     pub fn place(&self, span: Span) -> (&Path, usize, usize) {
         let file = self.file(span.file);
-        let before = &file.text[..span.start as usize];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        let line = before.matches('\n').count() + 1;
-        (&file.path, line, before[line_start..].chars().count() + 1)
+        let at = span.start as usize;
+        let (line, start) = file.line(at);
+        (&file.path, line, file.text[start..at].chars().count() + 1)
     }
 }

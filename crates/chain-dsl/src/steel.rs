@@ -60,8 +60,8 @@ pub(crate) fn is_flipped<'g>(
 /// Evaluates normal and direction at points all over the surface.
 fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[Bounded<'g>]) -> Option<Seen> {
     let mut seen = Seen::default();
+    let mut values = context.values().to_vec();
     for mut k in 0..LOOKS.pow(unknowns.len() as u32) {
-        let mut values = context.values().to_vec();
         for unknown in unknowns {
             let share = ((k % LOOKS) as f64 + 0.5) / LOOKS as f64;
             k /= LOOKS;

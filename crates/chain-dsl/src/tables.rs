@@ -10,7 +10,7 @@ use crate::codes::Code;
 use crate::context::{Context, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::{self, Dimension};
-use crate::limits;
+use crate::limits::{self, Limit};
 use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{Argument, Call, ExpressionKind};
 
@@ -23,6 +23,8 @@ pub(crate) struct Tables {
     folders: HashMap<FileId, PathBuf>,
     /// Curves by path, columns and dimensions, so that one table is one curve however often it is named.
     known: HashMap<(PathBuf, [String; 2], [Dimension; 2]), CurveId>,
+    /// Size of all tables that have been read.
+    bytes: u64,
 }
 
 impl Tables {
@@ -30,7 +32,7 @@ impl Tables {
         let folder =
             |path: &Path| std::fs::canonicalize(path).ok().and_then(|real| real.parent().map(Path::to_path_buf));
         let folders = sources.files().filter_map(|(id, file)| Some((id, folder(&file.path)?))).collect();
-        Tables { root, folders, known: HashMap::new() }
+        Tables { root, folders, known: HashMap::new(), bytes: 0 }
     }
 
     /// The real path of a table named in a file, or why it may not be read.
@@ -77,10 +79,13 @@ fn read<'g>(context: &mut Context<'g>, call: &Call) -> Option<Value<'g>> {
         Some(id) => id,
         None => {
             let columns = [(x_name.node.as_str(), x_dimension), (y_name.node.as_str(), y_dimension)];
-            let curve = match table(&real, columns) {
+            let curve = match table(&real, columns, &mut context.tables.bytes) {
                 Ok(curve) => curve,
-                Err((code, reason)) => {
-                    context.report(Diagnostic::new(code, path.span, format!("`{named}`: {reason}")));
+                Err(reason) => {
+                    context.report(match reason {
+                        Reason::Exceeded(limit) => limit.exceeded(path.span),
+                        Reason::Wrong(code, reason) => Diagnostic::new(code, path.span, format!("`{named}`: {reason}")),
+                    });
                     return None;
                 }
             };
@@ -116,20 +121,28 @@ fn column<'a>(context: &mut Context<'_>, argument: &'a Argument) -> Option<(&'a 
     Some((name, dimension))
 }
 
-type Reason = (Code, String);
+/// Why a table is not read.
+enum Reason {
+    Exceeded(Limit),
+    Wrong(Code, String),
+}
 
 /// The curve through two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
-fn table(path: &Path, columns: [(&str, Dimension); 2]) -> Result<Curve, Reason> {
-    let unreadable = |error: &std::io::Error| (Code::UnreadableFile, crate::load::reason(error));
-    if !std::fs::metadata(path).map_err(|error| unreadable(&error))?.is_file() {
-        return Err((Code::UnreadableFile, "it is not a plain file".to_string()));
+/// `read` counts the bytes of all tables.
+fn table(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result<Curve, Reason> {
+    let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
+    let kind = std::fs::metadata(path).map_err(|error| unreadable(&error))?;
+    if !kind.is_file() {
+        return Err(Reason::Wrong(Code::UnreadableFile, "it is not a plain file".to_string()));
+    }
+    *read += kind.len();
+    if *read > limits::TABLE_BYTES.most as u64 {
+        return Err(Reason::Exceeded(limits::TABLE_BYTES));
     }
     let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(file.take(limits::TABLE_BYTES as u64));
-    let wrong = |reason: String| (Code::WrongTable, reason);
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(file.take(kind.len()));
+    let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
     let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
     let mut places = [(0, 1.0); 2];
     for (place, (name, dimension)) in places.iter_mut().zip(columns) {
@@ -145,8 +158,8 @@ fn table(path: &Path, columns: [(&str, Dimension); 2]) -> Result<Curve, Reason> 
             Ok::<f64, Reason>(value * size)
         };
         points.push((number(places[0])?, number(places[1])?));
-        if points.len() > limits::TABLE_ROWS {
-            return Err((Code::LimitExceeded, format!("a table has at most {} rows", limits::TABLE_ROWS)));
+        if points.len() > limits::TABLE_ROWS.most {
+            return Err(Reason::Exceeded(limits::TABLE_ROWS));
         }
     }
     Curve::through(columns[1].0, &points).map_err(|error| wrong(error.to_string()))

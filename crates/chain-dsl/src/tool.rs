@@ -83,6 +83,10 @@ fn build_surface<'g>(
     written: &ast::ToolSurface,
     scope: &Scope<'g>,
 ) -> Option<(ToolShape<'g>, Vec<Bounded<'g>>)> {
+    // every surface has names of its own beside those of the tool
+    if !context.spend(scope.len(), written.name.span) {
+        return None;
+    }
     let mut scope = scope.clone();
     let mut unknowns = Vec::new();
     for parameter in &written.parameters {

@@ -48,7 +48,7 @@ fn stream(check: bool) -> Ending {
     let mut sources = Sources::default();
     let mut text = String::new();
     // one byte more than a file may have, so that a longer text is refused and not cut
-    if let Err(error) = std::io::stdin().take(FILE_BYTES as u64 + 1).read_to_string(&mut text) {
+    if let Err(error) = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text) {
         anstream::eprintln!("error: cannot read the standard input: {error}");
         return Ending::Wrong;
     }

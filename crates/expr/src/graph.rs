@@ -73,7 +73,16 @@ struct Store {
     index: NodeMap<Node, NodeId>,
     variables: Vec<String>,
     curves: Vec<Arc<Curve>>,
+    /// Operations asked for so far, new or not.
+    operations: usize,
+    room: Option<usize>,
     derivatives: NodeMap<(VariableId, NodeId), NodeId>,
+}
+
+impl Store {
+    fn is_full(&self) -> bool {
+        self.room.is_some_and(|room| self.operations > room)
+    }
 }
 
 /// The arena of all symbolic scalars of one model.
@@ -108,6 +117,19 @@ impl Graph {
     /// Number of nodes made so far.
     pub fn len(&self) -> usize {
         self.store.borrow().nodes.len()
+    }
+
+    /// Sets how many operations it may be asked for from its beginning on, known ones or new: a bound on memory and time. At
+    /// first there is none.
+    ///
+    /// A full graph still makes variables, and NaN of everything else: whoever sets a bound asks [`Graph::is_full`].
+    pub fn set_room(&self, room: Option<usize>) {
+        self.store.borrow_mut().room = room;
+    }
+
+    /// True if the room is used up: expressions made since then mean nothing.
+    pub fn is_full(&self) -> bool {
+        self.store.borrow().is_full()
     }
 
     /// True before the first node.
@@ -167,6 +189,12 @@ impl Graph {
     pub(crate) fn intern(&self, node: Node) -> Expr<'_> {
         let mut guard = self.store.borrow_mut();
         let store = &mut *guard;
+        store.operations += 1;
+        let node = match node {
+            Node::Variable(_) => node,
+            _ if store.is_full() => Node::constant(f64::NAN),
+            _ => node,
+        };
         let next = NodeId(u32::try_from(store.nodes.len()).expect("fewer than 2³² nodes"));
         let id = *store.index.entry(node).or_insert(next);
         if id == next {

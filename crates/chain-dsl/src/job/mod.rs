@@ -12,6 +12,7 @@ use crate::codes::Code;
 use crate::context::{Context, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::instance::{Binder, Overrides, Source};
+use crate::limits;
 use crate::machine::{self, Built, Machines};
 use crate::model::{Bounded, GeneratedSurface, Job};
 use crate::source::{Name, Span};
@@ -142,7 +143,11 @@ impl<'g> Builder<'_, 'g> {
                     None => Value::Poison,
                 };
                 self.scope.insert(motion.name.node.clone(), value);
-                self.motions.extend(bounded);
+                if self.motions.len() == limits::MOTIONS.most {
+                    context.report(limits::MOTIONS.exceeded(motion.name.span));
+                } else {
+                    self.motions.extend(bounded);
+                }
             }
             JobStatement::Machine(instance) => self.machine(context, instance),
             JobStatement::Tool(instance) => self.tool(context, instance),
@@ -163,6 +168,10 @@ impl<'g> Builder<'_, 'g> {
         };
         let source = self.source(instance);
         let built = flat.build(context, &definition.name, source, self.definitions.overrides);
+        let axes = self.machines.iter().map(|(_, _, built)| built.axes.len()).sum::<usize>() + built.axes.len();
+        if axes > limits::AXES.most {
+            return context.report(limits::AXES.exceeded(instance.name.span));
+        }
         self.expose(&instance.name, &built.scope);
         self.lost_laws.insert(self.machines.len(), built.lost_laws);
         self.machines.push((instance.name.clone(), definition.name.node.clone(), built));

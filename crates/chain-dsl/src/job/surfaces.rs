@@ -6,6 +6,7 @@ use flank_expr::geometry::{Chain, Step, Surface};
 use crate::codes::Code;
 use crate::context::{Context, Value, quoted};
 use crate::diagnostic::Diagnostic;
+use crate::limits;
 use crate::machine;
 use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
 use crate::sample;
@@ -30,6 +31,9 @@ const PROCESSES: [(&str, Process); 3] =
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn surface(&mut self, context: &mut Context<'g>, written: &ast::GeneratedSurface) {
+        if !context.step(written.name.span) {
+            return;
+        }
         let frame = self.frame(context, &written.frame);
         let call = match &written.value.kind {
             ExpressionKind::Call(call) => call,
@@ -44,14 +48,17 @@ impl<'g> Builder<'_, 'g> {
         };
         let Some((tool, motions)) = self.process_arguments(context, call) else { return };
         let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else { return };
+        let unknowns: Vec<Bounded<'g>> =
+            available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
+        if unknowns.len() > limits::SURFACE_UNKNOWNS.most {
+            return context.report(limits::SURFACE_UNKNOWNS.exceeded(written.value.span));
+        }
         let Some(path) = self.path_between(context, frame, available.frame, written.value.span) else { return };
         let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
         if !self.check_motions(context, &driven, &motions, written, &available) {
             return;
         }
-        let unknowns: Vec<Bounded<'g>> =
-            available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
         let Some(surface) = made(context, *process, call, &available, &driven, &over, &unknowns) else { return };
         let generation = Generation {

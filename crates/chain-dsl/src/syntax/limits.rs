@@ -2,20 +2,15 @@
 
 use std::ops::Range;
 
-use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
-use crate::limits::{FILE_BYTES, NESTING, STATEMENT_TOKENS};
+use crate::limits::{FILE_BYTES, NESTING, STATEMENT_TOKENS, WORD};
 use crate::source::{FileId, Span};
 
 use super::scan::{Kind, Scan};
 
 /// The report on a file that is too long.
 pub(super) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
-    (text.len() > FILE_BYTES).then(|| {
-        let start = Span { file, start: 0, end: 0 };
-        Diagnostic::new(Code::LimitExceeded, start, "the file is longer than 1 MiB")
-            .help("put tables of numbers into a CSV file, and split the rest with `use`")
-    })
+    (text.len() > FILE_BYTES.most).then(|| FILE_BYTES.exceeded(Span { file, start: 0, end: 0 }))
 }
 
 /// The report on the first token of a range that goes too deep or too far.
@@ -29,16 +24,16 @@ pub(super) fn first_excess(scan: &Scan, range: Range<usize>) -> Option<Diagnosti
             nesting = Nesting::default();
         }
         nesting.meet(scan, index);
-        let message = if nesting.depth > NESTING {
-            format!("nested deeper than {NESTING} levels")
-        } else if length > STATEMENT_TOKENS {
-            format!("a statement of more than {STATEMENT_TOKENS} words and signs")
+        let limit = if nesting.depth > NESTING.most {
+            NESTING
+        } else if length > STATEMENT_TOKENS.most {
+            STATEMENT_TOKENS
+        } else if scan.is_longer(index, WORD.most) {
+            WORD
         } else {
             continue;
         };
-        let place = scan.place(index);
-        let help = "give the parts names with `let`";
-        return Some(Diagnostic::new(Code::LimitExceeded, place, message).help(help));
+        return Some(limit.exceeded(scan.place(index)));
     }
     None
 }

@@ -125,6 +125,13 @@ impl<'t> Scan<'t> {
         self.tokens.get(index).map_or("", |token| &self.text[token.start as usize..token.end as usize])
     }
 
+    /// Whether a name, a number or a text has more than so many characters.
+    pub(super) fn is_longer(&self, index: usize, characters: usize) -> bool {
+        let is_word = matches!(self.kind(index), Some(Kind::Word | Kind::Number | Kind::Text));
+        let word = self.say(index);
+        is_word && word.len() > characters && word.chars().count() > characters
+    }
+
     /// A token as messages quote it.
     pub(super) fn quote(&self, index: usize) -> String {
         match (self.kind(index), self.say(index).chars().next()) {

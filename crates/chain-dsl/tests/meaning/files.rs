@@ -99,6 +99,31 @@ fn unreadable_files_are_told() {
     assert_eq!(codes(&folder.join("large.chain"), &[]), [Code::LimitExceeded]);
 }
 
+#[test]
+fn files_that_are_used_are_counted() {
+    let limit = |files: Vec<(String, String)>| {
+        let files: Vec<(&str, &str)> = files.iter().map(|(path, text)| (path.as_str(), text.as_str())).collect();
+        let folder = project("many", &files);
+        let graph = Graph::new();
+        let told = compile_file(&graph, &folder.join("f0.chain"), &[]).diagnostics;
+        assert!(told.iter().all(|finding| finding.code == Code::LimitExceeded), "{told:?}");
+        told.first().map_or(String::new(), |finding| finding.message.clone())
+    };
+    let file = |k: usize, text: String| (format!("f{k}.chain"), text);
+    let all = |count: usize| (1..count).map(|k| format!("use \"f{k}.chain\"\n")).collect::<String>();
+    let wide = |count: usize, text: &str| {
+        (0..count).map(|k| file(k, if k == 0 { all(count) } else { text.to_string() })).collect::<Vec<_>>()
+    };
+    assert_eq!(limit(wide(256, "")), "");
+    assert_eq!(limit(wide(257, "")), "more than 256 files are used");
+    let large = "// large\n".repeat(100_000);
+    assert_eq!(limit(wide(6, &large)), "");
+    assert_eq!(limit(wide(8, &large)), "the files that are used are more than 4 MiB together");
+    let line = |count: usize| (0..count).map(|k| file(k, format!("use \"f{}.chain\"", (k + 1) % count))).collect();
+    let deep: Vec<(String, String)> = line(40);
+    assert_eq!(limit(deep), "files use each other more than 32 deep");
+}
+
 /// A device without an end: neither waited for nor read.
 #[cfg(unix)]
 #[test]
@@ -190,6 +215,10 @@ fn wrong_tables_are_told() {
         [Code::UnknownName]
     );
     assert_eq!(check("table-argument", &TOOL.replace("relief(s)", "relief(2 deg)"), TABLE), [Code::WrongDimension]);
+    let rows = |count: usize| (0..count).fold(String::from("s, depth, turn\n"), |text, k| text + &format!("{k},1,1\n"));
+    assert_eq!(check("table-rows", TOOL, &rows(100_001)), [Code::LimitExceeded; 2]);
+    let remark = format!("# {}\n", "-".repeat(10 << 20));
+    assert_eq!(check("table-bytes", TOOL, &(remark + TABLE)), [Code::LimitExceeded]);
     assert_eq!(check("table-shape", &TOOL.replacen(", depth: length", "", 1), TABLE), [Code::WrongArguments]);
 }
 

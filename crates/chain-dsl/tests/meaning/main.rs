@@ -4,6 +4,7 @@ mod coverage;
 mod files;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
+mod hostile;
 mod models;
 
 use flank_chain_dsl::{Diagnostic, Severity, compile_text};

@@ -48,7 +48,7 @@ fn length_of_a_statement() {
     for unit in ["a.", ".a", "a + ", "1, ", "\"a\" ", "\0"] {
         let (code, message) = only(&long(unit));
         assert_eq!(code, Code::LimitExceeded, "{unit:?}");
-        assert_eq!(message, "a statement of more than 65536 words and signs");
+        assert_eq!(message, "a statement of more than 65,536 words and signs");
     }
 }
 
@@ -76,12 +76,22 @@ fn junk() {
     for unit in ["(", "}", "{", "-", "if ", "a.", "\0", "word\n", "α", "\"", "1.", "\u{feff}"] {
         assert_eq!(only(&unit.repeat((1 << 20) / unit.len())).0, Code::Syntax, "{unit:?}");
     }
-    assert_eq!(only(&long("a")[..500_000]).0, Code::Syntax);
+}
+
+#[test]
+fn length_of_a_word() {
+    for (before, unit, after) in [("let ", "a", " = 1"), ("let a = ", "1", ""), ("let a = f(\"", "α", "\")")] {
+        let word = |length: usize| format!("job j {{ {before}{}{after} }}", unit.repeat(length));
+        tree(&word(998));
+        for length in [1001, 300_000] {
+            assert_eq!(only(&word(length)), (Code::LimitExceeded, "a word of more than 1,000 characters".to_owned()));
+        }
+    }
 }
 
 #[test]
 fn length_of_a_file() {
-    assert_eq!(only(&" ".repeat((1 << 20) + 1)), (Code::LimitExceeded, "the file is longer than 1 MiB".to_owned()));
+    assert_eq!(only(&" ".repeat((1 << 20) + 1)), (Code::LimitExceeded, "a file of more than 1 MiB".to_owned()));
     tree(&" ".repeat(1 << 20));
 }
 
@@ -90,6 +100,6 @@ fn number_of_mistakes() {
     for line in ["let\n", "a = 1\n", "let a = 1;\n", "job b {\n"] {
         let (_, diagnostics) = read(&format!("job j {{\n{}", line.repeat(50_000)));
         assert_eq!(diagnostics.len(), 101, "{line}");
-        assert_eq!(diagnostics[100].message, "more than 100 mistakes: the rest of the file is not read");
+        assert_eq!(diagnostics[100].message, "more than 100 mistakes: the rest is not looked at");
     }
 }

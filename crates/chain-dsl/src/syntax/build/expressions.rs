@@ -93,7 +93,7 @@ impl Build<'_> {
 
     fn operand(&mut self, row: &mut Row<'_>) -> Tree {
         let next = row.next().unwrap_or_else(|| unreachable!("the grammar has an operand here"));
-        if self.level > OPERATIONS {
+        if self.level > OPERATIONS.most {
             let span = self.span(&next);
             row.by_ref().for_each(drop);
             return self.cut(span);
@@ -200,15 +200,13 @@ impl Build<'_> {
 
     /// Puts a node on top of trees of this height.
     fn grow(&mut self, kind: ExpressionKind, span: Span, height: usize) -> Tree {
-        if height >= OPERATIONS { self.cut(span) } else { (Expression { kind, span }, height + 1) }
+        if height >= OPERATIONS.most { self.cut(span) } else { (Expression { kind, span }, height + 1) }
     }
 
     /// What stands for a tree that is too high.
     fn cut(&mut self, span: Span) -> Tree {
         if !std::mem::replace(&mut self.too_high, true) {
-            let message = format!("more than {} operations hang on each other", OPERATIONS);
-            let diagnostic = Diagnostic::new(Code::LimitExceeded, span, message);
-            self.diagnostics.push(diagnostic.help("give the parts names with `let`"));
+            self.diagnostics.push(OPERATIONS.exceeded(span));
         }
         (Expression { kind: ExpressionKind::Error, span }, 0)
     }

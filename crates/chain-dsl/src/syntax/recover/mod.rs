@@ -83,14 +83,12 @@ impl<'s> Recover<'s> {
 
     /// Whether there is more to read, and not too many mistakes yet.
     fn goes_on(&mut self) -> bool {
-        if self.build.diagnostics.len() > MISTAKES {
+        if self.build.diagnostics.len() > MISTAKES.most {
             return false;
         }
-        let full = self.build.diagnostics.len() == MISTAKES;
+        let full = self.build.diagnostics.len() == MISTAKES.most;
         if full && self.at < self.scan.tokens.len() {
-            let message = format!("more than {} mistakes: the rest of the file is not read", MISTAKES);
-            let diagnostic = Diagnostic::new(Code::LimitExceeded, self.scan.place(self.at), message);
-            self.build.diagnostics.push(diagnostic);
+            self.build.diagnostics.push(MISTAKES.exceeded(self.scan.place(self.at)));
         }
         !full && self.at < self.scan.tokens.len()
     }

@@ -1,0 +1,328 @@
+//! Hostile and enormous texts: compiled or refused soon and in bounded memory.
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use flank_chain_dsl::limits::{self, Limit};
+use flank_chain_dsl::{Code, Diagnostic, compile_text, render};
+use flank_expr::Graph;
+
+use crate::LIBRARY;
+
+/// For one text in a debug build on a loaded machine; none needs a fifth of it on a free one.
+const SOON: Duration = Duration::from_secs(20);
+
+/// `count` lines, each made from its number.
+fn lines(count: usize, line: impl Fn(usize) -> String) -> String {
+    (0..count).fold(String::new(), |text, k| text + &line(k) + "\n")
+}
+
+/// A job with a tool on the machine `m`, and what else it says.
+fn job(machine: &str, statements: &str) -> String {
+    format!(
+        "job j {{
+            machine m = {machine}
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 1 mm/rad * turn
+            surface s in m.work = envelope(b.face, over: turn)
+            {statements}
+        }}"
+    )
+}
+
+/// A job on the small machine of the library.
+fn small_job(statements: &str) -> String {
+    job("lathe(height: 3 mm)", statements)
+}
+
+/// The small machine with a chain of frames between bed and work.
+fn long_machine(frames: usize) -> String {
+    let chain = lines(frames, |k| {
+        let parent = if k == 0 { "bed".to_string() } else { format!("f{}", k - 1) };
+        format!("frame f{k} in {parent} = translate(1 mm, {k} um, 2 mm) rotate_x(C / {frames})")
+    });
+    let last = frames - 1;
+    format!("machine long extends lathe {{\n{chain}frame work in f{last} = rotate_z(C)\n}}\n")
+}
+
+/// Each surface the envelope of the one before.
+fn envelopes(levels: usize) -> String {
+    let axes = lines(levels, |k| {
+        format!(
+            "axis A{k} : rotary\nframe f{} in f{k} = rotate_x(A{k}) translate(1 mm, 2 mm, 3 mm) rotate_z(30 deg)",
+            k + 1
+        )
+    });
+    let motions = lines(levels, |k| format!("motion t{k} : angle in 0 deg .. 1 deg\ndrive m.A{k} = t{k}"));
+    let surfaces = lines(levels, |k| {
+        let tool = if k == 0 { "b.face".to_string() } else { format!("s{}", k - 1) };
+        format!("surface s{k} in m.f{} = envelope({tool}, over: t{k})", k + 1)
+    });
+    format!(
+        "machine towers {{ frame f0\n{axes} }}\njob j {{ machine m = towers\ntool b = ball\nmount b on m.f0\n{motions}{surfaces} }}"
+    )
+}
+
+/// The compilation's findings, and how long it took, also to show what was found.
+fn findings(name: &str, text: &str) -> Vec<Diagnostic> {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let compilation = compile_text(&graph, "text", text, &[]);
+    let compiled = start.elapsed();
+    let shown = render(&compilation.diagnostics, &compilation.sources, false);
+    let told = start.elapsed();
+    println!(
+        "{name}: {compiled:?}, told by {told:?}, {} bytes, {} nodes, {} findings of {} bytes, {} MiB so far",
+        text.len(),
+        graph.len(),
+        compilation.diagnostics.len(),
+        shown.len(),
+        peak_memory() >> 20,
+    );
+    assert!(told < SOON, "{name} took {told:?}");
+    compilation.diagnostics
+}
+
+/// Bytes that the process has held at most; zero where the system does not say.
+fn peak_memory() -> usize {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<usize>().ok()).unwrap_or(0) << 10
+}
+
+/// Texts that go beyond a limit.
+fn refused() -> Vec<(&'static str, String, Limit)> {
+    let doubling = |body: &str| {
+        lines(40, |k| {
+            let below = k.saturating_sub(1);
+            format!(
+                "fn f{k}(x: number) = {}",
+                if k == 0 { "x".to_string() } else { body.replace("f()", &format!("f{below}")) }
+            )
+        })
+    };
+    vec![
+        ("functions that call others twice", doubling("f()(x) + f()(x)"), limits::EVALUATION_STEPS),
+        (
+            "functions that call others twice with different values",
+            doubling("f()(x * 1.5) + sin(f()(x + 0.5))"),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "lists of lists of lists",
+            small_job(&format!("let a0 = [1, 2]\n{}", lines(40, |k| format!("let a{} = [a{k}, a{k}]", k + 1)))),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "a list negated inside lists",
+            small_job(&format!("let a0 = [1, 2]\n{}", lines(40, |k| format!("let a{} = [-a{k}, 2 * a{k}]", k + 1)))),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "many surfaces over a long chain",
+            long_machine(3_000)
+                + &job(
+                    "long(height: 3 mm)",
+                    &lines(100, |k| format!("surface s{k} in m.f{} = envelope(b.face, over: turn)", 2_999 - k)),
+                ),
+            limits::GRAPH_OPERATIONS,
+        ),
+        ("10²⁰ points", small_job("sample s { u: 0 deg .. 1 deg by 1e20, turn: 1 deg }"), limits::SAMPLE_POINTS),
+        (
+            "10²⁰ points of an outline",
+            small_job(
+                "sample s { toe_root: [0 mm, 1 mm] heel_root: [5 mm, 1 mm] toe_tip: [0 mm, 3 mm] heel_tip: [5 mm, 3 mm] profilewise: 0.1 .. 0.9 by 1e10 lengthwise: 0.1 .. 0.9 by 1e10 }",
+            ),
+            limits::SAMPLE_POINTS,
+        ),
+        (
+            "many large samples",
+            small_job(&lines(20, |k| {
+                format!(
+                    "surface s{k} in m.work = envelope(b.face, over: turn)\nsample s{k} {{ u: 0 deg .. 1 deg by 1000, turn: 1 deg .. 2 deg by 1000 }}"
+                )
+            })),
+            limits::SAMPLE_POINTS,
+        ),
+        ("too many frames", long_machine(10_001), limits::FRAMES),
+        (
+            "twenty thousand frames",
+            format!(
+                "machine m {{ frame f0\n{}}}",
+                lines(20_000, |k| format!("frame f{} in f{k} = rotate_x(1 deg)", k + 1))
+            ),
+            limits::FRAMES,
+        ),
+        (
+            "a million frames by extending",
+            format!(
+                "machine m {{ frame f\n{}}}\n{}",
+                lines(9_000, |k| format!("frame f{k} in f = mirror_x()")),
+                lines(10_000, |k| format!("machine m{k} extends m {{}}"))
+            ),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "a million frames by jobs",
+            format!(
+                "machine m {{ frame f\n{}}}\n{}",
+                lines(9_000, |k| format!("frame f{k} in f = mirror_x()")),
+                lines(10_000, |k| format!("job j{k} {{ machine n = m }}"))
+            ),
+            limits::MISTAKES,
+        ),
+        (
+            "thousands of machines that extend each other",
+            format!("machine m0 {{ frame f }}\n{}", lines(10_000, |k| format!("machine m{} extends m{k} {{}}", k + 1))),
+            limits::EXTENDS_DEPTH,
+        ),
+        (
+            "many axes",
+            format!("machine m {{ frame f\n{}}}", lines(20_000, |k| format!("axis a{k} : linear\nfix a{k} = 0 mm"))),
+            limits::AXES,
+        ),
+        (
+            "many axes by many machines",
+            format!("job j {{ {} }}", lines(3_000, |k| format!("machine m{k} = lathe(height: 3 mm)"))),
+            limits::AXES,
+        ),
+        (
+            "many motions",
+            small_job(&lines(3_000, |k| format!("motion m{k} : angle in 0 deg .. 1 deg"))),
+            limits::MOTIONS,
+        ),
+        (
+            "a surface over many motions",
+            small_job(&format!(
+                "{}surface t in m.work = envelope(b.face, over: [{}])",
+                lines(20, |k| format!("motion m{k} : angle in 0 deg .. 1 deg")),
+                lines(20, |k| format!("m{k},"))
+            )),
+            limits::SURFACE_UNKNOWNS,
+        ),
+        ("a long job", small_job(&lines(20_000, |k| format!("let a{k} = {k}"))), limits::JOB_STATEMENTS),
+        ("thousands of jobs' errors", lines(20_000, |k| format!("job j{k} {{ machine m = m{k} }}")), limits::MISTAKES),
+        (
+            "thousands of unknown names",
+            format!("machine m {{ frame f\n{}}}", lines(20_000, |k| format!("let a{k} = b{k}"))),
+            limits::MISTAKES,
+        ),
+        (
+            "thousands of unknown functions",
+            format!(
+                "{}machine m {{ frame f\n{}}}",
+                lines(10_000, |k| format!("fn f{k}() = 1")),
+                lines(15_000, |k| format!("let a{k} = g{k}()"))
+            ),
+            limits::MISTAKES,
+        ),
+        (
+            "thousands of unknown parents",
+            format!("machine m {{ frame f\n{}}}", lines(9_000, |k| format!("frame f{k} in g{k} = mirror_x()"))),
+            limits::MISTAKES,
+        ),
+        ("thousands of twins", format!("machine m {{ {} }}", "frame f\n".repeat(100_000)), limits::MISTAKES),
+        (
+            "thousands of mistakes in one line",
+            format!("machine m {{ frame f {} }}", "frame g in h ".repeat(50_000)),
+            limits::MISTAKES,
+        ),
+        ("a very long name", format!("machine m {{ frame {} }}", "f".repeat(500_000)), limits::WORD),
+        ("a very long number", format!("machine m {{ frame f let a = {} }}", "1".repeat(500_000)), limits::WORD),
+        ("a very long path", format!("use \"{}\"", "../".repeat(300_000)), limits::WORD),
+        (
+            "a copied scope",
+            format!(
+                "tool t {{ {}{} }}",
+                lines(10_000, |k| format!("let a{k} = {k}")),
+                lines(4_000, |k| format!(
+                    "surface s{k}(u: length in 0 mm .. 1 mm, v: length in 0 mm .. 1 mm) {{ at = [u, v, 0 mm] body towards [0, 0, 1] }}"
+                ))
+            ),
+            limits::EVALUATION_STEPS,
+        ),
+    ]
+}
+
+/// Texts just within the limits.
+fn accepted() -> Vec<(&'static str, String)> {
+    let mut shared = String::from("let a0 = sin(turn)\n");
+    for k in 0..2_000 {
+        let _ = writeln!(shared, "let a{} = a{k} * a{k} + a{k}", k + 1);
+    }
+    vec![
+        ("10,000 frames", long_machine(9_990) + &job("long(height: 3 mm)", "")),
+        (
+            "10,000 frames side by side",
+            format!("machine m {{ frame f\n{}}}", lines(9_999, |k| format!("frame f{k} in f = translate_x({k} mm)"))),
+        ),
+        (
+            "20,000 lets",
+            format!("machine m {{ frame f\n let a0 = 1 {}}}", lines(20_000, |k| format!("let a{} = a{k} + 1", k + 1))),
+        ),
+        (
+            "10,000 parameters",
+            format!(
+                "machine p {{ frame f\n {}}}\njob k {{ machine m = p({}) \n tool t = ball mount t on m.f surface s in m.f = move(t.face) }}",
+                lines(10_000, |k| format!("param p{k} : length in 0 mm .. 2 cm")),
+                lines(10_000, |k| format!("p{k}: 1 mm,"))
+            ),
+        ),
+        ("expressions that share", small_job(&shared)),
+        ("a statement of 60,000 words", format!("machine m {{ frame f let a = [{}0] }}", "1, ".repeat(30_000))),
+        (
+            "a function of many words called often",
+            format!(
+                "fn f(x: number) = [{}][0]\nmachine m {{ frame f\n{}}}",
+                "1 mm, ".repeat(10_000),
+                lines(20, |k| format!("let a{k} = f({k})"))
+            ),
+        ),
+        ("envelopes of envelopes", envelopes(6)),
+        ("an empty file", " ".repeat((1 << 20) - LIBRARY.len() - 1)),
+        ("comments", "// nothing\n".repeat(90_000)),
+    ]
+}
+
+#[test]
+fn hostile_texts_are_refused_soon() {
+    for (name, text, limit) in refused() {
+        let found = findings(name, &format!("{text}\n{LIBRARY}"));
+        let table = format!("more than {}", limit.stated());
+        let is_told =
+            found.iter().any(|finding| finding.code == Code::LimitExceeded && finding.message.contains(&table));
+        assert!(is_told, "{name}: {:#?}", &found[..found.len().min(3)]);
+        assert!(found.iter().all(|finding| finding.help.is_some() || finding.code != Code::LimitExceeded), "{name}");
+    }
+    memory_is_bounded();
+}
+
+#[test]
+fn enormous_texts_compile_soon() {
+    for (name, text) in accepted() {
+        let found = findings(name, &format!("{text}\n{LIBRARY}"));
+        let errors: Vec<&Diagnostic> =
+            found.iter().filter(|finding| finding.severity() == flank_chain_dsl::Severity::Error).collect();
+        assert!(errors.is_empty(), "{name}: {:#?}", &errors[..errors.len().min(3)]);
+    }
+    memory_is_bounded();
+}
+
+/// What the whole of these tests may hold at one time.
+fn memory_is_bounded() {
+    assert!(peak_memory() < 700 << 20, "{} MiB", peak_memory() >> 20);
+}
+
+#[test]
+fn a_long_circle_is_told_briefly() {
+    let text = format!(
+        "machine m {{ frame f\n{}}}",
+        lines(9_000, |k| format!("frame f{k} in f{} = mirror_x()", (k + 1) % 9_000))
+    );
+    let found = findings("a circle of frames", &text);
+    assert_eq!(found.iter().map(|finding| finding.code).collect::<Vec<_>>(), [Code::CyclicFrames]);
+    assert!(found[0].message.ends_with(" → f10 → f11 → … → f0"), "{}", found[0].message);
+}
