@@ -3,8 +3,8 @@
 use flank_chain_dsl::{GeneratedSurface, Job, ToolShape, compile_text, render};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph};
-use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem, System, solve};
-use flank_tests::{difference, job, number, points, reference_json};
+use flank_solver::{CutBy, Intersection, Meeting, Outcome, Range, SurfacePoint, SurfaceProblem, System, solve, trim};
+use flank_tests::{difference, job, number, points, reference_json, reversed, vector};
 
 const SPUR: &str = "specs/hobbing/spur_gear.chain";
 /// z = 20, m = 1, α = 20°, x = 0, h_aP0 = 1.25, ρ_aP0 = 0.25.
@@ -167,7 +167,11 @@ fn the_minors_are_those_of_the_clearance() {
         let minors = generated.surface.clearance_minors();
         for point in points(&job, name, coordinates, targets) {
             let what = format!("{name} at {:?}", point.unknowns);
-            assert!(matches!(point.outcome, Outcome::Solved | Outcome::CutAway), "{what}: {:?}", point.outcome);
+            assert!(
+                matches!(point.outcome, Outcome::Solved | Outcome::CutAway(CutBy::ItsTool)),
+                "{what}: {:?}",
+                point.outcome
+            );
             let found = values(&job, name, &minors, &point.unknowns);
             let h = clearance.hessian(&point, steps);
             let expected: Vec<f64> = match h.as_slice() {
@@ -194,7 +198,7 @@ fn beyond_the_singular_line_points_are_cut_away() {
     let limit = 15.0 * alpha.sin().powi(2) / alpha.cos();
     let targets: Vec<[f64; 2]> = [-2.0, 0.0, limit - 1e-6, limit + 1e-6, 2.5, 3.0].map(|u| [u, 0.0]).to_vec();
     for (target, point) in targets.iter().zip(points(&job, "flank_plus", ["u", "v"], &targets)) {
-        let expected = if target[0] < limit { Outcome::Solved } else { Outcome::CutAway };
+        let expected = if target[0] < limit { Outcome::Solved } else { Outcome::CutAway(CutBy::ItsTool) };
         assert_eq!(point.outcome, expected, "u {}", target[0]);
     }
     // at a radius that both branches reach, the one that stays is taken
@@ -226,7 +230,7 @@ fn line<'g>(job: &Job<'g>, name: &str, limit: &str, along: Expr<'g>, values: &[f
         "singular" => generated.surface.clearance_minors().pop(),
         _ => generated.surface.contact_limit(),
     };
-    let ranges = generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let ranges = ranges(generated);
     let problem = SurfaceProblem::line(&generated.surface, quantity.expect("motions"), along, ranges, &job.bindings());
     let targets: Vec<[f64; 2]> = values.iter().map(|&value| [0.0, value]).collect();
     problem.expect("nothing is unbound").solve(&targets, [1, values.len()]).0
@@ -365,7 +369,7 @@ fn a_cradle_pinion_is_cut_under_along_its_root() {
         let [s, theta, _] = point.unknowns[..] else { panic!("three unknowns") };
         let beside = points(&job, "flank", ["s", "theta"], &[[s + 1e-5, theta], [s - 1e-5, theta]]);
         let outcomes: Vec<Outcome> = beside.iter().map(|point| point.outcome).collect();
-        assert_eq!(outcomes, [Outcome::Solved, Outcome::CutAway], "at {length}");
+        assert_eq!(outcomes, [Outcome::Solved, Outcome::CutAway(CutBy::ItsTool)], "at {length}");
     }
     // all that the sample asks for lies above the line
     let sample = surface(&job, "flank").sample.as_ref().expect("a sample");
@@ -376,4 +380,83 @@ fn a_cradle_pinion_is_cut_under_along_its_root() {
     let problem = SurfaceProblem::new(&surface(&job, "flank").surface, [along, height], ranges, &job.bindings());
     let (asked, _) = problem.expect("nothing is unbound").solve(&sample.targets, sample.counts);
     assert!(asked.iter().all(|point| point.outcome == Outcome::Solved));
+}
+
+fn ranges(generated: &GeneratedSurface<'_>) -> Vec<Range> {
+    generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect()
+}
+
+/// Where a surface meets another one, on lines of two coordinates, and its points at the targets without what that cuts away.
+fn trimmed(
+    job: &Job<'_>,
+    [name, by]: [&str; 2],
+    coordinates: [&str; 2],
+    targets: &[[f64; 2]],
+    counts: [usize; 2],
+) -> (Vec<SurfacePoint>, Vec<Meeting>) {
+    let [first, second] = [name, by].map(|name| surface(job, name));
+    let coordinates = coordinates.map(|coordinate_name| coordinate(job, name, coordinate_name));
+    let problem = SurfaceProblem::new(&first.surface, coordinates, ranges(first), &job.bindings());
+    let (mut points, _) = problem.expect("nothing is unbound").solve(targets, counts);
+    let both = [ranges(first), ranges(second)];
+    let surfaces = [&first.surface, &second.surface];
+    let intersection = Intersection::new(surfaces, coordinates, both, &job.bindings()).expect("nothing is unbound");
+    let meetings = trim(&mut points, targets, counts, &intersection, 0);
+    (points, meetings)
+}
+
+/// The rows of a grid of two coordinates.
+fn grid(first: &[f64], second: &[f64]) -> (Vec<[f64; 2]>, [usize; 2]) {
+    let targets = first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b])).collect();
+    (targets, [first.len(), second.len()])
+}
+
+#[test]
+fn the_start_of_undercut_meets_the_table() {
+    let reference = reference_json("spur_rack.json");
+    let start = &reference["undercut"]["start"];
+    let graph = Graph::new();
+    let job = job(&graph, SPUR, &UNDERCUT);
+    let rho: Vec<f64> = (0..20).map(|k| 14.1 + 0.05 * f64::from(k)).collect();
+    let (targets, counts) = grid(&rho, &[-2.0, 0.0, 3.0]);
+    let (points, meetings) = trimmed(&job, ["flank_plus", "fillet_plus"], ["rho", "z"], &targets, counts);
+    assert_eq!(meetings.len(), 3, "one on each line of constant z");
+    let meeting = meetings.iter().find(|meeting| meeting.first.position[2].abs() < 1e-12).expect("z = 0");
+    assert!(difference(&meeting.first.position, &vector(start, "p")) < 1e-9);
+    assert!(difference(&meeting.first.normal, &reversed(vector(start, "n_flank"))) < 1e-9);
+    assert!(difference(&meeting.second.normal, &reversed(vector(start, "n_fillet"))) < 1e-9);
+    let [x, y, _] = meeting.first.position;
+    let found =
+        [meeting.first.unknowns[0], meeting.first.unknowns[2], meeting.second.unknowns[0], meeting.second.unknowns[2]];
+    let expected = ["u", "phi_flank", "theta", "phi_fillet"].map(|key| number(start, key));
+    assert!(difference(&found, &expected) < 1e-9, "{found:?}");
+    assert!(difference(&[x.hypot(y), y.atan2(x)], &["rho", "polar_angle"].map(|key| number(start, key))) < 1e-9);
+    for (target, point) in targets.iter().zip(&points) {
+        let expected =
+            if target[0] < number(start, "rho") { Outcome::CutAway(CutBy::Other(0)) } else { Outcome::Solved };
+        assert_eq!(point.outcome, expected, "at {target:?}");
+    }
+    // and the other way round: what of the fillet runs on beyond the flank
+    let theta: Vec<f64> = (0..20).map(|k| 0.35 + 0.005 * f64::from(k)).collect();
+    let (targets, counts) = grid(&theta, &[-2.0, 0.0, 3.0]);
+    let (points, meetings) = trimmed(&job, ["fillet_plus", "flank_plus"], ["theta", "z"], &targets, counts);
+    assert_eq!(meetings.len(), 3);
+    for (target, point) in targets.iter().zip(&points) {
+        let stays = target[0] > number(start, "theta");
+        let expected = if stays { Outcome::Solved } else { Outcome::CutAway(CutBy::Other(0)) };
+        assert_eq!(point.outcome, expected, "at {target:?}");
+    }
+}
+
+/// Without undercut flank and fillet touch and do not cross: nothing is cut away.
+#[test]
+fn surfaces_that_touch_cut_nothing_away() {
+    let graph = Graph::new();
+    let job = job(&graph, SPUR, &[]);
+    let end = surface(&job, "flank_plus").unknowns[0].high;
+    let u: Vec<f64> = (0..20).map(|k| -2.0 + (end + 2.0) * f64::from(k) / 19.0).collect();
+    let (targets, counts) = grid(&u, &[-2.0, 0.0, 3.0]);
+    let (points, meetings) = trimmed(&job, ["flank_plus", "fillet_plus"], ["u", "v"], &targets, counts);
+    assert!(meetings.is_empty(), "{meetings:?}");
+    assert!(points.iter().all(|point| point.outcome == Outcome::Solved));
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
 use flank_export::Field;
-use flank_solver::{Effort, Outcome, SurfacePoint};
+use flank_solver::{CutBy, Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::fields;
@@ -220,7 +220,7 @@ fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
             reasons.push(format!("{count}: {} outside its range, by up to {:.6}{unit}", unknown.name, size * most));
         }
     }
-    let cut_away = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway).count();
+    let cut_away = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway(CutBy::ItsTool)).count();
     if cut_away > 0 {
         reasons.push(format!(
             "{cut_away}: cut away by the tool itself, beyond the singular line of the envelope (undercut)"

@@ -17,18 +17,22 @@
 mod extent;
 mod geometry;
 mod grid;
+mod intersection;
 mod newton;
 mod sensitivity;
 mod solution;
 mod start;
 mod surface;
 mod system;
+mod trim;
 
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};
+pub use intersection::{Intersection, Line, Meeting};
 pub use newton::{TOLERANCE, solve};
 pub use sensitivity::{NormalSensitivity, Setting};
-pub use solution::{Outcome, Range, Solution};
+pub use solution::{CutBy, Outcome, Range, Solution};
 pub use surface::{SurfacePoint, SurfaceProblem};
 pub use system::System;
+pub use trim::trim;

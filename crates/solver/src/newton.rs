@@ -113,6 +113,14 @@ fn newton_step(evaluation: &Evaluation<'_>, ranges: &[Range], sizes: &mut [f64])
     Step { by: scaled.iter().zip(ranges).map(|(step, range)| step * range.width()).collect(), singular }
 }
 
+/// J⁻¹ b at the point of the last evaluation; not finite where J has no inverse.
+pub(crate) fn inverse_times(evaluation: &Evaluation<'_>, right: &[f64]) -> Vec<f64> {
+    let n = right.len();
+    let jacobian = Mat::from_fn(n, n, |i, j| evaluation.jacobian(i, j));
+    let solution = FullPivLu::new(jacobian.as_ref()).solve(Mat::from_fn(n, 1, |i, _| right[i]));
+    (0..n).map(|k| solution[(k, 0)]).collect()
+}
+
 /// The shortest vector that solves J x = b as well as possible.
 fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
     let n = jacobian.nrows();

@@ -40,9 +40,10 @@ impl Range {
 pub enum Outcome {
     /// All residuals are within their tolerance ([`TOLERANCE`](crate::TOLERANCE)) and all unknowns in their ranges.
     Solved,
-    /// There is a root in the ranges, but not of the finished work: the tool cuts it away before or after it generates it
-    /// (undercut; see [`Surface::clearance_minors`](flank_expr::geometry::Surface::clearance_minors)).
-    CutAway,
+    /// There is a root in the ranges, but it is no point of the finished work.
+    CutAway(CutBy),
+    /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`trim`](crate::trim).
+    Undecided,
     /// There is a root, but one of the unknowns lies outside its range.
     Outside {
         /// Index of the unknown that is farthest outside, relative to its range.
@@ -56,12 +57,23 @@ pub enum Outcome {
     NotConverged,
 }
 
+/// What takes away a point that a tool generates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CutBy {
+    /// The tool itself, before or after it generates the point: undercut, see
+    /// [`Surface::clearance_minors`](flank_expr::geometry::Surface::clearance_minors).
+    ItsTool,
+    /// Another surface, by the number that it has for [`trim`](crate::trim).
+    Other(usize),
+}
+
 impl Outcome {
     /// One word for tables.
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
-            Outcome::CutAway => "cut away",
+            Outcome::CutAway(_) => "cut away",
+            Outcome::Undecided => "undecided",
             Outcome::Outside { .. } => "outside",
             Outcome::Singular => "singular",
             Outcome::NotConverged => "not converged",
@@ -72,7 +84,7 @@ impl Outcome {
     fn rank(self) -> u8 {
         match self {
             Outcome::Solved => 4,
-            Outcome::CutAway => 3,
+            Outcome::CutAway(_) | Outcome::Undecided => 3,
             Outcome::Outside { .. } => 2,
             Outcome::Singular => 1,
             Outcome::NotConverged => 0,
@@ -106,7 +118,7 @@ impl Solution {
 
     /// A root, whether or not it is one that is looked for.
     pub(crate) fn is_root(&self) -> bool {
-        matches!(self.outcome, Outcome::Solved | Outcome::CutAway | Outcome::Outside { .. })
+        !matches!(self.outcome, Outcome::Singular | Outcome::NotConverged)
     }
 
     /// The one of two that says more: solved before cut away before outside before singular before not converged, then the smaller

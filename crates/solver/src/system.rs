@@ -2,7 +2,7 @@
 
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
-use crate::solution::Outcome;
+use crate::solution::{CutBy, Outcome};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl System {
         Ok(System { size: unknowns.len(), tape: Tape::new(&outputs, &inputs)?, conditions: Tape::new(&[], &inputs)? })
     }
 
-    /// The same system, whose roots are [`Outcome::CutAway`](crate::Outcome::CutAway) where one of `conditions`, functions of
+    /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
     /// the unknowns and parameters it was made with, is negative, and singular where one is zero.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Evaluation<'_> {
     pub(crate) fn side(&mut self) -> Outcome {
         self.conditions.run(&self.inputs, &mut self.met);
         if self.met.iter().any(|condition| *condition < 0.0) {
-            Outcome::CutAway
+            Outcome::CutAway(CutBy::ItsTool)
         } else if self.met.iter().all(|condition| *condition > 0.0) {
             Outcome::Solved
         } else {
