@@ -125,6 +125,8 @@ pub struct GeneratedSurface<'g> {
     pub surface: Surface<'g>,
     /// Ranges of its unknowns, in the order of `surface.unknowns`.
     pub unknowns: Vec<Bounded<'g>>,
+    /// The surfaces of the job that cut points of it away, as indices into its surfaces.
+    pub trimmed_by: Vec<usize>,
     /// The points that are asked for.
     pub sample: Option<Sample<'g>>,
 }

@@ -3,18 +3,18 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
-use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
 
 use crate::solve;
 
-/// A line on a surface, at values of one of the two coordinates that the surface's points are asked for by.
+/// A line on a surface.
 pub(crate) struct Line<'j, 'g> {
     pub(crate) surface: &'j GeneratedSurface<'g>,
-    /// `flank.singular_line` or `flank.contact_limit`.
+    /// `flank.singular_line`, `flank.contact_limit`, `flank.trimmed_by_fillet`.
     pub(crate) name: String,
-    kind: &'static str,
-    /// The coordinate.
-    along: String,
+    pub(crate) kind: &'static str,
+    /// What changes along it.
+    pub(crate) along: String,
     pub(crate) points: Vec<SurfacePoint>,
 }
 
@@ -47,10 +47,10 @@ fn line<'j, 'g>(
     let share = |step: usize| step as f64 / steps as f64;
     let targets: Vec<[f64; 2]> =
         (0..=steps).map(|step| [0.0, low * (1.0 - share(step)) + high * share(step)]).collect();
-    let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
     let along = &sample.coordinates[k];
-    let problem = SurfaceProblem::line(&surface.surface, quantity, along.value, ranges, &job.bindings())
-        .expect("a job without errors leaves nothing unbound");
+    let problem =
+        SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())
+            .expect("a job without errors leaves nothing unbound");
     let points = problem.solve(&targets, [1, targets.len()]).0;
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
     Line { surface, name, kind, along: along.name.clone(), points }

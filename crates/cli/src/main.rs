@@ -12,6 +12,7 @@ mod solve;
 mod spec;
 mod table;
 mod travel;
+mod trims;
 
 use std::process::ExitCode;
 

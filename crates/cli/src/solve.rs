@@ -15,7 +15,7 @@ use crate::arguments::{Format, Solve};
 use crate::geometry;
 use crate::limits::{self, Line};
 use crate::table::{Solved, Table};
-use crate::{Ending, print, spec, travel};
+use crate::{Ending, print, spec, travel, trims};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
     let start = Instant::now();
@@ -33,10 +33,9 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         }
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, arguments)).collect();
-        let lines: Vec<Line<'_, '_>> = match arguments.limits {
-            true => job.surfaces.iter().flat_map(|surface| limits::lines(job, surface)).collect(),
-            false => Vec::new(),
-        };
+        let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
+        let limits: Vec<Line<'_, '_>> = limits.collect();
+        let lines: Vec<&Line<'_, '_>> = limits.iter().chain(solved.iter().flat_map(|solved| &solved.trims)).collect();
         let dataset = dataset(job, &solved, &lines, &hash, arguments);
         let written = match write_files(&dataset, &job.name, arguments) {
             Ok(written) => written,
@@ -59,24 +58,37 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
 
 /// The points of one surface, if any are asked for.
 fn solve_surface<'j, 'g>(
-    job: &Job<'g>,
+    job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     arguments: &Solve,
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-    let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
+    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let (points, effort) = problem.solve(&sample.targets, sample.counts);
+    let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
+    let trims = surface.trimmed_by.iter().enumerate();
+    let trims = trims.map(|(number, &by)| trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, number));
+    let trims = trims.collect();
     let mut fields = Vec::new();
     if arguments.geometry {
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
-    Some(Solved { surface, sample, points, effort, fields })
+    Some(Solved { surface, sample, points, effort, fields, trims })
 }
 
-fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[Line<'_, '_>], hash: &str, arguments: &Solve) -> Dataset {
+/// Where the unknowns of a surface are looked for.
+pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+    surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect()
+}
+
+fn dataset(
+    job: &Job<'_>,
+    solved: &[Solved<'_, '_>],
+    lines: &[&Line<'_, '_>],
+    hash: &str,
+    arguments: &Solve,
+) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
         let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
         let patch = patch(&solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
@@ -91,7 +103,7 @@ fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[Line<'_, '_>], has
             job: job.name.clone(),
             conventions: settings.collect(),
         },
-        patches: surfaces.chain(lines.iter().filter_map(Line::patch)).collect(),
+        patches: surfaces.chain(lines.iter().filter_map(|line| line.patch())).collect(),
     }
 }
 

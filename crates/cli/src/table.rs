@@ -17,6 +17,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) sample: &'j Sample<'g>,
     pub(crate) points: Vec<SurfacePoint>,
     pub(crate) effort: Effort,
+    /// Where it meets the surfaces that trim it, in their order.
+    pub(crate) trims: Vec<Line<'j, 'g>>,
     /// What more is known of the points; files show it after the status.
     pub(crate) fields: Vec<Field>,
 }
@@ -26,7 +28,7 @@ pub(crate) struct Table<'a, 'j, 'g> {
     pub(crate) job: &'a Job<'g>,
     pub(crate) spec: String,
     pub(crate) solved: &'a [Solved<'j, 'g>],
-    pub(crate) lines: &'a [Line<'j, 'g>],
+    pub(crate) lines: &'a [&'a Line<'j, 'g>],
     pub(crate) written: Vec<String>,
     pub(crate) since: Instant,
 }
@@ -142,7 +144,7 @@ impl Table<'_, '_, '_> {
     pub(crate) fn text(&self) -> String {
         let mut out = format!("job {} ({})\n\n", self.job.name, self.spec);
         let mut rows = vec![["surface", "asked", "solved", "worst residual", "ranges reached"].map(String::from)];
-        let all = self.solved.iter().map(Solved::row).chain(self.lines.iter().map(Line::row));
+        let all = self.solved.iter().map(Solved::row).chain(self.lines.iter().map(|line| line.row()));
         rows.extend(all.flat_map(|row| row.cells()));
         out.push_str(&aligned(&rows, "<>>>"));
         out.push_str(&fields::text(self.solved));
@@ -181,7 +183,7 @@ impl Table<'_, '_, '_> {
             let missing = asked - solved.row().count();
             if missing > 0 {
                 let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
-                reasons(solved).iter().for_each(|reason| {
+                reasons(self.job, solved).iter().for_each(|reason| {
                     let _ = writeln!(out, "  {reason}");
                 });
             }
@@ -202,7 +204,7 @@ pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> Stri
 }
 
 /// Why points of a surface were not solved, with the number of points for each reason.
-fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
+fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let unknowns = &solved.surface.unknowns;
     let mut reasons = Vec::new();
     for (k, unknown) in unknowns.iter().enumerate() {
@@ -225,6 +227,16 @@ fn reasons(solved: &Solved<'_, '_>) -> Vec<String> {
         reasons.push(format!(
             "{cut_away}: cut away by the tool itself, beyond the singular line of the envelope (undercut)"
         ));
+    }
+    for (number, &by) in solved.surface.trimmed_by.iter().enumerate() {
+        let cut = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway(CutBy::Other(number))).count();
+        if cut > 0 {
+            reasons.push(format!("{cut}: cut away by what makes {}, as `trim` asks for", job.surfaces[by].name));
+        }
+    }
+    let undecided = solved.points.iter().filter(|point| point.outcome == Outcome::Undecided).count();
+    if undecided > 0 {
+        reasons.push(format!("{undecided}: undecided, the lines of the grid disagree on what a trim leaves of them"));
     }
     let singular = solved.points.iter().filter(|point| point.outcome == Outcome::Singular).count();
     if singular > 0 {

@@ -89,8 +89,10 @@ pub(crate) fn build<'g>(
         }
     }
     for statement in &job.statements {
-        if let JobStatement::Sample(sample) = statement {
-            builder.sample(context, sample, job);
+        match statement {
+            JobStatement::Trim { surface, by } => builder.trim(context, surface, by, job),
+            JobStatement::Sample(sample) => builder.sample(context, sample, job),
+            _ => {}
         }
     }
     if !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
@@ -152,7 +154,10 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Machine(instance) => self.machine(context, instance),
             JobStatement::Tool(instance) => self.tool(context, instance),
             JobStatement::Surface(surface) => self.define(context, &surface.name),
-            JobStatement::Mount { .. } | JobStatement::Drive(_) | JobStatement::Sample(_) => {}
+            JobStatement::Mount { .. }
+            | JobStatement::Drive(_)
+            | JobStatement::Trim { .. }
+            | JobStatement::Sample(_) => {}
         }
     }
 

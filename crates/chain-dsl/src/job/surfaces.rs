@@ -78,6 +78,7 @@ impl<'g> Builder<'_, 'g> {
                 generation,
                 surface,
                 unknowns,
+                trimmed_by: Vec::new(),
                 sample: None,
             },
             frame,
@@ -295,21 +296,42 @@ impl<'g> Builder<'_, 'g> {
         fine
     }
 
+    /// A surface of the job that came out right.
+    fn finished(&self, context: &mut Context<'g>, name: &Name, job: &ast::Job) -> Option<usize> {
+        let index = self.surfaces.iter().position(|(surface, _)| surface.name == name.node);
+        let declared = job.statements.iter().filter_map(|statement| match statement {
+            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
+            _ => None,
+        });
+        // a name that is not there has been reported
+        if index.is_none() && !name.node.is_empty() && !declared.clone().any(|known| known == name.node) {
+            context.unknown(name, "surface", declared);
+        }
+        index
+    }
+
+    pub(super) fn trim(&mut self, context: &mut Context<'g>, surface: &Name, by: &Name, job: &ast::Job) {
+        let found = [surface, by].map(|name| self.finished(context, name, job));
+        let [Some(index), Some(other)] = found else { return };
+        let wrong = |message: String, help: &str| Diagnostic::new(Code::Trim, by.span, message).help(help);
+        if index == other {
+            let help = "name the surface that cuts into it: `trim flank by fillet`";
+            return context.report(wrong(format!("`{}` cannot trim itself", by.node), help));
+        }
+        let [own, its] = [index, other].map(|k| self.surfaces[k].0.frame.clone());
+        if own != its {
+            let message = format!("`{}` is given in `{own}`, `{}` in `{its}`", surface.node, by.node);
+            return context.report(wrong(message, "give both in the frame of the work"));
+        }
+        if self.surfaces[index].0.trimmed_by.contains(&other) {
+            let message = format!("`{}` is trimmed by `{}` twice", surface.node, by.node);
+            return context.report(wrong(message, "take one of them away"));
+        }
+        self.surfaces[index].0.trimmed_by.push(other);
+    }
+
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
-        let Some(index) = self.surfaces.iter().position(|(surface, _)| surface.name == written.surface.node) else {
-            let declared: Vec<&str> = job
-                .statements
-                .iter()
-                .filter_map(|statement| match statement {
-                    JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
-                    _ => None,
-                })
-                .collect();
-            if !declared.contains(&written.surface.node.as_str()) {
-                context.unknown(&written.surface, "surface", declared.into_iter());
-            }
-            return;
-        };
+        let Some(index) = self.finished(context, &written.surface, job) else { return };
         if self.surfaces[index].0.sample.is_some() {
             let message = format!("`{}` is sampled twice", written.surface.node);
             context.report(Diagnostic::new(Code::DuplicateName, written.surface.span, message));

@@ -255,6 +255,13 @@ pub enum JobStatement {
     Drive(Assignment),
     /// `surface name in m.work = …`
     Surface(GeneratedSurface),
+    /// `trim flank by fillet`
+    Trim {
+        /// The surface that loses points.
+        surface: Name,
+        /// The surface that cuts them away.
+        by: Name,
+    },
     /// `sample name { … }`
     Sample(Sample),
 }

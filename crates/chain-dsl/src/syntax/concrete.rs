@@ -98,7 +98,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface => Kind::Block,
         Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
-        Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
+        Rule::drive | Rule::surface | Rule::trim | Rule::sample => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::setting | Rule::argument => Kind::Element,
         Rule::arguments | Rule::settings | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,

@@ -72,6 +72,7 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::kw_in if matches!(before.statement, "motion" | "surface") && !before.name => {
             "`in` and a range".to_owned()
         }
+        Rule::kw_by if before.statement == "trim" => "`by` and the surface that cuts".to_owned(),
         Rule::kw_by => "`by` and a number of points".to_owned(),
         Rule::dots => "`..` between the ends of the range".to_owned(),
         Rule::axis_kind => "`linear` or `rotary`".to_owned(),
@@ -110,6 +111,7 @@ fn name(before: &Before<'_>) -> String {
         ("machine" | "tool", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("surface", _) => "a parameter such as `u: length in 0 mm .. 12 mm`".to_owned(),
         ("fn", _) => "a parameter such as `x: length`".to_owned(),
+        ("trim", "by") => "the name of the surface that cuts".to_owned(),
         ("sample", _) => "an entry such as `z: 40 mm .. 62 mm by 45`".to_owned(),
         _ => "a name".to_owned(),
     }
@@ -146,7 +148,7 @@ fn noun(statement: &str) -> &str {
         "let" => "value",
         "fix" | "couple" | "drive" => "axis",
         "mount" => "tool",
-        "sample" => "surface",
+        "sample" | "trim" => "surface",
         "fn" => "function",
         other => other,
     }

@@ -54,6 +54,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
             frame: piece.path_after("in"),
             value: piece.error(),
         }),
+        "trim" => JobStatement::Trim { surface: name, by: piece.name_after("by") },
         "sample" => JobStatement::Sample(piece.sample(name)),
         _ => JobStatement::Let(piece.let_statement(name)),
     })
@@ -179,15 +180,18 @@ impl Piece<'_> {
 
     /// A frame that hangs on another, be it unknown on which: a second root would be a mistake of its own.
     fn frame(&self, name: Name) -> Frame {
-        let parent = match self.find("in").map(|index| index + 1) {
-            Some(index) if self.scan.is_name(index) && index < self.range.end => self.name(index),
-            _ => self.nameless(),
-        };
-        Frame { doc: self.doc(), name, parent: Some(parent), transforms: Vec::new() }
+        Frame { doc: self.doc(), name, parent: Some(self.name_after("in")), transforms: Vec::new() }
     }
 
     fn assignment(&self) -> Assignment {
         Assignment { target: self.path(self.range.start + 1), value: self.error() }
+    }
+
+    fn name_after(&self, word: &str) -> Name {
+        match self.find(word).map(|index| index + 1) {
+            Some(index) if self.scan.is_name(index) && index < self.range.end => self.name(index),
+            _ => self.nameless(),
+        }
     }
 
     fn path_after(&self, word: &str) -> Path {

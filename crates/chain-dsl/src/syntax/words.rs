@@ -25,7 +25,7 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] =
-    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "sample"];
+    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

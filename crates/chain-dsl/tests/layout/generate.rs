@@ -274,7 +274,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(9) {
+        match self.random.below(10) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -296,6 +296,12 @@ impl Writer {
                 self.name();
                 self.all(&["in", "m.work", "="]);
                 self.call(2);
+            }
+            8 => {
+                self.put("trim");
+                self.name();
+                self.put("by");
+                self.name();
             }
             _ => self.sample(),
         }

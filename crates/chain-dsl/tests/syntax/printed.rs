@@ -87,6 +87,7 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Surface(it) => {
             format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
         }
+        JobStatement::Trim { surface, by } => format!("trim {} {}", surface.node, by.node),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
             format!("sample {} {}", it.surface.node, entries.join(", "))

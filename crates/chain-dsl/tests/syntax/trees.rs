@@ -136,6 +136,7 @@ fn everything() {
       motion /The roll./ roll: angle in start..30_deg
       drive m.X (* ratio roll)
       surface concave in m.bed (envelope! c.flank over: roll)
+      trim concave convex
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
       sample concave z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
       let curve (table! "profile.csv")

@@ -166,6 +166,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_on
             | kw_motion
             | kw_drive
+            | kw_trim
             | kw_sample
             | kw_in
             | kw_by

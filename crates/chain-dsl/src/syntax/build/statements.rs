@@ -48,6 +48,7 @@ impl Build<'_> {
             Rule::motion => JobStatement::Motion(self.motion(pair)),
             Rule::drive => JobStatement::Drive(self.assignment(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
+            Rule::trim => self.trim(pair),
             Rule::sample => JobStatement::Sample(self.sample(pair)),
             _ => return None,
         })
@@ -127,6 +128,11 @@ impl Build<'_> {
             tool: self.name(parts.required(Rule::name)),
             frame: self.path(parts.required(Rule::path)),
         }
+    }
+
+    fn trim(&mut self, pair: Pair<'_, Rule>) -> JobStatement {
+        let mut parts = Parts::of(pair);
+        JobStatement::Trim { surface: self.name(parts.required(Rule::name)), by: self.name(parts.required(Rule::name)) }
     }
 
     fn motion(&mut self, pair: Pair<'_, Rule>) -> Parameter {
