@@ -214,7 +214,7 @@ impl Page {
             self.vector("omega", twist.angular);
             self.vector("v", twist.linear);
             let Some(&meshing) = index.checked_sub(free).and_then(|k| own.get(k)) else { continue };
-            self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0"));
+            self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0, the same in every frame, here as in the shortest one"));
             let name = graph.listing(&[motion], self.style, "t").values[0].clone();
             let listing = graph.listing(&[meshing], self.style, "t");
             self.definitions(&listing.definitions);

@@ -227,6 +227,19 @@ impl Graph {
         order
     }
 
+    /// Operations that depend on at least one of the `variables`: what has to be done anew where these change, with equal
+    /// parts done once.
+    pub fn work(&self, roots: &[Expr<'_>], variables: &[Expr<'_>]) -> usize {
+        let changing: NodeSet<NodeId> = variables.iter().map(|variable| variable.id).collect();
+        let mut changed = changing.clone();
+        for id in self.reachable(roots.iter().map(|root| root.id)) {
+            if self.node(id).operands().any(|operand| changed.contains(&operand)) {
+                changed.insert(id);
+            }
+        }
+        changed.len() - changing.len()
+    }
+
     /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.
     pub fn count(&self, roots: &[Expr<'_>]) -> NodeCount {
         let order = self.reachable(roots.iter().map(|root| root.id));

@@ -30,6 +30,7 @@ mod op;
 mod print;
 mod rules;
 mod tape;
+mod terms;
 
 pub use curve::{Curve, CurveError};
 pub use evaluate::ScalarEvaluator;

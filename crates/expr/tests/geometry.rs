@@ -59,6 +59,25 @@ fn vectors_are_those_of_the_other_library() {
 }
 
 #[test]
+fn primitive_and_normalized_vectors_are_short() {
+    let graph = Graph::new();
+    let [r, t, a] = ["r", "t", "a"].map(|name| graph.variable(name));
+    let shown = |v: Vector3<'_>| v.0.map(|part| part.to_string());
+    // the raw normal of a cone, as the cross product gives it: it has the radius as a factor
+    let slant = Vector3([-(a.sin() * t.cos()), -(a.sin() * t.sin()), -a.cos()]);
+    let round = Vector3([-(r * t.sin()), r * t.cos(), graph.constant(0.0)]);
+    let normal = slant.cross(round).primitive();
+    assert_eq!(shown(normal), ["cos(t) * cos(a)", "sin(t) * cos(a)", "-sin(a)"]);
+    assert_eq!(normal.normalized(), normal);
+    assert_eq!(normal.scaled(graph.constant(-1.0)).normalized(), -normal);
+    // nothing in common: as it was
+    let plain = Vector3([r + t, t, a]);
+    assert_eq!(plain.primitive(), plain);
+    assert_eq!(plain.normalized(), plain.map(|part| part / plain.norm()));
+    assert!(Vector3::zero(&graph).primitive().is_zero());
+}
+
+#[test]
 fn poses_compose_and_invert_like_isometries() {
     let mut random = Random(12);
     for _ in 0..ROUNDS {

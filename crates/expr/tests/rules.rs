@@ -51,6 +51,9 @@ fn sums() {
             (x.sin().squared() + x.cos().squared(), "1"),
             (x.cos().squared() + x.sin().squared(), "1"),
             (x.cos().squared() + y.sin().squared(), "cos(x)^2 + sin(y)^2"),
+            ((x * z.cos() - y * z.sin()).squared() + (x * z.sin() + y * z.cos()).squared(), "x^2 + y^2"),
+            ((x * z.cos() - 2.0 * z.sin()).squared() + (2.0 * z.cos() + x * z.sin()).squared(), "x^2 + 4"),
+            ((x + y).squared() + (x - z).squared(), "(x + y)^2 + (x - z)^2"),
         ]
     });
 }
@@ -99,13 +102,16 @@ fn products() {
             (x * -y, "-x * y"),
             (-x * -y, "x * y"),
             ((2.0 * x) * y, "2 * x * y"),
-            (x * (2.0 * y), "2 * x * y"),
+            (x * (2.0 * y), "2 * y * x"),
             ((2.0 * x) * (3.0 * y), "6 * x * y"),
             (y * x, "x * y"),
             (x.sqrt() * x.sqrt(), "x"),
             (x * y + x * z, "x * (y + z)"),
             (x * y - z * x, "x * (y - z)"),
             (2.0 * x + 3.0 * x, "5 * x"),
+            (x + 3.0 * x, "4 * x"),
+            (3.0 * x - x, "2 * x"),
+            (x * (3.0 * x), "3 * x^2"),
             (2.0 * x - 2.0 * y, "2 * (x - y)"),
             (2.0 * (x * y) + 2.0 * (x * z), "2 * x * (y + z)"),
         ]
@@ -124,6 +130,7 @@ fn quotients_and_powers() {
             (x / -y, "-x / y"),
             (-x / -y, "x / y"),
             (x / 3.0, "x / 3"),
+            ((3.0 * x) / (2.0 * y), "1.5 * x / y"),
             (x.pow(letters.c(0.0)), "1"),
             (x.pow(letters.c(1.0)), "x"),
             (x.pow(letters.c(2.0)), "x^2"),

@@ -207,8 +207,8 @@ fn sphere_along_a_line_leaves_a_cylinder() {
         let p = setting.vector_at(bore.position, &at) - offset;
         let radial = p - direction * p.dot(&direction);
         assert!((radial.norm() - RADIUS).abs() < 1e-12, "distance {}", radial.norm());
-        // r_u × r_v of the sphere points inwards (outwards beyond a pole), the bore's normal the other way
-        let outwards = radial.normalize() * at[U].cos().signum();
+        // the sphere's normal points inwards, also beyond a pole, the bore's the other way
+        let outwards = radial.normalize();
         let normal = setting.vector_at(bore.normal, &at);
         assert!((normal - outwards).norm() < 1e-12, "normal {normal}");
         points += 1;

@@ -77,14 +77,14 @@ impl<'g> Model<'g> {
 fn with_settings_as_variables() {
     let graph = Graph::new();
     let model = Model::new(&graph, false);
-    assert_eq!(model.steps(&model.generated), (358, 16));
-    assert_eq!(model.steps(&model.conjugate), (660, 22));
+    assert_eq!(model.steps(&model.generated), (220, 13));
+    assert_eq!(model.steps(&model.conjugate), (449, 19));
 }
 
 #[test]
 fn with_settings_as_numbers() {
     let graph = Graph::new();
     let model = Model::new(&graph, true);
-    assert_eq!(model.steps(&model.generated), (339, 8));
-    assert_eq!(model.steps(&model.conjugate), (629, 12));
+    assert_eq!(model.steps(&model.generated), (203, 5));
+    assert_eq!(model.steps(&model.conjugate), (424, 9));
 }

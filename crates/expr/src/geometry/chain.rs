@@ -181,6 +181,25 @@ impl<'g> Chain<'g> {
         Chain { graph: self.graph, steps: self.steps.iter().chain(&t_b_c.steps).copied().collect() }
     }
 
+    /// The chain up to its `k`-th frame (0 is the first parent), and from there on.
+    ///
+    /// # Panics
+    /// If the chain does not have that many steps.
+    pub fn split(&self, k: usize) -> (Chain<'g>, Chain<'g>) {
+        let part = |steps: &[Step<'g>]| Chain { graph: self.graph, steps: steps.to_vec() };
+        (part(&self.steps[..k]), part(&self.steps[k..]))
+    }
+
+    /// Frames beside the steps that a motion moves, as places for [`Chain::split`]: all of them if they are few, else the
+    /// last one.
+    pub(crate) fn frames_beside(&self, motion: Expr<'g>) -> Vec<usize> {
+        const FEW: usize = 8;
+        let moves = |k: &usize| !self.steps[*k].twist(self.graph, motion).is_zero();
+        let mut frames: Vec<usize> = (0..self.steps.len()).filter(moves).flat_map(|k| [k, k + 1]).collect();
+        frames.dedup();
+        if frames.len() > FEW { vec![self.steps.len()] } else { frames }
+    }
+
     /// The pose of the parent in the child.
     pub fn inverse(&self) -> Chain<'g> {
         Chain { graph: self.graph, steps: self.steps.iter().rev().map(|step| step.inverse()).collect() }

@@ -83,6 +83,11 @@ impl<'g> Twist<'g> {
         Twist { angular: self.angular + other.angular, linear: self.linear + other.linear }
     }
 
+    /// Difference of two twists of one frame.
+    pub fn minus(self, other: Twist<'g>) -> Twist<'g> {
+        Twist { angular: self.angular - other.angular, linear: self.linear - other.linear }
+    }
+
     /// Velocity of a point that moves with the frame: ω × p + v.
     pub fn velocity(self, p: Vector3<'g>) -> Vector3<'g> {
         self.angular.cross(p) + self.linear

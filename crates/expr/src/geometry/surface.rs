@@ -27,9 +27,11 @@ impl<'g> Surface<'g> {
         Surface { unknowns: unknowns.to_vec(), position, normal, constraints: Vec::new() }
     }
 
-    /// `r_u × r_v`, not of unit length.
+    /// Along `r_u × r_v`, not of unit length, without what its components have as a common factor.
+    ///
+    /// On a cone that is its radius: so the normal does not vanish at the tip.
     pub fn raw_normal([u, v]: [Expr<'g>; 2], position: Vector3<'g>) -> Vector3<'g> {
-        position.derivative(u).cross(position.derivative(v))
+        position.derivative(u).cross(position.derivative(v)).primitive()
     }
 
     /// The same surface seen from the frame at the other end of a chain that does not depend on its unknowns.
@@ -70,9 +72,27 @@ impl<'g> Surface<'g> {
         }
     }
 
-    /// The equation of meshing of one motion, mm per unit of the motion: `n · (ω × r + v)`, with the twist of the tool
-    /// against the work in the tool's own frame. It equals `det(r_u, r_v, r_motion) / |r_u × r_v|` in the work's frame.
+    /// The equation of meshing of one motion, mm per unit of the motion: `n · (ω × r + v)`. It equals
+    /// `det(r_u, r_v, r_motion) / |r_u × r_v|` in the work's frame, and is the same in every frame of the chain: it is written
+    /// in the one in which, beside the position in the work, it takes the fewest operations. Between the two bodies that a
+    /// cradle and a work spindle turn, their twists are almost constant.
     pub fn meshing(&self, t_work_tool: &Chain<'g>, motion: Expr<'g>) -> Expr<'g> {
-        self.normal.dot(t_work_tool.twist(motion).velocity(self.position))
+        let in_frame = |k: usize| {
+            let (t_work_frame, t_frame_tool) = t_work_tool.split(k);
+            let seen = self.moved(&t_frame_tool);
+            // what moves on the tool's side of the frame counts as the frame moving the other way
+            let twist = t_work_frame.twist(motion).minus(t_frame_tool.inverse().twist(motion));
+            seen.normal.dot(twist.velocity(seen.position))
+        };
+        let position = t_work_tool.point(self.position).0;
+        let unknowns: Vec<Expr<'g>> = self.unknowns.iter().copied().chain([motion]).collect();
+        let work = |meshing: &Expr<'g>| {
+            let values: Vec<Expr<'g>> = position.into_iter().chain([*meshing]).collect();
+            let slopes = values.iter().flat_map(|value| unknowns.iter().map(|unknown| value.derivative(*unknown)));
+            let all: Vec<Expr<'g>> = values.iter().copied().chain(slopes).collect();
+            meshing.graph().work(&all, &unknowns)
+        };
+        let candidates = t_work_tool.frames_beside(motion).into_iter().map(in_frame);
+        candidates.min_by_key(work).unwrap_or_else(|| position[0].graph().constant(0.0))
     }
 }

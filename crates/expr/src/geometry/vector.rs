@@ -3,6 +3,7 @@
 use std::ops::{Add, Neg, Sub};
 
 use crate::graph::{Expr, Graph};
+use crate::terms::{Products, Sum};
 
 /// A vector of three scalars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +49,30 @@ impl<'g> Vector3<'g> {
 
     /// Divided by its length.
     pub fn normalized(self) -> Vector3<'g> {
-        let norm = self.norm();
+        let mut square = self.dot(self);
+        for products in [Products::Kept, Products::WrittenOut] {
+            match Sum::of_squares(&self.0, products) {
+                Some(sum) if sum.is_one() => return self,
+                Some(sum) => square = cheaper([square], [sum.expression()])[0],
+                None => {}
+            }
+        }
+        let norm = square.sqrt();
         self.map(|component| component / norm)
+    }
+
+    /// A vector along the same line: without what all three components have as a factor, with sin² + cos² = 1 where that
+    /// makes it shorter. Where the factor is negative it points the other way.
+    pub fn primitive(self) -> Vector3<'g> {
+        let mut best = self;
+        for products in [Products::Kept, Products::WrittenOut] {
+            let sums: Option<Vec<Sum<'g>>> = self.0.iter().map(|part| Sum::of(*part, products)).collect();
+            let Some(sums) = sums else { continue };
+            let factor = Sum::common_factor(&sums);
+            let parts: Vec<Expr<'g>> = sums.into_iter().map(|sum| sum.without(&factor).expression()).collect();
+            best = Vector3(cheaper(best.0, [parts[0], parts[1], parts[2]]));
+        }
+        best
     }
 
     /// Partial derivative of each component.
@@ -61,6 +84,12 @@ impl<'g> Vector3<'g> {
     pub fn is_zero(self) -> bool {
         self.0.iter().all(|component| component.is_zero())
     }
+}
+
+/// The shorter of two ways to write the same.
+fn cheaper<'g, const N: usize>(a: [Expr<'g>; N], b: [Expr<'g>; N]) -> [Expr<'g>; N] {
+    let shared = |exprs: &[Expr<'g>]| exprs[0].graph().count(exprs).shared;
+    if shared(&b) < shared(&a) { b } else { a }
 }
 
 impl<'g> Add for Vector3<'g> {

@@ -116,6 +116,7 @@ impl<'g> Writer<'g> {
             }
             Node::Binary(Binary::Mul, a, b) if a == b => self.square(a),
             Node::Binary(Binary::Mul, a, b) => {
+                let (a, b) = if self.begins_with_number(b) { (b, a) } else { (a, b) };
                 vec![first(a, Binding::Signed), self.times(b), Part::Node(b, Binding::Product)]
             }
             Node::Binary(Binary::Div, a, b) if self.style == Style::Latex => self.fraction(a, b, is_unsigned),
@@ -125,6 +126,11 @@ impl<'g> Writer<'g> {
             Node::Binary(Binary::Pow, a, b) => self.power(a, b),
             Node::Binary(op, a, b) => self.call(op.name(), &[a, b]),
         }
+    }
+
+    /// Whether a factor is a product with a number in front, which then comes first of all.
+    fn begins_with_number(&self, factor: NodeId) -> bool {
+        matches!(self.graph.node(factor), Node::Binary(Binary::Mul, c, _) if matches!(self.graph.node(c), Node::Constant(_)))
     }
 
     fn parentheses(&self) -> (&'static str, &'static str) {

@@ -14,18 +14,14 @@ pub(super) fn mul<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
             return a;
         } else if c == 1.0 {
             return b;
-        } else if c == -1.0 {
-            return -b;
+        } else if c < 0.0 {
+            return -(-a * b);
         }
         // c·(d·x) = (c·d)·x, unless c·d overflows or underflows, where x could bring it back
         if let Some((d, x)) = constant_left(Binary::Mul, b)
             && (a * d).as_constant().is_some_and(f64::is_normal)
         {
             return (a * d) * x;
-        }
-        // c·(−x) = (−c)·x
-        if let Node::Unary(Unary::Neg, x) = b.node() {
-            return -a * a.graph.expr(x);
         }
     }
     // (−x)·y = −(x·y)
@@ -41,21 +37,15 @@ pub(super) fn mul<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     {
         return a.graph.expr(x);
     }
-    // (c·x)·y = c·(x·y)
-    if let Some((c, x)) = single_constant_left(a) {
-        return c * (x * b);
-    }
-    if a.as_constant().is_none()
-        && let Some((c, y)) = single_constant_left(b)
-    {
-        return c * (a * y);
+    match (constant_left(Binary::Mul, a), constant_left(Binary::Mul, b)) {
+        // (c·x)·(d·y) = (c·d)·(x·y), unless c·d overflows or underflows
+        (Some((c, x)), Some((d, y))) if (c * d).as_constant().is_some_and(f64::is_normal) => return (c * d) * (x * y),
+        // x·(c·x) = c·(x·x)
+        (_, Some((c, x))) if x == a => return c * (a * a),
+        (Some((c, x)), _) if x == b => return c * (b * b),
+        _ => {}
     }
     commutative(Binary::Mul, a, b)
-}
-
-/// The constant and the rest of `c·x`, where x is not such a product again (their constants did not merge).
-fn single_constant_left<'g>(a: Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)> {
-    constant_left(Binary::Mul, a).filter(|(_, x)| constant_left(Binary::Mul, *x).is_none())
 }
 
 pub(super) fn div<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
@@ -79,6 +69,13 @@ pub(super) fn div<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     }
     if let Node::Unary(Unary::Neg, y) = b.node() {
         return -(a / a.graph.expr(y));
+    }
+    // (c·x)/(d·y) = (c/d)·x/y, unless c/d overflows or underflows
+    if let (Some((c, x)), Some((d, y))) = (constant_left(Binary::Mul, a), constant_left(Binary::Mul, b))
+        && let Some(ratio) = (c / d).as_constant()
+        && ratio.is_normal()
+    {
+        return div(ratio * x, y);
     }
     a.graph.intern(Node::Binary(Binary::Div, a.id, b.id))
 }

@@ -3,6 +3,7 @@
 use crate::graph::{Expr, Node};
 use crate::op::{Binary, Unary};
 use crate::rules::{commutative, constant_left, negated};
+use crate::terms::{Products, Sum};
 
 pub(super) fn add<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     // x + 0 = x
@@ -36,6 +37,8 @@ pub(super) fn add<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     if let Some(sum) = cancelled(a, b)
         .or_else(|| cancelled(b, a))
         .or_else(|| pythagoras(a, b))
+        .or_else(|| turned_squares(a, b))
+        .or_else(|| multiples(Binary::Add, a, b))
         .or_else(|| common_factor(Binary::Add, a, b))
     {
         return sum;
@@ -82,7 +85,9 @@ pub(super) fn sub<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     if b.as_constant().is_some() {
         return -b + a;
     }
-    common_factor(Binary::Sub, a, b).unwrap_or_else(|| a.graph.intern(Node::Binary(Binary::Sub, a.id, b.id)))
+    multiples(Binary::Sub, a, b)
+        .or_else(|| common_factor(Binary::Sub, a, b))
+        .unwrap_or_else(|| a.graph.intern(Node::Binary(Binary::Sub, a.id, b.id)))
 }
 
 /// (x − y) + y = x, (x − y) + (y − x) = 0, (c − y) + (d + y) = c + d
@@ -115,11 +120,7 @@ fn without_term<'g>(sum: Expr<'g>, term: Expr<'g>) -> Option<Expr<'g>> {
 
 /// sin²x + cos²x = 1
 fn pythagoras<'g>(a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
-    let root = |square: Expr<'g>| match square.node() {
-        Node::Binary(Binary::Mul, x, y) if x == y => Some(a.graph.node(x)),
-        _ => None,
-    };
-    match (root(a)?, root(b)?) {
+    match (squared(a)?.node(), squared(b)?.node()) {
         (Node::Unary(Unary::Sin, x), Node::Unary(Unary::Cos, y))
         | (Node::Unary(Unary::Cos, x), Node::Unary(Unary::Sin, y))
             if x == y =>
@@ -128,6 +129,32 @@ fn pythagoras<'g>(a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
         }
         _ => None,
     }
+}
+
+/// (x·cos a − y·sin a)² + (x·sin a + y·cos a)² = x² + y²: a distance is the same before and after a rotation.
+fn turned_squares<'g>(a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
+    let roots = [squared(a)?, squared(b)?];
+    let is_sum = |x: &Expr<'g>| matches!(x.node(), Node::Binary(Binary::Add | Binary::Sub, ..));
+    if !roots.iter().all(is_sum) {
+        return None;
+    }
+    let sum = Sum::of_squares(&roots, Products::Kept)?;
+    (sum.len() <= roots.len()).then(|| sum.expression())
+}
+
+/// x of x².
+fn squared<'g>(a: Expr<'g>) -> Option<Expr<'g>> {
+    match a.node() {
+        Node::Binary(Binary::Mul, x, y) if x == y => Some(a.graph.expr(x)),
+        _ => None,
+    }
+}
+
+/// c·x ± d·x = (c ± d)·x, with c or d perhaps one.
+fn multiples<'g>(op: Binary, a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
+    let split = |x: Expr<'g>| constant_left(Binary::Mul, x).unwrap_or((x.graph.constant(1.0), x));
+    let ((c, x), (d, y)) = (split(a), split(b));
+    (x == y).then(|| c.binary(op, d) * x)
 }
 
 /// x·y ± x·z = x·(y ± z): one multiplication less.
