@@ -69,6 +69,6 @@ pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
-pub use picture::{Picture, PictureOptions, picture};
+pub use picture::{Picture, PictureOptions, field_maps, picture};
 pub use stl_file::write_stl;
 pub use tally::Tally;

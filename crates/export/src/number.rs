@@ -25,6 +25,18 @@ pub(crate) fn dimension(millimetres: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
 }
 
+/// A bound of bands that are `step` wide, for people: as many decimals as the step needs, with a real minus sign.
+pub(crate) fn levelled(value: f64, step: f64) -> String {
+    let size = value.abs().max(step);
+    let text = if (1e-3..1e6).contains(&size) {
+        let decimals = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
+        format!("{:.decimals$}", plain(value))
+    } else {
+        format!("{:.1e}", plain(value))
+    };
+    text.replace('-', "\u{2212}")
+}
+
 /// A residual for people: two significant digits.
 pub(crate) fn residual(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
@@ -46,6 +58,15 @@ mod tests {
         assert_eq!(shortest(-0.0), "0");
         assert_eq!(shortest(40.0), "40");
         assert_eq!(shortest(1e-300), "1e-300");
+    }
+
+    #[test]
+    fn levels_have_the_decimals_of_their_step() {
+        assert_eq!(levelled(-0.04, 0.02), "\u{2212}0.04");
+        assert_eq!(levelled(0.1 + 0.2, 0.1), "0.3");
+        assert_eq!(levelled(-0.0, 5.0), "0");
+        assert_eq!(levelled(1500.0, 500.0), "1500");
+        assert_eq!(levelled(2e-5, 1e-5), "2.0e\u{2212}5");
     }
 
     #[test]

@@ -5,7 +5,7 @@ mod synthetic;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use flank_export::{Dataset, PictureError, PictureOptions, picture};
+use flank_export::{Dataset, Field, PictureError, PictureOptions, Values, field_maps, picture};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, roxmltree};
 
@@ -43,14 +43,57 @@ fn the_png_is_the_svg() {
     let some = ["spur", "holes", "face", "point", "empty"];
     for (name, dataset) in synthetic::gallery().into_iter().filter(|(name, _)| some.contains(name)) {
         let (svg, pixels) = drawn(&dataset);
-        let tree = Tree::from_str(&svg, &Options::default()).expect("an SVG that others can read");
-        let mut others = Pixmap::new(1200, 900).unwrap();
-        resvg::render(&tree, Transform::identity(), &mut others.as_mut());
-        let differences = pixels.data().iter().zip(others.data()).map(|(&a, &b)| a.abs_diff(b));
-        let off = differences.clone().filter(|&difference| difference > 40).count();
-        let mean = differences.map(f64::from).sum::<f64>() / pixels.data().len() as f64;
-        assert!(mean < 0.02 && off < 200, "{name}: {mean} on average, {off} bytes far off");
+        same(&svg, &pixels, name);
     }
+}
+
+/// Another program draws the same from the SVG.
+fn same(svg: &str, pixels: &Pixmap, name: &str) {
+    let tree = Tree::from_str(svg, &Options::default()).expect("an SVG that others can read");
+    let mut others = Pixmap::new(1200, 900).expect("a usual size");
+    resvg::render(&tree, Transform::identity(), &mut others.as_mut());
+    let differences = pixels.data().iter().zip(others.data()).map(|(&a, &b)| a.abs_diff(b));
+    let off = differences.clone().filter(|&difference| difference > 40).count();
+    let mean = differences.map(f64::from).sum::<f64>() / pixels.data().len() as f64;
+    assert!(mean < 0.02 && off < 200, "{name}: {mean} on average, {off} bytes far off");
+}
+
+/// A flank with a signed field that is not defined at some points, one that is the same everywhere, and one of vectors.
+fn with_maps() -> Dataset {
+    let flank = synthetic::Gear { helix: 0.3, width: 20.0 }.flank("right flank", [25, 15]);
+    let mut patch = synthetic::without(flank, synthetic::holes);
+    let field = |name: &str, values| Field { name: name.into(), unit: "um/mm".into(), meaning: "test".into(), values };
+    let shares = (0..375).map(|at| ((at / 15) as f64 / 24.0, (at % 15) as f64 / 14.0));
+    let wave = |(s, t): (f64, f64)| (s > 0.1 || t > 0.2).then_some(8.0 * (s - 0.4) - 30.0 * (t - 0.3) * s);
+    patch.fields = vec![
+        field("d_normal/d_wave", Values::Scalars(shares.map(wave).collect())),
+        field("d_normal/d_constant", Values::Scalars(vec![Some(0.25); 375])),
+        field("vectors", Values::Vectors(vec![None; 375])),
+        field("none", Values::Scalars(vec![None; 375])),
+    ];
+    synthetic::dataset("job", vec![patch])
+}
+
+#[test]
+fn maps_say_what_they_show() {
+    let shown: Vec<(usize, usize)> = (0..4).map(|field| (0, field)).chain([(1, 0), (0, 9)]).collect();
+    let picture = field_maps(&with_maps(), "sensitivity", &shown, "what is held", &PictureOptions::default());
+    let svg = picture.svg();
+    let pixels = Pixmap::decode_png(&picture.png().unwrap()).unwrap();
+    std::fs::write(kept("maps.svg"), &svg).unwrap();
+    pixels.save_png(kept("maps.png")).unwrap();
+    let labels = labels(&svg);
+    let axes = "um/mm; up: z, right: root \u{2192} tip";
+    for wanted in
+        ["sensitivity", "d_normal/d_wave", "d_normal/d_constant", "none", "no point has a value", axes, "what is held"]
+    {
+        assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
+    }
+    assert!(!labels.contains(&"vectors".to_string()) && labels.contains(&"0".to_string()));
+    assert!(svg.contains("stroke=\"#be0000\""), "points without a value have a cross");
+    same(&svg, &pixels, "maps");
+    let nothing = field_maps(&with_maps(), "", &[], "", &PictureOptions::default()).svg();
+    assert!(nothing.contains("nothing to draw"));
 }
 
 #[test]

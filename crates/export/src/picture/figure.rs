@@ -19,7 +19,7 @@ use crate::number;
 use crate::tally::Tally;
 use crate::vector::Vector;
 
-const MARGIN: f64 = 48.0;
+pub(super) const MARGIN: f64 = 48.0;
 const COLUMN: f64 = 300.0;
 const DETAIL: Detail = Detail { smooth: 28, grid_spacing: 22.0, grid_width: 0.9, border_width: 2.4 };
 
@@ -53,12 +53,12 @@ pub(super) fn compose(dataset: &Dataset, width: f64, height: f64) -> Figure {
     let nodes: Vec<Node> = drawn.iter().flat_map(|drawn| drawn.mesh.nodes.iter().flatten().copied()).collect();
     let title = one_line(if dataset.header.job.is_empty() { "surfaces" } else { &dataset.header.job });
     let mut sheet = Sheet::default();
-    write_title(&title, dataset, &regions, &mut sheet);
+    write_title(&title, dataset, width - 2.0 * MARGIN, &mut sheet);
     legend::draw(&drawn, regions.legend, &mut sheet);
     let room = regions.surfaces.shrunk(60.0);
     let camera = Camera::facing(&nodes, room.width(), room.height());
     let caption = caption(dataset, &nodes, &camera);
-    write_caption(&caption, &regions, &mut sheet);
+    write_caption(&caption, [width, height], &mut sheet);
     if nodes.is_empty() {
         let why = if dataset.patches.is_empty() { "no surface was asked for" } else { "no point was solved" };
         let text = format!("nothing to draw: {why}");
@@ -90,9 +90,8 @@ fn meshes(dataset: &Dataset) -> Vec<Drawn<'_>> {
     dataset.patches.iter().enumerate().map(mesh).collect()
 }
 
-fn write_title(title: &str, dataset: &Dataset, regions: &Regions, sheet: &mut Sheet) {
+pub(super) fn write_title(title: &str, dataset: &Dataset, room: f64, sheet: &mut Sheet) {
     let header = &dataset.header;
-    let room = regions.sheet.width() - 2.0 * MARGIN;
     sheet.text([MARGIN, 66.0], Anchor::Start, 26.0, INK, &font::fitted(title, 26.0, room));
     let hash: String = header.spec_hash.chars().take(16).collect();
     let origin = one_line(&format!("{} \u{b7} hash {hash} \u{b7} {}", header.spec, header.program));
@@ -117,10 +116,10 @@ fn caption(dataset: &Dataset, nodes: &[Node], camera: &Camera) -> String {
     text
 }
 
-fn write_caption(caption: &str, regions: &Regions, sheet: &mut Sheet) {
-    let room = regions.sheet.width() - 2.0 * MARGIN;
+pub(super) fn write_caption(caption: &str, [width, height]: [f64; 2], sheet: &mut Sheet) {
+    let room = width - 2.0 * MARGIN;
     for (line, text) in font::wrapped(caption, 15.0, room).iter().take(2).enumerate() {
-        let down = regions.sheet.bottom - 56.0 + 22.0 * line as f64;
+        let down = height - 56.0 + 22.0 * line as f64;
         sheet.text([MARGIN, down], Anchor::Start, 15.0, INK, text);
     }
 }

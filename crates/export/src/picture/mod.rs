@@ -1,8 +1,8 @@
-//! One shaded picture of all patches, as SVG and as PNG.
+//! Pictures as SVG and as PNG: all patches, shaded; or fields of theirs as maps.
 //!
 //! A dataset becomes a display list once; SVG and PNG are two ways to write that list, so they show the same. Order of
 //! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines,
-//! `figure` arranges them with labels, legend and inset, `svg` and `png` write.
+//! `figure` arranges them with labels, legend and inset, `maps` arranges fields, `svg` and `png` write.
 
 mod axis;
 mod camera;
@@ -11,6 +11,8 @@ mod font;
 mod inset;
 mod labels;
 mod legend;
+mod levels;
+mod maps;
 mod marks;
 mod mesh;
 mod missing;
@@ -83,10 +85,68 @@ pub struct Picture {
 /// ```
 #[must_use]
 pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
+    on_sheet(options, |[width, height]| figure::compose(dataset, width, height))
+}
+
+/// Draws fields of numbers as maps over their grids, side by side: `shown` names each by the index of its patch and its own
+/// index among the patch's fields, `note` is written below.
+///
+/// Rows go up, columns to the right. Values are in bands with round bounds, the lower the darker, from blue to yellow: in
+/// grey and for colour-blind readers the order is the same. A line divides minus from plus; a point without a value has a
+/// red cross. What is not there, or has vectors, is left out.
+///
+/// ```
+/// # use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, PictureOptions, Point, Values, field_maps};
+/// # let header = Header {
+/// #     program: "flank 0.1.0".into(),
+/// #     spec: "gear.flank".into(),
+/// #     spec_hash: "5e1f".into(),
+/// #     job: "flanks".into(),
+/// #     conventions: Vec::new(),
+/// # };
+/// # let at = |z| Point {
+/// #     outcome: Outcome::Solved,
+/// #     position: [30.0, 0.0, z],
+/// #     normal: [1.0, 0.0, 0.0],
+/// #     unknowns: Vec::new(),
+/// #     residual: 0.0,
+/// # };
+/// let patch = Patch {
+///     fields: vec![Field {
+///         name: "k1".into(),
+///         unit: "1/mm".into(),
+///         meaning: "larger principal curvature".into(),
+///         values: Values::Scalars(vec![Some(0.03), Some(0.04)]),
+///     }],
+/// #   name: "side".into(),
+/// #   frame: "m.table".into(),
+/// #   rows: Axis { label: "z".into(), count: 2 },
+/// #   columns: Axis { label: "rho".into(), count: 1 },
+/// #   unknowns: Vec::new(),
+/// #   points: vec![at(0.0), at(1.0)],
+///     // and the grid of points
+/// };
+/// let dataset = Dataset { header, patches: vec![patch] };
+/// let picture = field_maps(&dataset, "curvatures", &[(0, 0)], "", &PictureOptions::default());
+/// assert!(picture.svg().contains("aria-label=\"k1\""));
+/// ```
+#[must_use]
+pub fn field_maps(
+    dataset: &Dataset,
+    title: &str,
+    shown: &[(usize, usize)],
+    note: &str,
+    options: &PictureOptions,
+) -> Picture {
+    on_sheet(options, |size| maps::compose(dataset, title, shown, note, size))
+}
+
+/// A figure on a sheet of the size that is asked for.
+fn on_sheet(options: &PictureOptions, compose: impl FnOnce([f64; 2]) -> figure::Figure) -> Picture {
     let width = options.width.clamp(*SIDES.start(), *SIDES.end());
     let height = options.height.clamp(*SIDES.start(), *SIDES.end());
     let unit = (f64::from(width) / SHEET[0]).min(f64::from(height) / SHEET[1]);
-    let figure = figure::compose(dataset, f64::from(width) / unit, f64::from(height) / unit);
+    let figure = compose([f64::from(width) / unit, f64::from(height) / unit]);
     Picture { width, height, unit, title: figure.title, description: figure.caption, items: figure.items }
 }
 

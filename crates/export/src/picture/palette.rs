@@ -20,6 +20,22 @@ const PATCHES: [Colour; 7] = [
     Colour([204, 121, 167]),
 ];
 
+/// From the lowest to the highest value: lightness grows all the way, and blue against yellow is what all readers tell apart.
+const SCALE: [Colour; 5] = [
+    Colour([0, 34, 78]),
+    Colour([63, 80, 112]),
+    Colour([124, 124, 122]),
+    Colour([188, 174, 98]),
+    Colour([254, 232, 92]),
+];
+
+/// The colour of a share from 0 to 1 of the way from the lowest to the highest value.
+pub(super) fn of_share(share: f64) -> Colour {
+    let along = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
+    let from = (along.floor() as usize).min(SCALE.len() - 2);
+    SCALE[from].towards(SCALE[from + 1], along - from as f64)
+}
+
 /// Where the light comes from, in the eye's frame (right, up, towards the eye); a unit vector.
 const LIGHT: Vector = [-0.55, 0.62, 0.56];
 
@@ -54,4 +70,20 @@ impl Colour {
 
 fn byte(value: f64) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rec. 709 luma, of 255.
+    fn luma(colour: Colour) -> f64 {
+        colour.0.iter().zip([0.2126, 0.7152, 0.0722]).map(|(&channel, weight)| weight * f64::from(channel)).sum()
+    }
+
+    #[test]
+    fn the_scale_is_a_scale_in_grey() {
+        let greys: Vec<f64> = (0..=10).map(|k| luma(of_share(f64::from(k) / 10.0))).collect();
+        assert!(greys.windows(2).all(|pair| pair[1] > pair[0] + 10.0), "{greys:?}");
+    }
 }
