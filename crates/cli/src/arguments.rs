@@ -68,6 +68,7 @@ Examples:
   flank solve specs/hobbing/helical_gear.chain --set teeth=37 --set helix_angle=\"15 deg\"
   flank solve specs/bevel/pinion_19x62.chain --out /tmp/pinion --format csv,json,stl
   flank solve specs/bevel/pinion_19x62.chain --geometry
+  flank solve specs/bevel/pinion_19x62.chain --sensitivity
   flank solve specs/hobbing/spur_gear.chain --json --no-picture")]
 pub(crate) struct Solve {
     #[command(flatten)]
@@ -88,6 +89,10 @@ pub(crate) struct Solve {
     /// between them, curvatures of the gap between tool and work (induced_*), the metric of the sampled coordinates
     #[arg(long)]
     pub(crate) geometry: bool,
+    /// Add to each point how far it moves along its normal when a parameter of the job or a setting changes (d_normal/d_NAME:
+    /// um per mm, per arcmin, per 0.001 of a number), rank the parameters, draw maps of the most influential
+    #[arg(long)]
+    pub(crate) sensitivity: bool,
     /// Print the table as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -8,6 +8,7 @@ mod fields;
 mod fmt;
 mod geometry;
 mod limits;
+mod sensitivity;
 mod solve;
 mod spec;
 mod table;

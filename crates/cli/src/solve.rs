@@ -14,6 +14,7 @@ use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 use crate::arguments::{Format, Solve};
 use crate::geometry;
 use crate::limits::{self, Line};
+use crate::sensitivity::{self, Sensitivity};
 use crate::table::{Solved, Table};
 use crate::{Ending, print, spec, travel, trims};
 
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let limits: Vec<Line<'_, '_>> = limits.collect();
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(solved.iter().flat_map(|solved| &solved.trims)).collect();
         let dataset = dataset(job, &solved, &lines, &hash, arguments);
-        let written = match write_files(&dataset, &job.name, arguments) {
+        let written = match write_files(&dataset, &solved, &job.name, arguments) {
             Ok(written) => written,
             Err(reason) => {
                 anstream::eprintln!("error: {reason}");
@@ -74,7 +75,8 @@ fn solve_surface<'j, 'g>(
     if arguments.geometry {
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
-    Some(Solved { surface, sample, points, effort, fields, trims })
+    let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
+    Some(Solved { surface, sample, points, effort, fields, sensitivity, trims })
 }
 
 /// Where the unknowns of a surface are looked for.
@@ -92,7 +94,8 @@ fn dataset(
     let surfaces = solved.iter().map(|solved| {
         let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
         let patch = patch(&solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
-        Patch { fields: solved.fields.clone(), ..patch }
+        let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
+        Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
     let settings = arguments.which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Dataset {
@@ -148,7 +151,12 @@ fn point(solved: &SurfacePoint) -> Point {
 }
 
 /// Writes the files that are asked for and names them.
-fn write_files(dataset: &Dataset, name: &str, arguments: &Solve) -> Result<Vec<String>, String> {
+fn write_files(
+    dataset: &Dataset,
+    solved: &[Solved<'_, '_>],
+    name: &str,
+    arguments: &Solve,
+) -> Result<Vec<String>, String> {
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
     let mut written = Vec::new();
@@ -166,11 +174,15 @@ fn write_files(dataset: &Dataset, name: &str, arguments: &Solve) -> Result<Vec<S
         }
     }
     if !arguments.no_picture {
-        let drawn = picture(dataset, &PictureOptions::default());
-        let png = drawn.png().map_err(|error| error.to_string())?;
-        write("png", &|out| Ok(out.write_all(&png)?))?;
-        let svg = drawn.svg();
-        write("svg", &|out| Ok(out.write_all(svg.as_bytes())?))?;
+        let moved = sensitivity::pictures(solved, dataset);
+        let moved = moved.into_iter().map(|(surface, drawn)| (format!("{surface}.sensitivity."), drawn));
+        let all = picture(dataset, &PictureOptions::default());
+        for (part, drawn) in std::iter::once((String::new(), all)).chain(moved) {
+            let png = drawn.png().map_err(|error| error.to_string())?;
+            write(&format!("{part}png"), &|out| Ok(out.write_all(&png)?))?;
+            let svg = drawn.svg();
+            write(&format!("{part}svg"), &|out| Ok(out.write_all(svg.as_bytes())?))?;
+        }
     }
     Ok(written)
 }

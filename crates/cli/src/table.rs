@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::fields;
 use crate::limits::Line;
+use crate::sensitivity::{self, Sensitivity};
 
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
@@ -21,6 +22,7 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) trims: Vec<Line<'j, 'g>>,
     /// What more is known of the points; files show it after the status.
     pub(crate) fields: Vec<Field>,
+    pub(crate) sensitivity: Option<Sensitivity>,
 }
 
 /// A job's surfaces.
@@ -148,6 +150,7 @@ impl Table<'_, '_, '_> {
         rows.extend(all.flat_map(|row| row.cells()));
         out.push_str(&aligned(&rows, "<>>>"));
         out.push_str(&fields::text(self.solved));
+        out.push_str(&sensitivity::text(self.solved));
         for solved in self.solved.iter().filter(|solved| solved.effort.branches > 1) {
             let (name, branches) = (&solved.surface.name, solved.effort.branches);
             let _ = writeln!(
@@ -264,6 +267,7 @@ fn surface_json(solved: &Solved<'_, '_>) -> Value {
     let mut entries = solved.row().json();
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
     entries.insert("fields".to_string(), fields::json(solved));
+    entries.insert("sensitivity".to_string(), sensitivity::json(solved));
     entries.insert("branches".to_string(), json!(solved.effort.branches));
     Value::Object(entries)
 }

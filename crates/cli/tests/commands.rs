@@ -111,6 +111,44 @@ fn geometry_is_listed_and_written() {
     );
 }
 
+/// A rack that stands off by 1 mm leaves sin α more material all over its flanks; the face width leaves them where they are.
+#[test]
+fn sensitivity_is_ranked_written_and_drawn() {
+    let out = folder("sensitivity");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--sensitivity", "--out", out.to_str().unwrap()];
+    let run = flank(&base);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in
+        ["flank_plus moves with", "profile_shift", "um/0.001", "no influence, ", "face_width", "by little: teeth"]
+    {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    let rows: Vec<Vec<&str>> =
+        csv.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|title| *title == name).expect("a column");
+    let [shift, width] = ["d_normal/d_profile_shift", "d_normal/d_face_width"].map(column);
+    for row in rows.iter().filter(|row| row[0].starts_with("flank_")) {
+        // module 3 mm, told for 0.001
+        let moved: f64 = row[shift].parse().expect("a number");
+        assert!((moved - 3.0 * 20f64.to_radians().sin()).abs() < 1e-12, "{moved}");
+        assert_eq!(row[width], "0");
+    }
+    for surface in ["flank_plus", "fillet_minus"] {
+        for extension in ["png", "svg"] {
+            let path = out.join(format!("spur_gear.{surface}.sensitivity.{extension}"));
+            assert!(std::fs::metadata(&path).is_ok_and(|file| file.len() > 1000), "{}", path.display());
+        }
+    }
+    let summary = flank(&[&base[..], &["--json", "--no-picture"]].concat());
+    let table: serde_json::Value = serde_json::from_slice(&summary.stdout).expect("JSON");
+    let sensitivity = &table["surfaces"][0]["sensitivity"];
+    let rms = |k: usize| sensitivity["parameters"][k]["rms"].as_f64().expect("a number");
+    assert!(rms(0) >= rms(1) && rms(1) > 0.0);
+    assert_eq!(sensitivity["counts"], serde_json::json!(["teeth"]));
+}
+
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let [a, b] = ["bytes-a", "bytes-b"].map(folder);

@@ -4,7 +4,7 @@ use super::figure::{self, Figure, MARGIN};
 use super::font;
 use super::levels::Levels;
 use super::paint::{Anchor, Place, Rect, Sheet};
-use super::palette::{self, GREY, INK, RED};
+use super::palette::{self, GREY, INK, RED, WHITE};
 use crate::conventions::one_line;
 use crate::dataset::{Dataset, Field, Patch, Values};
 use crate::number::levelled;
@@ -70,8 +70,9 @@ impl<'a> Panel<'a> {
 
     fn draw(&self, rect: Rect, sheet: &mut Sheet) {
         let (room, left) = (rect.width(), rect.left);
-        let name = font::fitted(&one_line(&self.field.name), 17.0, room);
-        sheet.text([left, rect.top + 15.0], Anchor::Start, 17.0, INK, &name);
+        let name = one_line(&self.field.name);
+        let size = if font::width(&name, 17.0) > room { 14.0 } else { 17.0 };
+        sheet.text([left, rect.top + 15.0], Anchor::Start, size, INK, &font::fitted(&name, size, room));
         let about = font::fitted(&self.about(), 13.0, room);
         sheet.text([left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &about);
         let map = Rect { top: rect.top + HEAD, bottom: rect.bottom - FOOT, ..rect };
@@ -79,6 +80,11 @@ impl<'a> Panel<'a> {
             Some(levels) => {
                 self.draw_bands(levels, map, sheet);
                 self.draw_missing(map, sheet);
+                if let [low, high] = levels.bounds()[..] {
+                    let text =
+                        format!("all between {} and {}", levelled(low, levels.step()), levelled(high, levels.step()));
+                    sheet.text(map.middle(), Anchor::Middle, 15.0, WHITE, &text);
+                }
                 draw_key(levels, Rect { top: map.bottom + 8.0, bottom: map.bottom + 8.0 + KEY, ..map }, sheet);
             }
             None => {

@@ -1,0 +1,175 @@
+//! `flank solve --sensitivity`: how far each parameter moves the surfaces.
+
+use std::f64::consts::PI;
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
+use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
+use flank_solver::{NormalSensitivity, Outcome, Setting, SurfacePoint};
+use serde_json::{Value, json};
+
+use crate::table::{Solved, aligned};
+
+/// Maps on one picture.
+const MAPS: usize = 6;
+
+/// What the numbers are, for pictures.
+const NOTE: &str = "Normal displacement of the surface per unit of a parameter, exact derivative; plus is more \
+    material. Parameters whose definition contains it follow; to first order it does not matter whether the points that are \
+    asked for move with it.";
+
+/// How the points of a surface move with each parameter of the job that is no count.
+pub(crate) struct Sensitivity {
+    influences: Vec<Influence>,
+    counts: Vec<String>,
+}
+
+struct Influence {
+    parameter: String,
+    unit: String,
+    values: Vec<Option<f64>>,
+    /// Root of the mean square, and the largest, over all points with a value.
+    rms: f64,
+    largest: f64,
+}
+
+pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
+    let settings: Vec<Setting<'g>> = job
+        .parameters
+        .iter()
+        .map(|p| Setting { variable: p.variable, definition: p.definition, value: p.value })
+        .collect();
+    let exact =
+        NormalSensitivity::new(&surface.surface, &settings).expect("a job without errors leaves nothing unbound");
+    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| exact.at(&point.unknowns)).flatten();
+    let moved: Vec<Option<Vec<f64>>> = points.iter().map(at).collect();
+    let continuous = job.parameters.iter().enumerate().filter(|(_, parameter)| !parameter.is_count);
+    let of_all = |k: usize| moved.iter().map(move |point| Some(point.as_ref()?[k]));
+    let influences = continuous.map(|(k, parameter)| Influence::new(parameter, of_all(k))).collect();
+    let counts = job.parameters.iter().filter(|parameter| parameter.is_count);
+    Sensitivity { influences, counts: counts.map(|parameter| parameter.name.clone()).collect() }
+}
+
+impl Influence {
+    fn new(parameter: &Parameter<'_>, moved: impl Iterator<Item = Option<f64>>) -> Influence {
+        let (size, step) = small_step(parameter.dimension);
+        let values: Vec<Option<f64>> = moved.map(|mm| Some(1e3 * size * mm?)).collect();
+        let known = || values.iter().flatten();
+        let squares: f64 = known().map(|um| um * um).sum();
+        Influence {
+            parameter: parameter.name.clone(),
+            unit: format!("um/{step}"),
+            rms: (squares / known().count().max(1) as f64).sqrt(),
+            largest: known().fold(0.0, |largest: f64, um| largest.max(um.abs())),
+            values,
+        }
+    }
+
+    fn field(&self) -> Field {
+        Field {
+            name: format!("d_normal/d_{}", self.parameter),
+            unit: self.unit.clone(),
+            meaning: format!(
+                "normal displacement of the surface per unit of `{}`; plus is more material",
+                self.parameter
+            ),
+            values: Values::Scalars(self.values.clone()),
+        }
+    }
+
+    fn moves(&self) -> bool {
+        self.largest > 0.0
+    }
+}
+
+/// The change of a parameter that displacements are told for: its size in mm and radians, and how it is written.
+fn small_step(dimension: Dimension) -> (f64, String) {
+    match dimension {
+        Dimension::LENGTH => (1.0, "mm".to_string()),
+        Dimension::ANGLE => (PI / 10_800.0, "arcmin".to_string()),
+        Dimension::NUMBER => (1e-3, "0.001".to_string()),
+        other => {
+            let power =
+                |(unit, power): (&str, i32)| if power == 0 { String::new() } else { format!(" {unit}^{power}") };
+            let units = [("mm", other.length), ("rad", other.angle)].map(power).concat();
+            (1.0, format!("({})", units.trim_start()))
+        }
+    }
+}
+
+impl Sensitivity {
+    /// A field for each parameter, in the order of the job.
+    pub(crate) fn fields(&self) -> impl Iterator<Item = Field> {
+        self.influences.iter().map(Influence::field)
+    }
+
+    /// The parameters that move the surface, the one that does most first, each by its place in the job.
+    fn ranked(&self) -> Vec<(usize, &Influence)> {
+        let mut ranked: Vec<(usize, &Influence)> =
+            self.influences.iter().enumerate().filter(|(_, one)| one.moves()).collect();
+        ranked.sort_by(|(_, a), (_, b)| b.rms.total_cmp(&a.rms));
+        ranked
+    }
+
+    fn idle(&self) -> Vec<&str> {
+        self.influences.iter().filter(|one| !one.moves()).map(|one| one.parameter.as_str()).collect()
+    }
+
+    fn json(&self) -> Value {
+        let ranked: Vec<Value> = self
+            .ranked()
+            .iter()
+            .map(|(_, one)| json!({ "parameter": one.parameter, "unit": one.unit, "rms": one.rms, "largest": one.largest }))
+            .collect();
+        json!({ "parameters": ranked, "no_influence": self.idle(), "counts": self.counts })
+    }
+}
+
+/// Tables of all surfaces, ranked; empty if nobody has asked for them.
+pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved {
+        let Some(sensitivity) = &solved.sensitivity else { continue };
+        let ranked = sensitivity.ranked();
+        let mut rows = vec![["parameter", "rms", "largest", "normal displacement in"].map(String::from)];
+        rows.extend(
+            ranked.iter().map(|(_, one)| {
+                [one.parameter.clone(), micrometres(one.rms), micrometres(one.largest), one.unit.clone()]
+            }),
+        );
+        out += &format!("\n{} moves with\n{}", solved.surface.name, aligned(&rows, "<>>"));
+        let idle = sensitivity.idle();
+        if !idle.is_empty() {
+            let of = sensitivity.influences.len();
+            out += &format!("  no influence, {} of {of}: {}\n", idle.len(), idle.join(", "));
+        }
+        if !sensitivity.counts.is_empty() {
+            out += &format!("  counts, which do not change by little: {}\n", sensitivity.counts.join(", "));
+        }
+    }
+    out
+}
+
+/// Four digits behind the point, fewer where there would be only zeros.
+fn micrometres(um: f64) -> String {
+    if um < 1e-3 { format!("{um:.1e}") } else { format!("{um:.4}") }
+}
+
+/// The same for a summary in JSON; `null` if nobody has asked for it.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    solved.sensitivity.as_ref().map_or(Value::Null, Sensitivity::json)
+}
+
+/// A picture of each surface: maps of the parameters that move it most. Named by the surface.
+pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
+    let mut pictures = Vec::new();
+    for solved in solved {
+        let Some(sensitivity) = &solved.sensitivity else { continue };
+        let Some(patch) = dataset.patches.iter().position(|patch| patch.name == solved.surface.name) else { continue };
+        let most = sensitivity.ranked().into_iter().take(MAPS);
+        let shown: Vec<(usize, usize)> = most.map(|(k, _)| (patch, solved.fields.len() + k)).collect();
+        let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);
+        let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
+        pictures.push((solved.surface.name.clone(), picture));
+    }
+    pictures
+}
