@@ -1,6 +1,10 @@
 //! The scalar evaluator: one set of inputs at a time.
 
-use crate::tape::{Operation, Tape};
+use std::sync::Arc;
+
+use crate::curve::Curve;
+use crate::kernel;
+use crate::tape::{Instruction, Operation, Tape};
 
 /// Runs a tape on floats; keeps its registers, so that a run allocates nothing.
 #[derive(Clone, Debug)]
@@ -25,16 +29,25 @@ impl<'t> ScalarEvaluator<'t> {
     pub fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
         assert_eq!(outputs.len(), self.tape.output_count(), "number of outputs");
         self.registers[..self.tape.input_count()].copy_from_slice(inputs);
-        for step in self.tape.instructions() {
-            let a = self.registers[step.a as usize];
-            self.registers[step.out as usize] = match step.operation {
-                Operation::Unary(op) => op.apply(a),
-                Operation::Curve(order) => self.tape.curves()[step.b as usize].value(order, a),
-                Operation::Binary(op) => op.apply(a, self.registers[step.b as usize]),
-            };
-        }
+        execute(self.tape.instructions(), self.tape.curves(), &mut self.registers);
         for (output, &register) in outputs.iter_mut().zip(self.tape.outputs()) {
             *output = self.registers[register as usize];
         }
+    }
+}
+
+pub(crate) fn execute(instructions: &[Instruction], curves: &[Arc<Curve>], registers: &mut [f64]) {
+    for step in instructions {
+        let a = registers[step.a as usize];
+        registers[step.out as usize] = match step.operation {
+            Operation::Unary(op) => op.apply(a),
+            Operation::Curve(order) => curves[step.b as usize].value(order, a),
+            Operation::Binary(op) => op.apply(a, registers[step.b as usize]),
+            Operation::SinCos => {
+                let (sine, cosine) = kernel::sin_cos(a);
+                registers[step.b as usize] = cosine;
+                sine
+            }
+        };
     }
 }

@@ -1,5 +1,7 @@
 //! The elementary operations and what they do to numbers.
 
+use crate::kernel;
+
 /// An operation on one scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)] // each is its name
@@ -71,12 +73,12 @@ impl Unary {
         match self {
             Unary::Neg => -a,
             Unary::Sqrt => a.sqrt(),
-            Unary::Sin => a.sin(),
-            Unary::Cos => a.cos(),
-            Unary::Tan => a.tan(),
-            Unary::Asin => a.asin(),
-            Unary::Acos => a.acos(),
-            Unary::Atan => a.atan(),
+            Unary::Sin => kernel::sin(a),
+            Unary::Cos => kernel::cos(a),
+            Unary::Tan => kernel::tan(a),
+            Unary::Asin => kernel::asin(a),
+            Unary::Acos => kernel::acos(a),
+            Unary::Atan => kernel::atan(a),
             // the standard library's are off by several units in the last place
             Unary::Sinh => core_math::sinh(a),
             Unary::Cosh => core_math::cosh(a),
@@ -85,8 +87,8 @@ impl Unary {
             Unary::Acosh => core_math::acosh(a),
             Unary::Atanh => core_math::atanh(a),
             Unary::Arcinv => inverse_involute(a),
-            Unary::Exp => a.exp(),
-            Unary::Ln => a.ln(),
+            Unary::Exp => kernel::exp(a),
+            Unary::Ln => kernel::ln(a),
             Unary::Abs => a.abs(),
             Unary::Sign if a == 0.0 => 0.0,
             Unary::Sign => a.signum(),
@@ -135,7 +137,7 @@ impl Binary {
             Binary::Mul => a * b,
             Binary::Div => a / b,
             Binary::Pow => a.powf(b),
-            Binary::Atan2 => a.atan2(b),
+            Binary::Atan2 => kernel::atan2(a, b),
             // not `f64::min`, which drops a NaN and leaves the sign of min(0, −0) open
             Binary::Min if a < b || a.is_nan() => a,
             Binary::Max if a > b || a.is_nan() => a,

@@ -18,9 +18,11 @@ pub enum Operation {
     Binary(Binary),
     /// `out` = the derivative of this order of the tape's curve number `b`, at `a`.
     Curve(u8),
+    /// `out = sin(a)` and register `b` = `cos(a)`, together at little more than the cost of one.
+    SinCos,
 }
 
-/// One step: read registers `a` and `b`, write register `out`, which may be one of the two.
+/// One step: read registers, then write registers, which may be the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
     /// What is done.
@@ -152,6 +154,8 @@ impl Tape {
 struct Registers {
     place: NodeMap<NodeId, u32>,
     uses: NodeMap<NodeId, u32>,
+    /// The cosine that has the angle of a sine, and the other way round, where both are wanted.
+    partners: NodeMap<NodeId, NodeId>,
     free: Vec<u32>,
     /// Curves in the order in which the tape numbers them.
     curves: Vec<CurveId>,
@@ -177,12 +181,23 @@ impl Registers {
                 uses.insert(id, u32::MAX);
             }
         }
-        Registers { place: NodeMap::default(), uses, free: Vec::new(), curves: Vec::new(), next: 0 }
+        let partners = partners(graph, order);
+        Registers { place: NodeMap::default(), uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
     }
 
-    /// The instruction of a node; none for a leaf, which is in its register from the start.
+    /// The instruction of a node; none for a leaf, which is in its register from the start, nor for the second of a sine and
+    /// a cosine.
     fn step(&mut self, graph: &Graph, id: NodeId) -> Option<Instruction> {
+        if self.place.contains_key(&id) {
+            return None;
+        }
         let (operation, a, b) = match graph.node(id) {
+            Node::Unary(Unary::Sin, a) if self.partners.contains_key(&id) => {
+                return Some(self.sin_cos_step(id, self.partners[&id], a));
+            }
+            Node::Unary(Unary::Cos, a) if self.partners.contains_key(&id) => {
+                return Some(self.sin_cos_step(self.partners[&id], id, a));
+            }
             Node::Unary(op, a) => (Operation::Unary(op), a, a),
             Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
             Node::Curve(curve, order, a) => return Some(self.curve_step(id, curve, order, a)),
@@ -194,6 +209,14 @@ impl Registers {
             self.release(b);
         }
         Some(Instruction { operation, out: self.allocate(id), a: a_register, b: b_register })
+    }
+
+    fn sin_cos_step(&mut self, sine: NodeId, cosine: NodeId, a: NodeId) -> Instruction {
+        let a_register = self.place[&a];
+        self.release(a);
+        self.release(a);
+        let (out, b) = (self.allocate(sine), self.allocate(cosine));
+        Instruction { operation: Operation::SinCos, out, a: a_register, b }
     }
 
     fn curve_step(&mut self, id: NodeId, curve: CurveId, order: u8, a: NodeId) -> Instruction {
@@ -225,4 +248,17 @@ impl Registers {
         self.place.insert(id, register);
         register
     }
+}
+
+/// Of each angle whose sine and cosine are both among the nodes, the one by the other.
+fn partners(graph: &Graph, order: &[NodeId]) -> NodeMap<NodeId, NodeId> {
+    let (mut of_angle, mut partners) = (NodeMap::<NodeId, NodeId>::default(), NodeMap::default());
+    for &id in order {
+        let Node::Unary(Unary::Sin | Unary::Cos, angle) = graph.node(id) else { continue };
+        if let Some(other) = of_angle.insert(angle, id) {
+            partners.insert(id, other);
+            partners.insert(other, id);
+        }
+    }
+    partners
 }

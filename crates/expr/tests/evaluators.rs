@@ -4,7 +4,9 @@
 mod suite;
 mod support;
 
-use flank_expr::{Graph, Interval, IntervalEvaluator, ScalarEvaluator, Tape};
+use flank_expr::{
+    Graph, InstructionSet, Interval, IntervalEvaluator, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape,
+};
 use suite::Subject;
 
 struct Scalar;
@@ -58,10 +60,91 @@ impl Subject for Points {
 
 evaluator_suite!(intervals, Points);
 
+/// Blocks of lanes, on every set of instructions that the machine has.
+struct Lanes;
+
+impl Lanes {
+    fn on(instructions: InstructionSet, tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let laid_out = LaneTape::new(tape);
+        let mut evaluator = LaneEvaluator::new(&laid_out, instructions);
+        let mut rows = Vec::new();
+        for block in points.chunks(LANES) {
+            let point = |lane: usize| &block[lane.min(block.len() - 1)];
+            for k in 0..tape.input_count() {
+                for (lane, value) in evaluator.input(k).iter_mut().enumerate() {
+                    *value = point(lane)[k];
+                }
+            }
+            evaluator.run();
+            let row = |lane: usize| (0..tape.output_count()).map(|k| evaluator.output(k)[lane]).collect();
+            rows.extend((0..block.len()).map(row));
+        }
+        rows
+    }
+}
+
+impl Subject for Lanes {
+    type Value = f64;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut all = InstructionSet::available().into_iter().map(|set| Lanes::on(set, tape, points));
+        let plain = all.next().expect("every machine has plain instructions");
+        for other in all {
+            let pairs = plain.iter().flatten().zip(other.iter().flatten());
+            assert!(pairs.into_iter().all(|(a, b)| Lanes::agrees(*a, b)), "{plain:?}, on other instructions {other:?}");
+        }
+        plain
+    }
+
+    fn agrees(expected: f64, found: &f64) -> bool {
+        Scalar::agrees(expected, found)
+    }
+}
+
+evaluator_suite!(lanes, Lanes);
+
+/// Every second input is the same in all lanes.
+struct Uniform;
+
+impl Subject for Uniform {
+    type Value = f64;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let uniform: Vec<bool> = (0..tape.input_count()).map(|k| k % 2 == 0).collect();
+        let laid_out = LaneTape::with_uniform(tape, &uniform);
+        let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::widest());
+        let mut row = |point: &Vec<f64>| {
+            for (k, &value) in point.iter().enumerate() {
+                if uniform[k] { evaluator.set_uniform(k, value) } else { evaluator.input(k).fill(value) }
+            }
+            evaluator.run();
+            (0..tape.output_count()).map(|k| evaluator.output(k)[LANES - 1]).collect()
+        };
+        points.iter().map(&mut row).collect()
+    }
+
+    fn agrees(expected: f64, found: &f64) -> bool {
+        Scalar::agrees(expected, found)
+    }
+}
+
+evaluator_suite!(uniform_inputs, Uniform);
+
+/// What depends on uniform inputs alone is no work of lanes.
+#[test]
+fn uniform_parts_are_computed_once() {
+    let graph = Graph::new();
+    let (x, y) = (graph.variable("x"), graph.variable("y"));
+    let tape = Tape::new(&[y.sin().exp() * x, y.cos()], &[x, y]).expect("every variable is an input");
+    assert_eq!(LaneTape::new(&tape).stages(), [0, 3]);
+    // the product, and the cosine spread over the lanes
+    assert_eq!(LaneTape::with_uniform(&tape, &[false, true]).stages(), [2, 2]);
+}
+
 /// Evaluators that are wrong in one way each: the suite must notice.
 mod the_suite_notices {
     use super::*;
-    use flank_expr::Operation;
+    use flank_expr::{Operation, Unary};
 
     /// Runs a tape by hand with the mistake in `write`.
     fn run(tape: &Tape, point: &[f64], write: impl Fn(&mut [f64], usize, f64)) -> Vec<f64> {
@@ -71,6 +154,10 @@ mod the_suite_notices {
         for step in tape.instructions() {
             let (a, b) = (registers[step.a as usize], registers[step.b as usize]);
             let value = match step.operation {
+                Operation::SinCos => {
+                    write(&mut registers, step.b as usize, Unary::Cos.apply(a));
+                    Unary::Sin.apply(a)
+                }
                 Operation::Unary(op) => op.apply(a),
                 Operation::Curve(order) => tape.curves()[step.b as usize].value(order, a),
                 Operation::Binary(op) => op.apply(a, b),

@@ -150,10 +150,15 @@ fn evaluate(tape: &Tape, point: &[f64]) -> Vec<Option<Digits>> {
     let mut registers: Vec<Option<Digits>> = known.map(|x| Some(Digits::from(*x))).collect();
     registers.resize(tape.register_count(), None);
     for step in tape.instructions() {
-        let (a, b) = (registers[step.a as usize].as_ref(), registers.get(step.b as usize).and_then(Option::as_ref));
+        let a = registers[step.a as usize].clone();
+        let b = registers.get(step.b as usize).cloned().flatten();
         registers[step.out as usize] = match step.operation {
             Operation::Unary(op) => a.and_then(|a| a.unary(op)),
-            Operation::Binary(op) => a.zip(b).and_then(|(a, b)| a.binary(op, b)),
+            Operation::Binary(op) => a.zip(b).and_then(|(a, b)| a.binary(op, &b)),
+            Operation::SinCos => {
+                registers[step.b as usize] = a.as_ref().and_then(|a| a.unary(Unary::Cos));
+                a.and_then(|a| a.unary(Unary::Sin))
+            }
             Operation::Curve(_) => unreachable!("programs have no curves"),
         };
     }

@@ -254,8 +254,8 @@ fn sine_and_cosine_are_exact_at_right_angles() {
 fn other_angles_are_left_alone() {
     let graph = Graph::new();
     for angle in [5e-324, 1e-300, 1e-17, PI + 1e-14, PI / 2.0 - 1e-14, 1.0, 1e9, f64::MAX] {
-        for (op, expected) in [(Unary::Sin, angle.sin()), (Unary::Cos, angle.cos()), (Unary::Tan, angle.tan())] {
-            assert_eq!(graph.constant(angle).unary(op).as_constant(), Some(expected), "{op:?} {angle}");
+        for op in [Unary::Sin, Unary::Cos, Unary::Tan] {
+            assert_eq!(graph.constant(angle).unary(op).as_constant(), Some(op.apply(angle)), "{op:?} {angle}");
         }
     }
 }

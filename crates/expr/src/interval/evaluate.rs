@@ -45,6 +45,10 @@ impl<'t> IntervalEvaluator<'t> {
                 Operation::Unary(op) => op.apply_interval(a),
                 Operation::Curve(order) => self.tape.curves()[step.b as usize].enclosure(order, a),
                 Operation::Binary(op) => binary(op, step, a, self.registers[step.b as usize]),
+                Operation::SinCos => {
+                    self.registers[step.b as usize] = a.cos();
+                    a.sin()
+                }
             };
         }
         for (output, &register) in outputs.iter_mut().zip(self.tape.outputs()) {
