@@ -125,13 +125,20 @@ pub(crate) struct Check {
 Examples:
   flank derive specs/hobbing/helical_gear.chain
   flank derive specs/bevel/pinion_19x62.chain --latex > pinion.tex
-  flank derive specs/hobbing/spur_gear.chain --set teeth=10")]
+  flank derive specs/hobbing/spur_gear.chain --set teeth=10
+  flank derive specs/hobbing/helical_gear.chain --cost  how many operations a point takes")]
 pub(crate) struct Derive {
     #[command(flatten)]
     pub(crate) which: Which,
     /// Print LaTeX instead of text
     #[arg(long)]
     pub(crate) latex: bool,
+    /// Print the number of operations that the equations for a point take, with their Jacobian
+    #[arg(long, conflicts_with = "latex")]
+    pub(crate) cost: bool,
+    /// Print the numbers of operations as JSON
+    #[arg(long, requires = "cost")]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]

@@ -233,6 +233,24 @@ fn a_missing_file_is_told() {
 }
 
 #[test]
+fn derive_counts_operations() {
+    let run = flank(&["derive", "specs/bevel/pinion_19x62.chain", "--cost", "--json"]);
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let concave = &told["jobs"][0]["surfaces"][0];
+    assert_eq!((concave["surface"].as_str(), concave["equations"].as_u64()), (Some("concave"), Some(3)));
+    let count = |stage: &str, what: &str| concave[stage][what].as_u64().expect("a count");
+    let arithmetic = |stage: &str| {
+        ["additions", "multiplications", "divisions", "square_roots"].iter().map(|what| count(stage, what)).sum::<u64>()
+    };
+    // a cradle machine's flank with its Jacobian: what an expert needs by hand
+    assert!(arithmetic("per_point") + arithmetic("per_motion_value") <= 160, "{concave}");
+    assert!(count("per_point", "sincos") + count("per_motion_value", "sincos") <= 4, "{concave}");
+    assert!(arithmetic("per_spec") > 0);
+    let table = text(&flank(&["derive", "specs/bevel/pinion_19x62.chain", "--cost"]).stdout);
+    assert!(table.contains("per motion value"), "{table}");
+}
+
+#[test]
 fn derive_prints_every_stage() {
     let run = flank(&["derive", "specs/bevel/pinion_19x62.chain"]);
     assert_eq!(run.status.code(), Some(0));

@@ -18,6 +18,7 @@
 //! assert_eq!(out, [0.0, 3.0]);
 //! ```
 
+mod cost;
 mod curve;
 mod derivative;
 mod evaluate;
@@ -34,6 +35,7 @@ mod rules;
 mod tape;
 mod terms;
 
+pub use cost::Cost;
 pub use curve::{Curve, CurveError};
 pub use evaluate::ScalarEvaluator;
 pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
