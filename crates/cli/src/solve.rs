@@ -27,11 +27,16 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
     };
     let hash = spec::hash(&compilation);
     let mut ending = Ending::Done;
-    for job in &jobs {
-        if job.surfaces.iter().all(|surface| surface.sample.is_none()) {
-            anstream::eprintln!("error: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
-            return Ending::Wrong;
-        }
+    let (asked, idle): (Vec<&Job<'_>>, Vec<&Job<'_>>) =
+        jobs.iter().partition(|job| job.surfaces.iter().any(|surface| surface.sample.is_some()));
+    for job in &idle {
+        let kind = if asked.is_empty() { "error" } else { "note" };
+        anstream::eprintln!("{kind}: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
+    }
+    if asked.is_empty() {
+        return Ending::Wrong;
+    }
+    for job in asked {
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, arguments)).collect();
         let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
@@ -48,6 +53,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let spec = spec::shown(&arguments.which.file);
         let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
+        anstream::eprintln!("{}", table.time());
         let told = table.unsolved() + &travel::beyond(job, &solved);
         if !told.is_empty() {
             anstream::eprint!("{told}");

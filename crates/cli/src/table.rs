@@ -158,10 +158,14 @@ impl Table<'_, '_, '_> {
                 "\n{name}: the ranges hold {branches} branches; all points are on the one that reaches most"
             );
         }
-        let points: usize = self.solved.iter().map(|solved| solved.points.len()).sum();
-        let _ = writeln!(out, "\n{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3);
-        let _ = writeln!(out, "wrote {}", self.written.join(", "));
+        let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
         out
+    }
+
+    /// What differs from run to run.
+    pub(crate) fn time(&self) -> String {
+        let points: usize = self.solved.iter().map(|solved| solved.points.len()).sum();
+        format!("{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3)
     }
 
     pub(crate) fn json(&self) -> String {
@@ -173,7 +177,6 @@ impl Table<'_, '_, '_> {
             "surfaces": surfaces,
             "lines": self.lines.iter().map(|line| line.row().json()).collect::<Vec<_>>(),
             "files": self.written,
-            "seconds": self.since.elapsed().as_secs_f64(),
         });
         format!("{table:#}\n")
     }
