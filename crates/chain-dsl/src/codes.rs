@@ -58,6 +58,7 @@ codes! {
     NotANumber        = "E0305" Error "a value is not a finite number";
     MissingValue      = "E0306" Error "a parameter has no value";
     OutOfRange        = "E0307" Error "a value lies outside its range";
+    BrokenProfile     = "E0308" Error "the segments of a profile do not make one run";
     // 04: machines
     CyclicFrames      = "E0401" Error "frames hang on each other in a circle";
     NotRigid          = "E0402" Error "a matrix is not a rigid motion";

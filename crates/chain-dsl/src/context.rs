@@ -10,6 +10,7 @@ use crate::codes::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::dimension::Dimension;
 use crate::limits;
+use crate::profile::{Profile, Segment};
 use crate::source::{Name, Span};
 use crate::syntax::ast;
 use crate::tables::Tables;
@@ -44,6 +45,10 @@ pub(crate) enum Value<'g> {
     Text,
     /// A curve with the dimensions of its x and y.
     Curve(CurveId, Dimension, Dimension),
+    /// A profile, outside of the surfaces along it.
+    Profile(Rc<Profile<'g>>),
+    /// A profile in that piece of a surface which runs along this segment.
+    Segment(Rc<Segment<'g>>),
     /// Something wrong that has been reported: whatever is made of it is silent.
     Poison,
 }
@@ -64,6 +69,7 @@ impl Value<'_> {
             Value::Vector(parts) => format!("a vector of {}", parts.len()),
             Value::Truth(_) => "a condition".to_string(),
             Value::Curve(..) => "a curve".to_string(),
+            Value::Profile(_) | Value::Segment(_) => "a profile".to_string(),
             Value::Text => "a text".to_string(),
             Value::Poison => "an error".to_string(),
         }

@@ -8,6 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::{self, Dimension};
 use crate::functions;
 use crate::limits;
+use crate::profile::Segment;
 use crate::source::Span;
 use crate::syntax::ast::{self, BinaryOperator, Expression, ExpressionKind, Range, UnaryOperator};
 use crate::tables;
@@ -52,30 +53,30 @@ impl<'g> Context<'g> {
         self.require(&value, wanted, expression.span, what)
     }
 
-    /// An expression that must be a vector of three of one dimension.
-    pub(crate) fn vector3(
+    /// An expression that must be a vector of two or three of one dimension.
+    pub(crate) fn vector<const N: usize>(
         &mut self,
         expression: &Expression,
         scope: &Scope<'g>,
         wanted: Dimension,
         what: &str,
-    ) -> Option<[Expr<'g>; 3]> {
+    ) -> Option<[Expr<'g>; N]> {
         let value = self.evaluate(expression, scope);
         let parts = match &value {
             Value::Poison => return None,
-            Value::Vector(parts) if parts.len() == 3 => parts,
+            Value::Vector(parts) if parts.len() == N => parts,
             other => {
-                let message = format!("{what} must be a vector of 3, this is {}", other.described());
+                let message = format!("{what} must be a vector of {N}, this is {}", other.described());
                 self.report(Diagnostic::new(Code::WrongDimension, expression.span, message));
                 return None;
             }
         };
-        let written = expression.parts(3);
+        let written = expression.parts(N);
         let names = ["x", "y", "z"];
-        let found: Vec<Option<Expr<'g>>> = (0..3)
-            .map(|k| self.require(&parts[k], wanted, written[k].span, &format!("{} of {what}", names[k])))
-            .collect();
-        Some([found[0]?, found[1]?, found[2]?])
+        let found: [Option<Expr<'g>>; N] = std::array::from_fn(|k| {
+            self.require(&parts[k], wanted, written[k].span, &format!("{} of {what}", names[k]))
+        });
+        found.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
     }
 
     /// Both ends of a range as numbers; `None` where they are not known (or wrong, and reported).
@@ -372,6 +373,8 @@ impl<'g> Context<'g> {
         }
         match scope.get(&call.function.node) {
             Some(Value::Curve(curve, x, y)) => return self.on_curve(call, (*curve, *x, *y), scope),
+            Some(Value::Segment(segment)) => return self.on_segment(call, &segment.clone(), scope),
+            Some(Value::Profile(_)) => return self.outside_profile(call),
             Some(Value::Poison) => return Value::Poison,
             _ => {}
         }
@@ -419,6 +422,24 @@ impl<'g> Context<'g> {
             Some(at) => Value::Scalar(at.on_curve(curve, 0), y),
             None => Value::Poison,
         }
+    }
+
+    /// The point of a profile in a surface along it.
+    fn on_segment(&mut self, call: &ast::Call, segment: &Segment<'g>, scope: &Scope<'g>) -> Value<'g> {
+        let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
+        let what = format!("the argument of `{}`", call.function.node);
+        match self.require(&arguments[0].0, Dimension::LENGTH, arguments[0].1.span, &what) {
+            Some(run) => Value::Vector(segment.point(run).map(|x| Value::Scalar(x, Dimension::LENGTH)).into()),
+            None => Value::Poison,
+        }
+    }
+
+    fn outside_profile(&mut self, call: &ast::Call) -> Value<'g> {
+        let name = &call.function.node;
+        let message = format!("which segment of `{name}` is meant shows only in a surface along it");
+        let help = format!("give the surface a parameter `s: along {name}`");
+        self.report(Diagnostic::new(Code::WrongKind, call.function.span, message).help(help));
+        Value::Poison
     }
 
     /// The value of a function whose arguments are in the scope.

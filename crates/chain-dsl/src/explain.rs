@@ -33,7 +33,7 @@ impl FromStr for Code {
     }
 }
 
-/// The code that differs in one letter; of several the one with the nearest number: `E0308` was perhaps `E0307`.
+/// The code that differs in one letter; of several the one with the nearest number: `E0309` was perhaps `E0308`.
 fn nearest(wanted: &str) -> Option<Code> {
     let number = |text: &str| text.trim_start_matches(|c: char| !c.is_ascii_digit()).parse().unwrap_or(0_u32);
     let distance = |code: &Code| {
@@ -61,7 +61,7 @@ mod tests {
         let nearest = |text: &str| text.parse::<Code>().expect_err("not a code").nearest;
         assert_eq!(nearest("E301"), Some(Code::WrongDimension));
         assert_eq!(nearest("E0310"), Some(Code::WrongDimension));
-        assert_eq!(nearest("E0308"), Some(Code::OutOfRange));
+        assert_eq!(nearest("E0309"), Some(Code::BrokenProfile));
         assert_eq!(nearest("E0999"), None);
         assert_eq!(nearest("dimension"), None);
         let told = "E301".parse::<Code>().expect_err("not a code").to_string();

@@ -48,6 +48,7 @@ pub mod limits;
 mod load;
 mod machine;
 mod model;
+mod profile;
 mod render;
 mod sample;
 mod source;

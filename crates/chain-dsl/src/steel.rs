@@ -31,11 +31,19 @@ struct Seen {
     normal: Option<(usize, f64)>,
 }
 
+/// Where a surface is written: its points, the side of its steel, the segment of a profile that it runs along.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Places {
+    pub(crate) point: Span,
+    pub(crate) side: Span,
+    pub(crate) segment: Option<Span>,
+}
+
 /// Whether `raw`, square to a surface, points against `outward`: the same answer everywhere in the ranges of the unknowns, or
-/// an error at one of two places: where the points are given, where the side is given.
+/// an error.
 pub(crate) fn is_flipped<'g>(
     context: &mut Context<'g>,
-    places: [Span; 2],
+    places: Places,
     unknowns: &[Bounded<'g>],
     raw: Vector3<'g>,
     outward: Vector3<'g>,
@@ -50,7 +58,10 @@ pub(crate) fn is_flipped<'g>(
         (_, 0) if seen.out > 0 => Some(false),
         (0, _) if seen.into > 0 => Some(true),
         _ => {
-            let diagnostic = no_side(places, unknowns, &seen);
+            let mut diagnostic = no_side([places.point, places.side], unknowns, &seen);
+            if let Some(segment) = places.segment {
+                diagnostic = diagnostic.note(segment, "along this segment");
+            }
             context.report(diagnostic);
             None
         }

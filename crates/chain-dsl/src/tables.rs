@@ -1,8 +1,9 @@
-//! Tables beside the spec: `curve("file.csv", x: length, y: length)`.
+//! Tables beside the spec: `curve("file.csv", x: length, y: length)`, and whatever else takes two columns of a file.
 
 use std::collections::HashMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use flank_expr::{Curve, CurveId};
 
@@ -14,6 +15,12 @@ use crate::limits::{self, Limit};
 use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{Argument, Call, ExpressionKind};
 
+/// Two columns of a table.
+type Rows = Vec<(f64, f64)>;
+
+/// A table by its path, columns and their dimensions.
+type Key = (PathBuf, [String; 2], [Dimension; 2]);
+
 /// Where tables are looked for, and those that have been read.
 #[derive(Default)]
 pub(crate) struct Tables {
@@ -21,8 +28,10 @@ pub(crate) struct Tables {
     root: Option<PathBuf>,
     /// The folder of each source file.
     folders: HashMap<FileId, PathBuf>,
-    /// Curves by path, columns and dimensions, so that one table is one curve however often it is named.
-    known: HashMap<(PathBuf, [String; 2], [Dimension; 2]), CurveId>,
+    /// Tables that have been read.
+    rows: HashMap<Key, Rc<Rows>>,
+    /// One table is one curve however often it is named.
+    curves: HashMap<Key, CurveId>,
     /// Size of all tables that have been read.
     bytes: u64,
 }
@@ -32,7 +41,7 @@ impl Tables {
         let folder =
             |path: &Path| std::fs::canonicalize(path).ok().and_then(|real| real.parent().map(Path::to_path_buf));
         let folders = sources.files().filter_map(|(id, file)| Some((id, folder(&file.path)?))).collect();
-        Tables { root, folders, known: HashMap::new(), bytes: 0 }
+        Tables { root, folders, rows: HashMap::new(), curves: HashMap::new(), bytes: 0 }
     }
 
     /// The real path of a table named in a file, or why it may not be read.
@@ -54,65 +63,98 @@ impl Tables {
     }
 }
 
+/// Two columns of a file, as a call names them: `("file.csv", x: length, y: length)`.
+pub(crate) struct Columns<'a> {
+    named: &'a str,
+    /// Where the file is named.
+    pub(crate) span: Span,
+    real: PathBuf,
+    /// The columns with their dimensions.
+    pub(crate) columns: [(&'a Name, Dimension); 2],
+}
+
 /// The value of a call of `curve`.
 pub(crate) fn curve<'g>(context: &mut Context<'g>, call: &Call) -> Value<'g> {
-    read(context, call).unwrap_or(Value::Poison)
+    columns(context, call).and_then(|table| table.curve(context)).unwrap_or(Value::Poison)
 }
 
-fn read<'g>(context: &mut Context<'g>, call: &Call) -> Option<Value<'g>> {
+/// What a call that takes a table names.
+pub(crate) fn columns<'a>(context: &mut Context<'_>, call: &'a Call) -> Option<Columns<'a>> {
+    let function = &call.function.node;
     let [Argument { name: None, value: path }, x, y] = call.arguments.as_slice() else {
-        return shape(context, call.span);
+        return shape(context, function, call.span);
     };
-    let ExpressionKind::Text(named) = &path.kind else { return shape(context, path.span) };
-    let (x_name, x_dimension) = column(context, x)?;
-    let (y_name, y_dimension) = column(context, y)?;
-    let real = match context.tables.locate(named, path.span.file) {
-        Ok(real) => real,
+    let ExpressionKind::Text(named) = &path.kind else { return shape(context, function, path.span) };
+    let columns = [column(context, function, x)?, column(context, function, y)?];
+    match context.tables.locate(named, path.span.file) {
+        Ok(real) => Some(Columns { named, span: path.span, real, columns }),
         Err((code, message)) => {
             context.report(Diagnostic::new(code, path.span, message));
-            return None;
+            None
         }
-    };
-    let key = (real.clone(), [x_name.node.clone(), y_name.node.clone()], [x_dimension, y_dimension]);
-    let known = context.tables.known.get(&key).copied();
-    let id = match known {
-        Some(id) => id,
-        None => {
-            let columns = [(x_name.node.as_str(), x_dimension), (y_name.node.as_str(), y_dimension)];
-            let curve = match table(&real, columns, &mut context.tables.bytes) {
-                Ok(curve) => curve,
-                Err(reason) => {
-                    context.report(match reason {
-                        Reason::Exceeded(limit) => limit.exceeded(path.span),
-                        Reason::Wrong(code, reason) => Diagnostic::new(code, path.span, format!("`{named}`: {reason}")),
-                    });
-                    return None;
-                }
-            };
-            let id = context.graph.curve(curve);
-            context.tables.known.insert(key, id);
-            id
-        }
-    };
-    Some(Value::Curve(id, x_dimension, y_dimension))
+    }
 }
 
-fn shape<'g>(context: &mut Context<'g>, span: Span) -> Option<Value<'g>> {
-    let message = "`curve` takes a file and the names and dimensions of two of its columns";
-    let help = "for example `curve(\"profile.csv\", s: length, relief: length)`";
+impl Columns<'_> {
+    fn curve<'g>(&self, context: &mut Context<'g>) -> Option<Value<'g>> {
+        let [(_, x), (y_name, y)] = self.columns;
+        let key = self.key();
+        let id = match context.tables.curves.get(&key) {
+            Some(id) => *id,
+            None => {
+                let points = self.rows(context)?;
+                let curve = Curve::through(y_name.node.clone(), &points);
+                let curve = curve.map_err(|error| Reason::Wrong(Code::WrongTable, error.to_string()));
+                let curve = self.told(context, curve)?;
+                let id = context.graph.curve(curve);
+                context.tables.curves.insert(key, id);
+                id
+            }
+        };
+        Some(Value::Curve(id, x, y))
+    }
+
+    fn key(&self) -> Key {
+        let [(x_name, x), (y_name, y)] = self.columns;
+        (self.real.clone(), [x_name.node.clone(), y_name.node.clone()], [x, y])
+    }
+
+    /// The numbers in them, mm and radians; a table is read once however often it is named.
+    pub(crate) fn rows(&self, context: &mut Context<'_>) -> Option<Rc<Rows>> {
+        let key = self.key();
+        if let Some(rows) = context.tables.rows.get(&key) {
+            return Some(Rc::clone(rows));
+        }
+        let columns = self.columns.map(|(name, dimension)| (name.node.as_str(), dimension));
+        let found = rows(&self.real, columns, &mut context.tables.bytes);
+        let found = Rc::new(self.told(context, found)?);
+        context.tables.rows.insert(key, Rc::clone(&found));
+        Some(found)
+    }
+
+    fn told<T>(&self, context: &mut Context<'_>, found: Result<T, Reason>) -> Option<T> {
+        let tell = |reason| match reason {
+            Reason::Exceeded(limit) => limit.exceeded(self.span),
+            Reason::Wrong(code, reason) => Diagnostic::new(code, self.span, format!("`{}`: {reason}", self.named)),
+        };
+        found.map_err(|reason| context.report(tell(reason))).ok()
+    }
+}
+
+fn shape<T>(context: &mut Context<'_>, function: &str, span: Span) -> Option<T> {
+    let message = format!("`{function}` takes a file and the names and dimensions of two of its columns");
+    let help = format!("for example `{function}(\"profile.csv\", x: length, y: length)`");
     context.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
     None
 }
 
 /// `name: dimension`; the dimension is written as an expression of dimension names.
-fn column<'a>(context: &mut Context<'_>, argument: &'a Argument) -> Option<(&'a Name, Dimension)> {
+fn column<'a>(context: &mut Context<'_>, function: &str, argument: &'a Argument) -> Option<(&'a Name, Dimension)> {
     let (Some(name), ExpressionKind::Path(path)) = (&argument.name, &argument.value.kind) else {
-        shape(context, argument.value.span);
-        return None;
+        return shape(context, function, argument.value.span);
     };
     let [written] = path.segments.as_slice() else {
-        shape(context, path.span);
-        return None;
+        return shape(context, function, path.span);
     };
     let Some(dimension) = dimension::named(&written.node) else {
         context.unknown(written, "dimension", ["length", "angle", "number"].into_iter());
@@ -127,9 +169,9 @@ enum Reason {
     Wrong(Code, String),
 }
 
-/// The curve through two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
+/// Two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
 /// `read` counts the bytes of all tables.
-fn table(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result<Curve, Reason> {
+fn rows(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result<Rows, Reason> {
     let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
     let kind = std::fs::metadata(path).map_err(|error| unreadable(&error))?;
     if !kind.is_file() {
@@ -162,7 +204,7 @@ fn table(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result
             return Err(Reason::Exceeded(limits::TABLE_ROWS));
         }
     }
-    Curve::through(columns[1].0, &points).map_err(|error| wrong(error.to_string()))
+    Ok(points)
 }
 
 /// The column with a name, `s` or `s [mm]`, and the size of its unit: mm and degrees where none is given.

@@ -1,18 +1,21 @@
 //! Tools: parametric surfaces and the side on which their steel lies.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use flank_expr::Expr;
 use flank_expr::geometry::{Edge, Surface, Vector3};
 
 use crate::codes::Code;
-use crate::context::{Context, Role, Scope, Value};
+use crate::context::{Constant, Context, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::model::{Bounded, Parameter, ToolShape};
-use crate::steel;
-use crate::syntax::ast::{self, Side, ToolStatement};
+use crate::profile::{self, Segment};
+use crate::source::Name;
+use crate::steel::{self, Places};
+use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
 
 /// All tools of a compilation by name.
 pub(crate) type Tools = HashMap<String, ast::Tool>;
@@ -27,9 +30,21 @@ pub(crate) struct BuiltTool<'g> {
 /// One surface of a tool in the tool's frame.
 pub(crate) struct ToolSurface<'g> {
     pub(crate) name: String,
+    /// Its smooth pieces; `None` if it is not known which they are (and that is reported).
+    pub(crate) pieces: Option<Vec<Piece<'g>>>,
+}
+
+/// All of a surface, or the piece of it along one segment of a profile.
+#[derive(Clone)]
+pub(crate) struct Piece<'g> {
+    /// The name of the segment.
+    pub(crate) name: Option<String>,
     /// `None` if something in it is wrong (and reported).
     pub(crate) surface: Option<(ToolShape<'g>, Vec<Bounded<'g>>)>,
 }
+
+/// A segment of a profile, and the name of the profile.
+type Along<'a, 'g> = (&'a str, &'a Rc<Segment<'g>>);
 
 /// Gives values to the parameters and builds the surfaces.
 pub(crate) fn build<'g>(
@@ -45,6 +60,7 @@ pub(crate) fn build<'g>(
         let name = match statement {
             ToolStatement::Param(param) => &param.name,
             ToolStatement::Let(binding) => &binding.name,
+            ToolStatement::Profile(profile) => &profile.name,
             ToolStatement::Surface(surface) => &surface.name,
         };
         if let Some(first) = seen.insert(&name.node, name.span) {
@@ -56,6 +72,7 @@ pub(crate) fn build<'g>(
                 let value = context.evaluate(&binding.value, &scope);
                 scope.insert(binding.name.node.clone(), value);
             }
+            ToolStatement::Profile(written) => profile::build(context, written, &mut scope),
             ToolStatement::Surface(_) => {}
         }
     }
@@ -71,17 +88,54 @@ pub(crate) fn build<'g>(
     let mut surfaces = Vec::new();
     for statement in &tool.statements {
         if let ToolStatement::Surface(written) = statement {
-            let surface = build_surface(context, written, &scope);
-            surfaces.push(ToolSurface { name: written.name.node.clone(), surface });
+            let pieces = pieces(context, written, &scope);
+            surfaces.push(ToolSurface { name: written.name.node.clone(), pieces });
         }
     }
     BuiltTool { parameters, scope, surfaces }
+}
+
+/// The smooth pieces of a surface: one for each segment of the profile that it runs along.
+fn pieces<'g>(context: &mut Context<'g>, written: &ast::ToolSurface, scope: &Scope<'g>) -> Option<Vec<Piece<'g>>> {
+    let mut along = written.parameters.iter().filter_map(|parameter| match parameter {
+        SurfaceParameter::Along(name, profile) => Some((name, profile)),
+        SurfaceParameter::Within(_) => None,
+    });
+    let Some((_, name)) = along.next() else {
+        let surface = build_surface(context, written, scope, None);
+        return Some(vec![Piece { name: None, surface }]);
+    };
+    if let Some((second, _)) = along.next() {
+        let message = "a surface runs along one profile";
+        context.report(Diagnostic::new(Code::WrongArguments, second.span, message).note(name.span, "along this one"));
+        return None;
+    }
+    let profile = match scope.get(&name.node) {
+        Some(Value::Profile(profile)) => profile,
+        Some(Value::Poison) => return None,
+        Some(other) => {
+            let message = format!("`{}` is {}, not a profile", name.node, other.described());
+            context.report(Diagnostic::new(Code::WrongKind, name.span, message));
+            return None;
+        }
+        None => {
+            let profiles = scope.iter().filter(|(_, value)| matches!(value, Value::Profile(_)));
+            context.unknown(name, "profile", profiles.map(|(name, _)| name.as_str()));
+            return None;
+        }
+    };
+    let piece = |segment: &Rc<Segment<'g>>| Piece {
+        name: Some(segment.name.clone()),
+        surface: build_surface(context, written, scope, Some((&name.node, segment))),
+    };
+    Some(profile.segments.iter().map(piece).collect())
 }
 
 fn build_surface<'g>(
     context: &mut Context<'g>,
     written: &ast::ToolSurface,
     scope: &Scope<'g>,
+    along: Option<Along<'_, 'g>>,
 ) -> Option<(ToolShape<'g>, Vec<Bounded<'g>>)> {
     // every surface has names of its own beside those of the tool
     if !context.spend(scope.len(), written.name.span) {
@@ -89,13 +143,20 @@ fn build_surface<'g>(
     }
     let mut scope = scope.clone();
     let mut unknowns = Vec::new();
+    if let Some((profile, segment)) = along {
+        scope.insert(profile.to_string(), Value::Segment(Rc::clone(segment)));
+    }
     for parameter in &written.parameters {
-        let bounded = bounded(context, parameter, &scope, Role::SurfaceParameter);
+        let bounded = match (parameter, along) {
+            (SurfaceParameter::Within(parameter), _) => bounded(context, parameter, &scope, Role::SurfaceParameter),
+            (SurfaceParameter::Along(name, _), Some((_, segment))) => Some(run_along(context, name, segment)),
+            (SurfaceParameter::Along(..), None) => None,
+        };
         let value = match &bounded {
             Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
             None => Value::Poison,
         };
-        scope.insert(parameter.name.node.clone(), value);
+        scope.insert(parameter.name().node.clone(), value);
         unknowns.extend(bounded);
     }
     if !matches!(written.parameters.len(), 1 | 2) {
@@ -111,7 +172,7 @@ fn build_surface<'g>(
         let value = context.evaluate(&binding.value, &scope);
         scope.insert(binding.name.node.clone(), value);
     }
-    let position = context.vector3(&written.at, &scope, Dimension::LENGTH, "the point");
+    let position = context.vector(&written.at, &scope, Dimension::LENGTH, "the point");
     let towards = match &written.body.side {
         Side::Towards(direction) => direction_of_steel(context, direction, &scope),
         Side::Inside | Side::Outside => position,
@@ -128,13 +189,25 @@ fn build_surface<'g>(
         (2, [u, v]) => {
             let parameters = [u.variable, v.variable];
             let raw = Surface::raw_normal(parameters, position);
-            let flipped = steel::is_flipped(context, [written.at.span, written.body.span], &unknowns, raw, -steel)?;
+            let segment = along.map(|(_, segment)| segment.span);
+            let places = Places { point: written.at.span, side: written.body.span, segment };
+            let flipped = steel::is_flipped(context, places, &unknowns, raw, -steel)?;
             ToolShape::Surface(Surface::parametric(parameters, position, flipped))
         }
         // the range of a parameter is wrong, and reported
         _ => return None,
     };
     Some((shape, unknowns))
+}
+
+/// The run along a profile within one segment of it.
+fn run_along<'g>(context: &mut Context<'g>, name: &Name, segment: &Segment<'g>) -> Bounded<'g> {
+    let [low, high] = [segment.from, segment.to].map(|end| match context.constant(end) {
+        Constant::Known(value) => value,
+        _ => f64::NAN,
+    });
+    let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
+    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high }
 }
 
 /// A direction: lengths or numbers alike.
@@ -154,7 +227,7 @@ fn direction_of_steel<'g>(
         return None;
     }
     let wanted = if is_length { Dimension::LENGTH } else { Dimension::NUMBER };
-    context.vector3(direction, scope, wanted, "the direction of the steel")
+    context.vector(direction, scope, wanted, "the direction of the steel")
 }
 
 /// A variable with its range; where the range is not known yet its ends are NaN.

@@ -69,7 +69,7 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
     let what = format!("the argument of `{name}`");
     Some(match name {
         "translate" if count == 1 => {
-            vec![Step::Translate(Vector3(context.vector3(written[0], scope, Dimension::LENGTH, "`translate`")?))]
+            vec![Step::Translate(Vector3(context.vector(written[0], scope, Dimension::LENGTH, "`translate`")?))]
         }
         "translate" => {
             let names = ["x of `translate`", "y of `translate`", "z of `translate`"];
@@ -117,7 +117,7 @@ fn axis_index(name: &str) -> usize {
 
 /// A direction, made a unit vector.
 fn unit_axis<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>) -> Option<Vector3<'g>> {
-    let axis = Vector3(context.vector3(written, scope, Dimension::NUMBER, "an axis")?);
+    let axis = Vector3(context.vector(written, scope, Dimension::NUMBER, "an axis")?);
     if axis.is_zero() {
         let message = "an axis needs a direction: this vector is zero";
         context.report(Diagnostic::new(Code::NotANumber, written.span, message));

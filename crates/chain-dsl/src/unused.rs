@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::source::Name;
 use crate::syntax::ast::{
     self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, SampleValues, Side,
-    ToolStatement,
+    SurfaceParameter, ToolStatement,
 };
 
 /// Words that occur in expressions and paths; of a path every segment.
@@ -150,8 +150,16 @@ impl Used {
             match statement {
                 ToolStatement::Param(param) => self.param(param),
                 ToolStatement::Let(binding) => self.expression(&binding.value),
+                ToolStatement::Profile(profile) => {
+                    profile.segments.iter().for_each(|segment| self.expression(&segment.value));
+                }
                 ToolStatement::Surface(surface) => {
-                    surface.parameters.iter().for_each(|parameter| self.range(&parameter.range));
+                    for parameter in &surface.parameters {
+                        match parameter {
+                            SurfaceParameter::Within(parameter) => self.range(&parameter.range),
+                            SurfaceParameter::Along(_, profile) => drop(self.0.insert(profile.node.clone())),
+                        }
+                    }
                     surface.lets.iter().for_each(|binding| self.expression(&binding.value));
                     self.expression(&surface.at);
                     if let Side::Towards(direction) = &surface.body.side {

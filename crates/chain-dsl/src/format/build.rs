@@ -174,6 +174,7 @@ fn family(head: &[Part<'_>]) -> Option<(Family, &'static [usize])> {
         "drive" => (Family::Drive, &[EQUALS]),
         "surface" => (Family::Surface, &[2, EQUALS]),
         "sample" => (Family::Sample, &[2]),
+        first if first != "at" && head.get(1).is_some_and(|sign| sign.is("=")) => (Family::Segment, &[EQUALS]),
         _ => return None,
     })
 }

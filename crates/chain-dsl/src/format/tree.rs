@@ -52,6 +52,8 @@ pub(super) enum Family {
     Drive,
     Surface,
     Sample,
+    /// `name = line(…)` in a profile.
+    Segment,
 }
 
 /// Statements between braces.

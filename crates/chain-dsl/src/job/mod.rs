@@ -1,5 +1,6 @@
 //! Jobs: machines and tools get values, axes their laws, tools leave surfaces.
 
+mod available;
 mod axes;
 mod surfaces;
 
@@ -242,7 +243,7 @@ impl<'g> Builder<'_, 'g> {
     fn is_broken_machine(&self, name: &Name) -> bool {
         !self.scope.contains_key(&name.node)
             && !self.tools.iter().any(|(tool, _)| tool.node == name.node)
-            && !self.surfaces.iter().any(|(surface, _)| surface.name == name.node)
+            && !self.surfaces.iter().any(|(surface, _)| available::is_of(&surface.name, &name.node))
     }
 
     fn frame(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<FrameRef> {

@@ -4,26 +4,18 @@ use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Step, Surface};
 
 use crate::codes::Code;
-use crate::context::{Context, Value, quoted};
+use crate::context::{Context, Value};
 use crate::diagnostic::Diagnostic;
 use crate::limits;
 use crate::machine;
 use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
 use crate::sample;
-use crate::source::{Name, Span};
-use crate::steel;
+use crate::source::Span;
+use crate::steel::{self, Places};
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 
+use super::available::{Available, joined, which_piece};
 use super::{Builder, FrameRef};
-
-/// What a surface may be made from.
-struct Available<'g> {
-    shape: ToolShape<'g>,
-    unknowns: Vec<Bounded<'g>>,
-    frame: FrameRef,
-    /// Where the side of its steel is stated, for an edge.
-    named: Span,
-}
 
 /// The ways to make a surface, by the names of their functions.
 const PROCESSES: [(&str, Process); 3] =
@@ -48,41 +40,57 @@ impl<'g> Builder<'_, 'g> {
         };
         let Some((tool, motions)) = self.process_arguments(context, call) else { return };
         let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else { return };
+        for piece in available {
+            let _ = self.piece(context, written, (call, *process), frame, piece, &motions);
+        }
+    }
+
+    /// What one piece of a tool's surface leaves; nothing if something is wrong (and reported).
+    fn piece(
+        &mut self,
+        context: &mut Context<'g>,
+        written: &ast::GeneratedSurface,
+        (call, process): (&ast::Call, Process),
+        frame: FrameRef,
+        available: Available<'g>,
+        motions: &[(Bounded<'g>, Span)],
+    ) -> Option<()> {
         let unknowns: Vec<Bounded<'g>> =
             available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         if unknowns.len() > limits::SURFACE_UNKNOWNS.most {
-            return context.report(limits::SURFACE_UNKNOWNS.exceeded(written.value.span));
+            context.report(limits::SURFACE_UNKNOWNS.exceeded(written.value.span));
+            return None;
         }
-        let Some(path) = self.path_between(context, frame, available.frame, written.value.span) else { return };
+        let path = self.path_between(context, frame, available.frame, written.value.span)?;
         let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
-        if !self.check_motions(context, &driven, &motions, written, &available) {
-            return;
+        if !self.check_motions(context, &driven, motions, written, &available) {
+            return None;
         }
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
-        let Some(surface) = made(context, *process, call, &available, &driven, &over, &unknowns) else { return };
+        let surface = made(context, process, call, &available, &driven, &over, &unknowns)?;
         let generation = Generation {
-            tool_name: tool.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join("."),
-            process: *process,
+            tool_name: available.name,
+            process,
             tool: available.shape,
             path,
             t_work_tool,
             driven,
             motions: over,
         };
-        self.surfaces.push((
-            GeneratedSurface {
-                name: written.name.node.clone(),
-                doc: written.doc.clone(),
-                frame: self.frame_name(frame),
-                generation,
-                surface,
-                unknowns,
-                trimmed_by: Vec::new(),
-                sample: None,
-            },
-            frame,
-        ));
+        let name = &written.name.node;
+        let surface = GeneratedSurface {
+            name: available.piece.map_or_else(|| name.clone(), |piece| format!("{name}.{piece}")),
+            doc: written.doc.clone(),
+            frame: self.frame_name(frame),
+            generation,
+            surface,
+            unknowns,
+            trimmed_by: Vec::new(),
+            sample: None,
+        };
+        self.surfaces.push((surface, frame));
+        Some(())
     }
 
     /// The tool's surface and the motions of `envelope(tool.surface, over: [motion, …])`, `sweep`, `move`.
@@ -147,78 +155,7 @@ impl<'g> Builder<'_, 'g> {
         found
     }
 
-    /// A surface of a tool, or an earlier surface of the job, and the frame it is fixed to.
-    fn available(&mut self, context: &mut Context<'g>, path: &ast::Path) -> Option<Available<'g>> {
-        let owner = &path.segments[0];
-        let mounted = self.mounts.get(&owner.node).copied();
-        if let [name] = path.segments.as_slice() {
-            let Some((earlier, frame)) = self.surfaces.iter().find(|(surface, _)| surface.name == name.node) else {
-                if !self.names.contains_key(&name.node) || self.scope.contains_key(&name.node) {
-                    let known = self.surfaces.iter().map(|(surface, _)| surface.name.as_str());
-                    context.unknown(
-                        name,
-                        "surface",
-                        known.chain(self.tools.iter().map(|(tool, _)| tool.node.as_str())),
-                    );
-                } else if let Some((_, built)) = self.tools.iter().find(|(tool, _)| tool.node == name.node) {
-                    let surfaces: Vec<String> =
-                        built.surfaces.iter().map(|surface| format!("{}.{}", name.node, surface.name)).collect();
-                    let message = format!("`{}` is a tool; say which of its surfaces", name.node);
-                    let list: Vec<&str> = surfaces.iter().map(String::as_str).collect();
-                    let help = format!("there is: {}", quoted(&list));
-                    context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
-                }
-                return None;
-            };
-            let frame = mounted.map_or(Some(*frame), |(frame, _)| frame)?;
-            let shape = ToolShape::Surface(earlier.surface.clone());
-            return Some(Available { shape, unknowns: earlier.unknowns.clone(), frame, named: path.span });
-        }
-        let Some((_, built)) = self.tools.iter().find(|(tool, _)| tool.node == owner.node) else {
-            if !self.names.contains_key(&owner.node) {
-                context.unknown(owner, "tool", self.tools.iter().map(|(tool, _)| tool.node.as_str()));
-            } else if !self.is_broken_machine(owner) {
-                let message = format!("`{}` is not a tool", owner.node);
-                context.report(Diagnostic::new(Code::WrongKind, owner.span, message));
-            }
-            return None;
-        };
-        let member = &path.segments[1];
-        let Some(surface) = built.surfaces.iter().find(|surface| surface.name == member.node) else {
-            context.unknown(member, "surface", built.surfaces.iter().map(|surface| surface.name.as_str()));
-            return None;
-        };
-        let surface = surface.surface.clone();
-        let Some((frame, _)) = mounted else {
-            self.not_mounted(context, owner);
-            return None;
-        };
-        let (shape, unknowns) = surface?;
-        Some(Available { shape, unknowns, frame: frame?, named: path.span })
-    }
-
-    /// Reports a tool without a frame, once for all its surfaces, unless a misspelt `mount` was meant for it.
-    fn not_mounted(&mut self, context: &mut Context<'g>, tool: &Name) {
-        self.mounts.insert(tool.node.clone(), (None, tool.span));
-        if self.lost_mounts > 0 {
-            return;
-        }
-        let message = format!("`{}` is not mounted on any frame", tool.node);
-        let frames = self.frames_to_choose_from().unwrap_or_default();
-        let help = format!("say on which frame it sits: `mount {} on …`{frames}", tool.node);
-        context.report(Diagnostic::new(Code::NotMounted, tool.span, message).help(help));
-    }
-
-    /// The frames that a tool may sit on, unless they are too many to read.
-    fn frames_to_choose_from(&self) -> Option<String> {
-        const READABLE: usize = 12;
-        let all = (0..self.machines.len()).flat_map(|m| (0..self.machines[m].2.frames.len()).map(move |k| (m, k)));
-        let names: Vec<String> = all.map(|frame| self.frame_name(frame)).take(READABLE + 1).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        (1..=READABLE).contains(&names.len()).then(|| format!("; there is: {}", quoted(&names)))
-    }
-
-    fn frame_name(&self, (machine, frame): FrameRef) -> String {
+    pub(super) fn frame_name(&self, (machine, frame): FrameRef) -> String {
         let (name, _, built) = &self.machines[machine];
         format!("{}.{}", name.node, built.frames[frame].name)
     }
@@ -296,35 +233,21 @@ impl<'g> Builder<'_, 'g> {
         fine
     }
 
-    /// A surface of the job that came out right.
-    fn finished(&self, context: &mut Context<'g>, name: &Name, job: &ast::Job) -> Option<usize> {
-        let index = self.surfaces.iter().position(|(surface, _)| surface.name == name.node);
-        let declared = job.statements.iter().filter_map(|statement| match statement {
-            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
-            _ => None,
-        });
-        // a name that is not there has been reported
-        if index.is_none() && !name.node.is_empty() && !declared.clone().any(|known| known == name.node) {
-            context.unknown(name, "surface", declared);
-        }
-        index
-    }
-
-    pub(super) fn trim(&mut self, context: &mut Context<'g>, surface: &Name, by: &Name, job: &ast::Job) {
-        let found = [surface, by].map(|name| self.finished(context, name, job));
+    pub(super) fn trim(&mut self, context: &mut Context<'g>, surface: &ast::Path, by: &ast::Path, job: &ast::Job) {
+        let found = [surface, by].map(|path| self.finished(context, path, job));
         let [Some(index), Some(other)] = found else { return };
         let wrong = |message: String, help: &str| Diagnostic::new(Code::Trim, by.span, message).help(help);
         if index == other {
             let help = "name the surface that cuts into it: `trim flank by fillet`";
-            return context.report(wrong(format!("`{}` cannot trim itself", by.node), help));
+            return context.report(wrong(format!("`{}` cannot trim itself", joined(by)), help));
         }
         let [own, its] = [index, other].map(|k| self.surfaces[k].0.frame.clone());
         if own != its {
-            let message = format!("`{}` is given in `{own}`, `{}` in `{its}`", surface.node, by.node);
+            let message = format!("`{}` is given in `{own}`, `{}` in `{its}`", joined(surface), joined(by));
             return context.report(wrong(message, "give both in the frame of the work"));
         }
         if self.surfaces[index].0.trimmed_by.contains(&other) {
-            let message = format!("`{}` is trimmed by `{}` twice", surface.node, by.node);
+            let message = format!("`{}` is trimmed by `{}` twice", joined(surface), joined(by));
             return context.report(wrong(message, "take one of them away"));
         }
         self.surfaces[index].0.trimmed_by.push(other);
@@ -333,12 +256,41 @@ impl<'g> Builder<'_, 'g> {
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
         let Some(index) = self.finished(context, &written.surface, job) else { return };
         if self.surfaces[index].0.sample.is_some() {
-            let message = format!("`{}` is sampled twice", written.surface.node);
+            let message = format!("`{}` is sampled twice", self.surfaces[index].0.name);
             context.report(Diagnostic::new(Code::DuplicateName, written.surface.span, message));
             return;
         }
         let sample = sample::build(context, written, &self.surfaces[index].0, &self.scope);
         self.surfaces[index].0.sample = sample;
+    }
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// A surface of the job that came out right, or a piece of one.
+    fn finished(&self, context: &mut Context<'g>, path: &ast::Path, job: &ast::Job) -> Option<usize> {
+        let (name, rest) = path.segments.split_first()?;
+        let wanted = joined(path);
+        let found = self.surfaces.iter().position(|(surface, _)| surface.name == wanted);
+        if found.is_some() {
+            return found;
+        }
+        let declared = job.statements.iter().filter_map(|statement| match statement {
+            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
+            _ => None,
+        });
+        let declared: Vec<&str> = declared.collect();
+        let pieces = self.pieces_of(&name.node);
+        match rest {
+            _ if !declared.contains(&name.node.as_str()) => context.unknown(name, "surface", declared.into_iter()),
+            [] if !pieces.is_empty() => which_piece(context, name, &pieces),
+            [piece, ..] if self.surfaces.iter().any(|(surface, _)| surface.name == name.node) => {
+                let message = format!("`{}` has no pieces", name.node);
+                context.report(Diagnostic::new(Code::WrongKind, piece.span, message));
+            }
+            [piece, ..] if !pieces.is_empty() => context.unknown(piece, "piece", pieces.iter().copied()),
+            _ => {}
+        }
+        None
     }
 }
 
@@ -373,7 +325,8 @@ fn made<'g>(
         }
         (Process::Sweep, ToolShape::Edge(edge)) => {
             let raw = edge.raw_normal(driven, over[0]);
-            let flipped = steel::is_flipped(context, [available.named; 2], unknowns, raw, edge.steel)?;
+            let places = Places { point: available.named, side: available.named, segment: None };
+            let flipped = steel::is_flipped(context, places, unknowns, raw, edge.steel)?;
             Some(edge.sweep(driven, over, flipped))
         }
         (Process::Sweep, ToolShape::Surface(_)) => {

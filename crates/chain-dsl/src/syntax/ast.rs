@@ -164,8 +164,34 @@ pub enum ToolStatement {
     Param(Param),
     /// `let name = …`
     Let(Let),
+    /// `profile name { … }`
+    Profile(Profile),
     /// `surface name(u: length in a .. b, …) { … }`
     Surface(ToolSurface),
+}
+
+/// A plane line of a tool, made of segments that one length runs over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Its segments in order.
+    pub segments: Vec<Segment>,
+    /// Whether something in it did not parse.
+    pub broken: bool,
+}
+
+/// `name = line(from: [x, y], to: [x, y])`, `arc(…)` or `spline(…)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// What it is.
+    pub value: Expression,
 }
 
 /// A parametric surface of a tool.
@@ -176,13 +202,33 @@ pub struct ToolSurface {
     /// Its name.
     pub name: Name,
     /// Its parameters with their ranges.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<SurfaceParameter>,
     /// `let`s in order.
     pub lets: Vec<Let>,
     /// `at = [x, y, z]`
     pub at: Expression,
     /// `body …`
     pub body: Body,
+}
+
+/// A parameter of a tool's surface.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // there are few of them
+pub enum SurfaceParameter {
+    /// `name : dimension in a .. b`
+    Within(Parameter),
+    /// `name : along profile`
+    Along(Name, Name),
+}
+
+impl SurfaceParameter {
+    /// Its name.
+    pub fn name(&self) -> &Name {
+        match self {
+            SurfaceParameter::Within(parameter) => &parameter.name,
+            SurfaceParameter::Along(name, _) => name,
+        }
+    }
 }
 
 /// `name : dimension in a .. b`: a surface parameter or a motion.
@@ -258,9 +304,9 @@ pub enum JobStatement {
     /// `trim flank by fillet`
     Trim {
         /// The surface that loses points.
-        surface: Name,
+        surface: Path,
         /// The surface that cuts them away.
-        by: Name,
+        by: Path,
     },
     /// `sample name { … }`
     Sample(Sample),
@@ -293,8 +339,8 @@ pub struct GeneratedSurface {
 /// `sample name { key: values … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// The surface.
-    pub surface: Name,
+    /// The surface, perhaps a piece of it.
+    pub surface: Path,
     /// What is asked for, in order.
     pub entries: Vec<SampleEntry>,
     /// The whole statement.

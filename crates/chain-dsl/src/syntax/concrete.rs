@@ -84,6 +84,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         | Rule::tool_head
         | Rule::job_head
         | Rule::tool_surface_head
+        | Rule::profile_head
         | Rule::label
         | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
@@ -95,11 +96,11 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::motion => return parts.push(motion(pair)),
         Rule::frame => return parts.push(frame(pair)),
         Rule::entry => return parts.push(entry(pair)),
-        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface => Kind::Block,
+        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
         Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
-        Rule::drive | Rule::surface | Rule::trim | Rule::sample => Kind::Statement,
-        Rule::formal | Rule::parameter | Rule::setting | Rule::argument => Kind::Element,
+        Rule::drive | Rule::surface | Rule::trim | Rule::sample | Rule::segment => Kind::Statement,
+        Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting | Rule::argument => Kind::Element,
         Rule::arguments | Rule::settings | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
         Rule::definition | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,

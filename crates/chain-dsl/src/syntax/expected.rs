@@ -2,6 +2,9 @@
 
 use super::grammar::Rule;
 
+/// An example of what a profile consists of.
+pub(super) const SEGMENT: &str = "a segment such as `flank = line(from: [x, y], to: [x, y])`";
+
 const TRANSFORM: &str = "a transform such as `translate(x, y, z)`";
 
 /// What stands before the place.
@@ -109,9 +112,11 @@ fn name(before: &Before<'_>) -> String {
         ("machine", "=") => "the name of a machine".to_owned(),
         ("tool", "=") => "the name of a tool".to_owned(),
         ("machine" | "tool", _) => "a setting such as `radial: 70 mm`".to_owned(),
+        ("trim", "by") => "the name of the surface that cuts".to_owned(),
+        ("surface", "along") => "the name of a profile".to_owned(),
+        ("profile", _) => SEGMENT.to_owned(),
         ("surface", _) => "a parameter such as `u: length in 0 mm .. 12 mm`".to_owned(),
         ("fn", _) => "a parameter such as `x: length`".to_owned(),
-        ("trim", "by") => "the name of the surface that cuts".to_owned(),
         ("sample", _) => "an entry such as `z: 40 mm .. 62 mm by 45`".to_owned(),
         _ => "a name".to_owned(),
     }
@@ -120,6 +125,7 @@ fn name(before: &Before<'_>) -> String {
 fn path(before: &Before<'_>) -> &'static str {
     match before.statement {
         "drive" => "an axis such as `m.X`",
+        "sample" | "trim" => "the name of the surface",
         _ => "a frame such as `m.work`",
     }
 }
@@ -177,6 +183,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_tool => "tool",
         Rule::kw_job => "job",
         Rule::kw_on => "on",
+        Rule::kw_along => "along",
         Rule::kw_in => "in",
         Rule::kw_by => "by",
         Rule::kw_if => "if",

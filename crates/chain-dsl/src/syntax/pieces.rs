@@ -21,7 +21,7 @@ fn goes_on(scan: &Scan, index: usize) -> bool {
     }
 }
 
-fn ends_something(scan: &Scan, index: usize) -> bool {
+pub(super) fn ends_something(scan: &Scan, index: usize) -> bool {
     match scan.kind(index) {
         Some(Kind::Word) => words::reserved(scan.say(index)) != Some(Reserved::Keyword),
         Some(Kind::Sign) => matches!(scan.say(index), ")" | "]" | "}" | "{"),
@@ -49,7 +49,9 @@ pub(super) fn begins_item_in_job(scan: &Scan, index: usize) -> bool {
 /// One past the last token of the statement that begins at a token.
 pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
     let sample = scan.say(from) == "sample";
-    let lacks_brace = sample && !(scan.say(from + 1) == "{" || scan.say(from + 2) == "{") && scan.say(from + 3) == ":";
+    let named = if scan.say(from + 2) == "." { from + 4 } else { from + 2 };
+    let opened = (from + 1..=named).any(|index| scan.say(index) == "{");
+    let lacks_brace = sample && !opened && scan.say(named + 1) == ":";
     let (mut braces, mut brackets) = (usize::from(lacks_brace), 0usize);
     for index in from + 1..scan.tokens.len() {
         match scan.say(index) {
@@ -69,6 +71,27 @@ pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
         }
     }
     scan.tokens.len()
+}
+
+/// One past the last token of the segment of a profile that begins at a token.
+pub(super) fn segment_end(scan: &Scan, from: usize) -> usize {
+    let mut open = 0usize;
+    for index in from + 1..scan.tokens.len() {
+        match scan.say(index) {
+            "}" => return index,
+            "(" | "[" => open += 1,
+            ")" | "]" => open = open.saturating_sub(1),
+            _ if begins(scan, index) => return index,
+            _ if begins_segment(scan, index) && (open == 0 || scan.indent(index).is_some()) => return index,
+            _ => {}
+        }
+    }
+    scan.tokens.len()
+}
+
+/// Whether a token is the name of a segment of a profile.
+pub(super) fn begins_segment(scan: &Scan, index: usize) -> bool {
+    scan.kind(index) == Some(Kind::Word) && scan.say(index + 1) == "="
 }
 
 /// One past the last token of the `use` or `fn` that begins at a token.

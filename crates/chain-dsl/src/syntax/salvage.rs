@@ -7,7 +7,7 @@ use crate::source::{Name, Span, Spanned};
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,
     GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Param, Parameter, Path, Sample, SampleEntry,
-    SampleValues, Side, ToolStatement,
+    SampleValues, Segment, Side, SurfaceParameter, ToolStatement,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -54,8 +54,8 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
             frame: piece.path_after("in"),
             value: piece.error(),
         }),
-        "trim" => JobStatement::Trim { surface: name, by: piece.name_after("by") },
-        "sample" => JobStatement::Sample(piece.sample(name)),
+        "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
+        "sample" => JobStatement::Sample(piece.sample()),
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }
@@ -71,7 +71,13 @@ pub(super) fn surface_statement(scan: &Scan, parts: &mut SurfaceParts, word: &st
     }
 }
 
-/// What stands before the block of a machine, tool or job.
+/// A segment of a profile.
+pub(super) fn segment(scan: &Scan, range: Range<usize>) -> Segment {
+    let piece = Piece { scan, range };
+    Segment { doc: piece.doc(), name: piece.name(piece.range.start), value: piece.error() }
+}
+
+/// What stands before the block of a machine, tool, profile or job.
 pub(super) fn head(scan: &Scan, first: usize) -> Head {
     let piece = Piece { scan, range: first..first + 1 };
     let extends = scan.is_name(first + 3) && scan.say(first + 2) != "{";
@@ -87,7 +93,7 @@ pub(super) fn surface_head(scan: &Scan, range: Range<usize>) -> SurfaceParts {
     let piece = Piece { scan, range };
     let name = piece.defined().unwrap_or_else(|| piece.nameless());
     let firsts = piece.firsts_in_parentheses();
-    let parameters = firsts.into_iter().map(|index| piece.parameter(index, piece.name(index))).collect();
+    let parameters = firsts.into_iter().map(|index| piece.surface_parameter(index)).collect();
     SurfaceParts { doc: piece.doc(), parameters, ..SurfaceParts::new(name) }
 }
 
@@ -168,6 +174,15 @@ impl Piece<'_> {
         Parameter { doc: self.doc(), name, dimension: self.dimension(index), range: self.range() }
     }
 
+    fn surface_parameter(&self, index: usize) -> SurfaceParameter {
+        let name = self.name(index);
+        if self.scan.say(index + 2) != "along" {
+            return SurfaceParameter::Within(self.parameter(index, name));
+        }
+        let profile = if self.scan.is_name(index + 3) { self.name(index + 3) } else { self.nameless() };
+        SurfaceParameter::Along(name, profile)
+    }
+
     fn let_statement(&self, name: Name) -> Let {
         Let { name, value: self.error() }
     }
@@ -222,7 +237,8 @@ impl Piece<'_> {
         Instance { name, definition, settings: settings.collect() }
     }
 
-    fn sample(&self, surface: Name) -> Sample {
+    fn sample(&self) -> Sample {
+        let surface = self.path(self.range.start + 1);
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
         Sample { surface, entries: vec![entry], span: self.span() }
     }

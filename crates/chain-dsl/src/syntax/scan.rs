@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::source::{FileId, Span};
 
 use super::lex::{is_invisible, token};
-use super::words;
+use super::{pieces, words};
 
 /// One comment.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,9 +158,17 @@ impl<'t> Scan<'t> {
         self.tokens.get(index)?.indent
     }
 
-    /// Whether a token begins an item or a statement somewhere.
+    /// Whether a token begins an item or a statement somewhere. A word that may also be a name does so before another name or
+    /// a brace, where something has ended.
     pub(super) fn is_opening_word(&self, index: usize) -> bool {
-        self.kind(index) == Some(Kind::Word) && words::begins_statement(self.say(index))
+        let word = self.say(index);
+        let introduces = || {
+            (self.is_name(index + 1) || self.say(index + 1) == "{")
+                && index.checked_sub(1).is_none_or(|before| pieces::ends_something(self, before))
+        };
+        self.kind(index) == Some(Kind::Word)
+            && words::begins_statement(word)
+            && (words::reserved(word).is_some() || introduces())
     }
 
     /// The place from one token to the last before another.

@@ -18,7 +18,7 @@ pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple"];
 
 /// Words that begin a statement in a tool.
-pub(super) const IN_TOOL: &[&str] = &["param", "let", "surface"];
+pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface"];
 
 /// Words that begin a statement in a tool's surface.
 pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
@@ -26,6 +26,9 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] =
     &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample"];
+
+/// Words that begin something only where nothing else can, and are names elsewhere.
+const FREE: &[&str] = &["profile"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];
@@ -50,6 +53,8 @@ pub(super) fn reserved(word: &str) -> Option<Reserved> {
         Some(Reserved::Unit)
     } else if DIMENSIONS.contains(&word) {
         Some(Reserved::Dimension)
+    } else if FREE.contains(&word) {
+        None
     } else if begins_statement(word) || CONNECTING.contains(&word) {
         Some(Reserved::Keyword)
     } else {

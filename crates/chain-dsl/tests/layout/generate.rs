@@ -19,8 +19,18 @@ impl Random {
     }
 }
 
-const NAMES: [&str; 8] =
-    ["a", "b", "α_n", "roll", "work_offset", "machine_center_to_crossing_point", "x1", "point_radius"];
+const NAMES: [&str; 10] = [
+    "a",
+    "b",
+    "profile",
+    "along",
+    "α_n",
+    "roll",
+    "work_offset",
+    "machine_center_to_crossing_point",
+    "x1",
+    "point_radius",
+];
 const NUMBERS: [&str; 12] = [
     "0",
     "2",
@@ -241,18 +251,37 @@ impl Writer {
     }
 
     fn tool_statement(&mut self) {
-        match self.random.below(4) {
+        match self.random.below(5) {
             0 => self.param(),
             1 => self.assignment("let"),
+            2 => self.profile(),
             _ => self.tool_surface(),
         }
+    }
+
+    fn profile(&mut self) {
+        self.put("profile");
+        self.name();
+        self.put("{");
+        for _ in 0..self.random.below(4) {
+            self.name();
+            self.put("=");
+            self.call(2);
+        }
+        self.put("}");
     }
 
     fn tool_surface(&mut self) {
         self.put("surface");
         self.name();
         self.put("(");
-        self.parameter();
+        if self.random.one_in(3) {
+            self.name();
+            self.all(&[":", "along"]);
+            self.name();
+        } else {
+            self.parameter();
+        }
         for _ in 0..self.random.below(3) {
             self.put(",");
             self.parameter();

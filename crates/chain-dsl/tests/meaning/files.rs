@@ -6,7 +6,7 @@ use flank_chain_dsl::{Code, compile_file, render};
 use flank_expr::Graph;
 
 /// A project folder of its own with some files.
-fn project(name: &str, files: &[(&str, &str)]) -> PathBuf {
+pub(crate) fn project(name: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("meaning").join(name);
     let _ = std::fs::remove_dir_all(&folder);
     for (path, text) in files.iter().chain(&[("flank.toml", "")]) {

@@ -6,6 +6,7 @@ mod files;
 mod fixtures;
 mod hostile;
 mod models;
+mod profiles;
 
 use flank_chain_dsl::{Diagnostic, Severity, compile_text};
 use flank_expr::Graph;

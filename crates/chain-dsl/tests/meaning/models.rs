@@ -3,7 +3,7 @@
 use flank_chain_dsl::{Compilation, compile_text, render};
 use flank_expr::Graph;
 
-fn compiled<'g>(graph: &'g Graph, text: &str) -> Compilation<'g> {
+pub(crate) fn compiled<'g>(graph: &'g Graph, text: &str) -> Compilation<'g> {
     let compilation = compile_text(graph, "text", &format!("{text}{}", super::LIBRARY), &[]);
     let told = render(&compilation.diagnostics, &compilation.sources, false);
     assert!(!compilation.has_errors(), "{told}");

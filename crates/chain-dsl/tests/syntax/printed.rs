@@ -60,8 +60,13 @@ fn tool_statement(statement: &ToolStatement) -> Vec<String> {
     match statement {
         ToolStatement::Param(it) => vec![param(it)],
         ToolStatement::Let(it) => vec![let_statement(it)],
+        ToolStatement::Profile(it) => {
+            let head = format!("{}profile {}", doc(&it.doc), it.name.node);
+            let segment = |it: &Segment| format!("  {}{} {}", doc(&it.doc), it.name.node, expression(&it.value));
+            std::iter::once(head).chain(it.segments.iter().map(segment)).collect()
+        }
         ToolStatement::Surface(it) => {
-            let parameters: Vec<String> = it.parameters.iter().map(parameter).collect();
+            let parameters: Vec<String> = it.parameters.iter().map(surface_parameter).collect();
             let head = format!("{}surface {}({})", doc(&it.doc), it.name.node, parameters.join(", "));
             let body = match &it.body.side {
                 Side::Inside => "inside".to_owned(),
@@ -87,11 +92,18 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Surface(it) => {
             format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
         }
-        JobStatement::Trim { surface, by } => format!("trim {} {}", surface.node, by.node),
+        JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
-            format!("sample {} {}", it.surface.node, entries.join(", "))
+            format!("sample {} {}", path(&it.surface), entries.join(", "))
         }
+    }
+}
+
+fn surface_parameter(it: &SurfaceParameter) -> String {
+    match it {
+        SurfaceParameter::Within(it) => parameter(it),
+        SurfaceParameter::Along(name, profile) => format!("{}: along {}", name.node, named(profile)),
     }
 }
 

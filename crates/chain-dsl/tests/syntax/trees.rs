@@ -123,6 +123,14 @@ fn everything() {
         let unused (- k)
         at [(* k (cos! theta)) (* k (sin! theta)) (max! s 0_µm)]
         body towards [0 0 1]
+      /From root to tip./ profile blade
+        /Straight./ edge (line! from: [0_mm (- radius)] to: [radius 0_mm])
+        profile (arc! center: c radius: radius from: 0_deg to: 90_deg)
+        along (spline! "top.csv" x: length y: length)
+      profile nothing
+      surface side(s: along blade, profile: number in 0..1)
+        at (* (blade! s) profile)
+        body towards [1 0 0]
       surface back(u: number in 0..1)
         at (* [u u u] 1_inch)
         body outside
@@ -138,7 +146,7 @@ fn everything() {
       surface concave in m.bed (envelope! c.flank over: roll)
       trim concave convex
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
-      sample concave z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
+      sample concave.edge z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
       let curve (table! "profile.csv")
       let choice (if (or (>= ratio 1) (< ratio 0.5)) "a" (if (!= ratio 0) "b" "c"))
     "#);

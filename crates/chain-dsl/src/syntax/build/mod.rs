@@ -158,6 +158,8 @@ fn is_mark(rule: Rule) -> bool {
             | kw_frame
             | kw_fix
             | kw_couple
+            | kw_profile
+            | kw_along
             | kw_surface
             | kw_at
             | kw_body

@@ -32,6 +32,7 @@ impl Build<'_> {
         Some(match pair.as_rule() {
             Rule::param => ToolStatement::Param(self.param(pair)),
             Rule::let_statement => ToolStatement::Let(self.let_statement(pair)),
+            Rule::profile => ToolStatement::Profile(self.profile(pair)),
             Rule::tool_surface => ToolStatement::Surface(self.tool_surface(pair)),
             _ => return None,
         })
@@ -132,7 +133,7 @@ impl Build<'_> {
 
     fn trim(&mut self, pair: Pair<'_, Rule>) -> JobStatement {
         let mut parts = Parts::of(pair);
-        JobStatement::Trim { surface: self.name(parts.required(Rule::name)), by: self.name(parts.required(Rule::name)) }
+        JobStatement::Trim { surface: self.path(parts.required(Rule::path)), by: self.path(parts.required(Rule::path)) }
     }
 
     fn motion(&mut self, pair: Pair<'_, Rule>) -> Parameter {
@@ -165,7 +166,7 @@ impl Build<'_> {
     fn sample(&mut self, pair: Pair<'_, Rule>) -> Sample {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let surface = self.name(parts.required(Rule::name));
+        let surface = self.path(parts.required(Rule::path));
         let mut entries = Vec::new();
         let mut end = None;
         for pair in parts.all(Rule::entry) {

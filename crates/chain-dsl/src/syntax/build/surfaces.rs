@@ -6,10 +6,10 @@ use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::source::{Name, Span};
 
-use super::super::ast::{Body, Expression, ExpressionKind, Let, Parameter, Side, ToolSurface};
+use super::super::ast::{Body, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface};
 use super::super::grammar::Rule;
 use super::super::scan::shorten;
-use super::{Build, Parts};
+use super::{Build, Head, Parts};
 
 impl Build<'_> {
     pub(super) fn tool_surface(&mut self, pair: Pair<'_, Rule>) -> ToolSurface {
@@ -26,8 +26,37 @@ impl Build<'_> {
         let doc = self.doc(&pair);
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
-        let parameters = parts.all(Rule::parameter).into_iter().map(|pair| self.parameter(pair)).collect();
+        let parameters =
+            parts.all(Rule::surface_parameter).into_iter().map(|pair| self.surface_parameter(pair)).collect();
         SurfaceParts { doc, parameters, ..SurfaceParts::new(name) }
+    }
+
+    fn surface_parameter(&mut self, pair: Pair<'_, Rule>) -> SurfaceParameter {
+        let mut parts = Parts::of(pair.clone());
+        let name = self.name(parts.required(Rule::name));
+        match parts.optional(Rule::name) {
+            Some(profile) => SurfaceParameter::Along(name, self.name(profile)),
+            None => SurfaceParameter::Within(self.parameter(pair)),
+        }
+    }
+
+    pub(super) fn profile(&mut self, pair: Pair<'_, Rule>) -> Profile {
+        let mut parts = pair.into_inner();
+        let head = parts.next().unwrap_or_else(|| unreachable!("the grammar has a head here"));
+        let Head { doc, name, .. } = self.head(head);
+        let segments = parts.filter_map(|part| self.segment(part)).collect();
+        Profile { doc, name, segments, broken: false }
+    }
+
+    /// A segment of a profile; nothing for its closing brace and the end of a piece.
+    pub(in super::super) fn segment(&mut self, pair: Pair<'_, Rule>) -> Option<Segment> {
+        if pair.as_rule() != Rule::segment {
+            return None;
+        }
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        Some(Segment { doc, name, value: self.expression(parts.required(Rule::expression)) })
     }
 
     /// Adds a statement to a tool's surface.
@@ -87,7 +116,7 @@ impl Build<'_> {
 pub(in super::super) struct SurfaceParts {
     pub(in super::super) doc: Vec<String>,
     pub(in super::super) name: Name,
-    pub(in super::super) parameters: Vec<Parameter>,
+    pub(in super::super) parameters: Vec<SurfaceParameter>,
     pub(in super::super) lets: Vec<Let>,
     pub(in super::super) at: Option<Expression>,
     pub(in super::super) body: Option<Body>,

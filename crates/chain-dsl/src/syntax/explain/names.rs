@@ -42,7 +42,7 @@ impl Mistake<'_> {
         let name = wants(&[Rule::name, Rule::path]);
         let value = wants(&[Rule::expression, Rule::value, Rule::argument]);
         match reserved {
-            Reserved::Keyword if self.introduces() => None,
+            Reserved::Keyword if self.found > self.range.start && self.introduces() => None,
             Reserved::Keyword if name || value && words::begins_statement(word) => {
                 let message = format!("`{word}` is a word of the language and cannot be a name");
                 Some(self.here(message))

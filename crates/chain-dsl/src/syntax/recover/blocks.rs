@@ -5,8 +5,9 @@ use pest::iterators::Pair;
 use crate::diagnostic::Note;
 use crate::source::Span;
 
-use super::super::ast::{Item, Job, Machine, Tool, ToolStatement};
+use super::super::ast::{Item, Job, Machine, Profile, Segment, Tool, ToolStatement};
 use super::super::build::Head;
+use super::super::expected::SEGMENT;
 use super::super::grammar::Rule;
 use super::super::scan::Kind;
 use super::super::{pieces, salvage, words};
@@ -152,6 +153,9 @@ impl<'s> Recover<'s> {
         if matches!(block, Block::Tool(_)) && word == "surface" {
             return self.tool_surface(block, true);
         }
+        if let (Block::Tool(statements), "profile") = (&mut *block, word) {
+            return statements.push(ToolStatement::Profile(self.profile(true)));
+        }
         let range = first..pieces::statement_end(scan, first);
         match self.piece(block.rule(), range.clone()) {
             Some(pair) => block.add(&mut self.build, pair),
@@ -208,8 +212,54 @@ impl<'s> Recover<'s> {
         if meant == Some("surface") && matches!(block, Block::Tool(_)) {
             return self.tool_surface(block, false);
         }
+        if let (Block::Tool(statements), Some("profile")) = (&mut *block, meant) {
+            return statements.push(ToolStatement::Profile(self.profile(false)));
+        }
         self.at = pieces::unknown_end(scan, first);
         block.add_broken(scan, meant.unwrap_or("let"), first..self.at);
+    }
+
+    /// A profile of a tool, segment by segment.
+    fn profile(&mut self, strict: bool) -> Profile {
+        let (scan, first) = (self.scan, self.at);
+        let mistakes = self.build.diagnostics.len();
+        let (head, opened) = self.head(strict);
+        let Head { doc, name, .. } = match head {
+            Some(pair) => self.build.head(pair),
+            None => salvage::head(scan, first),
+        };
+        let mut segments = Vec::new();
+        let ends = |at| scan.is_opening_word(at) && !pieces::is_right_of(scan, at, first);
+        while self.goes_on() && self.say() != "}" && !ends(self.at) {
+            segments.extend(self.segment());
+        }
+        if self.say() == "}" {
+            self.at += 1;
+        } else if self.at == scan.tokens.len() || ends(self.at) {
+            self.unclosed(opened);
+        }
+        let broken = self.build.diagnostics.len() > mistakes;
+        Profile { doc, name, segments, broken }
+    }
+
+    /// The next segment of a profile, or a report on what stands in its place.
+    fn segment(&mut self) -> Option<Segment> {
+        let (scan, first) = (self.scan, self.at);
+        if pieces::begins_segment(scan, first) {
+            let range = first..pieces::segment_end(scan, first);
+            return match self.piece(Rule::profile_piece, range.clone()) {
+                Some(pair) => self.build.segment(pair),
+                None => Some(salvage::segment(scan, range)),
+            };
+        }
+        if scan.is_opening_word(first) {
+            self.report(first, format!("`{}` cannot stand in a profile", scan.say(first)));
+            self.at = pieces::statement_end(scan, first);
+            return None;
+        }
+        self.report_sign(SEGMENT, "a profile consists of lines, arcs and splines, each with a name");
+        self.at = pieces::segment_end(scan, first);
+        None
     }
 
     fn tool_surface(&mut self, block: &mut Block, strict: bool) {

@@ -1,0 +1,319 @@
+//! Profiles of tools: lines, arcs and splines in a plane, one after the other, that one length runs over.
+
+use std::rc::Rc;
+
+use flank_expr::{Curve, CurveId, Expr};
+
+use crate::codes::Code;
+use crate::context::{Constant, Context, Role, Scope, Value, quoted};
+use crate::diagnostic::Diagnostic;
+use crate::dimension::{Dimension, shown};
+use crate::source::Span;
+use crate::syntax::ast::{self, Call, Expression, ExpressionKind};
+use crate::tables;
+
+/// A profile of a tool.
+#[derive(Debug)]
+pub(crate) struct Profile<'g> {
+    pub(crate) segments: Vec<Rc<Segment<'g>>>,
+}
+
+/// A smooth piece of a profile.
+#[derive(Debug)]
+pub(crate) struct Segment<'g> {
+    pub(crate) name: String,
+    /// Where it is written.
+    pub(crate) span: Span,
+    shape: Shape<'g>,
+    /// The run at which it begins and ends.
+    pub(crate) from: Expr<'g>,
+    pub(crate) to: Expr<'g>,
+}
+
+#[derive(Debug)]
+enum Shape<'g> {
+    /// A point and the unit vector along the line.
+    Line { from: [Expr<'g>; 2], direction: [Expr<'g>; 2] },
+    /// The angle goes from the first coordinate to the second, and with the run if `sense` is 1, against it if −1.
+    Arc { center: [Expr<'g>; 2], radius: Expr<'g>, from: Expr<'g>, sense: f64 },
+    /// Both coordinates over the length of the chords between the points.
+    Spline([CurveId; 2]),
+    /// A spline through points that have no values yet.
+    Unknown([Expr<'g>; 2]),
+}
+
+/// The farthest that the end of a segment may lie from the beginning of the next, mm: rounding of coordinates as large as
+/// those of a nearly straight arc.
+const JOINT: f64 = 1e-9;
+
+/// The ways to make a segment.
+const SHAPES: [&str; 3] = ["line", "arc", "spline"];
+
+/// Builds a profile and puts it into the scope, with the runs at its segments' ends as `profile.segment.from` and `.to`.
+pub(crate) fn build<'g>(context: &mut Context<'g>, written: &ast::Profile, scope: &mut Scope<'g>) {
+    let findings = context.findings();
+    let profile = segments(context, written, scope).filter(|_| context.findings() == findings && !written.broken);
+    let name = &written.name.node;
+    let Some(profile) = profile else {
+        scope.insert(name.clone(), Value::Poison);
+        return;
+    };
+    for segment in &profile.segments {
+        for (end, run) in [("from", segment.from), ("to", segment.to)] {
+            scope.insert(format!("{name}.{}.{end}", segment.name), Value::Scalar(run, Dimension::LENGTH));
+        }
+    }
+    scope.insert(name.clone(), Value::Profile(Rc::new(profile)));
+}
+
+fn segments<'g>(context: &mut Context<'g>, written: &ast::Profile, scope: &Scope<'g>) -> Option<Profile<'g>> {
+    if written.segments.is_empty() && !written.broken {
+        let message = format!("`{}` has no segments", written.name.node);
+        let help = "add one: `flank = line(from: [x, y], to: [x, y])`";
+        context.report(Diagnostic::new(Code::BrokenProfile, written.name.span, message).help(help));
+    }
+    for (k, segment) in written.segments.iter().enumerate() {
+        if let Some(first) = written.segments[..k].iter().find(|earlier| earlier.name.node == segment.name.node) {
+            context.duplicate(&segment.name, first.name.span);
+        }
+    }
+    let mut run = context.graph.constant(0.0);
+    let mut built: Vec<Option<Rc<Segment<'g>>>> = Vec::new();
+    for segment in &written.segments {
+        let next = shape(context, &segment.value, &segment.name.node, scope).map(|(shape, length)| {
+            let (name, span) = (segment.name.node.clone(), segment.value.span);
+            Rc::new(Segment { name, span, shape, from: run, to: run + length })
+        });
+        run = next.as_ref().map_or(run, |segment| segment.to);
+        built.push(next);
+    }
+    for pair in built.windows(2) {
+        if let [Some(one), Some(next)] = pair {
+            check_joint(context, one, next);
+        }
+    }
+    Some(Profile { segments: built.into_iter().collect::<Option<_>>()? })
+}
+
+/// The shape of a segment and its length.
+fn shape<'g>(
+    context: &mut Context<'g>,
+    written: &Expression,
+    name: &str,
+    scope: &Scope<'g>,
+) -> Option<(Shape<'g>, Expr<'g>)> {
+    let call = match &written.kind {
+        ExpressionKind::Call(call) => call,
+        ExpressionKind::Error => return None,
+        _ => {
+            let message = "a segment of a profile is a `line`, an `arc` or a `spline`";
+            let help = "for example `line(from: [x, y], to: [x, y])`";
+            context.report(Diagnostic::new(Code::WrongKind, written.span, message).help(help));
+            return None;
+        }
+    };
+    match call.function.node.as_str() {
+        "line" => line(context, call, scope),
+        "arc" => arc(context, call, scope),
+        "spline" => spline(context, call, name, scope),
+        _ => {
+            context.unknown(&call.function, "kind of segment", SHAPES.into_iter());
+            None
+        }
+    }
+}
+
+fn line<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+    let [from, to] = arguments(context, call, ["from", "to"], "line(from: [x, y], to: [x, y])")?;
+    let from = context.vector(from, scope, Dimension::LENGTH, "the beginning of the line");
+    let to = context.vector(to, scope, Dimension::LENGTH, "the end of the line");
+    let (from, to): ([Expr<'g>; 2], [Expr<'g>; 2]) = (from?, to?);
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let length = hypot(way);
+    if value(context, length, call.span, "the length of the line")? == 0.0 {
+        return no_run(context, call.span, "this line ends where it begins", "give it two different ends");
+    }
+    Some((Shape::Line { from, direction: way.map(|part| part / length) }, length))
+}
+
+fn arc<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+    let labels = ["center", "radius", "from", "to"];
+    let written = arguments(context, call, labels, "arc(center: [x, y], radius: r, from: 0 deg, to: 90 deg)")?;
+    let center = context.vector(written[0], scope, Dimension::LENGTH, "the centre of the arc");
+    let radius = context.scalar(written[1], scope, Dimension::LENGTH, "the radius of the arc");
+    let [from, to] =
+        [written[2], written[3]].map(|angle| context.scalar(angle, scope, Dimension::ANGLE, "an end of the arc"));
+    let (center, radius, from, to) = (center?, radius?, from?, to?);
+    let size = value(context, radius, written[1].span, "the radius of the arc")?;
+    if size <= 0.0 {
+        let message = format!("the radius of an arc is above zero, this one is {}", shown(size, Dimension::LENGTH));
+        let help = "`from` and `to` say in which sense it turns";
+        return no_run(context, written[1].span, &message, help);
+    }
+    let turn = value(context, to - from, call.span, "the turn of the arc")?;
+    if turn == 0.0 {
+        return no_run(context, written[3].span, "this arc ends where it begins", "give it two different angles");
+    }
+    let (sense, turn) = if turn < 0.0 { (-1.0, from - to) } else { (1.0, to - from) };
+    Some((Shape::Arc { center, radius, from, sense }, turn * radius))
+}
+
+fn spline<'g>(context: &mut Context<'g>, call: &Call, name: &str, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+    let (points, places) = match call.arguments.as_slice() {
+        [ast::Argument { name: None, value: listed }] if !matches!(listed.kind, ExpressionKind::Text(_)) => {
+            listed_points(context, listed, scope)?
+        }
+        _ => tabulated_points(context, call)?,
+    };
+    let mut run = 0.0;
+    let mut over_run = [Vec::new(), Vec::new()];
+    for (k, &(x, y)) in points.iter().enumerate() {
+        if k > 0 {
+            let step = f64::hypot(x - points[k - 1].0, y - points[k - 1].1);
+            if step == 0.0 {
+                let message = format!("points {} and {} of this spline are the same", k, k + 1);
+                return no_run(context, places[k.min(places.len() - 1)], &message, "leave one of them out");
+            }
+            run += step;
+        }
+        over_run[0].push((run, x));
+        over_run[1].push((run, y));
+    }
+    if points.iter().any(|(x, y)| x.is_nan() || y.is_nan()) {
+        let unknown = [(); 2].map(|()| context.variable(name, Role::Parameter, f64::NAN));
+        return Some((Shape::Unknown(unknown), unknown[0]));
+    }
+    let [x, y] = [0, 1].map(|k| Curve::through(format!("{name}_{}", ["x", "y"][k]), &over_run[k]));
+    let (Ok(x), Ok(y)) = (x, y) else {
+        let help = "for example `spline([[0 mm, 0 mm], [1 mm, 0.1 mm], [2 mm, 0.4 mm]])`";
+        return no_run(context, places[0], "a spline goes through at least two points", help);
+    };
+    let ids = [context.graph.curve(x), context.graph.curve(y)];
+    Some((Shape::Spline(ids), context.graph.constant(run)))
+}
+
+/// Points of a spline and the places at which they are written: one for each, or one for all.
+type Points = (Vec<(f64, f64)>, Vec<Span>);
+
+/// `[[x, y], …]`; NaN where a coordinate has no value yet.
+fn listed_points<'g>(context: &mut Context<'g>, listed: &Expression, scope: &Scope<'g>) -> Option<Points> {
+    let ExpressionKind::Vector(written) = &listed.kind else {
+        let message = "the points of a spline are a list `[[x, y], …]`";
+        context.report(Diagnostic::new(Code::WrongArguments, listed.span, message));
+        return None;
+    };
+    let mut points = Vec::new();
+    for point in written {
+        let [x, y] = context.vector(point, scope, Dimension::LENGTH, "a point of the spline")?;
+        let [x, y] = [x, y].map(|part| value(context, part, point.span, "a point of the spline"));
+        points.push((x?, y?));
+    }
+    let places = if written.is_empty() { vec![listed.span] } else { written.iter().map(|point| point.span).collect() };
+    Some((points, places))
+}
+
+/// `"file.csv", x: length, y: length`
+fn tabulated_points(context: &mut Context<'_>, call: &Call) -> Option<Points> {
+    let table = tables::columns(context, call)?;
+    for (name, dimension) in table.columns {
+        if dimension != Dimension::LENGTH {
+            let message = format!("the points of a spline are lengths, `{}` is {dimension}", name.node);
+            context.report(Diagnostic::new(Code::WrongDimension, name.span, message));
+            return None;
+        }
+    }
+    Some((table.rows(context)?.to_vec(), vec![table.span]))
+}
+
+/// The arguments of a call that takes them by these names.
+fn arguments<'a, const N: usize>(
+    context: &mut Context<'_>,
+    call: &'a Call,
+    labels: [&str; N],
+    example: &str,
+) -> Option<[&'a Expression; N]> {
+    let function = &call.function.node;
+    let mut found: [Option<&Expression>; N] = [None; N];
+    for argument in &call.arguments {
+        let Some(name) = &argument.name else {
+            let message = format!("`{function}` takes its arguments by their names");
+            let help = format!("for example `{example}`");
+            context.report(Diagnostic::new(Code::WrongArguments, argument.value.span, message).help(help));
+            return None;
+        };
+        let Some(place) = labels.iter().position(|label| *label == name.node) else {
+            context.unknown(name, &format!("argument of `{function}`"), labels.into_iter());
+            return None;
+        };
+        if let Some(first) = found[place].replace(&argument.value) {
+            context.duplicate(name, first.span);
+            return None;
+        }
+    }
+    let missing: Vec<&str> =
+        labels.into_iter().zip(&found).filter(|(_, found)| found.is_none()).map(|of| of.0).collect();
+    if !missing.is_empty() {
+        let message = format!("`{function}` needs {}", quoted(&missing));
+        let help = format!("for example `{example}`");
+        context.report(Diagnostic::new(Code::WrongArguments, call.span, message).help(help));
+        return None;
+    }
+    found.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+}
+
+/// The number behind an expression of parameters; NaN where it has none yet.
+fn value<'g>(context: &mut Context<'g>, expr: Expr<'g>, span: Span, what: &str) -> Option<f64> {
+    match context.constant(expr) {
+        Constant::Unknown => Some(f64::NAN),
+        _ => context.require_constant(expr, span, what),
+    }
+}
+
+fn no_run<T>(context: &mut Context<'_>, span: Span, message: &str, help: &str) -> Option<T> {
+    context.report(Diagnostic::new(Code::BrokenProfile, span, message).help(help));
+    None
+}
+
+/// Reports a gap between a segment and the next.
+fn check_joint<'g>(context: &mut Context<'g>, one: &Segment<'g>, next: &Segment<'g>) {
+    let (end, beginning) = (one.point(one.to), next.point(next.from));
+    let values = [end[0], end[1], beginning[0], beginning[1]].map(|part| match context.constant(part) {
+        Constant::Known(value) => value,
+        _ => f64::NAN,
+    });
+    let [x0, y0, x1, y1] = values;
+    let gap = f64::hypot(x1 - x0, y1 - y0);
+    if gap > JOINT {
+        let point = |x, y| format!("[{}, {}]", shown(x, Dimension::LENGTH), shown(y, Dimension::LENGTH));
+        let message = format!("`{}` begins {} from the end of `{}`", next.name, rounded(gap), one.name);
+        let help = format!("let it begin at {} instead of {}", point(x0, y0), point(x1, y1));
+        let diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help);
+        context.report(diagnostic.note(one.span, "the segment before it"));
+    }
+}
+
+/// A length to three digits.
+fn rounded(length: f64) -> String {
+    let rounded = format!("{length:.2e}").parse().unwrap_or(length);
+    shown(rounded, Dimension::LENGTH)
+}
+
+fn hypot<'g>([x, y]: [Expr<'g>; 2]) -> Expr<'g> {
+    (x * x + y * y).sqrt()
+}
+
+impl<'g> Segment<'g> {
+    /// The point at a run along the profile, mm: beyond its ends a line and an arc go on, a spline has no points.
+    pub(crate) fn point(&self, run: Expr<'g>) -> [Expr<'g>; 2] {
+        let own = run - self.from;
+        match &self.shape {
+            Shape::Line { from, direction } => [0, 1].map(|k| from[k] + direction[k] * own),
+            Shape::Arc { center, radius, from, sense } => {
+                let angle = *from + own / *radius * own.graph().constant(*sense);
+                [center[0] + *radius * angle.cos(), center[1] + *radius * angle.sin()]
+            }
+            Shape::Spline(coordinates) => coordinates.map(|curve| own.on_curve(curve, 0)),
+            Shape::Unknown(point) => *point,
+        }
+    }
+}
