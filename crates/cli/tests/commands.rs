@@ -220,6 +220,9 @@ fn set_of_a_wrong_name_or_value_is_told() {
         ("teeht=30", 1, "did you mean `teeth`?"),
         ("module=3", 1, "give it a unit: `3 mm`"),
         ("module=3 furlong", 1, "is not a unit"),
+        ("module=-3 mm", 1, "`module` is -3 mm, outside its range 0.001 mm .. 1000 mm"),
+        ("r.pressure_angle=80 deg", 1, "outside its range -45 deg .. 45 deg"),
+        ("r.tip_radius=9 mm", 1, "outside its range 0 mm .. 6 mm"),
         ("module", 2, "NAME=VALUE"),
     ] {
         let run = flank(&["derive", "specs/hobbing/spur_gear.chain", "--set", set]);
