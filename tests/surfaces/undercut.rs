@@ -2,9 +2,9 @@
 
 use flank_chain_dsl::{GeneratedSurface, Job, ToolShape, compile_text, render};
 use flank_expr::geometry::Vector3;
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{CutBy, Intersection, Meeting, Outcome, Range, SurfacePoint, SurfaceProblem, System, solve, trim};
-use flank_tests::{difference, job, number, points, reference_json, reversed, vector};
+use flank_tests::{difference, job, number, points, reference_json, repository, reversed, vector};
 
 const SPUR: &str = "specs/hobbing/spur_gear.chain";
 /// z = 20, m = 1, α = 20°, x = 0, h_aP0 = 1.25, ρ_aP0 = 0.25.
@@ -402,7 +402,7 @@ fn trimmed(
     let surfaces = [&first.surface, &second.surface];
     let intersection = Intersection::new(surfaces, coordinates, both, &job.bindings()).expect("nothing is unbound");
     let meetings = trim(&mut points, targets, counts, &intersection, 0);
-    (points, meetings)
+    (points, meetings.concat())
 }
 
 /// The rows of a grid of two coordinates.
@@ -459,4 +459,97 @@ fn surfaces_that_touch_cut_nothing_away() {
     let (points, meetings) = trimmed(&job, ["flank_plus", "fillet_plus"], ["u", "v"], &targets, counts);
     assert!(meetings.is_empty(), "{meetings:?}");
     assert!(points.iter().all(|point| point.outcome == Outcome::Solved));
+}
+
+/// A rack that leans over the gear's axis: its profile shift grows along the face, so the gear is cut under at one end only.
+const LEANING: &str = "
+machine planer {
+    param lean : angle = 10 deg
+    axis X : linear
+    axis Y : linear
+    axis C : rotary
+    frame bed
+    frame slide in bed = rotate_y(lean) translate(X, Y, 0 mm)
+    frame table in bed = rotate_z(C)
+}
+job taper_gear {
+    param module : length = 5 mm
+    param shift : length = 1 mm
+    param width : length = 15 mm
+    let reference_radius = 25 mm
+    machine m = planer
+    tool    r = rack(module: module, half_width: width)
+    mount r on m.slide
+    motion phi : angle in -60 deg .. 60 deg
+    drive m.X = reference_radius + shift
+    drive m.Y = reference_radius * phi
+    drive m.C = phi
+    surface flank  in m.table = envelope(r.flank_plus, over: phi)
+    surface fillet in m.table = envelope(r.fillet_plus, over: phi)
+}";
+
+/// How deep a point of the work comes to lie inside the rack's tooth, over all of the rack's positions. Nothing but the
+/// tooth's outline and the frames' poses: no envelope, no derivative.
+fn deepest<'g>(job: &Job<'g>, generated: &GeneratedSurface<'g>, position: [f64; 3]) -> f64 {
+    let [m, alpha] = [5.0, 20f64.to_radians()];
+    let (height, radius) = (1.25 * m, 0.38 * m);
+    let graph = generated.surface.position.0[0].graph();
+    let work = Vector3::constant(graph, position);
+    let in_rack = graph.substitute(&generated.generation.driven.inverse().point(work).0, &job.bindings());
+    let phi = generated.generation.motions[0];
+    let tape = Tape::new(&in_rack, &[phi]).expect("nothing is unbound");
+    let mut evaluator = ScalarEvaluator::new(&tape);
+    let mut deepest = f64::NEG_INFINITY;
+    for step in -4000..=4000 {
+        let mut at = [0.0; 3];
+        evaluator.run(&[f64::from(step) * 2e-4], &mut at);
+        let [x, y, _] = at;
+        let over_tip = x + height;
+        let rounding = radius * (1.0 - alpha.sin());
+        let half = if over_tip >= rounding {
+            std::f64::consts::PI * m / 4.0 + x * alpha.tan()
+        } else {
+            let centre = std::f64::consts::PI * m / 4.0 - (height - radius) * alpha.tan() - radius / alpha.cos();
+            centre + (radius * radius - (radius - over_tip).powi(2)).max(0.0).sqrt()
+        };
+        deepest = deepest.max(over_tip.min(half - y.abs()));
+    }
+    deepest
+}
+
+/// A point is called cut away, by its own tool or by the other surface's, exactly if the solid tooth of the rack takes it.
+#[test]
+fn what_is_cut_away_is_what_the_solid_tool_takes() {
+    let rack = std::fs::read_to_string(repository("specs/tools/rack.chain")).expect("the spec is there");
+    let rack = rack.lines().filter(|line| !line.starts_with("//!")).collect::<Vec<_>>().join("\n");
+    for lean in ["0 deg", "10 deg", "-10 deg"] {
+        let graph = Graph::new();
+        let job = compiled(&graph, &(rack.clone() + &LEANING.replace("10 deg", lean)));
+        let of = |name: &str| surface(&job, name).unknowns[0].clone();
+        let steps = |low: f64, high: f64, count: u32| -> Vec<f64> {
+            (0..count).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(count)).collect()
+        };
+        let across = steps(-14.0, 14.0, 7);
+        let mut outcomes = [0; 3];
+        for (names, own, count) in [(["flank", "fillet"], "u", 23), (["fillet", "flank"], "theta", 31)] {
+            let range = of(names[0]);
+            let (targets, counts) = grid(&steps(range.low.max(-1.0), range.high, count), &across);
+            let (points, _) = trimmed(&job, names, [own, "v"], &targets, counts);
+            for (target, point) in targets.iter().zip(&points) {
+                let depth = deepest(&job, surface(&job, names[0]), point.position);
+                let what = format!("lean {lean}, {} at {target:?}: {:?}, depth {depth:e}", names[0], point.outcome);
+                match point.outcome {
+                    Outcome::Solved => assert!(depth < 1e-9, "{what}"),
+                    Outcome::CutAway(_) => assert!(depth > 1e-9, "{what}"),
+                    _ => panic!("{what}"),
+                }
+                outcomes[match point.outcome {
+                    Outcome::Solved => 0,
+                    Outcome::CutAway(CutBy::ItsTool) => 1,
+                    _ => 2,
+                }] += 1;
+            }
+        }
+        assert!(outcomes.iter().all(|count| *count > 3), "lean {lean}: {outcomes:?}");
+    }
 }

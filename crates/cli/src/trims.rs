@@ -19,12 +19,15 @@ pub(crate) fn cut<'j, 'g>(
     let both = [ranges(surface), ranges(by)];
     let intersection = Intersection::new([&surface.surface, &by.surface], coordinates, both, &job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let meetings = trim(points, &sample.targets, sample.counts, &intersection, number);
+    let [on_columns, on_rows] = trim(points, &sample.targets, sample.counts, &intersection, number);
+    // whichever cross the line oftener show more of it; on the columns it runs along the rows
+    let (meetings, along) =
+        if on_columns.len() < on_rows.len() { (on_rows, &sample.labels[0]) } else { (on_columns, &sample.labels[1]) };
     Line {
         surface,
         name: format!("{}.trimmed_by_{}", surface.name, by.name),
         kind: "intersection",
-        along: sample.labels.join(", then "),
+        along: along.clone(),
         points: meetings.into_iter().map(|meeting| meeting.first).collect(),
     }
 }

@@ -15,7 +15,7 @@ struct Known {
 }
 
 /// Marks the solved points of a grid of the intersection's first surface that its second cuts away, as
-/// [`CutBy::Other`]`(number)`, and gives back where the two meet.
+/// [`CutBy::Other`]`(number)`, and gives back where the two meet: on the columns, one after the other, and on the rows.
 ///
 /// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
 /// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
@@ -31,12 +31,12 @@ pub fn trim(
     counts: [usize; 2],
     intersection: &Intersection,
     number: usize,
-) -> Vec<Meeting> {
+) -> [Vec<Meeting>; 2] {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     assert_eq!(targets.len(), points.len(), "one point for each target");
     let mut known = vec![Known::default(); points.len()];
     let mut joined: Vec<[usize; 2]> = Vec::new();
-    let mut meetings: Vec<Meeting> = Vec::new();
+    let mut meetings = [Vec::new(), Vec::new()];
     let [rows, columns] = counts;
     let columns_down = (0..columns).map(|j| (0..rows).map(|i| i * columns + j).collect());
     let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
@@ -51,7 +51,7 @@ pub fn trim(
             if !found.is_empty() {
                 before = found.iter().map(Meeting::unknowns).collect();
             }
-            meetings.extend(found);
+            meetings[coordinate].extend(found);
         }
     }
     spread(&mut known, &joined);
