@@ -190,14 +190,15 @@ impl<'g> Chain<'g> {
         (part(&self.steps[..k]), part(&self.steps[k..]))
     }
 
-    /// Frames beside the steps that a motion moves, as places for [`Chain::split`]: all of them if they are few, else the
-    /// last one.
+    /// Frames beside the steps that a motion moves, as places for [`Chain::split`]: all of them if they are few and the chain
+    /// is short, else the last one.
     pub(crate) fn frames_beside(&self, motion: Expr<'g>) -> Vec<usize> {
         const FEW: usize = 8;
+        const SHORT: usize = 100;
         let moves = |k: &usize| !self.steps[*k].twist(self.graph, motion).is_zero();
         let mut frames: Vec<usize> = (0..self.steps.len()).filter(moves).flat_map(|k| [k, k + 1]).collect();
         frames.dedup();
-        if frames.len() > FEW { vec![self.steps.len()] } else { frames }
+        if frames.len() > FEW || self.steps.len() > SHORT { vec![self.steps.len()] } else { frames }
     }
 
     /// The pose of the parent in the child.

@@ -92,7 +92,10 @@ impl<'g> Surface<'g> {
             let all: Vec<Expr<'g>> = values.iter().copied().chain(slopes).collect();
             meshing.graph().work(&all, &unknowns)
         };
-        let candidates = t_work_tool.frames_beside(motion).into_iter().map(in_frame);
-        candidates.min_by_key(work).unwrap_or_else(|| position[0].graph().constant(0.0))
+        match t_work_tool.frames_beside(motion)[..] {
+            [] => position[0].graph().constant(0.0),
+            [only] => in_frame(only),
+            ref several => several.iter().map(|&k| in_frame(k)).min_by_key(work).expect("several"),
+        }
     }
 }
