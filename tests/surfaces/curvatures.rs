@@ -46,6 +46,11 @@ fn meets_row(row: &Value, point: &Evaluated, what: &str) {
     for (direction, key) in directions.iter().zip(keys) {
         assert!(apart(direction, &vector(row, key)) < BOUND, "{what}: {key} {direction:?}");
     }
+    for velocity in &point.geometry.contact.sliding {
+        let velocity = velocity.expect("finite");
+        let out: f64 = velocity.iter().zip(&point.normal).map(|(v, n)| v * n).sum();
+        assert!(out.abs() < BOUND, "{what}: the tool slides {out:e} mm out of the tangent plane");
+    }
     if row.get("t").is_some() {
         let line = point.geometry.contact.line.expect("one motion");
         assert!(apart(&line, &vector(row, "t")) < BOUND, "{what}: contact line {line:?}");

@@ -44,6 +44,14 @@ const BOUND: f64 = 2e-12;
 /// The same where the blade, an arc with a radius of 2e6 mm, enters through differences that rounding leaves 1e-10 mm of.
 const BOUND_OF_AN_ARC: f64 = 1e-10;
 
+fn sensitivity(job: &Job<'_>, surface: &str) -> NormalSensitivity {
+    let settings = job.parameters.iter();
+    let settings: Vec<Setting<'_>> =
+        settings.map(|p| Setting { variable: p.variable, definition: p.definition, value: p.value }).collect();
+    let made = &job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job").surface;
+    NormalSensitivity::new(made, &settings).expect("all bound")
+}
+
 /// Tries all parameters but counts: how many leave the surface alone, and how many move it.
 fn predicts(spec: &str, surface: &str, coordinates: [&str; 2], bound: f64) -> [usize; 2] {
     let graph = Graph::new();
@@ -52,11 +60,7 @@ fn predicts(spec: &str, surface: &str, coordinates: [&str; 2], bound: f64) -> [u
     let old: Vec<SurfacePoint> =
         targets.iter().map(|at| points(&nominal, surface, coordinates, &[*at]).remove(0)).collect();
     let near: Vec<Vec<f64>> = old.iter().map(|point| point.unknowns.clone()).collect();
-    let settings = nominal.parameters.iter();
-    let settings: Vec<Setting<'_>> =
-        settings.map(|p| Setting { variable: p.variable, definition: p.definition, value: p.value }).collect();
-    let made = &nominal.surfaces.iter().find(|s| s.name == surface).expect("it is there").surface;
-    let sensitivity = NormalSensitivity::new(made, &settings).expect("all bound");
+    let sensitivity = sensitivity(&nominal, surface);
     let exact: Vec<Vec<f64>> = old.iter().map(|point| sensitivity.at(&point.unknowns).expect("finite")).collect();
     let mut tried = [0, 0];
     for (k, parameter) in nominal.parameters.iter().enumerate().filter(|(_, p)| !p.is_count) {
@@ -96,4 +100,21 @@ fn a_spur_gear_moves_as_predicted() {
     let spec = "specs/hobbing/spur_gear.chain";
     assert_eq!(predicts(spec, "flank_plus", ["rho", "z"], BOUND), [5, 4]);
     assert_eq!(predicts(spec, "fillet_plus", ["theta", "v"], BOUND), [3, 6]);
+}
+
+/// A cone of blade angle α, seen along its radius and along its axis.
+#[test]
+fn a_face_mill_moves_its_flank_by_cosine_and_sine() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/bevel/pinion_19x62.chain", &[]);
+    let moved = sensitivity(&job, "concave");
+    let place = |name: &str| job.parameters.iter().position(|p| p.name == name).expect("a parameter");
+    let (sin, cos) = 20f64.to_radians().sin_cos();
+    for target in targets(&job, "concave") {
+        let point = points(&job, "concave", ["z", "rho"], &[target]).remove(0);
+        let moved = moved.at(&point.unknowns).expect("finite");
+        // the blade's radius of 2,000,000 mm turns it by some millionths over its height
+        assert!((moved[place("c.outside_point_radius")].abs() - cos).abs() < 1e-5);
+        assert!((moved[place("m.sliding_base")].abs() - sin).abs() < 1e-5);
+    }
 }

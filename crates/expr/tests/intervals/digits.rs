@@ -2,7 +2,7 @@
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use flank_expr::{Binary, Interval, Unary};
+use flank_expr::{Binary, Interval, Operation, Tape, Unary};
 
 type Big = FBig<HalfEven, 2>;
 
@@ -19,7 +19,34 @@ impl From<f64> for Digits {
     }
 }
 
+impl From<&Digits> for f64 {
+    fn from(x: &Digits) -> f64 {
+        x.0.to_f64().value()
+    }
+}
+
 impl Digits {
+    /// The outputs of a tape without curves; `None` where one is not defined.
+    pub(crate) fn outputs(tape: &Tape, inputs: &[Digits]) -> Vec<Option<Digits>> {
+        let constants = tape.constants().iter().map(|x| Digits::from(*x));
+        let mut registers: Vec<Option<Digits>> = inputs.iter().cloned().chain(constants).map(Some).collect();
+        registers.resize(tape.register_count(), None);
+        for step in tape.instructions() {
+            let a = registers[step.a as usize].clone();
+            let b = registers.get(step.b as usize).cloned().flatten();
+            registers[step.out as usize] = match step.operation {
+                Operation::Unary(op) => a.and_then(|a| a.unary(op)),
+                Operation::Binary(op) => a.zip(b).and_then(|(a, b)| a.binary(op, &b)),
+                Operation::SinCos => {
+                    registers[step.b as usize] = a.as_ref().and_then(|a| a.unary(Unary::Cos));
+                    a.and_then(|a| a.unary(Unary::Sin))
+                }
+                Operation::Curve(_) => unreachable!("the tapes that are tested here have no curves"),
+            };
+        }
+        tape.outputs().iter().map(|&register| registers[register as usize].clone()).collect()
+    }
+
     /// Ends are floats and compared exactly; infinite ends hold everything.
     pub(crate) fn lies_in(&self, found: Interval) -> bool {
         let end = |x: f64| Big::try_from(x).expect("finite");
