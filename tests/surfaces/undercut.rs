@@ -257,6 +257,21 @@ fn the_singular_line_meets_the_table() {
     }
 }
 
+/// Two motions: a hob with involute flanks leaves an involute helicoid, which turns back on its base cylinder.
+#[test]
+fn a_hobbed_gear_turns_back_on_its_base_cylinder() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/hobbing/helical_gear.chain", &[("teeth", "9"), ("shift", "0 mm")]);
+    let (helix, reference) = (22f64.to_radians(), 13.5 / 22f64.to_radians().cos());
+    let base_radius = reference * (20f64.to_radians().tan() / helix.cos()).atan().cos();
+    for name in ["lower_flank", "upper_flank"] {
+        for point in line(&job, name, "singular", coordinate(&job, name, "z"), &[-10.0, -2.0, 0.0, 6.0]) {
+            assert_eq!(point.outcome, Outcome::Solved);
+            assert!((point.position[0].hypot(point.position[1]) - base_radius).abs() < 1e-9, "{point:?}");
+        }
+    }
+}
+
 /// The least profile shift without undercut: the singular point is where the rack's straight flank ends. The shift is one
 /// more unknown.
 fn least_shift(set: &[(&str, &str)]) -> f64 {
@@ -462,14 +477,16 @@ fn surfaces_that_touch_cut_nothing_away() {
 }
 
 /// A rack that leans over the gear's axis: its profile shift grows along the face, so the gear is cut under at one end only.
+/// Turned by a helix angle it makes an oblique gear.
 const LEANING: &str = "
 machine planer {
-    param lean : angle = 10 deg
+    param lean : angle
+    param helix : angle
     axis X : linear
     axis Y : linear
     axis C : rotary
     frame bed
-    frame slide in bed = rotate_y(lean) translate(X, Y, 0 mm)
+    frame slide in bed = rotate_y(lean) translate(X, Y, 0 mm) rotate_x(helix)
     frame table in bed = rotate_z(C)
 }
 job taper_gear {
@@ -477,7 +494,7 @@ job taper_gear {
     param shift : length = 1 mm
     param width : length = 15 mm
     let reference_radius = 25 mm
-    machine m = planer
+    machine m = planer(lean: LEAN, helix: HELIX)
     tool    r = rack(module: module, half_width: width)
     mount r on m.slide
     motion phi : angle in -60 deg .. 60 deg
@@ -522,9 +539,11 @@ fn deepest<'g>(job: &Job<'g>, generated: &GeneratedSurface<'g>, position: [f64; 
 fn what_is_cut_away_is_what_the_solid_tool_takes() {
     let rack = std::fs::read_to_string(repository("specs/tools/rack.chain")).expect("the spec is there");
     let rack = rack.lines().filter(|line| !line.starts_with("//!")).collect::<Vec<_>>().join("\n");
-    for lean in ["0 deg", "10 deg", "-10 deg"] {
+    for (lean, helix) in
+        [("0 deg", "0 deg"), ("10 deg", "0 deg"), ("-10 deg", "0 deg"), ("0 deg", "25 deg"), ("7 deg", "-15 deg")]
+    {
         let graph = Graph::new();
-        let job = compiled(&graph, &(rack.clone() + &LEANING.replace("10 deg", lean)));
+        let job = compiled(&graph, &(rack.clone() + &LEANING.replace("LEAN", lean).replace("HELIX", helix)));
         let of = |name: &str| surface(&job, name).unknowns[0].clone();
         let steps = |low: f64, high: f64, count: u32| -> Vec<f64> {
             (0..count).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(count)).collect()
@@ -537,7 +556,10 @@ fn what_is_cut_away_is_what_the_solid_tool_takes() {
             let (points, _) = trimmed(&job, names, [own, "v"], &targets, counts);
             for (target, point) in targets.iter().zip(&points) {
                 let depth = deepest(&job, surface(&job, names[0]), point.position);
-                let what = format!("lean {lean}, {} at {target:?}: {:?}, depth {depth:e}", names[0], point.outcome);
+                let what = format!(
+                    "lean {lean}, helix {helix}, {} at {target:?}: {:?}, depth {depth:e}",
+                    names[0], point.outcome
+                );
                 match point.outcome {
                     Outcome::Solved => assert!(depth < 1e-9, "{what}"),
                     Outcome::CutAway(_) => assert!(depth > 1e-9, "{what}"),
@@ -550,6 +572,6 @@ fn what_is_cut_away_is_what_the_solid_tool_takes() {
                 }] += 1;
             }
         }
-        assert!(outcomes.iter().all(|count| *count > 3), "lean {lean}: {outcomes:?}");
+        assert!(outcomes.iter().all(|count| *count > 3), "lean {lean}, helix {helix}: {outcomes:?}");
     }
 }

@@ -150,6 +150,31 @@ fn sensitivity_is_ranked_written_and_drawn() {
     assert_eq!(sensitivity["counts"], serde_json::json!(["teeth"]));
 }
 
+/// Points that the job's own `trim`s and the tool itself take away are counted by what takes them, and asked for in vain.
+#[test]
+fn what_is_cut_away_is_counted() {
+    let out = folder("cut-away");
+    let run = flank(&[
+        "solve",
+        "specs/hobbing/undercut_gear.chain",
+        "--json",
+        "--no-picture",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(run.status.code(), Some(3));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let outcomes = &table["surfaces"][0]["outcomes"];
+    assert_eq!((&outcomes["solved"], &outcomes["cut away"]), (&189.into(), &98.into()), "{outcomes}");
+    assert_eq!(table["lines"][0]["name"], "flank_plus.trimmed_by_fillet_plus");
+    assert_eq!(table["lines"][0]["solved"], 7);
+    let told = text(&run.stderr);
+    assert!(told.contains("70: cut away by the tool itself"), "{told}");
+    assert!(told.contains("28: cut away by what makes fillet_plus, as `trim` asks for"), "{told}");
+    let csv = std::fs::read_to_string(out.join("undercut_gear.csv")).unwrap();
+    assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus,") && row.ends_with(",cut away")).count(), 98);
+}
+
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let [a, b] = ["bytes-a", "bytes-b"].map(folder);
