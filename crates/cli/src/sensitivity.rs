@@ -21,6 +21,8 @@ const NOTE: &str = "Normal displacement of the surface per unit of a parameter, 
 pub(crate) struct Sensitivity {
     influences: Vec<Influence>,
     counts: Vec<String>,
+    /// Points at which all influences are known.
+    points: usize,
 }
 
 struct Influence {
@@ -46,7 +48,8 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
     let of_all = |k: usize| moved.iter().map(move |point| Some(point.as_ref()?[k]));
     let influences = continuous.map(|(k, parameter)| Influence::new(parameter, of_all(k))).collect();
     let counts = job.parameters.iter().filter(|parameter| parameter.is_count);
-    Sensitivity { influences, counts: counts.map(|parameter| parameter.name.clone()).collect() }
+    let counts = counts.map(|parameter| parameter.name.clone()).collect();
+    Sensitivity { influences, counts, points: moved.iter().flatten().count() }
 }
 
 impl Influence {
@@ -69,7 +72,7 @@ impl Influence {
             name: format!("d_normal/d_{}", self.parameter),
             unit: self.unit.clone(),
             meaning: format!(
-                "normal displacement of the surface per unit of `{}`; plus is more material",
+                "normal displacement of the surface for a change of `{}`; plus is more material",
                 self.parameter
             ),
             values: Values::Scalars(self.values.clone()),
@@ -110,8 +113,9 @@ impl Sensitivity {
         ranked
     }
 
+    /// The parameters that move no point; of none can be said so where no point is known.
     fn idle(&self) -> Vec<&str> {
-        self.influences.iter().filter(|one| !one.moves()).map(|one| one.parameter.as_str()).collect()
+        self.influences.iter().filter(|one| self.points > 0 && !one.moves()).map(|one| one.parameter.as_str()).collect()
     }
 
     fn json(&self) -> Value {
@@ -120,7 +124,8 @@ impl Sensitivity {
             .iter()
             .map(|(_, one)| json!({ "parameter": one.parameter, "unit": one.unit, "rms": one.rms, "largest": one.largest }))
             .collect();
-        json!({ "parameters": ranked, "no_influence": self.idle(), "counts": self.counts })
+        let (points, idle) = (self.points, self.idle());
+        json!({ "points": points, "parameters": ranked, "no_influence": idle, "counts": self.counts })
     }
 }
 
@@ -129,6 +134,11 @@ pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
     for solved in solved {
         let Some(sensitivity) = &solved.sensitivity else { continue };
+        let name = &solved.surface.name;
+        if sensitivity.points == 0 {
+            out += &format!("\n{name}: no point is solved, so it cannot be said what moves it\n");
+            continue;
+        }
         let ranked = sensitivity.ranked();
         let mut rows = vec![["parameter", "rms", "largest", "normal displacement in"].map(String::from)];
         rows.extend(
@@ -136,7 +146,7 @@ pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
                 [one.parameter.clone(), micrometres(one.rms), micrometres(one.largest), one.unit.clone()]
             }),
         );
-        out += &format!("\n{} moves with\n{}", solved.surface.name, aligned(&rows, "<>>"));
+        out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>>"));
         let idle = sensitivity.idle();
         if !idle.is_empty() {
             let of = sensitivity.influences.len();
