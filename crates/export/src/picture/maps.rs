@@ -71,7 +71,7 @@ impl<'a> Panel<'a> {
     fn draw(&self, rect: Rect, sheet: &mut Sheet) {
         let (room, left) = (rect.width(), rect.left);
         let name = one_line(&self.field.name);
-        let size = if font::width(&name, 17.0) > room { 14.0 } else { 17.0 };
+        let size = (17.0 * room / font::width(&name, 17.0)).clamp(12.0, 17.0);
         sheet.text([left, rect.top + 15.0], Anchor::Start, size, INK, &font::fitted(&name, size, room));
         let about = font::fitted(&self.about(), 13.0, room);
         sheet.text([left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &about);
