@@ -2,7 +2,13 @@
 
 use std::collections::VecDeque;
 
+use flank_expr::{InstructionSet, LANES};
+use rayon::prelude::*;
+
 use crate::Outcome;
+use crate::field::{Field, NEAR};
+use crate::lanes::{LaneNewton, Start};
+use crate::line::{lattice, levels};
 use crate::newton::solve_with;
 use crate::solution::{Range, Solution, distance};
 use crate::start::{Scan, roots};
@@ -17,8 +23,9 @@ const SUBSTEPS: [u32; 3] = [1, 4, 16];
 /// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
 /// branch, and the step is divided. The last step to where a branch turns back like a parabola has one.
 const ASTRAY: f64 = 0.75;
-/// Distances below this share of the ranges are never a jump.
-const NEAR: f64 = 1e-3;
+/// Points of a tile: the rows that one thread solves at a time, together enough for full blocks of lanes. Which they are
+/// depends on the grid alone.
+const TILE: usize = 256;
 
 /// What a grid cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,9 +40,12 @@ pub struct Effort {
 /// Solves the system at each pair of targets of a grid (row by row); every point gets a verdict.
 ///
 /// The system's parameters are the two targets. One point, the anchor, is looked for in the whole of the ranges, the middle
-/// of the grid first; each solved point then is the start for its neighbours, in steps short enough to stay on the branch.
-/// So all points lie on one branch; a point where that branch leaves the ranges is outside, even if another branch has a
-/// point there.
+/// of the grid first. From there a lattice of few points is solved in steps short enough to stay on the branch; the gaps are
+/// halved again and again, many points at once, each from a polynomial through its neighbours. What fails there is
+/// solved alone, from neighbour to neighbour. So all points lie on one branch; a point where that branch leaves the ranges
+/// is outside, even if another branch has a point there.
+///
+/// Results do not depend on the number of threads.
 ///
 /// # Panics
 /// If there are not `counts[0] · counts[1]` targets.
@@ -45,8 +55,23 @@ pub fn solve_grid(
     targets: &[[f64; 2]],
     counts: [usize; 2],
 ) -> (Vec<Solution>, Effort) {
+    let (field, effort) = solve_field(system, ranges, targets, counts, None);
+    let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
+    ((0..targets.len()).map(solution).collect(), effort)
+}
+
+/// The same without an allocation for each point; the branch may be given by a start for the point in the middle, which is
+/// tried first.
+pub(crate) fn solve_field(
+    system: &System,
+    ranges: &[Range],
+    targets: &[[f64; 2]],
+    counts: [usize; 2],
+    start: Option<&[f64]>,
+) -> (Field, Effort) {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     let mut grid = Grid {
+        system,
         evaluation: system.evaluation(&[0.0; 2]),
         ranges,
         targets,
@@ -54,22 +79,28 @@ pub fn solve_grid(
         columns: counts[1],
         effort: Effort::default(),
     };
+    let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
+    if let Some(root) = start.filter(|_| !targets.is_empty()).and_then(|start| grid.root_from(middle, start)) {
+        grid.effort.branches = 1;
+        return (grid.fill(middle, &root), grid.effort);
+    }
     let order = grid.middle_first();
-    let mut failures: Vec<Option<Solution>> = vec![None; targets.len()];
+    let mut failures = Field::new(system.size(), targets.len());
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
         let found = grid.look_for(anchor);
         grid.effort.branches = found.iter().filter(|root| root.outcome == Outcome::Solved).count() as u32;
-        if grid.effort.branches == 0 {
-            failures[anchor] = found.into_iter().next();
-            continue;
+        if grid.effort.branches > 0 {
+            return (grid.best_filling(anchor, found), grid.effort);
         }
-        let best = grid.best_filling(anchor, found);
-        return (grid.completed(best), grid.effort);
+        if let Some(failure) = found.first() {
+            failures.put(anchor, failure);
+        }
     }
-    (grid.completed(failures), grid.effort)
+    (failures, grid.effort)
 }
 
 struct Grid<'s> {
+    system: &'s System,
     evaluation: Evaluation<'s>,
     ranges: &'s [Range],
     targets: &'s [[f64; 2]],
@@ -98,16 +129,23 @@ impl Grid<'_> {
         found
     }
 
+    fn root_from(&mut self, point: usize, start: &[f64]) -> Option<Solution> {
+        self.evaluation.set_parameters(&self.targets[point]);
+        let solution = solve_with(&mut self.evaluation, self.ranges, start);
+        self.effort.evaluations += u64::from(solution.iterations);
+        solution.is_root().then_some(solution)
+    }
+
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
     /// which branch is taken depends on the ranges, not on the order in which a scan finds roots.
-    fn best_filling(&mut self, anchor: usize, mut roots: Vec<Solution>) -> Vec<Option<Solution>> {
+    fn best_filling(&mut self, anchor: usize, mut roots: Vec<Solution>) -> Field {
         let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
         let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
         roots.sort_by(|a, b| off(a).total_cmp(&off(b)));
-        let (mut best, mut most) = (Vec::new(), 0);
+        let (mut best, mut most) = (Field::new(self.ranges.len(), self.targets.len()), 0);
         for root in roots {
-            let filling = self.fill(anchor, root);
-            let solved = filling.iter().flatten().filter(|point| point.is_solved()).count();
+            let filling = self.fill(anchor, &root);
+            let solved = filling.count(Outcome::Solved);
             if solved > most {
                 (best, most) = (filling, solved);
             }
@@ -118,41 +156,127 @@ impl Grid<'_> {
         best
     }
 
-    /// Everything that can be reached from the anchor, ring by ring; what is not reached stays `None`.
-    fn fill(&mut self, anchor: usize, root: Solution) -> Vec<Option<Solution>> {
-        let mut found: Vec<Option<Solution>> = vec![None; self.targets.len()];
-        found[anchor] = Some(root);
-        let mut queue = VecDeque::from([anchor]);
+    /// Everything that can be reached from the anchor.
+    fn fill(&mut self, anchor: usize, root: &Solution) -> Field {
+        let mut field = Field::new(self.ranges.len(), self.targets.len());
+        field.put(anchor, root);
+        let rows = lattice(self.rows, anchor / self.columns);
+        let columns = lattice(self.columns, anchor % self.columns);
+        self.spread(&mut field, VecDeque::from([anchor]), &rows, &columns);
+        let instructions = InstructionSet::widest();
+        let mut newton = LaneNewton::new(self.system, self.ranges, instructions);
+        self.settle(&mut field, &mut newton, &rows, &columns);
+        self.refine_columns(&mut field, &mut newton, &rows, &columns);
+        self.refine_rows(&mut field, &mut newton, &columns);
+        let unfinished = self.edge_of_roots(&field);
+        if !unfinished.is_empty() {
+            let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
+            self.spread(&mut field, unfinished, &all[0], &all[1]);
+        }
+        field
+    }
+
+    /// The determinants at the points of the lattice, which the careful path does not give.
+    fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, rows: &[usize], columns: &[usize]) {
+        let width = self.columns;
+        let points = rows.iter().flat_map(|i| columns.iter().map(move |j| i * width + j));
+        let points: Vec<usize> = points.filter(|point| field.is_root(*point)).collect();
+        for block in points.chunks(LANES) {
+            for (lane, &point) in block.iter().enumerate() {
+                let (unknowns, parameters) = (field.unknowns(point), &self.targets[point]);
+                newton.put(lane, &Start { unknowns, parameters, determinant: None, allowed: NEAR });
+            }
+            self.effort.evaluations += newton.run(block.len());
+            for (lane, &point) in block.iter().enumerate().filter(|(lane, _)| newton.is_root(*lane)) {
+                field.set_determinant(point, newton.determinant(lane));
+            }
+        }
+    }
+
+    /// All points of the lattice's columns.
+    fn refine_columns(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, rows: &[usize], columns: &[usize]) {
+        let levels = levels(self.rows, rows);
+        let (height, width) = (self.rows, self.columns);
+        let points: Vec<usize> = columns.iter().flat_map(|j| (0..height).map(move |i| i * width + j)).collect();
+        let targets: Vec<[f64; 2]> = points.iter().map(|point| self.targets[*point]).collect();
+        let mut lines = field.gathered(&points);
+        for mut piece in lines.pieces(targets.len().max(1)) {
+            self.effort.evaluations += piece.refine(newton, self.ranges, &levels, self.rows, &targets);
+        }
+        field.scatter(&lines, &points);
+    }
+
+    /// All points of all rows, from those in the lattice's columns; on as many threads as there are.
+    fn refine_rows(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, columns: &[usize]) {
+        let levels = levels(self.columns, columns);
+        let points = (TILE / self.columns).max(1) * self.columns;
+        let tiles: Vec<_> = field.pieces(points).into_iter().zip(self.targets.chunks(points)).collect();
+        let (system, ranges, length) = (self.system, self.ranges, self.columns);
+        self.effort.evaluations += if tiles.len() == 1 || rayon::current_num_threads() == 1 {
+            tiles
+                .into_iter()
+                .map(|(mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets))
+                .sum::<u64>()
+        } else {
+            let another = || LaneNewton::new(system, ranges, InstructionSet::widest());
+            let tiles = tiles
+                .into_par_iter()
+                .map_init(another, |newton, (mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets));
+            tiles.sum::<u64>()
+        };
+    }
+
+    /// Roots beside points that are not known to be roots.
+    fn edge_of_roots(&self, field: &Field) -> VecDeque<usize> {
+        if (0..self.targets.len()).all(|point| field.is_root(point)) {
+            return VecDeque::new();
+        }
+        let beside = |point: usize| {
+            let (i, j) = (point / self.columns, point % self.columns);
+            let vertical = [i.checked_sub(1), Some(i + 1).filter(|i| *i < self.rows)].map(|i| i.map(|i| (i, j)));
+            let across = [j.checked_sub(1), Some(j + 1).filter(|j| *j < self.columns)].map(|j| j.map(|j| (i, j)));
+            vertical.into_iter().chain(across).flatten().map(|(i, j)| i * self.columns + j)
+        };
+        let is_edge = |&point: &usize| field.is_root(point) && beside(point).any(|other| !field.is_root(other));
+        (0..self.targets.len()).filter(is_edge).collect()
+    }
+
+    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns.
+    fn spread(&mut self, field: &mut Field, mut queue: VecDeque<usize>, rows: &[usize], columns: &[usize]) {
+        let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
         while let Some(point) = queue.pop_front() {
-            let (i, j) = ((point / self.columns) as isize, (point % self.columns) as isize);
+            let (i, j) = (point / self.columns, point % self.columns);
+            let (at_row, at_column) = (place(rows, i), place(columns, j));
             for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
-                let Some(next) = self.index(i + di, j + dj) else {
-                    continue;
+                let beside = |di: isize, dj: isize| {
+                    let row = rows.get(at_row.checked_add_signed(di)?)?;
+                    Some((*row, *columns.get(at_column.checked_add_signed(dj)?)?))
                 };
-                if found[next].as_ref().is_some_and(Solution::is_root) {
+                let index = |(i, j): (usize, usize)| i * self.columns + j;
+                let Some(to) = beside(di, dj) else { continue };
+                let next = index(to);
+                if field.is_root(next) {
                     continue;
                 }
-                let far = self.index(i - di, j - dj).and_then(|far| found[far].as_ref()).filter(|far| far.is_root());
-                let Some(near) = &found[point] else { continue };
-                let near = near.unknowns.clone();
-                let start = extrapolated(&near, far.map(|far| &far.unknowns[..]));
-                let solution = self.step(point, next, &near, &start);
-                let is_root = solution.is_root();
-                found[next] = Some(match found[next].take() {
-                    Some(earlier) => earlier.better(solution),
-                    None => solution,
-                });
-                if is_root {
+                let near = field.unknowns(point).to_vec();
+                let far = beside(-di, -dj).filter(|far| field.is_root(index(*far)));
+                let start = far.map_or_else(
+                    || near.clone(),
+                    |far| {
+                        let gap = |other: (usize, usize)| (other.0.abs_diff(i) + other.1.abs_diff(j)) as f64;
+                        extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
+                    },
+                );
+                let mut solution = self.step(point, next, &near, &start);
+                if let Some(earlier) = field.solution(next) {
+                    solution = earlier.better(solution);
+                }
+                field.put(next, &solution);
+                if solution.is_root() {
                     queue.push_back(next);
                 }
             }
         }
-        found
-    }
-
-    fn index(&self, i: isize, j: isize) -> Option<usize> {
-        let inside = (0..self.rows as isize).contains(&i) && (0..self.columns as isize).contains(&j);
-        inside.then(|| i as usize * self.columns + j as usize)
     }
 
     /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way.
@@ -172,7 +296,7 @@ impl Grid<'_> {
                 let solution = solve_with(&mut self.evaluation, self.ranges, &first);
                 self.effort.evaluations += u64::from(solution.iterations);
                 let stays = solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target]);
-                first = extrapolated(&solution.unknowns, Some(&at));
+                first = extrapolated(&solution.unknowns, &at, 1.0);
                 at.clone_from(&solution.unknowns);
                 reached = target;
                 stepped = Some((solution, stays));
@@ -208,17 +332,9 @@ impl Grid<'_> {
                 distance(&led, points[1 - k], self.ranges) <= allowed
             })
     }
-
-    /// A verdict for every point: those that nothing leads to are not converged.
-    fn completed(&self, found: Vec<Option<Solution>>) -> Vec<Solution> {
-        found.into_iter().map(|point| point.unwrap_or_else(|| Solution::never_reached(self.ranges))).collect()
-    }
 }
 
-/// The start for the next point in line: straight on from the two before it, or the one before it.
-fn extrapolated(near: &[f64], far: Option<&[f64]>) -> Vec<f64> {
-    match far {
-        Some(far) => near.iter().zip(far).map(|(a, b)| 2.0 * a - b).collect(),
-        None => near.to_vec(),
-    }
+/// The start for the next point in line, `ratio` times as far away as the one before: straight on.
+fn extrapolated(near: &[f64], far: &[f64], ratio: f64) -> Vec<f64> {
+    near.iter().zip(far).map(|(a, b)| a + ratio * (a - b)).collect()
 }

@@ -14,11 +14,16 @@
 //! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
 //! ```
 
+mod elimination;
 mod extent;
+mod field;
 mod geometry;
 mod grid;
 mod intersection;
+mod lanes;
+mod line;
 mod newton;
+mod points;
 mod sensitivity;
 mod solution;
 mod start;
@@ -31,6 +36,7 @@ pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, Surface
 pub use grid::{Effort, solve_grid};
 pub use intersection::{Intersection, Line, Meeting};
 pub use newton::{TOLERANCE, solve};
+pub use points::SurfacePoints;
 pub use sensitivity::{NormalSensitivity, Setting};
 pub use solution::{CutBy, Outcome, Range, Solution};
 pub use surface::{SurfacePoint, SurfaceProblem};

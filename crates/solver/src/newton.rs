@@ -12,9 +12,9 @@ use crate::system::{Evaluation, System};
 /// past it until nothing gets better. Residuals of very large things are allowed a share of their size.
 pub const TOLERANCE: f64 = 1e-11;
 /// Share of an equation's size (see [`Evaluation::size_of`]) that its rounding errors stay below.
-const OF_SIZE: f64 = 1e-14;
+pub(crate) const OF_SIZE: f64 = 1e-14;
 /// No tolerance is larger, however large the thing: points are good to 1e-9 mm or not solved.
-const LARGEST_TOLERANCE: f64 = 1e-10;
+pub(crate) const LARGEST_TOLERANCE: f64 = 1e-10;
 
 /// Steps after which a start is given up.
 const MOST_STEPS: usize = 40;
@@ -76,15 +76,21 @@ fn squared_norm(evaluation: &Evaluation<'_>) -> f64 {
     evaluation.residuals().iter().map(|r| r * r).sum()
 }
 
-struct Step {
-    by: Vec<f64>,
-    singular: bool,
+/// Residuals and Jacobian at a point.
+pub(crate) trait Linearized {
+    fn residual(&self, row: usize) -> f64;
+    fn jacobian(&self, row: usize, column: usize) -> f64;
+}
+
+pub(crate) struct Step {
+    pub(crate) by: Vec<f64>,
+    pub(crate) singular: bool,
 }
 
 /// −J⁻¹F with unknowns scaled by their ranges and equations by the largest entry that they have had so far (`sizes`), so
 /// that an equation whose derivative vanishes on the way shows; the least-squares step of smallest size where J has no
 /// inverse.
-fn newton_step(evaluation: &Evaluation<'_>, ranges: &[Range], sizes: &mut [f64]) -> Step {
+pub(crate) fn newton_step(evaluation: &impl Linearized, ranges: &[Range], sizes: &mut [f64]) -> Step {
     let n = ranges.len();
     let mut jacobian = Mat::<f64>::zeros(n, n);
     let mut right = Mat::<f64>::zeros(n, 1);
@@ -95,7 +101,7 @@ fn newton_step(evaluation: &Evaluation<'_>, ranges: &[Range], sizes: &mut [f64])
         for j in 0..n {
             jacobian[(i, j)] = weight * scaled(j);
         }
-        right[(i, 0)] = -weight * evaluation.residuals()[i];
+        right[(i, 0)] = -weight * evaluation.residual(i);
     }
     let finite = (0..n).all(|i| (0..n).all(|j| jacobian[(i, j)].is_finite()));
     if !finite {

@@ -80,6 +80,11 @@ impl Outcome {
         }
     }
 
+    /// There is a root, whether or not it is one that is looked for.
+    pub(crate) fn is_root(self) -> bool {
+        !matches!(self, Outcome::Singular | Outcome::NotConverged)
+    }
+
     /// Which of two outcomes says more.
     fn rank(self) -> u8 {
         match self {
@@ -101,7 +106,7 @@ pub struct Solution {
     pub unknowns: Vec<f64>,
     /// The largest residual there.
     pub residual: f64,
-    /// Evaluations of the system.
+    /// Evaluations of the system; zero for points of a grid, whose [`Effort`](crate::Effort) has their sum.
     pub iterations: u32,
 }
 
@@ -118,7 +123,7 @@ impl Solution {
 
     /// A root, whether or not it is one that is looked for.
     pub(crate) fn is_root(&self) -> bool {
-        !matches!(self.outcome, Outcome::Singular | Outcome::NotConverged)
+        self.outcome.is_root()
     }
 
     /// The one of two that says more: solved before cut away before outside before singular before not converged, then the smaller

@@ -1,9 +1,10 @@
 //! Points of one surface at given values of two coordinates.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, LaneTape, Tape, TapeError};
 
-use crate::grid::{Effort, solve_grid};
+use crate::grid::{Effort, solve_field};
+use crate::points::SurfacePoints;
 use crate::solution::{Outcome, Range};
 use crate::system::System;
 
@@ -11,7 +12,8 @@ use crate::system::System;
 #[derive(Clone, Debug)]
 pub struct SurfaceProblem {
     system: System,
-    point: Tape,
+    /// Position and normal.
+    point: LaneTape,
     ranges: Vec<Range>,
 }
 
@@ -89,7 +91,7 @@ impl SurfaceProblem {
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
             system: system.with_conditions(conditions, &bound.unknowns, &targets)?,
-            point: Tape::new(&point, &bound.unknowns)?,
+            point: LaneTape::new(&Tape::new(&point, &bound.unknowns)?),
             ranges,
         })
     }
@@ -104,22 +106,22 @@ impl SurfaceProblem {
     /// # Panics
     /// If there are not `counts[0] · counts[1]` targets.
     pub fn solve(&self, targets: &[[f64; 2]], counts: [usize; 2]) -> (Vec<SurfacePoint>, Effort) {
-        let (solutions, effort) = solve_grid(&self.system, &self.ranges, targets, counts);
-        let mut evaluator = ScalarEvaluator::new(&self.point);
-        let mut out = [0.0; 6];
-        let points = solutions
-            .into_iter()
-            .map(|solution| {
-                evaluator.run(&solution.unknowns, &mut out);
-                SurfacePoint {
-                    outcome: solution.outcome,
-                    unknowns: solution.unknowns,
-                    position: [out[0], out[1], out[2]],
-                    normal: [out[3], out[4], out[5]],
-                    residual: solution.residual,
-                }
-            })
-            .collect();
-        (points, effort)
+        let (points, effort) = self.solve_points(targets, counts, None);
+        ((0..points.len()).map(|k| points.point(k)).collect(), effort)
+    }
+
+    /// The same for very many points. `start`, if there is one, tells the branch: unknowns from which Newton reaches it at the
+    /// point in the middle of the grid. If it does not, the branch is looked for as without.
+    ///
+    /// # Panics
+    /// If there are not `counts[0] · counts[1]` targets, or `start` has not one number for each unknown.
+    pub fn solve_points(
+        &self,
+        targets: &[[f64; 2]],
+        counts: [usize; 2],
+        start: Option<&[f64]>,
+    ) -> (SurfacePoints, Effort) {
+        let (field, effort) = solve_field(&self.system, &self.ranges, targets, counts, start);
+        (SurfacePoints::new(field, &self.point, &self.ranges, targets.len()), effort)
     }
 }

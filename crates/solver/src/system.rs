@@ -1,7 +1,8 @@
 //! Square systems with their exact Jacobian, as one tape.
 
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, LaneTape, ScalarEvaluator, Tape, TapeError};
 
+use crate::newton::Linearized;
 use crate::solution::{CutBy, Outcome};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
@@ -11,6 +12,16 @@ pub struct System {
     tape: Tape,
     /// What must be positive at a root for it to be one of the thing that is looked for.
     conditions: Tape,
+    pub(crate) lanes: LaneTapes,
+}
+
+/// The same for many points at once; all take unknowns, then parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct LaneTapes {
+    pub(crate) residuals: LaneTape,
+    /// Residuals, then the Jacobian row by row.
+    pub(crate) linearized: LaneTape,
+    pub(crate) conditions: LaneTape,
 }
 
 impl System {
@@ -26,7 +37,13 @@ impl System {
         let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
         let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
-        Ok(System { size: unknowns.len(), tape: Tape::new(&outputs, &inputs)?, conditions: Tape::new(&[], &inputs)? })
+        let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
+        let lanes = LaneTapes {
+            residuals: LaneTape::new(&Tape::new(residuals, &inputs)?),
+            linearized: LaneTape::new(&tape),
+            conditions: LaneTape::new(&conditions),
+        };
+        Ok(System { size: unknowns.len(), tape, conditions, lanes })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
@@ -41,7 +58,9 @@ impl System {
         parameters: &[Expr<'_>],
     ) -> Result<System, TapeError> {
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
-        Ok(System { conditions: Tape::new(conditions, &inputs)?, ..self })
+        let conditions = Tape::new(conditions, &inputs)?;
+        let lanes = LaneTapes { conditions: LaneTape::new(&conditions), ..self.lanes };
+        Ok(System { conditions, lanes, ..self })
     }
 
     /// Number of unknowns.
@@ -89,13 +108,7 @@ impl Evaluation<'_> {
     /// What a root at the point of the last evaluation is by the conditions.
     pub(crate) fn side(&mut self) -> Outcome {
         self.conditions.run(&self.inputs, &mut self.met);
-        if self.met.iter().any(|condition| *condition < 0.0) {
-            Outcome::CutAway(CutBy::ItsTool)
-        } else if self.met.iter().all(|condition| *condition > 0.0) {
-            Outcome::Solved
-        } else {
-            Outcome::Singular
-        }
+        side_of(self.met.iter().copied())
     }
 
     pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
@@ -110,12 +123,29 @@ impl Evaluation<'_> {
         &self.outputs[..self.size]
     }
 
-    pub(crate) fn jacobian(&self, row: usize, column: usize) -> f64 {
-        self.outputs[self.size * (1 + row) + column]
-    }
-
     /// The largest residual; NaN if any is.
     pub(crate) fn worst_residual(&self) -> f64 {
         self.residuals().iter().fold(0.0, |worst: f64, r| if r.is_nan() { r.abs() } else { worst.max(r.abs()) })
+    }
+}
+
+impl Linearized for Evaluation<'_> {
+    fn residual(&self, row: usize) -> f64 {
+        self.outputs[row]
+    }
+
+    fn jacobian(&self, row: usize, column: usize) -> f64 {
+        self.outputs[self.size * (1 + row) + column]
+    }
+}
+
+/// What a root is where the conditions of its system have these values.
+pub(crate) fn side_of(conditions: impl Iterator<Item = f64> + Clone) -> Outcome {
+    if conditions.clone().any(|condition| condition < 0.0) {
+        Outcome::CutAway(CutBy::ItsTool)
+    } else if conditions.clone().all(|condition| condition > 0.0) {
+        Outcome::Solved
+    } else {
+        Outcome::Singular
     }
 }

@@ -1,0 +1,126 @@
+//! The common jobs for the harness that compares programs: one line of JSON on stdout, nine numbers a point in a file.
+//!
+//! `adapter --job flank|grid --n1 501 --n2 501 --threads 1 --reps 15 --out points.bin`
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use flank_chain_dsl::{compile_text, render};
+use flank_expr::Graph;
+use flank_solver::{Outcome, Range, SurfaceGeometry, SurfaceProblem};
+
+/// Where the common job starts: s, theta, phi.
+const START: [f64; 3] = [5.4, -2.45, -0.26];
+
+struct Arguments {
+    job: String,
+    counts: [usize; 2],
+    repetitions: usize,
+    out: String,
+}
+
+fn arguments() -> Result<Arguments, String> {
+    let mut found = Arguments { job: "flank".into(), counts: [31, 61], repetitions: 3, out: String::new() };
+    let mut words = std::env::args().skip(1);
+    while let Some(key) = words.next() {
+        let value = words.next().ok_or_else(|| format!("`{key}` lacks its value"))?;
+        let number = || value.parse::<usize>().map_err(|_| format!("`{key}` takes a whole number, not `{value}`"));
+        match key.as_str() {
+            "--job" => found.job = value,
+            "--n1" => found.counts[0] = number()?,
+            "--n2" => found.counts[1] = number()?,
+            "--threads" => set_threads(number()?)?,
+            "--reps" => found.repetitions = number()?.max(1),
+            "--out" => found.out = value,
+            _ => return Err(format!("unknown argument `{key}`")),
+        }
+    }
+    Ok(found)
+}
+
+fn set_threads(count: usize) -> Result<(), String> {
+    rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|error| error.to_string())
+}
+
+fn main() -> ExitCode {
+    match arguments().and_then(|arguments| run(&arguments)) {
+        Ok(report) => {
+            println!("{report}");
+            ExitCode::SUCCESS
+        }
+        Err(reason) => {
+            eprintln!("{reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<String, String> {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let [rows, columns] = arguments.counts.map(|count| count.to_string());
+    let sizes = [("rows".to_string(), rows), ("columns".to_string(), columns)];
+    let mut compilation = compile_text(&graph, "spiral_bevel", include_str!("spiral_bevel.chain"), &sizes);
+    if compilation.has_errors() {
+        return Err(render(&compilation.diagnostics, &compilation.sources, false));
+    }
+    let job = compilation.take_jobs(Some(&arguments.job)).map_err(|_| format!("no job `{}`", arguments.job))?.remove(0);
+    let surface = &job.surfaces[0];
+    let sample = surface.sample.as_ref().ok_or("the job asks for no points")?;
+    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
+        .map_err(|error| error.to_string())?;
+    let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
+    let geometry = SurfaceGeometry::new(&surface.surface, &motions, coordinates, &job.bindings())
+        .map_err(|error| error.to_string())?;
+    let setup = start.elapsed().as_secs_f64();
+
+    let with_curvatures = arguments.job == "grid";
+    let (mut times, mut rows, mut evaluations) = (Vec::new(), vec![[0.0; 9]; sample.targets.len()], 0);
+    for _ in 0..arguments.repetitions {
+        let start = Instant::now();
+        let (points, effort) = problem.solve_points(&sample.targets, sample.counts, Some(&START));
+        for (k, row) in rows.iter_mut().enumerate() {
+            if points.outcome(k) != Outcome::Solved {
+                return Err(format!("not solved: {:?}", points.point(k)));
+            }
+            let (unknowns, placed) = (points.unknowns(k), points.placed(k));
+            if with_curvatures {
+                row[0] = unknowns[0];
+                row[1..7].copy_from_slice(&placed);
+                let principal = geometry.at(unknowns).curvature.ok_or("a point has no curvature")?.principal();
+                row[7..].copy_from_slice(&[principal.k1, principal.k2]);
+            } else {
+                row[..3].copy_from_slice(unknowns);
+                row[3..].copy_from_slice(&placed);
+            }
+        }
+        times.push(format!("{:.9}", start.elapsed().as_secs_f64()));
+        evaluations = effort.evaluations;
+    }
+    if !arguments.out.is_empty() {
+        let bytes: Vec<u8> = rows.iter().flatten().copied().flat_map(f64::to_le_bytes).collect();
+        fs::write(&arguments.out, bytes).map_err(|error| format!("{}: {error}", arguments.out))?;
+    }
+    let mut report = String::new();
+    let _ = write!(
+        report,
+        "{{\"cand\":\"flank\",\"job\":\"{}\",\"setup_s\":{setup:.6},\"evals_per_pt\":{:.3},\"peak_mb\":{:.1},\"solve_s\":[{}]}}",
+        arguments.job,
+        evaluations as f64 / rows.len() as f64,
+        peak_memory(),
+        times.join(",")
+    );
+    Ok(report)
+}
+
+/// The largest resident memory so far, MiB; zero where the system does not tell.
+fn peak_memory() -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kibibytes = line.and_then(|line| line.trim().split(' ').next()?.parse::<f64>().ok());
+    kibibytes.unwrap_or(0.0) / 1024.0
+}
