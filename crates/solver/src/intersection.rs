@@ -4,9 +4,9 @@ use flank_expr::geometry::{Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
 use crate::newton::{inverse_times, solve_with};
-use crate::solution::{Outcome, Range, distance};
+use crate::solution::{Outcome, Range, Solution, distance};
 use crate::surface::{SurfacePoint, SurfaceProblem};
-use crate::system::System;
+use crate::system::{Evaluation, System};
 
 /// Points of the second surface in each of its first two unknowns, from which meetings are looked for.
 const SEEDS: usize = 9;
@@ -110,33 +110,41 @@ impl Intersection {
             if solution.outcome != Outcome::Solved || !found.iter().all(is_new) {
                 continue;
             }
-            let mut out = vec![0.0; self.probe.output_count()];
-            ScalarEvaluator::new(&self.probe).run(&[&solution.unknowns[..], &parameters].concat(), &mut out);
-            let vector = |k: usize| [out[k], out[k + 1], out[k + 2]];
-            // how far the meeting moves along the line if the first surface is held a little outside the second
-            let mut held = vec![0.0; self.system.size()];
-            let positions = self.system.size() - 4;
-            held[positions..positions + 3].copy_from_slice(&vector(6));
-            evaluation.at(&solution.unknowns);
-            let moved = inverse_times(&evaluation, &held);
-            let farther: f64 = out[10..].iter().zip(&moved).map(|(slope, by)| slope * by).sum();
-            let point = |unknowns: &[f64], normal| SurfacePoint {
-                outcome: Outcome::Solved,
-                unknowns: unknowns.to_vec(),
-                position: vector(0),
-                normal,
-                residual: solution.residual,
-            };
-            let (first, second) = solution.unknowns.split_at(self.first_unknowns);
-            found.push(Meeting {
-                first: point(first, vector(3)),
-                second: point(second, vector(6)),
-                along: out[9],
-                leaves: farther > 0.0,
-            });
+            found.push(self.meeting(&mut evaluation, &parameters, &solution));
         }
         found.sort_by(|a, b| a.along.total_cmp(&b.along));
         found
+    }
+
+    /// A root as a point of both surfaces.
+    fn meeting(&self, evaluation: &mut Evaluation<'_>, line: &[f64], solution: &Solution) -> Meeting {
+        let mut out = vec![0.0; self.probe.output_count()];
+        ScalarEvaluator::new(&self.probe).run(&[&solution.unknowns[..], line].concat(), &mut out);
+        let vector = |k: usize| [out[k], out[k + 1], out[k + 2]];
+        let [position, first_normal, second_normal] = [0, 3, 6].map(vector);
+        let (along, slopes) = (out[9], &out[10..]);
+        // how far the meeting moves along the line if the first surface is held a little outside the second: of the
+        // equations, the last four are the equal positions and the line
+        let mut held = vec![0.0; self.system.size()];
+        let equal_positions = self.system.size() - 4;
+        held[equal_positions..equal_positions + 3].copy_from_slice(&second_normal);
+        evaluation.at(&solution.unknowns);
+        let moved = inverse_times(evaluation, &held);
+        let farther: f64 = slopes.iter().zip(&moved).map(|(slope, by)| slope * by).sum();
+        let point = |unknowns: &[f64], normal| SurfacePoint {
+            outcome: Outcome::Solved,
+            unknowns: unknowns.to_vec(),
+            position,
+            normal,
+            residual: solution.residual,
+        };
+        let (first, second) = solution.unknowns.split_at(self.first_unknowns);
+        Meeting {
+            first: point(first, first_normal),
+            second: point(second, second_normal),
+            along,
+            leaves: farther > 0.0,
+        }
     }
 
     /// Unknowns of both surfaces where they are near each other.

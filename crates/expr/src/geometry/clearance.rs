@@ -18,6 +18,9 @@ impl<'g> Surface<'g> {
     /// unknowns, the k-th minor is (−1)^k δ_k / δ_0. They are found from c, r and n alone, for the k-th constraint belongs
     /// to the motion that is unknown k + 2 and is −n · ∂r/∂motion. For an envelope of an envelope the later minors are those
     /// of the later motions times the last of the earlier ones.
+    ///
+    /// # Panics
+    /// If the surface does not have two unknowns more than constraints.
     pub fn clearance_minors(&self) -> Vec<Expr<'g>> {
         let graph = self.normal.0[0].graph();
         let slopes: Vec<Vector3<'g>> = self.unknowns.iter().map(|&p| self.position.derivative(p)).collect();

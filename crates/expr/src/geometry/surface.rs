@@ -15,7 +15,8 @@ pub struct Surface<'g> {
     pub position: Vector3<'g>,
     /// Unit vector in the same frame, out of the body that owns the surface.
     pub normal: Vector3<'g>,
-    /// What must be zero for the point to lie on it.
+    /// What must be zero for the point to lie on it: two fewer than unknowns. The k-th belongs to unknown k + 2, a motion,
+    /// and equals `−n · ∂r/∂motion` on the surface: how fast the tool's steel draws back from the work.
     pub constraints: Vec<Expr<'g>>,
 }
 
