@@ -7,8 +7,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use flank_expr::{Binary, Unary};
 use support::Random;
 
+/// A correctly rounded function of one number.
+type Oracle = fn(f64) -> f64;
+
 /// Each function and its correctly rounded peer.
-const FUNCTIONS: [(Unary, fn(f64) -> f64); 8] = [
+const FUNCTIONS: [(Unary, Oracle); 8] = [
     (Unary::Sin, core_math::sin),
     (Unary::Cos, core_math::cos),
     (Unary::Tan, core_math::tan),
