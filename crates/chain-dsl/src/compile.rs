@@ -7,8 +7,9 @@ use std::rc::Rc;
 use flank_expr::Graph;
 
 use crate::codes::Code;
-use crate::context::{Context, Scope, Value, did_you_mean};
+use crate::context::{Context, Role, Scope, Value, did_you_mean};
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::dimension::Dimension;
 use crate::functions;
 use crate::instance::{Overrides, Source};
 use crate::job::{self, Definitions};
@@ -184,12 +185,13 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
         context.begin_item();
         let mut scope = Scope::new();
         for (name, written) in &function.arguments {
-            let value = match context.dimension(written) {
-                Some(dimension) => {
-                    let variable = context.variable(name.node.clone(), crate::context::Role::Parameter, f64::NAN);
-                    Value::Scalar(variable, dimension)
+            let value = match (context.dimension(&written.dimension), written.size) {
+                (Some(_), Some(size)) if !context.spend(size, written.dimension.span) => Value::Poison,
+                (Some(dimension), Some(size)) => {
+                    Value::Vector((0..size).map(|_| argument(context, name, dimension)).collect())
                 }
-                None => Value::Poison,
+                (Some(dimension), None) => argument(context, name, dimension),
+                (None, _) => Value::Poison,
             };
             scope.insert(name.node.clone(), value);
         }
@@ -210,6 +212,11 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
         tool::build(context, tool, Source::Definition, &nothing);
         context.step(tool.name.span);
     }
+}
+
+/// An argument of a function that is looked at by itself.
+fn argument<'g>(context: &mut Context<'g>, name: &Name, dimension: Dimension) -> Value<'g> {
+    Value::Scalar(context.variable(name.node.clone(), Role::Parameter, f64::NAN), dimension)
 }
 
 /// Values from outside, as expressions of a text of their own.

@@ -395,14 +395,11 @@ impl<'g> Context<'g> {
         };
         let mut inner = Scope::new();
         for ((value, given), (name, written)) in arguments.into_iter().zip(&function.arguments) {
-            let Some(wanted) = self.dimension(written) else {
-                return Value::Poison;
-            };
             let what = format!("`{}` of `{}`", name.node, function.name.node);
-            let Some(expr) = self.require(&value, wanted, given.span, &what) else {
+            let Some(value) = self.of_type(&value, written, given, &what) else {
                 return Value::Poison;
             };
-            inner.insert(name.node.clone(), Value::Scalar(expr, wanted));
+            inner.insert(name.node.clone(), value);
         }
         self.call_depth += 1;
         let value = self.function_body(&function, inner);
@@ -452,13 +449,37 @@ impl<'g> Context<'g> {
         let Some(promised) = &function.result else {
             return value;
         };
-        let Some(wanted) = self.dimension(promised) else {
-            return Value::Poison;
-        };
         let what = format!("the value of `{}`", function.name.node);
-        match self.require(&value, wanted, function.body.span, &what) {
-            Some(expr) => Value::Scalar(expr, wanted),
-            None => Value::Poison,
+        self.of_type(&value, promised, &function.body, &what).unwrap_or(Value::Poison)
+    }
+
+    /// A value of a type, which may be better known by it than by itself: an angle where a number is wanted.
+    fn of_type(
+        &mut self,
+        value: &Value<'g>,
+        wanted: &ast::Type,
+        written: &Expression,
+        what: &str,
+    ) -> Option<Value<'g>> {
+        let dimension = self.dimension(&wanted.dimension)?;
+        let Some(size) = wanted.size else {
+            return Some(Value::Scalar(self.require(value, dimension, written.span, what)?, dimension));
+        };
+        match value {
+            Value::Poison => None,
+            Value::Vector(parts) if parts.len() == size => {
+                let mut found = Vec::new();
+                for (k, (part, written)) in parts.iter().zip(written.parts(size)).enumerate() {
+                    let part = self.require(part, dimension, written.span, &format!("element {k} of {what}"))?;
+                    found.push(Value::Scalar(part, dimension));
+                }
+                Some(Value::Vector(found))
+            }
+            other => {
+                let message = format!("{what} must be a vector of {size}, this is {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, written.span, message));
+                None
+            }
         }
     }
 }

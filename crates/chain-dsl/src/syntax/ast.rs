@@ -36,14 +36,23 @@ pub struct Function {
     pub doc: Vec<String>,
     /// Its name.
     pub name: Name,
-    /// Its arguments with their dimensions.
-    pub arguments: Vec<(Name, Dimension)>,
-    /// The dimension it promises, if it does.
-    pub result: Option<Dimension>,
+    /// Its arguments with their types.
+    pub arguments: Vec<(Name, Type)>,
+    /// The type it promises, if it does.
+    pub result: Option<Type>,
     /// `let`s of the block form.
     pub lets: Vec<Let>,
     /// The value.
     pub body: Expression,
+}
+
+/// What an argument or the value of a function is: `length`, `length[3]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Type {
+    /// The dimension, of each element for a vector.
+    pub dimension: Dimension,
+    /// The number of elements of a vector.
+    pub size: Option<usize>,
 }
 
 /// A machine: parameters, axes, frames.

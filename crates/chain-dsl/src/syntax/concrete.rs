@@ -104,6 +104,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::arguments | Rule::settings | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
         Rule::definition | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
+        Rule::value_type | Rule::size => Kind::Joined,
         Rule::range => Kind::Operation,
         Rule::dimension => Kind::Dimension,
         Rule::path => return parts.push(Part::leaf(Kind::Token, &pair)),

@@ -7,7 +7,7 @@ use crate::source::{Name, Span, Spanned};
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,
     GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Param, Parameter, Path, Sample, SampleEntry,
-    SampleValues, Segment, Side, SurfaceParameter, ToolStatement,
+    SampleValues, Segment, Side, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -107,7 +107,7 @@ pub(super) fn flat_item(scan: &Scan, word: &str, range: Range<usize>) -> Option<
     Some(Item::Function(Function {
         doc: piece.doc(),
         name: piece.defined()?,
-        arguments: firsts.into_iter().map(|index| (piece.name(index), piece.dimension(index))).collect(),
+        arguments: firsts.into_iter().map(|index| (piece.name(index), piece.value_type(index))).collect(),
         result: None,
         lets: Vec::new(),
         body: piece.error(),
@@ -159,6 +159,10 @@ impl Piece<'_> {
         let found = named.clone().find(|&index| words::DIMENSIONS.contains(&self.scan.say(index)));
         let factor = found.map_or_else(|| self.nameless(), |index| self.name(index));
         Dimension { span: factor.span, factors: vec![(factor, 1)] }
+    }
+
+    fn value_type(&self, after: usize) -> Type {
+        Type { dimension: self.dimension(after), size: None }
     }
 
     fn range(&self) -> super::ast::Range {

@@ -138,11 +138,11 @@ impl Writer {
         self.list("(", ")", |writer| {
             writer.name();
             writer.put(":");
-            writer.dimension();
+            writer.value_type();
         });
         if self.random.one_in(2) {
             self.put("->");
-            self.dimension();
+            self.value_type();
         }
         if self.random.one_in(2) {
             self.put("=");
@@ -198,6 +198,13 @@ impl Writer {
         self.dimension();
         self.put("in");
         self.range();
+    }
+
+    fn value_type(&mut self) {
+        self.dimension();
+        if self.random.one_in(3) {
+            self.all(&["[", "3", "]"]);
+        }
     }
 
     fn dimension(&mut self) {

@@ -81,6 +81,24 @@ fn a_zero_with_a_unit_is_a_coefficient_like_others() {
 }
 
 #[test]
+fn functions_take_and_give_vectors() {
+    let text = "
+        fn turned(p: length[3], a: angle) -> length[3] =
+            [p[0] * cos(a) - p[1] * sin(a), p[0] * sin(a) + p[1] * cos(a), p[2]]
+        fn first(p: length[3]) -> length = p[0]
+        job j {
+            machine m = lathe(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = first(turned([1 mm, 0 mm, 2 mm], turn))
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    assert_eq!(laws(text)[0], "Z = cos(turn)");
+}
+
+#[test]
 fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     let graph = Graph::new();
     let text = "

@@ -32,11 +32,15 @@ fn item(item: &Item) -> Vec<String> {
 
 fn function_lines(function: &Function) -> (String, Vec<String>) {
     let arguments: Vec<String> =
-        function.arguments.iter().map(|(name, of)| format!("{}: {}", name.node, dimension(of))).collect();
-    let result = function.result.as_ref().map_or(String::new(), |result| format!(" -> {}", dimension(result)));
+        function.arguments.iter().map(|(name, of)| format!("{}: {}", name.node, value_type(of))).collect();
+    let result = function.result.as_ref().map_or(String::new(), |result| format!(" -> {}", value_type(result)));
     let head = format!("{}fn {}({}){result}", doc(&function.doc), function.name.node, arguments.join(", "));
     let lets = function.lets.iter().map(let_statement);
     (head, lets.chain([expression(&function.body)]).collect())
+}
+
+fn value_type(it: &Type) -> String {
+    dimension(&it.dimension) + &it.size.map_or(String::new(), |size| format!("[{size}]"))
 }
 
 fn machine_statement(statement: &MachineStatement) -> String {

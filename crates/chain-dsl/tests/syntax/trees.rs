@@ -102,6 +102,8 @@ fn everything() {
       (/ (* starts pitch) turn)
     fn curvature(r: length) -> length^-1
       (if (and (> r 0_mm) (not (== r 1_mm))) (/ 1 r) (/ 0 1_mm))
+    fn lowered(p: length[3], by_rate: length*angle^-1[2]) -> length[3]
+      (- p [0_mm 0_mm (* (at by_rate 0) 1_rad)])
     /A machine./ /Its second line./ machine α_machine
       /How far./ param radial: length in 0_mm..100.5_mm = 70_mm
       param feed: length*angle^-1 = 2_mm*rev^-1

@@ -4,7 +4,7 @@ use pest::iterators::Pair;
 
 use crate::source::{Name, Spanned};
 
-use super::super::ast::{Dimension, Function, Item, Job, Let, Machine, Tool};
+use super::super::ast::{Function, Item, Job, Let, Machine, Tool, Type};
 use super::super::grammar::Rule;
 use super::{Build, Parts};
 
@@ -41,15 +41,31 @@ impl Build<'_> {
             doc,
             name: self.name(parts.required(Rule::name)),
             arguments: parts.all(Rule::formal).into_iter().map(|formal| self.formal(formal)).collect(),
-            result: parts.optional(Rule::dimension).map(|dimension| self.dimension(dimension)),
+            result: parts.optional(Rule::value_type).map(|written| self.value_type(written)),
             lets: self.lets(parts.all(Rule::let_statement)),
             body: self.expression(parts.required(Rule::expression)),
         }
     }
 
-    fn formal(&mut self, pair: Pair<'_, Rule>) -> (Name, Dimension) {
+    fn formal(&mut self, pair: Pair<'_, Rule>) -> (Name, Type) {
         let mut parts = Parts::of(pair);
-        (self.name(parts.required(Rule::name)), self.dimension(parts.required(Rule::dimension)))
+        (self.name(parts.required(Rule::name)), self.value_type(parts.required(Rule::value_type)))
+    }
+
+    fn value_type(&mut self, pair: Pair<'_, Rule>) -> Type {
+        let mut parts = Parts::of(pair);
+        let dimension = self.dimension(parts.required(Rule::dimension));
+        let size = parts.optional(Rule::size).map(|pair| self.size(Parts::of(pair).required(Rule::integer)));
+        Type { dimension, size }
+    }
+
+    fn size(&mut self, pair: Pair<'_, Rule>) -> usize {
+        // what is too long for a number is too long for any vector
+        let size = pair.as_str().parse().unwrap_or(usize::MAX);
+        if size == 0 {
+            self.report(self.span(&pair), "a vector has at least one element", "`length[3]` is three lengths");
+        }
+        size
     }
 
     fn lets(&mut self, pairs: Vec<Pair<'_, Rule>>) -> Vec<Let> {
