@@ -148,7 +148,7 @@ fn assigned(before: &Before<'_>) -> String {
 }
 
 /// What a statement is about.
-fn noun(statement: &str) -> &str {
+pub(super) fn noun(statement: &str) -> &str {
     match statement {
         "param" => "parameter",
         "let" => "value",

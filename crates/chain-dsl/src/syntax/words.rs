@@ -27,6 +27,10 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 pub(super) const IN_JOB: &[&str] =
     &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample"];
 
+/// Those of all these that are followed by a new name.
+const DEFINING: &[&str] =
+    &["fn", "machine", "tool", "job", "param", "let", "axis", "frame", "profile", "surface", "motion"];
+
 /// Words that begin something only where nothing else can, and are names elsewhere.
 const FREE: &[&str] = &["profile"];
 
@@ -45,6 +49,11 @@ pub(super) const DIMENSIONS: &[&str] = &["length", "angle", "number", "count"];
 /// Whether a word begins an item or a statement somewhere.
 pub(super) fn begins_statement(word: &str) -> bool {
     [ITEMS, IN_MACHINE, IN_TOOL, IN_SURFACE, IN_JOB].iter().any(|words| words.contains(&word))
+}
+
+/// Whether what such a word is followed by is a new name.
+pub(super) fn defines(word: &str) -> bool {
+    DEFINING.contains(&word)
 }
 
 /// Why a word cannot be a name, if it cannot.

@@ -45,7 +45,10 @@ impl Mistake<'_> {
             Reserved::Keyword if self.found > self.range.start && self.introduces() => None,
             Reserved::Keyword if name || value && words::begins_statement(word) => {
                 let message = format!("`{word}` is a word of the language and cannot be a name");
-                Some(self.here(message))
+                let statement = self.scan.say(self.range.start);
+                let is_new = self.found == self.range.start + 1 && words::defines(statement);
+                let help = format!("choose another, such as `{word}_{}`", expected::noun(statement));
+                Some(if is_new { self.here(message).help(help) } else { self.here(message) })
             }
             Reserved::Unit if name => Some(self.here(format!("`{word}` is a unit and cannot be a name"))),
             Reserved::Unit if value || wants(&[Rule::infix]) => Some(
