@@ -5,7 +5,7 @@ use std::fmt::Write;
 use flank_expr::geometry::{Axis as Line, Pose, Step, Vector3};
 use flank_expr::{Expr, Style};
 
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, shown};
 use crate::model::{GeneratedSurface, Generation, Job, LawSource, Machine, Process, ToolShape};
 
 /// Writes what the compiler built for a job: frames, the chain from tool to work with each elementary matrix, the product
@@ -320,17 +320,6 @@ fn angle_text(angle: Expr<'_>) -> String {
     match angle.as_constant() {
         Some(value) => shown(value, Dimension::ANGLE),
         None => angle.to_string(),
-    }
-}
-
-/// An inside value as people write it: degrees for angles, millimetres for lengths.
-pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
-    match dimension {
-        // the twelfth decimal of a degree is a rounding of the conversion
-        Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e12).round() / 1e12),
-        Dimension::LENGTH => format!("{value} mm"),
-        Dimension { length: 1, angle: -1 } => format!("{value} mm/rad"),
-        _ => value.to_string(),
     }
 }
 

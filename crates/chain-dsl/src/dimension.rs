@@ -117,14 +117,22 @@ pub(crate) fn convert(value: f64, name: &str, exponent: i32) -> Option<f64> {
     })
 }
 
-/// A value as people read it: `3 mm`, `20 deg`, `5`.
+/// An inside value as people write it: `3 mm`, `20 deg`, `5`.
 pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
     match dimension {
-        // a billionth of a degree: what was written in degrees comes back as written
-        Dimension::ANGLE => format!("{} deg", (value.to_degrees() * 1e9).round() / 1e9),
-        Dimension::LENGTH => format!("{value} mm"),
-        _ => value.to_string(),
+        Dimension::ANGLE => format!("{} deg", without_noise(value.to_degrees())),
+        Dimension::LENGTH => format!("{} mm", without_noise(value)),
+        Dimension { length: 1, angle: -1 } => format!("{} mm/rad", without_noise(value)),
+        _ => without_noise(value).to_string(),
     }
+}
+
+/// The value with 15 digits if that is as good as itself: within two roundings, such as a conversion's. So 0.38 · 3 is 1.14,
+/// and what was written in degrees comes back as written.
+fn without_noise(value: f64) -> f64 {
+    let short = format!("{value:.14e}").parse().unwrap_or(value);
+    let rounding = value.abs().next_up() - value.abs();
+    if (short - value).abs() <= 2.0 * rounding { short } else { value }
 }
 
 /// A base dimension by its name in the language.
