@@ -50,6 +50,8 @@ pub(crate) fn build<'g>(
     let column_values = values(context, columns, scope, column_coordinate.dimension);
     let (row_values, column_values) = (row_values?, column_values?);
     check_size(context, written, row_values.len(), column_values.len())?;
+    let row_coordinate = unbroken(row_coordinate, rows, &row_values, surface);
+    let column_coordinate = unbroken(column_coordinate, columns, &column_values, surface);
     Some(Sample {
         labels: [row_coordinate.name.clone(), column_coordinate.name.clone()],
         coordinates: [row_coordinate, column_coordinate],
@@ -60,7 +62,7 @@ pub(crate) fn build<'g>(
 
 impl<'g> GeneratedSurface<'g> {
     /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
-    /// `polar_angle` (about it, in (−π, π]), then its unknowns by their names.
+    /// `polar_angle` (about it, in (−π, π]; a sample measures it from the middle of its values), then its unknowns by their names.
     pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
         let [x, y, z] = self.surface.position.0;
         let of_position = [
@@ -113,6 +115,24 @@ fn coordinate<'g>(
         context.unknown(&entry.key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
     }
     found
+}
+
+/// The coordinate itself; a polar angle is measured so that it does not jump within half a turn of the middle of its values.
+fn unbroken<'g>(
+    coordinate: Coordinate<'g>,
+    entry: &SampleEntry,
+    values: &[f64],
+    surface: &GeneratedSurface<'g>,
+) -> Coordinate<'g> {
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return coordinate };
+    let middle = 0.5 * (first + last);
+    if coordinate.name != "polar_angle" || entry.definition.is_some() || middle == 0.0 {
+        return coordinate;
+    }
+    let [x, y, _] = surface.surface.position.0;
+    let [sine, cosine, middle] = [middle.sin(), middle.cos(), middle].map(|value| x.graph().constant(value));
+    let turned_back = (cosine * y - sine * x).atan2(cosine * x + sine * y);
+    Coordinate { value: middle + turned_back, ..coordinate }
 }
 
 fn values<'g>(

@@ -99,6 +99,40 @@ fn functions_take_and_give_vectors() {
 }
 
 #[test]
+fn a_polar_angle_is_measured_from_the_middle_of_its_values() {
+    for (low, high, jump) in [(170.0, 190.0, 0.0), (530.0, 550.0, 360.0), (-190.0, -170.0, -360.0)] {
+        let text = format!(
+            "tool knife {{
+                surface edge(u: length in 0 mm .. 3 mm) {{
+                    at = [15 mm, 0 mm, u]
+                    body towards [1, 0, 0]
+                }}
+            }}
+            job j {{
+                machine m = lathe(height: 0 mm)
+                tool k = knife
+                mount k on m.slide
+                motion turn : angle in -360 deg .. 360 deg
+                drive m.C = -turn
+                drive m.Z = 0 mm
+                surface s in m.work = sweep(k.edge, over: turn)
+                sample s {{ z: 1 mm .. 2 mm by 2, polar_angle: {low} deg .. {high} deg by 3 }}
+            }}"
+        );
+        let graph = Graph::new();
+        let compilation = compiled(&graph, &text);
+        let surface = &compilation.jobs[0].surfaces[0];
+        let polar = surface.sample.as_ref().expect("a sample").coordinates[1].value;
+        for degrees in [171.0, 179.9, 180.1, 189.0_f64] {
+            let turn = (surface.unknowns[1].variable, graph.constant(degrees.to_radians()));
+            let bound = [compilation.jobs[0].bindings(), vec![turn]].concat();
+            let found = graph.substitute(&[polar], &bound)[0].as_constant().expect("a number").to_degrees();
+            assert!((found - degrees - jump).abs() < 1e-12, "{degrees}: {found}");
+        }
+    }
+}
+
+#[test]
 fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     let graph = Graph::new();
     let text = "
