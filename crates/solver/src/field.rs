@@ -107,6 +107,13 @@ impl Field {
     }
 }
 
+/// A point in a lane, and its neighbours.
+#[derive(Clone, Copy)]
+struct Waiting {
+    at: usize,
+    beside: [usize; 2],
+}
+
 /// Some lines of a field.
 pub(crate) struct Piece<'f> {
     size: usize,
@@ -128,19 +135,19 @@ impl Piece<'_> {
     ) -> u64 {
         let mut evaluations = 0;
         let mut state = vec![0.0; self.size + 1];
-        let mut lanes = [0; LANES];
+        let mut lanes = [Waiting { at: 0, beside: [0; 2] }; LANES];
         for level in levels {
             let mut count = 0;
             for first in (0..self.outcomes.len()).step_by(length) {
                 for midpoint in level {
                     let at = first + midpoint.at;
-                    let Some(allowed) = self.interpolate(first, midpoint, ranges, &mut state) else {
+                    if !self.interpolate(first, midpoint, &mut state) {
                         continue;
-                    };
+                    }
                     let (unknowns, determinant) = (&state[..self.size], state[self.size]);
                     let determinant = (!determinant.is_nan()).then_some(determinant);
-                    newton.put(count, &Start { unknowns, parameters: &targets[at], determinant, allowed });
-                    lanes[count] = at;
+                    newton.put(count, &Start { unknowns, parameters: &targets[at], determinant });
+                    lanes[count] = Waiting { at, beside: midpoint.beside.map(|place| first + place) };
                     count += 1;
                     if count == LANES {
                         evaluations += self.solve(newton, ranges, &lanes);
@@ -156,13 +163,13 @@ impl Piece<'_> {
     }
 
     /// The start of a point that is not known yet: on the polynomial through the known ones around it, or between its two
-    /// neighbours if some of them are no roots; the determinant where it cannot vanish between them, else NaN. Gives how far
-    /// the point may lie from there. `None` if a neighbour is no root.
-    fn interpolate(&self, first: usize, midpoint: &Midpoint, ranges: &[Range], state: &mut [f64]) -> Option<f64> {
+    /// neighbours if some of them are no roots; the determinant where it cannot vanish between them, else NaN. False if
+    /// the point is known, or a neighbour is no root.
+    fn interpolate(&self, first: usize, midpoint: &Midpoint, state: &mut [f64]) -> bool {
         let is_known = |place: usize| self.outcomes[first + place].is_some_and(Outcome::is_root);
         let [before, behind] = midpoint.beside;
         if is_known(midpoint.at) || !is_known(before) || !is_known(behind) {
-            return None;
+            return false;
         }
         let width = self.size + 1;
         let known = |place: usize| &self.states[(first + place) * width..][..width];
@@ -176,7 +183,10 @@ impl Piece<'_> {
                 *sum += weight * value;
             }
             let determinant = known(place)[self.size];
-            (least, most) = (least.min(determinant), most.max(determinant));
+            (least, most) = (
+                if determinant < least { determinant } else { least },
+                if determinant > most { determinant } else { most },
+            );
         }
         // a NaN among them makes the sum one
         let keeps_sign =
@@ -184,13 +194,19 @@ impl Piece<'_> {
         if !keeps_sign {
             state[self.size] = f64::NAN;
         }
-        Some(ASTRAY * distance(&known(before)[..self.size], &known(behind)[..self.size], ranges) + NEAR)
+        true
     }
 
-    fn solve(&mut self, newton: &mut LaneNewton<'_>, ranges: &[Range], lanes: &[usize]) -> u64 {
+    /// Whether a point that came so far from its start may be on another branch than its neighbours.
+    fn is_astray(&self, moved: f64, [before, behind]: [usize; 2], ranges: &[Range]) -> bool {
+        let unknowns = |point: usize| &self.states[point * (self.size + 1)..][..self.size];
+        moved > NEAR && moved > ASTRAY * distance(unknowns(before), unknowns(behind), ranges) + NEAR
+    }
+
+    fn solve(&mut self, newton: &mut LaneNewton<'_>, ranges: &[Range], lanes: &[Waiting]) -> u64 {
         let evaluations = newton.run(lanes.len());
-        for (lane, &at) in lanes.iter().enumerate() {
-            if !newton.is_root(lane) {
+        for (lane, &Waiting { at, beside }) in lanes.iter().enumerate() {
+            if !newton.is_root(lane) || self.is_astray(newton.moved(lane), beside, ranges) {
                 continue;
             }
             let state = &mut self.states[at * (self.size + 1)..][..=self.size];

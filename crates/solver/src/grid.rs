@@ -184,10 +184,12 @@ impl Grid<'_> {
         for block in points.chunks(LANES) {
             for (lane, &point) in block.iter().enumerate() {
                 let (unknowns, parameters) = (field.unknowns(point), &self.targets[point]);
-                newton.put(lane, &Start { unknowns, parameters, determinant: None, allowed: NEAR });
+                newton.put(lane, &Start { unknowns, parameters, determinant: None });
             }
             self.effort.evaluations += newton.run(block.len());
-            for (lane, &point) in block.iter().enumerate().filter(|(lane, _)| newton.is_root(*lane)) {
+            for (lane, &point) in
+                block.iter().enumerate().filter(|(lane, _)| newton.is_root(*lane) && newton.moved(*lane) <= NEAR)
+            {
                 field.set_determinant(point, newton.determinant(lane));
             }
         }

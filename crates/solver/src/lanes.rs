@@ -40,9 +40,8 @@ pub(crate) struct LaneNewton<'s> {
     /// The determinant of the Jacobian, scaled as in `newton_step`; known from the start, or from the last step.
     determinant: Lanes,
     least_pivot: Lanes,
-    /// How far each lane has come from its start, and may come, as shares of the ranges.
+    /// How far each lane has come from its start, as a share of the ranges.
     moved: Lanes,
-    allowed: Lanes,
     ends: [End; LANES],
 }
 
@@ -59,8 +58,6 @@ pub(crate) struct Start<'p> {
     pub(crate) parameters: &'p [f64],
     /// The determinant at the start if it is known not to vanish around there; else the lane takes one step at least.
     pub(crate) determinant: Option<f64>,
-    /// How far it may go before it counts as lost, as a share of the ranges.
-    pub(crate) allowed: f64,
 }
 
 impl<'s> LaneNewton<'s> {
@@ -79,7 +76,6 @@ impl<'s> LaneNewton<'s> {
             determinant: [0.0; LANES],
             least_pivot: [0.0; LANES],
             moved: [0.0; LANES],
-            allowed: [0.0; LANES],
             ends: [End::Open; LANES],
         }
     }
@@ -89,7 +85,6 @@ impl<'s> LaneNewton<'s> {
             self.residuals.input(k)[lane] = *value;
         }
         self.determinant[lane] = start.determinant.unwrap_or(f64::NAN);
-        self.allowed[lane] = start.allowed;
     }
 
     /// Solves the first `count` lanes; gives the number of evaluations.
@@ -124,6 +119,11 @@ impl<'s> LaneNewton<'s> {
     /// Whether a lane has come to a root.
     pub(crate) fn is_root(&self, lane: usize) -> bool {
         self.ends[lane] == End::Root
+    }
+
+    /// How far a lane has come from its start, as a share of the ranges.
+    pub(crate) fn moved(&self, lane: usize) -> f64 {
+        self.moved[lane]
     }
 
     pub(crate) fn unknown(&mut self, k: usize, lane: usize) -> f64 {
@@ -188,9 +188,9 @@ impl<'s> LaneNewton<'s> {
             let value = self.residuals.input(k)[lane];
             self.ranges[k].widened(value) == value
         });
-        // comparisons that fail for NaN, too
-        let is_safe = self.moved[lane] <= self.allowed[lane] && self.least_pivot[lane] >= CLEAR_PIVOT;
-        if !(inside && is_safe) {
+        // a comparison that fails for NaN, too
+        let is_clear = self.least_pivot[lane] >= CLEAR_PIVOT;
+        if !(inside && is_clear) {
             self.ends[lane] = End::Lost;
         }
     }

@@ -16,6 +16,7 @@ pub struct Range {
 }
 
 impl Range {
+    #[inline]
     pub(crate) fn width(self) -> f64 {
         self.high - self.low
     }
@@ -29,6 +30,7 @@ impl Range {
         (self.low - value).max(value - self.high).max(0.0)
     }
 
+    #[inline]
     pub(crate) fn widened(self, value: f64) -> f64 {
         let margin = MARGIN * self.width();
         value.clamp(self.low - margin, self.high + margin)
