@@ -126,7 +126,7 @@ fn numbers() {
         (f64::INFINITY, "inf", "\\infty"),
         (f64::NEG_INFINITY, "-inf", "-\\infty"),
         (f64::NAN, "NaN", "\\mathrm{NaN}"),
-        (std::f64::consts::PI, "3.141592653589793", "3.141592653589793"),
+        (3.25, "3.25", "3.25"),
     ];
     for (value, text, latex) in cases {
         let number = graph.constant(value);
@@ -136,6 +136,32 @@ fn numbers() {
     let x = graph.variable("x");
     let small = graph.listing(&[(x * -2.5e-7).sin() - x.pow(graph.constant(1e9))], Style::Latex, "t");
     assert_eq!(small.values, ["-\\left(\\sin\\left(2.5 \\cdot 10^{-7}\\,x\\right) + x^{10^{9}}\\right)"]);
+}
+
+#[test]
+fn parts_of_pi() {
+    use std::f64::consts::PI;
+    check(|[x, y, _], graph| {
+        let part = |above: f64, below: f64| graph.constant(above * PI / below);
+        [
+            (part(1.0, 1.0), "pi", "\\pi"),
+            (part(-1.0, 2.0), "-pi / 2", "-\\frac{\\pi}{2}"),
+            (part(4.0, 6.0), "2 * pi / 3", "\\frac{2\\,\\pi}{3}"),
+            (part(36.0, 1.0), "36 * pi", "36\\,\\pi"),
+            (part(7.0, 180.0), "7 * pi / 180", "\\frac{7\\,\\pi}{180}"),
+            (graph.constant((PI / 9.0).next_up()), "pi / 9", "\\frac{\\pi}{9}"),
+            (graph.constant((PI / 9.0).next_up().next_up()), "0.349065850398866", "0.349065850398866"),
+            (part(37.0, 1.0), "116.23892818282235", "116.23892818282235"),
+            (part(1.0, 7.0), "0.4487989505128276", "0.4487989505128276"),
+            (x - part(1.0, 2.0), "x - pi / 2", "x - \\frac{\\pi}{2}"),
+            (part(1.0, 2.0) * x, "pi / 2 * x", "\\frac{\\pi}{2}\\,x"),
+            (part(-2.0, 3.0) * x - y, "-(y + 2 * pi / 3 * x)", "-\\left(y + \\frac{2\\,\\pi}{3}\\,x\\right)"),
+            (x / part(1.0, 2.0), "x / (pi / 2)", "\\frac{x}{\\frac{\\pi}{2}}"),
+            (x.pow(part(1.0, 1.0)), "x^pi", "x^{\\pi}"),
+            (x.pow(part(2.0, 1.0)), "x^(2 * pi)", "x^{2\\,\\pi}"),
+            (part(2.0, 1.0).pow(x), "(2 * pi)^x", "\\left(2\\,\\pi\\right)^{x}"),
+        ]
+    });
 }
 
 #[test]

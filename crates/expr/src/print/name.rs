@@ -1,9 +1,15 @@
 //! How numbers and names are written.
 
+use std::f64::consts::PI;
+
 use crate::print::Style;
 
-/// A number, to the last bit: reading it back gives the same one.
+/// A number, to the last bit: reading it back gives the same one. A simple part of pi is written as such.
 pub(super) fn number(value: f64, style: Style) -> String {
+    if let Some(part) = PartOfPi::of(value) {
+        let sign = if value < 0.0 { "-" } else { "" };
+        return format!("{sign}{}", part.text(style));
+    }
     if style == Style::Text && !value.is_finite() {
         return value.to_string();
     }
@@ -24,6 +30,45 @@ pub(super) fn number(value: f64, style: Style) -> String {
             format!("{mantissa} \\cdot 10^{{{exponent}}}")
         }
         _ => plain,
+    }
+}
+
+/// A product of pi and a fraction in lowest terms.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PartOfPi {
+    pub(super) numerator: u8,
+    pub(super) denominator: u8,
+}
+
+impl PartOfPi {
+    /// The one that a number's magnitude is to one unit in the last place: conversions of units round that much.
+    pub(super) fn of(value: f64) -> Option<PartOfPi> {
+        const DENOMINATORS: [u8; 13] = [1, 2, 3, 4, 5, 6, 8, 9, 10, 12, 18, 36, 180];
+        const NUMERATORS: std::ops::RangeInclusive<f64> = 1.0..=36.0;
+        let size = value.abs();
+        DENOMINATORS.into_iter().find_map(|denominator| {
+            let parts = f64::from(denominator);
+            let numerator = (size * parts / PI).round();
+            let product = numerator * PI / parts;
+            let is_meant = NUMERATORS.contains(&numerator) && (product.next_down()..=product.next_up()).contains(&size);
+            is_meant.then_some(PartOfPi { numerator: numerator as u8, denominator })
+        })
+    }
+
+    fn text(self, style: Style) -> String {
+        let (pi, times) = match style {
+            Style::Text => ("pi", " * "),
+            Style::Latex => ("\\pi", "\\,"),
+        };
+        let above = match self.numerator {
+            1 => pi.to_string(),
+            numerator => format!("{numerator}{times}{pi}"),
+        };
+        match (self.denominator, style) {
+            (1, _) => above,
+            (denominator, Style::Text) => format!("{above} / {denominator}"),
+            (denominator, Style::Latex) => format!("\\frac{{{above}}}{{{denominator}}}"),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::graph::{Graph, Node, NodeId};
 use crate::op::{Binary, Unary};
 use crate::print::Style;
+use crate::print::name::{PartOfPi, has_exponent};
 
 /// How tightly a written expression holds together, loosest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,15 +68,20 @@ pub(super) fn shape(graph: &Graph, style: Style, node: Node, known: &HashMap<Nod
 }
 
 fn number(value: f64, style: Style) -> Shape {
-    let is_power_of_ten = style == Style::Latex && crate::print::name::has_exponent(value);
+    let (is_product, begins_with_digit) = match PartOfPi::of(value) {
+        Some(PartOfPi { numerator, denominator }) => {
+            (numerator > 1 || denominator > 1, numerator > 1 && (style == Style::Text || denominator == 1))
+        }
+        None => (style == Style::Latex && has_exponent(value), value.is_finite()),
+    };
     Shape {
-        binding: match (value < 0.0, is_power_of_ten) {
+        binding: match (value < 0.0, is_product) {
             (true, _) => Binding::Signed,
             (false, true) => Binding::Product,
             (false, false) => Binding::Atom,
         },
         minus: value < 0.0,
-        digit: value >= 0.0 && value.is_finite(),
+        digit: value >= 0.0 && begins_with_digit,
     }
 }
 

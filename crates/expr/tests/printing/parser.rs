@@ -93,7 +93,7 @@ impl<'t> Parser<'t> {
         if self.accept("(") {
             return self.call(token);
         }
-        self.names[token]
+        if token == "pi" { std::f64::consts::PI } else { self.names[token] }
     }
 
     fn call(&mut self, function: &str) -> f64 {
