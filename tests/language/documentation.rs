@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Compilation, GeneratedSurface, Job, Severity, compile_file, compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
-use flank_tests::{assert_point, pages, repository};
+use flank_solver::{Outcome, SurfacePoint};
+use flank_tests::{assert_point, pages, problem, repository};
 
 struct Block {
     line: usize,
@@ -128,10 +128,8 @@ fn the_language_stands_alone() {
 /// The points that a surface is asked for.
 fn solved(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec<SurfacePoint> {
     let Some(sample) = &surface.sample else { return Vec::new() };
-    let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings());
-    problem.expect("nothing is unbound").solve(&sample.targets, sample.counts).0
+    problem(job, surface, coordinates).solve(&sample.targets, sample.counts).0
 }
 
 /// All surfaces of a job on a page with their points.

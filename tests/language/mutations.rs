@@ -2,8 +2,7 @@
 
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Range, SurfaceProblem};
-use flank_tests::{Dice, repository};
+use flank_tests::{Dice, problem, repository};
 
 /// A spec and what it uses as one text.
 fn whole(parts: &[&str]) -> String {
@@ -63,9 +62,7 @@ fn survive(text: &str) -> bool {
                 continue;
             };
             let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-            let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-            let problem =
-                SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+            let problem = problem(&job, surface, coordinates);
             let few = &sample.targets[..sample.targets.len().min(3)];
             let (points, _) = problem.solve(few, [few.len(), 1]);
             assert_eq!(points.len(), few.len());

@@ -6,9 +6,9 @@ pub mod targets;
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Job, compile_file, render};
+use flank_chain_dsl::{GeneratedSurface, Job, compile_file, render};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem};
+use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem, solve_grid};
 use serde_json::Value;
 
 pub use dice::Dice;
@@ -79,10 +79,27 @@ fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> 
 /// If there is no such surface or coordinate.
 pub fn points(job: &Job<'_>, surface: &str, coordinates: [&str; 2], targets: &[[f64; 2]]) -> Vec<SurfacePoint> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
-    let [a, b] = coordinates.map(|name| surface.coordinate(name).expect("a coordinate of the surface").value);
-    let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, [a, b], ranges, &job.bindings()).expect("nothing is unbound");
-    problem.solve(targets, [1, targets.len()]).0
+    let asked = coordinates.map(|name| surface.coordinate(name).expect("a coordinate of the surface").value);
+    let problem = problem(job, surface, asked);
+    // a reference's points are no grid: of several branches the one is taken that reaches them all
+    let (solutions, _) = solve_grid(problem.system(), &ranges(surface), targets, [1, targets.len()]);
+    problem.points(&solutions)
+}
+
+fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+    surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect()
+}
+
+/// What `flank solve` solves: points of a surface at values of two coordinates, on the branch that its sample keeps.
+///
+/// # Panics
+/// If a variable is not bound.
+pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2]) -> SurfaceProblem {
+    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
+    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
+    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings());
+    let problem = problem.and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()));
+    problem.expect("nothing is unbound")
 }
 
 /// A surface at values of its unknowns that another source says solve its equations.

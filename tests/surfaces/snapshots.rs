@@ -5,8 +5,7 @@
 use std::fmt::Write;
 
 use flank_expr::Graph;
-use flank_solver::{Range, SurfaceProblem};
-use flank_tests::job;
+use flank_tests::{job, problem};
 
 /// Nine significant digits, without a negative zero.
 fn digits(value: f64) -> String {
@@ -24,8 +23,7 @@ fn described(spec: &str) -> String {
             continue;
         };
         let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-        let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-        let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+        let problem = problem(&job, surface, coordinates);
         let (points, effort) = problem.solve(&sample.targets, sample.counts);
         let constraints = graph.count(&surface.surface.constraints);
         let tape = problem.system().tape();

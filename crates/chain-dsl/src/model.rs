@@ -181,6 +181,8 @@ pub struct Sample<'g> {
     pub counts: [usize; 2],
     /// Values of the coordinates, row by row.
     pub targets: Vec<[f64; 2]>,
+    /// Functions of the unknowns, and the ends between which they lie on the branch that is meant.
+    pub keep: Vec<(Coordinate<'g>, (f64, f64))>,
 }
 
 /// A function of the unknowns that a sample gives values to.

@@ -6,13 +6,36 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, Sample};
-use crate::syntax::ast::{self, SampleEntry, SampleValues};
+use crate::source::Name;
+use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 
 /// Corners of a flank in the axial section.
 const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 
-/// The grid that a `sample` statement asks for.
+/// The grid that a `sample` statement asks for, and the branch that it keeps to.
 pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    let keep: Vec<_> = written.keeps.iter().map(|keep| kept(context, keep, surface, scope)).collect();
+    let grid = grid(context, written, surface, scope)?;
+    Some(Sample { keep: keep.into_iter().collect::<Option<_>>()?, ..grid })
+}
+
+fn kept<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Keep,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<(Coordinate<'g>, (f64, f64))> {
+    let coordinate = coordinate(context, (&written.key, written.definition.as_ref()), surface, scope)?;
+    let ends = context.range(&written.range, scope, coordinate.dimension, &format!("`{}`", written.key.node))?;
+    Some((coordinate, ends))
+}
+
+fn grid<'g>(
     context: &mut Context<'g>,
     written: &ast::Sample,
     surface: &GeneratedSurface<'g>,
@@ -43,8 +66,8 @@ pub(crate) fn build<'g>(
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     };
-    let row_coordinate = coordinate(context, rows, surface, scope);
-    let column_coordinate = coordinate(context, columns, surface, scope);
+    let row_coordinate = coordinate(context, (&rows.key, rows.definition.as_ref()), surface, scope);
+    let column_coordinate = coordinate(context, (&columns.key, columns.definition.as_ref()), surface, scope);
     let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
     let row_values = values(context, rows, scope, row_coordinate.dimension);
     let column_values = values(context, columns, scope, column_coordinate.dimension);
@@ -57,6 +80,7 @@ pub(crate) fn build<'g>(
         coordinates: [row_coordinate, column_coordinate],
         counts: [row_values.len(), column_values.len()],
         targets: row_values.iter().flat_map(|&row| column_values.iter().map(move |&column| [row, column])).collect(),
+        keep: Vec::new(),
     })
 }
 
@@ -86,11 +110,11 @@ impl<'g> GeneratedSurface<'g> {
 
 fn coordinate<'g>(
     context: &mut Context<'g>,
-    entry: &SampleEntry,
+    (key, definition): (&Name, Option<&Expression>),
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
 ) -> Option<Coordinate<'g>> {
-    if let Some(definition) = &entry.definition {
+    if let Some(definition) = definition {
         if !context.spend(scope.len(), definition.span) {
             return None;
         }
@@ -107,12 +131,12 @@ fn coordinate<'g>(
             }
             return None;
         };
-        return Some(Coordinate { name: entry.key.node.clone(), value, dimension });
+        return Some(Coordinate { name: key.node.clone(), value, dimension });
     }
-    let found = surface.coordinate(&entry.key.node);
+    let found = surface.coordinate(&key.node);
     if found.is_none() {
         let known = surface.coordinates();
-        context.unknown(&entry.key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
+        context.unknown(key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
     }
     found
 }
@@ -242,6 +266,7 @@ fn outline<'g>(
         labels: ["root -> tip".to_string(), "toe -> heel".to_string()],
         counts: [profile.len(), length.len()],
         targets: profile.iter().flat_map(|&v| length.iter().map(move |&u| (v, u))).map(|(v, u)| point(v, u)).collect(),
+        keep: Vec::new(),
     })
 }
 

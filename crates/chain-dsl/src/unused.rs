@@ -198,6 +198,10 @@ impl Used {
                             }
                         }
                     }
+                    for keep in &sample.keeps {
+                        keep.definition.iter().for_each(|definition| self.expression(definition));
+                        self.range(&keep.range);
+                    }
                 }
             }
         }

@@ -93,6 +93,9 @@ pub(crate) struct Solve {
     /// um per mm, per arcmin, per 0.001 of a number), rank the parameters, draw maps of the most influential
     #[arg(long)]
     pub(crate) sensitivity: bool,
+    /// Prove of each point that exactly one root lies near it, and print how near; a point that cannot be certified is named
+    #[arg(long)]
+    pub(crate) certify: bool,
     /// Print the table as JSON
     #[arg(long)]
     pub(crate) json: bool,

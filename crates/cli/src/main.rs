@@ -1,6 +1,8 @@
 //! `flank`: tooth surfaces of any machine, from the command line.
 
 mod arguments;
+mod branches;
+mod certify;
 mod check;
 mod cost;
 mod derive;

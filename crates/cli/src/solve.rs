@@ -12,11 +12,11 @@ use flank_expr::Graph;
 use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Format, Solve};
-use crate::geometry;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::table::{Solved, Table};
 use crate::{Ending, print, spec, travel, trims};
+use crate::{branches, certify, geometry};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
     let start = Instant::now();
@@ -54,7 +54,11 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
         anstream::eprintln!("{}", table.time());
-        let told = table.unsolved() + &travel::beyond(job, &solved);
+        anstream::eprint!("{}", branches::undecided(&solved));
+        let told = branches::ambiguous(&solved)
+            + &table.unsolved()
+            + &certify::failed(&solved)
+            + &travel::beyond(job, &solved);
         if !told.is_empty() {
             anstream::eprint!("{told}");
             ending = Ending::Unsolved;
@@ -71,18 +75,27 @@ fn solve_surface<'j, 'g>(
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let keep: Vec<_> = sample
+        .keep
+        .iter()
+        .map(|(coordinate, (low, high))| (coordinate.value, Range { low: *low, high: *high }))
+        .collect();
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
+        .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
         .expect("a job without errors leaves nothing unbound");
     let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
+    let branches = problem.points(&effort.branches);
     let trims = surface.trimmed_by.iter().enumerate();
     let trims = trims.map(|(number, &by)| trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, number));
     let trims = trims.collect();
+    let radii = arguments.certify.then(|| certify::radii(&problem, &sample.targets, &points));
     let mut fields = Vec::new();
     if arguments.geometry {
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
+    fields.extend(radii.as_deref().map(certify::field));
     let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
-    Some(Solved { surface, sample, points, effort, fields, sensitivity, trims })
+    Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims })
 }
 
 /// Where the unknowns of a surface are looked for.

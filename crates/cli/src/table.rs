@@ -8,9 +8,9 @@ use flank_export::Field;
 use flank_solver::{CutBy, Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
-use crate::fields;
 use crate::limits::Line;
 use crate::sensitivity::{self, Sensitivity};
+use crate::{certify, fields};
 
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
@@ -20,6 +20,10 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) effort: Effort,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
+    /// Where each of the branches at the anchor is.
+    pub(crate) branches: Vec<SurfacePoint>,
+    /// How near exactly one root is proven to each point, mm, if that was asked for.
+    pub(crate) radii: Option<Vec<Option<f64>>>,
     /// What more is known of the points; files show it after the status.
     pub(crate) fields: Vec<Field>,
     pub(crate) sensitivity: Option<Sensitivity>,
@@ -151,13 +155,7 @@ impl Table<'_, '_, '_> {
         out.push_str(&aligned(&rows, "<>>>"));
         out.push_str(&fields::text(self.solved));
         out.push_str(&sensitivity::text(self.solved));
-        for solved in self.solved.iter().filter(|solved| solved.effort.branches > 1) {
-            let (name, branches) = (&solved.surface.name, solved.effort.branches);
-            let _ = writeln!(
-                out,
-                "\n{name}: the ranges hold {branches} branches; all points are on the one that reaches most"
-            );
-        }
+        out.push_str(&certify::text(self.solved));
         let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
         out
     }
@@ -271,6 +269,6 @@ fn surface_json(solved: &Solved<'_, '_>) -> Value {
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
     entries.insert("fields".to_string(), fields::json(solved));
     entries.insert("sensitivity".to_string(), sensitivity::json(solved));
-    entries.insert("branches".to_string(), json!(solved.effort.branches));
+    entries.insert("branches".to_string(), json!(solved.effort.branches.len()));
     Value::Object(entries)
 }

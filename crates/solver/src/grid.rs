@@ -10,12 +10,11 @@ use crate::field::{Field, NEAR};
 use crate::lanes::{LaneNewton, Start};
 use crate::line::{lattice, levels};
 use crate::newton::solve_with;
+use crate::roots::{MOST_BOXES, Undecided, all_roots};
 use crate::solution::{Range, Solution, distance};
-use crate::start::{Scan, roots};
+use crate::start::{WIDELY, scan};
 use crate::system::{Evaluation, System};
 
-/// How widely the anchor of a grid is looked for.
-const ANCHOR: Scan = Scan { probes: 1024, starts: 64 };
 /// Points that are tried as the anchor before a grid is taken for unsolvable.
 const MOST_ANCHORS: usize = 9;
 /// Parts into which the way to a neighbour is divided where one step is too long.
@@ -27,14 +26,38 @@ const ASTRAY: f64 = 0.75;
 /// depends on the grid alone.
 const TILE: usize = 256;
 
-/// What a grid cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a grid cost, and what is known about where it starts.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// Evaluations of residuals with Jacobian.
+    /// Evaluations of residuals with Jacobian, without those of the search for the anchor.
     pub evaluations: u64,
-    /// Roots that were found in the ranges at the anchor; more than one means that the ranges hold several branches. The
-    /// one that reaches the most points was taken, of several such the one nearest the middle of the ranges.
-    pub branches: u32,
+    /// Boxes that the search for the anchor looked at.
+    pub boxes: u64,
+    /// The targets of the anchor.
+    pub anchor: [f64; 2],
+    /// All roots in the ranges at the anchor that qualify, the one nearest the middle of the ranges first: more than one
+    /// means that the ranges hold several branches.
+    pub branches: Vec<Solution>,
+    /// Boxes of the ranges at the anchor in which further branches are not excluded.
+    pub undecided: Vec<Undecided>,
+}
+
+/// What is done where several branches qualify.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Several {
+    /// No point is solved.
+    Refuse,
+    /// The one that reaches the most points is taken, of several such the one nearest the middle of the ranges.
+    TakeWidest,
+}
+
+/// Which branch is meant.
+pub(crate) struct Choice<'c> {
+    /// Where it is at the anchor.
+    pub(crate) ranges: &'c [Range],
+    /// Whether a branch with these unknowns at the anchor qualifies.
+    pub(crate) keeps: &'c mut dyn FnMut(&[f64]) -> bool,
+    pub(crate) several: Several,
 }
 
 /// Solves the system at each pair of targets of a grid (row by row); every point gets a verdict.
@@ -55,19 +78,21 @@ pub fn solve_grid(
     targets: &[[f64; 2]],
     counts: [usize; 2],
 ) -> (Vec<Solution>, Effort) {
-    let (field, effort) = solve_field(system, ranges, targets, counts, None);
+    let choice = Choice { ranges, keeps: &mut |_| true, several: Several::TakeWidest };
+    let (field, effort) = solve_field(system, ranges, targets, counts, None, choice);
     let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
     ((0..targets.len()).map(solution).collect(), effort)
 }
 
-/// The same without an allocation for each point; the branch may be given by a start for the point in the middle, which is
-/// tried first.
+/// The same without an allocation for each point, with a choice among several branches; the branch may be given by a start
+/// for the point in the middle, which is tried first.
 pub(crate) fn solve_field(
     system: &System,
     ranges: &[Range],
     targets: &[[f64; 2]],
     counts: [usize; 2],
     start: Option<&[f64]>,
+    choice: Choice<'_>,
 ) -> (Field, Effort) {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     let mut grid = Grid {
@@ -81,20 +106,25 @@ pub(crate) fn solve_field(
     };
     let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
     if let Some(root) = start.filter(|_| !targets.is_empty()).and_then(|start| grid.root_from(middle, start)) {
-        grid.effort.branches = 1;
-        return (grid.fill(middle, &root), grid.effort);
+        let filling = grid.fill(middle, &root);
+        grid.effort.anchor = targets[middle];
+        grid.effort.branches = vec![root];
+        return (filling, grid.effort);
     }
     let order = grid.middle_first();
     let mut failures = Field::new(system.size(), targets.len());
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
-        let found = grid.look_for(anchor);
-        grid.effort.branches = found.iter().filter(|root| root.outcome == Outcome::Solved).count() as u32;
-        if grid.effort.branches > 0 {
-            return (grid.best_filling(anchor, found), grid.effort);
+        if !grid.look_for(anchor, choice.ranges, choice.keeps) {
+            failures.put(anchor, &grid.failure(anchor));
+            continue;
         }
-        if let Some(failure) = found.first() {
-            failures.put(anchor, failure);
+        if grid.effort.branches.len() > 1 && choice.several == Several::Refuse {
+            let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(ranges) };
+            (0..targets.len()).for_each(|point| failures.put(point, &ambiguous));
+            return (failures, grid.effort);
         }
+        let filling = grid.best_filling(anchor);
+        return (filling, grid.effort);
     }
     (failures, grid.effort)
 }
@@ -122,11 +152,28 @@ impl Grid<'_> {
         order
     }
 
-    fn look_for(&mut self, point: usize) -> Vec<Solution> {
+    /// Finds all branches at a point; whether there are any.
+    fn look_for(&mut self, point: usize, ranges: &[Range], keeps: &mut dyn FnMut(&[f64]) -> bool) -> bool {
+        let found = all_roots(self.system, ranges, &self.targets[point], MOST_BOXES);
+        let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
+        let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
+        let proven = found.isolated.into_iter().map(|root| root.solution);
+        let mut branches: Vec<Solution> = proven.chain(found.unproven).filter(|root| keeps(&root.unknowns)).collect();
+        branches.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        self.effort.boxes += found.boxes;
+        self.effort.anchor = self.targets[point];
+        self.effort.branches = branches;
+        self.effort.undecided = found.undecided;
+        !self.effort.branches.is_empty()
+    }
+
+    /// Why there is no root at a point, as far as a scan can tell.
+    fn failure(&mut self, point: usize) -> Solution {
         self.evaluation.set_parameters(&self.targets[point]);
-        let (found, evaluations) = roots(&mut self.evaluation, self.ranges, ANCHOR);
+        let (found, evaluations) = scan(&mut self.evaluation, self.ranges, WIDELY);
         self.effort.evaluations += evaluations;
-        found
+        let failure = found.into_iter().next().filter(|solution| !solution.is_solved());
+        failure.unwrap_or_else(|| Solution::never_reached(self.ranges))
     }
 
     fn root_from(&mut self, point: usize, start: &[f64]) -> Option<Solution> {
@@ -137,13 +184,10 @@ impl Grid<'_> {
     }
 
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
-    /// which branch is taken depends on the ranges, not on the order in which a scan finds roots.
-    fn best_filling(&mut self, anchor: usize, mut roots: Vec<Solution>) -> Field {
-        let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
-        let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
-        roots.sort_by(|a, b| off(a).total_cmp(&off(b)));
+    /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
+    fn best_filling(&mut self, anchor: usize) -> Field {
         let (mut best, mut most) = (Field::new(self.ranges.len(), self.targets.len()), 0);
-        for root in roots {
+        for root in self.effort.branches.clone() {
             let filling = self.fill(anchor, &root);
             let solved = filling.count(Outcome::Solved);
             if solved > most {

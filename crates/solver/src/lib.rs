@@ -14,7 +14,9 @@
 //! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
 //! ```
 
+mod certify;
 mod elimination;
+mod enclosure;
 mod extent;
 mod field;
 mod geometry;
@@ -24,6 +26,7 @@ mod lanes;
 mod line;
 mod newton;
 mod points;
+mod roots;
 mod sensitivity;
 mod solution;
 mod start;
@@ -31,12 +34,14 @@ mod surface;
 mod system;
 mod trim;
 
+pub use certify::Certifier;
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};
 pub use intersection::{Intersection, Line, Meeting};
 pub use newton::{TOLERANCE, solve};
 pub use points::SurfacePoints;
+pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
 pub use sensitivity::{NormalSensitivity, Setting};
 pub use solution::{CutBy, Outcome, Range, Solution};
 pub use surface::{SurfacePoint, SurfaceProblem};

@@ -4,7 +4,7 @@
 const MARGIN: f64 = 0.25;
 /// An unknown is inside its range if it is outside by less than this share of it: rounding of the ends themselves, and of
 /// targets that lie on them.
-const ROUNDING: f64 = 1e-10;
+pub(crate) const ROUNDING: f64 = 1e-10;
 
 /// Where an unknown is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,17 @@ impl Range {
         0.5 * (self.low + self.high)
     }
 
+    /// What both have in common; where that is nothing, the end of this one that is nearest.
+    pub(crate) fn common(self, other: Range) -> Range {
+        Range { low: other.low.clamp(self.low, self.high), high: other.high.clamp(self.low, self.high) }
+    }
+
+    /// With a share of its width beyond both ends.
+    pub(crate) fn wider_by(self, share: f64) -> Range {
+        let margin = share * self.width();
+        Range { low: self.low - margin, high: self.high + margin }
+    }
+
     /// By how much a value is outside; zero inside.
     fn excess(self, value: f64) -> f64 {
         (self.low - value).max(value - self.high).max(0.0)
@@ -32,8 +43,8 @@ impl Range {
 
     #[inline]
     pub(crate) fn widened(self, value: f64) -> f64 {
-        let margin = MARGIN * self.width();
-        value.clamp(self.low - margin, self.high + margin)
+        let wider = self.wider_by(MARGIN);
+        value.clamp(wider.low, wider.high)
     }
 }
 
@@ -57,6 +68,8 @@ pub enum Outcome {
     Singular,
     /// The iteration ended without a root.
     NotConverged,
+    /// The ranges hold several branches, and nothing says which one is meant.
+    Ambiguous,
 }
 
 /// What takes away a point that a tool generates.
@@ -79,6 +92,7 @@ impl Outcome {
             Outcome::Outside { .. } => "outside",
             Outcome::Singular => "singular",
             Outcome::NotConverged => "not converged",
+            Outcome::Ambiguous => "ambiguous",
         }
     }
 
@@ -94,7 +108,7 @@ impl Outcome {
             Outcome::CutAway(_) | Outcome::Undecided => 3,
             Outcome::Outside { .. } => 2,
             Outcome::Singular => 1,
-            Outcome::NotConverged => 0,
+            Outcome::NotConverged | Outcome::Ambiguous => 0,
         }
     }
 }

@@ -39,11 +39,14 @@ pub(crate) struct Scan {
     pub(crate) starts: usize,
 }
 
+/// Wide enough to meet every branch of common jobs.
+pub(crate) const WIDELY: Scan = Scan { probes: 1024, starts: 64 };
+
 /// Looks for roots anywhere in the box: residuals at `scan.probes` points, Newton from the best `scan.starts` of them.
 ///
 /// All different roots inside the ranges, in the order in which they were found; if there is none, the most telling
 /// failure. Beside them the number of evaluations.
-pub(crate) fn roots(evaluation: &mut Evaluation<'_>, ranges: &[Range], scan: Scan) -> (Vec<Solution>, u64) {
+pub(crate) fn scan(evaluation: &mut Evaluation<'_>, ranges: &[Range], scan: Scan) -> (Vec<Solution>, u64) {
     let mut candidates: Vec<(f64, u32)> = Vec::with_capacity(scan.probes as usize);
     for k in 1..=scan.probes {
         evaluation.at(&probe(ranges, k));

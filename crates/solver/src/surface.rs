@@ -1,11 +1,12 @@
 //! Points of one surface at given values of two coordinates.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, LaneTape, Tape, TapeError};
+use flank_expr::{Expr, LaneTape, ScalarEvaluator, Tape, TapeError};
 
-use crate::grid::{Effort, solve_field};
+use crate::grid::{Choice, Effort, Several, solve_field};
 use crate::points::SurfacePoints;
-use crate::solution::{Outcome, Range};
+use crate::roots::{MOST_BOXES, Roots, all_roots};
+use crate::solution::{Outcome, Range, Solution};
 use crate::system::System;
 
 /// A surface under constraint with two coordinates that points are asked for by.
@@ -13,8 +14,15 @@ use crate::system::System;
 pub struct SurfaceProblem {
     system: System,
     /// Position and normal.
-    point: LaneTape,
+    point: Tape,
+    /// The same for many points at once.
+    lanes: LaneTape,
     ranges: Vec<Range>,
+    several: Several,
+    /// Functions of the unknowns, and between which values they lie on the branch that is meant.
+    keep: (Tape, Vec<Range>),
+    /// Where the unknowns of that branch are.
+    kept_ranges: Vec<Range>,
 }
 
 /// A point that was asked for.
@@ -49,14 +57,15 @@ impl SurfaceProblem {
     ) -> Result<SurfaceProblem, TapeError> {
         let bound = surface.bound(bindings);
         let conditions = bound.clearance_minors();
-        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions)
+        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions, Several::Refuse)
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
     /// targets `[0, value]`. The singular line has the last of [`Surface::clearance_minors`] as its quantity, the limit of
     /// the contact on the tool [`Surface::contact_limit`].
     ///
-    /// No point of the line is cut away or singular by the clearance's Hessian: the line is where that changes. The rest is
+    /// Of several such lines in the ranges the one is taken that reaches the most points; [`Effort`] tells of the others. No
+    /// point of the line is cut away or singular by the clearance's Hessian: the line is where that changes. The rest is
     /// as for [`SurfaceProblem::new`].
     ///
     /// # Errors
@@ -71,7 +80,7 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::of(&surface.bound(bindings), [quantity, along], ranges, bindings, &[])
+        SurfaceProblem::of(&surface.bound(bindings), [quantity, along], ranges, bindings, &[], Several::TakeWidest)
     }
 
     fn of<'g>(
@@ -80,6 +89,7 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
         conditions: &[Expr<'g>],
+        several: Several,
     ) -> Result<SurfaceProblem, TapeError> {
         assert_eq!(bound.unknowns.len(), ranges.len(), "one range for each unknown");
         let graph = coordinates[0].graph();
@@ -88,11 +98,16 @@ impl SurfaceProblem {
         let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
         let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(on_target).collect();
         let point: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
+        let point = Tape::new(&point, &bound.unknowns)?;
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
             system: system.with_conditions(conditions, &bound.unknowns, &targets)?,
-            point: LaneTape::new(&Tape::new(&point, &bound.unknowns)?),
+            lanes: LaneTape::new(&point),
+            point,
+            kept_ranges: ranges.clone(),
             ranges,
+            several,
+            keep: (Tape::new(&[], &bound.unknowns)?, Vec::new()),
         })
     }
 
@@ -101,7 +116,40 @@ impl SurfaceProblem {
         &self.system
     }
 
-    /// Solves a grid of targets, row by row; every point gets a verdict.
+    /// Position and normal as functions of the unknowns.
+    pub(crate) fn point_tape(&self) -> &Tape {
+        &self.point
+    }
+
+    /// Every point of the surface with given values of the two coordinates: all roots in the ranges (and in what is kept of them),
+    /// proven.
+    pub fn all_points(&self, target: [f64; 2]) -> Roots {
+        all_roots(&self.system, &self.kept_ranges, &target, MOST_BOXES)
+    }
+
+    /// The same problem, where only those branches qualify on which functions of the unknowns lie in ranges at the point
+    /// that is looked for first.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    pub fn keeping<'g>(
+        self,
+        unknowns: &[Expr<'g>],
+        keep: &[(Expr<'g>, Range)],
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SurfaceProblem, TapeError> {
+        let values: Vec<Expr<'g>> = keep.iter().map(|(value, _)| *value).collect();
+        let values = unknowns[0].graph().substitute(&values, bindings);
+        let ranges = keep.iter().map(|(_, range)| *range).collect();
+        let mut kept_ranges = self.kept_ranges;
+        for (kept, unknown) in kept_ranges.iter_mut().zip(unknowns) {
+            keep.iter().filter(|(value, _)| value == unknown).for_each(|(_, range)| *kept = kept.common(*range));
+        }
+        Ok(SurfaceProblem { keep: (Tape::new(&values, unknowns)?, ranges), kept_ranges, ..self })
+    }
+
+    /// Solves a grid of targets, row by row; every point gets a verdict. If the ranges hold several branches that qualify,
+    /// every point is [`Outcome::Ambiguous`], and [`Effort::branches`] lists them.
     ///
     /// # Panics
     /// If there are not `counts[0] · counts[1]` targets.
@@ -121,7 +169,31 @@ impl SurfaceProblem {
         counts: [usize; 2],
         start: Option<&[f64]>,
     ) -> (SurfacePoints, Effort) {
-        let (field, effort) = solve_field(&self.system, &self.ranges, targets, counts, start);
-        (SurfacePoints::new(field, &self.point, &self.ranges, targets.len()), effort)
+        let (tape, ranges) = &self.keep;
+        let (mut keep, mut values) = (ScalarEvaluator::new(tape), vec![0.0; ranges.len()]);
+        let mut keeps = |unknowns: &[f64]| {
+            keep.run(unknowns, &mut values);
+            values.iter().zip(ranges).all(|(value, range)| range.low <= *value && *value <= range.high)
+        };
+        let choice = Choice { ranges: &self.kept_ranges, keeps: &mut keeps, several: self.several };
+        let (field, effort) = solve_field(&self.system, &self.ranges, targets, counts, start, choice);
+        (SurfacePoints::new(field, &self.lanes, &self.ranges, targets.len()), effort)
+    }
+
+    /// The points of the surface at solutions of its system.
+    pub fn points(&self, solutions: &[Solution]) -> Vec<SurfacePoint> {
+        let mut evaluator = ScalarEvaluator::new(&self.point);
+        let mut out = [0.0; 6];
+        let point = |solution: &Solution| {
+            evaluator.run(&solution.unknowns, &mut out);
+            SurfacePoint {
+                outcome: solution.outcome,
+                unknowns: solution.unknowns.clone(),
+                position: [out[0], out[1], out[2]],
+                normal: [out[3], out[4], out[5]],
+                residual: solution.residual,
+            }
+        };
+        solutions.iter().map(point).collect()
     }
 }

@@ -10,6 +10,7 @@ use crate::solution::{CutBy, Outcome};
 pub struct System {
     size: usize,
     tape: Tape,
+    residuals: Tape,
     /// What must be positive at a root for it to be one of the thing that is looked for.
     conditions: Tape,
     pub(crate) lanes: LaneTapes,
@@ -38,12 +39,13 @@ impl System {
         let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
+        let residuals = Tape::new(residuals, &inputs)?;
         let lanes = LaneTapes {
-            residuals: LaneTape::new(&Tape::new(residuals, &inputs)?),
+            residuals: LaneTape::new(&residuals),
             linearized: LaneTape::new(&tape),
             conditions: LaneTape::new(&conditions),
         };
-        Ok(System { size: unknowns.len(), tape, conditions, lanes })
+        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
@@ -71,6 +73,11 @@ impl System {
     /// The tape: unknowns, then parameters in; residuals, then the Jacobian row by row out.
     pub fn tape(&self) -> &Tape {
         &self.tape
+    }
+
+    /// The tape of the residuals alone, with the same inputs.
+    pub(crate) fn residual_tape(&self) -> &Tape {
+        &self.residuals
     }
 
     /// Something that evaluates it at one set of parameters.

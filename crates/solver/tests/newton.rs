@@ -86,7 +86,7 @@ fn a_grid_stays_on_one_branch() {
     let targets: Vec<[f64; 2]> =
         (0..21).flat_map(|i| (0..5).map(move |j| [-0.9 + 0.09 * f64::from(i), f64::from(j)])).collect();
     let (points, effort) = solve_grid(&system, &[range(-10.0, 10.0), range(-1.0, 5.0)], &targets, [21, 5]);
-    assert!(effort.branches > 1, "the ranges hold several branches");
+    assert!(effort.branches.len() > 1, "the ranges hold several branches");
     let branch = |x: f64| ((x / std::f64::consts::PI) + 0.5).floor();
     for point in &points {
         assert_eq!(point.outcome, Outcome::Solved);
@@ -117,7 +117,7 @@ fn an_unsolvable_grid_has_a_verdict_for_every_point() {
     let system = System::new(&[x * x + 1.0 + a, y - b], &[x, y], &[a, b]).unwrap();
     let (points, effort) = solve_grid(&system, &[range(-1.0, 1.0); 2], &[[0.5, 0.5]; 12], [3, 4]);
     assert_eq!(points.len(), 12);
-    assert_eq!(effort.branches, 0);
+    assert_eq!(effort.branches.len(), 0);
     assert!(points.iter().all(|point| point.outcome != Outcome::Solved));
 }
 
@@ -173,7 +173,7 @@ fn of_branches_that_reach_as_far_the_middle_one_is_taken() {
     for width in [4.0, 11.0, 37.0] {
         let ranges = [range(0.4 - width, 0.4 + width), range(-1.0, 1.0)];
         let (points, effort) = solve_grid(&system, &ranges, &[[0.2, 0.0], [0.3, 0.0], [0.4, 0.0]], [3, 1]);
-        assert!(effort.branches > 1);
+        assert!(effort.branches.len() > 1);
         for (point, sine) in points.iter().zip([0.2f64, 0.3, 0.4]) {
             assert_eq!(point.outcome, Outcome::Solved);
             assert!((point.unknowns[0] - sine.asin()).abs() < 1e-12, "{point:?}");

@@ -352,6 +352,8 @@ pub struct Sample {
     pub surface: Path,
     /// What is asked for, in order.
     pub entries: Vec<SampleEntry>,
+    /// Which branch is meant.
+    pub keeps: Vec<Keep>,
     /// The whole statement.
     pub span: Span,
 }
@@ -365,6 +367,17 @@ pub struct SampleEntry {
     pub definition: Option<Expression>,
     /// Its values.
     pub values: SampleValues,
+}
+
+/// `keep key: a .. b`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keep {
+    /// A coordinate, an unknown, or the name of a coordinate defined here.
+    pub key: Name,
+    /// What it is, if it is defined here.
+    pub definition: Option<Expression>,
+    /// Where it lies on the branch that is meant.
+    pub range: Range,
 }
 
 /// The values of a sample entry.

@@ -4,11 +4,11 @@ use pest::iterators::Pair;
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
-use crate::source::Span;
+use crate::source::{Name, Span};
 
 use super::super::ast::{
-    Argument, Assignment, Axis, AxisKind, Frame, GeneratedSurface, Instance, JobStatement, Let, MachineStatement,
-    Param, Parameter, Path, Range, Sample, SampleEntry, SampleValues, ToolStatement,
+    Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
+    MachineStatement, Param, Parameter, Path, Range, Sample, SampleEntry, SampleValues, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -167,15 +167,18 @@ impl Build<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let surface = self.path(parts.required(Rule::path));
-        let mut entries = Vec::new();
+        let (mut entries, mut keeps) = (Vec::new(), Vec::new());
         let mut end = None;
-        for pair in parts.all(Rule::entry) {
+        while let Some(pair) = parts.optional(Rule::entry).or_else(|| parts.optional(Rule::keep)) {
             let place = self.span(&pair);
             self.separated(end, place);
             end = Some(place.end);
-            entries.push(self.entry(pair));
+            match pair.as_rule() {
+                Rule::keep => keeps.push(self.keep(pair)),
+                _ => entries.push(self.entry(pair)),
+            }
         }
-        Sample { surface, entries, span }
+        Sample { surface, entries, keeps, span }
     }
 
     /// Asks for a comma or a new line between two entries of a sample.
@@ -189,11 +192,22 @@ impl Build<'_> {
         }
     }
 
-    fn entry(&mut self, pair: Pair<'_, Rule>) -> SampleEntry {
+    fn keep(&mut self, pair: Pair<'_, Rule>) -> Keep {
         let mut parts = Parts::of(pair);
+        let (key, definition) = self.coordinate(&mut parts);
+        Keep { key, definition, range: self.range(parts.required(Rule::range)) }
+    }
+
+    /// The name of a coordinate, and what it is if that is said.
+    fn coordinate(&mut self, parts: &mut Parts<'_>) -> (Name, Option<Expression>) {
         let key = self.name(parts.required(Rule::name));
         let definition = parts.optional(Rule::coordinate);
-        let definition = definition.map(|pair| self.expression(Parts::of(pair).required(Rule::expression)));
+        (key, definition.map(|pair| self.expression(Parts::of(pair).required(Rule::expression))))
+    }
+
+    fn entry(&mut self, pair: Pair<'_, Rule>) -> SampleEntry {
+        let mut parts = Parts::of(pair);
+        let (key, definition) = self.coordinate(&mut parts);
         let low = self.expression(parts.required(Rule::expression));
         let values = match parts.optional(Rule::expression) {
             None => SampleValues::Value(low),

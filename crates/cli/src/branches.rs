@@ -1,0 +1,110 @@
+//! What `flank solve` tells of branches: which there are where several qualify, and where none is excluded.
+
+use std::fmt::Write;
+
+use flank_chain_dsl::{Bounded, Dimension};
+use flank_solver::{Doubt, Outcome, SurfacePoint};
+
+use crate::table::Solved;
+
+/// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
+pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
+    let refused = |solved: &&Solved<'_, '_>| solved.points.iter().any(|point| point.outcome == Outcome::Ambiguous);
+    solved.iter().filter(refused).map(listed).collect()
+}
+
+fn listed(solved: &Solved<'_, '_>) -> String {
+    let (name, unknowns) = (&solved.surface.name, &solved.surface.unknowns);
+    let mut out =
+        format!("ambiguous: the ranges of {name} hold {} branches at {}\n", solved.branches.len(), anchor(solved));
+    let chosen = tells_apart(&solved.branches, unknowns);
+    for (number, branch) in solved.branches.iter().enumerate() {
+        let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
+        let [x, y, z] = branch.position;
+        let _ = writeln!(out, "  {}: {}, at [{x:.4}, {y:.4}, {z:.4}] mm", number + 1, values.join(", "));
+        if let Some(unknown) = chosen {
+            let (low, high) = around(&solved.branches, number, &unknowns[unknown], unknown);
+            let of = &unknowns[unknown];
+            let _ = writeln!(out, "     keep {}: {} .. {}", of.name, value(of, low), value(of, high));
+        }
+    }
+    let _ = writeln!(out, "  which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges");
+    out
+}
+
+/// What could not be decided of the ranges of each surface; empty if everything could.
+pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved.iter().filter(|solved| !solved.effort.undecided.is_empty()) {
+        let (count, boxes) = (solved.effort.undecided.len(), solved.effort.boxes);
+        let name = &solved.surface.name;
+        let many = if count == 1 { "a part" } else { "parts" };
+        let _ = writeln!(
+            out,
+            "note: further branches of {name} are not excluded in {many} of its ranges at {} ({boxes} boxes looked at)",
+            anchor(solved)
+        );
+        const SHOWN: usize = 3;
+        for doubt in solved.effort.undecided.iter().take(SHOWN) {
+            let sides = solved.surface.unknowns.iter().zip(&doubt.ranges);
+            let sides: Vec<String> = sides
+                .map(|(u, range)| format!("{} {} .. {}", u.name, value(u, range.low), value(u, range.high)))
+                .collect();
+            let why = match doubt.why {
+                Doubt::Singular => "the equations are singular there",
+                Doubt::Undefined => "the equations are not smooth everywhere there",
+                Doubt::Budget => "too many boxes; narrower ranges need fewer",
+            };
+            let _ = writeln!(out, "  {}: {why}", sides.join(", "));
+        }
+        if count > SHOWN {
+            let _ = writeln!(out, "  and {} more", count - SHOWN);
+        }
+    }
+    out
+}
+
+/// The place at which branches were looked for.
+fn anchor(solved: &Solved<'_, '_>) -> String {
+    let [a, b] = &solved.sample.coordinates;
+    let show = |name: &str, dimension: Dimension, x: f64| format!("{name} {}", in_unit(dimension, x));
+    let [x, y] = solved.effort.anchor;
+    format!("{}, {}", show(&a.name, a.dimension, x), show(&b.name, b.dimension, y))
+}
+
+/// The unknown in which the nearest two branches are farthest apart, as a share of its range.
+fn tells_apart(branches: &[SurfacePoint], unknowns: &[Bounded<'_>]) -> Option<usize> {
+    let gap = |k: usize| {
+        let mut values: Vec<f64> = branches.iter().map(|branch| branch.unknowns[k]).collect();
+        values.sort_by(f64::total_cmp);
+        let least = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        least / (unknowns[k].high - unknowns[k].low)
+    };
+    // what four decimals can tell apart
+    (0..unknowns.len()).filter(|&k| gap(k) > 1e-3).max_by(|&a, &b| gap(a).total_cmp(&gap(b)))
+}
+
+/// From halfway to the branch below to halfway to the one above.
+fn around(branches: &[SurfacePoint], number: usize, of: &Bounded<'_>, unknown: usize) -> (f64, f64) {
+    let at = branches[number].unknowns[unknown];
+    let others = branches.iter().map(|branch| branch.unknowns[unknown]);
+    let below = others.clone().filter(|x| *x < at).reduce(f64::max).map_or(of.low, |x| 0.5 * (x + at));
+    let above = others.filter(|x| *x > at).reduce(f64::min).map_or(of.high, |x| 0.5 * (x + at));
+    (below, above)
+}
+
+fn named(of: &Bounded<'_>, x: f64) -> String {
+    format!("{} {}", of.name, value(of, x))
+}
+
+fn value(of: &Bounded<'_>, x: f64) -> String {
+    in_unit(of.dimension, x)
+}
+
+fn in_unit(dimension: Dimension, x: f64) -> String {
+    match dimension {
+        Dimension::ANGLE => format!("{:.4} deg", x.to_degrees()),
+        Dimension::LENGTH => format!("{x:.4} mm"),
+        _ => format!("{x:.4}"),
+    }
+}
