@@ -59,8 +59,11 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
     all.collect()
 }
 
-/// Six digits behind the point; a zero has no sign.
+/// Six digits behind the point; a zero has no sign, and what is small, but more than rounding, is no zero.
 fn six_digits(x: f64) -> String {
+    if (1e-14..1e-6).contains(&x.abs()) {
+        return format!("{x:.1e}");
+    }
     let text = format!("{x:.6}");
     let zero = text.strip_prefix('-').filter(|digits| digits.chars().all(|c| matches!(c, '0' | '.')));
     zero.map(str::to_string).unwrap_or(text)

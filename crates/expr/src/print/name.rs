@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::print::Style;
 
-/// A number, to the last bit: reading it back gives the same one. A simple part of pi is written as such.
+/// A simple part of pi as such; any other number to the last bit: reading it back gives the same one.
 pub(super) fn number(value: f64, style: Style) -> String {
     if let Some(part) = PartOfPi::of(value) {
         let sign = if value < 0.0 { "-" } else { "" };
