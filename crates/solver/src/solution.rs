@@ -64,7 +64,7 @@ pub enum Outcome {
         /// By how much, in its own unit.
         by: f64,
     },
-    /// The Jacobian has no inverse where the iteration ended.
+    /// The Jacobian has no inverse where the iteration ended, or the surface no normal there.
     Singular,
     /// The iteration ended without a root.
     NotConverged,
@@ -99,6 +99,13 @@ impl Outcome {
     /// There is a root, whether or not it is one that is looked for.
     pub(crate) fn is_root(self) -> bool {
         !matches!(self, Outcome::Singular | Outcome::NotConverged)
+    }
+
+    /// The verdict once position and normal are known: where a surface has no normal, a root of its equations is no point
+    /// that is solved.
+    pub(crate) fn of_placed(self, placed: &[f64; 6]) -> Outcome {
+        let is_point = placed.iter().all(|x| x.is_finite());
+        if self == Outcome::Solved && !is_point { Outcome::Singular } else { self }
     }
 
     /// Which of two outcomes says more.

@@ -187,7 +187,7 @@ impl SurfaceProblem {
         let point = |solution: &Solution| {
             evaluator.run(&solution.unknowns, &mut out);
             SurfacePoint {
-                outcome: solution.outcome,
+                outcome: solution.outcome.of_placed(&out),
                 unknowns: solution.unknowns.clone(),
                 position: [out[0], out[1], out[2]],
                 normal: [out[3], out[4], out[5]],
