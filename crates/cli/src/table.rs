@@ -244,7 +244,9 @@ fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     }
     let singular = solved.points.iter().filter(|point| point.outcome == Outcome::Singular).count();
     if singular > 0 {
-        reasons.push(format!("{singular}: singular, the equations do not fix a single point there, or the surface has no normal"));
+        reasons.push(format!(
+            "{singular}: singular, the equations do not fix a single point there, or the surface has no normal"
+        ));
     }
     let open = solved.points.iter().filter(|point| point.outcome == Outcome::NotConverged);
     let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
