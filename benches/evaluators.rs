@@ -78,7 +78,7 @@ fn atan2_in_lanes(bencher: Bencher) {
 
 fn lanes(bencher: Bencher, tape: &Tape) {
     let laid_out = LaneTape::new(tape);
-    let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::widest());
+    let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::fastest());
     for k in 0..tape.input_count() {
         for (lane, value) in evaluator.input(k).iter_mut().enumerate() {
             *value = 0.1 + 0.02 * lane as f64;

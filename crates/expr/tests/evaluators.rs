@@ -112,7 +112,7 @@ impl Subject for Uniform {
     fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let uniform: Vec<bool> = (0..tape.input_count()).map(|k| k % 2 == 0).collect();
         let laid_out = LaneTape::with_uniform(tape, &uniform);
-        let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::widest());
+        let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::fastest());
         let mut row = |point: &Vec<f64>| {
             for (k, &value) in point.iter().enumerate() {
                 if uniform[k] { evaluator.set_uniform(k, value) } else { evaluator.input(k).fill(value) }

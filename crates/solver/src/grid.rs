@@ -207,7 +207,7 @@ impl Grid<'_> {
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
         self.spread(&mut field, VecDeque::from([anchor]), &rows, &columns);
-        let instructions = InstructionSet::widest();
+        let instructions = InstructionSet::fastest();
         let mut newton = LaneNewton::new(self.system, self.ranges, instructions);
         self.settle(&mut field, &mut newton, &rows, &columns);
         self.refine_columns(&mut field, &mut newton, &rows, &columns);
@@ -264,7 +264,7 @@ impl Grid<'_> {
                 .map(|(mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets))
                 .sum::<u64>()
         } else {
-            let another = || LaneNewton::new(system, ranges, InstructionSet::widest());
+            let another = || LaneNewton::new(system, ranges, InstructionSet::fastest());
             let tiles = tiles
                 .into_par_iter()
                 .map_init(another, |newton, (mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets));

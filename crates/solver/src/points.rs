@@ -34,7 +34,7 @@ impl SurfacePoints {
                 points.place(evaluator, (k * BLOCKS + block) * LANES, out);
             }
         };
-        let another = || LaneEvaluator::new(point, InstructionSet::widest());
+        let another = || LaneEvaluator::new(point, InstructionSet::fastest());
         if rayon::current_num_threads() == 1 || count <= BLOCKS * LANES {
             let mut evaluator = another();
             placed.chunks_mut(BLOCKS * LANES).enumerate().for_each(|(k, out)| place(&mut evaluator, k, out));

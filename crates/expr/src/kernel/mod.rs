@@ -10,7 +10,7 @@
 mod exponential;
 mod inverse;
 mod payne_hanek;
-mod trigonometric;
+pub(crate) mod trigonometric;
 
 pub(crate) use exponential::{exp, ln};
 pub(crate) use inverse::{acos, asin, atan, atan2};

@@ -4,16 +4,16 @@ use super::payne_hanek;
 use super::polynomial;
 
 /// Up to here multiples of π/2 are subtracted in three exact pieces.
-const FARTHEST: f64 = 500_000.0;
+pub(crate) const FARTHEST: f64 = 500_000.0;
 
-const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
+pub(crate) const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
 // π/2 in pieces of 33 bits, so that a multiple below 2¹⁹ of each is exact, and what is left
-const FIRST: f64 = 1.5707963267341256;
-const SECOND: f64 = 6.077100506303966e-11;
-const THIRD: f64 = 2.0222662487111665e-21;
-const REST: f64 = 8.4784276603689e-32;
+pub(crate) const FIRST: f64 = 1.5707963267341256;
+pub(crate) const SECOND: f64 = 6.077100506303966e-11;
+pub(crate) const THIRD: f64 = 2.0222662487111665e-21;
+pub(crate) const REST: f64 = 8.4784276603689e-32;
 /// Adding it rounds to an integer, which then stands in the lowest bits.
-const ROUNDER: f64 = 6755399441055744.0; // 1.5 · 2⁵²
+pub(crate) const ROUNDER: f64 = 6755399441055744.0; // 1.5 · 2⁵²
 
 /// An angle less a multiple of π/2: within ±π/4, `high + low`.
 #[derive(Clone, Copy)]
@@ -47,36 +47,34 @@ fn reduce_near(x: f64) -> Reduced {
     Reduced { high, low: (third - high) - rest, quarters: shifted.to_bits() }
 }
 
-/// Sine on ±π/4 (fdlibm k_sin.c).
+// sine on ±π/4: the coefficient of x³, and those from x⁵ on (fdlibm k_sin.c)
+pub(crate) const SINE_CUBE: f64 = -0.16666666666666632;
+pub(crate) const SINE_TAIL: [f64; 5] =
+    [0.00833333333332249, -0.0001984126982985795, 2.7557313707070068e-6, -2.5050760253406863e-8, 1.58969099521155e-10];
+/// Cosine on ±π/4: the coefficients from x⁴ on (fdlibm k_cos.c).
+pub(crate) const COSINE_TAIL: [f64; 6] = [
+    0.0416666666666666,
+    -0.001388888888887411,
+    2.480158728947673e-5,
+    -2.7557314351390663e-7,
+    2.087572321298175e-9,
+    -1.1359647557788195e-11,
+];
+
+/// Sine on ±π/4.
 #[inline(always)]
 fn sine(x: f64, low: f64) -> f64 {
-    const S1: f64 = -0.16666666666666632;
-    const S: [f64; 5] = [
-        0.00833333333332249,
-        -0.0001984126982985795,
-        2.7557313707070068e-6,
-        -2.5050760253406863e-8,
-        1.58969099521155e-10,
-    ];
     let z = x * x;
     let cube = z * x;
-    let tail = polynomial(z, S);
-    x - ((z * (0.5 * low - cube * tail) - low) - cube * S1)
+    let tail = polynomial(z, SINE_TAIL);
+    x - ((z * (0.5 * low - cube * tail) - low) - cube * SINE_CUBE)
 }
 
-/// Cosine on ±π/4 (fdlibm k_cos.c, with FreeBSD's way to keep what 1 − x²/2 loses).
+/// Cosine on ±π/4, with FreeBSD's way to keep what 1 − x²/2 loses.
 #[inline(always)]
 fn cosine(x: f64, low: f64) -> f64 {
-    const C: [f64; 6] = [
-        0.0416666666666666,
-        -0.001388888888887411,
-        2.480158728947673e-5,
-        -2.7557314351390663e-7,
-        2.087572321298175e-9,
-        -1.1359647557788195e-11,
-    ];
     let z = x * x;
-    let tail = z * polynomial(z, C);
+    let tail = z * polynomial(z, COSINE_TAIL);
     let half = 0.5 * z;
     let most = 1.0 - half;
     most + (((1.0 - most) - half) + (z * tail - x * low))

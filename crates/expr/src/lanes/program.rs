@@ -1,7 +1,8 @@
 //! A tape divided into what is computed once and what is computed for each block of lanes.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use super::native::Native;
 use crate::curve::Curve;
 use crate::op::{Binary, Unary};
 use crate::tape::{Instruction, Operation, Tape};
@@ -47,6 +48,7 @@ pub struct LaneTape {
     pub(super) inputs: Vec<Option<u32>>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
+    native: OnceLock<Option<Native>>,
 }
 
 /// Where the value lives that a register of the tape holds at some step.
@@ -87,7 +89,13 @@ impl LaneTape {
             block_count: division.block_count as usize,
             inputs,
             outputs,
+            native: OnceLock::new(),
         }
+    }
+
+    /// Its machine code, made when it is asked for first.
+    pub(super) fn native(&self) -> Option<&Native> {
+        self.native.get_or_init(|| Native::translate(self)).as_ref()
     }
 
     /// Number of outputs.
