@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Job;
 use flank_expr::Graph;
-use flank_solver::{Doubt, Outcome, Range, Roots, SurfacePoint, SurfaceProblem};
+use flank_solver::{Outcome, Range, Roots, SurfacePoint, SurfaceProblem};
 use flank_tests::{difference, job, problem};
 
 /// All roots at the middle of the sample of each surface of a job.
@@ -19,7 +19,7 @@ fn anchors(job: &Job<'_>) -> Vec<(String, Roots)> {
 /// Of these specs each surface has one branch in its ranges, and no other one: proven, in few boxes.
 #[test]
 fn one_branch_and_no_other() {
-    for spec in ["tutorial/first_gear", "hobbing/spur_gear", "bevel/pinion_19x62"] {
+    for spec in ["tutorial/first_gear", "hobbing/spur_gear", "hobbing/helical_gear", "bevel/pinion_19x62"] {
         let graph = Graph::new();
         for (name, roots) in anchors(&job(&graph, &format!("specs/{spec}.chain"), &[])) {
             assert_eq!((roots.isolated.len(), roots.undecided.len()), (1, 0), "{spec}, {name}: {roots:?}");
@@ -28,14 +28,22 @@ fn one_branch_and_no_other() {
     }
 }
 
-/// With two motions and a thread the boxes do not suffice; then it is said where a branch is not excluded.
+/// The box in which a root is said to be alone holds this root and no other one, also where the search had an unknown more
+/// than the surface: the angle that thread and spindle turn together.
 #[test]
-fn what_is_not_excluded_is_said() {
+fn a_root_is_alone_where_it_is_said_to_be() {
     let graph = Graph::new();
-    for (name, roots) in anchors(&job(&graph, "specs/hobbing/helical_gear.chain", &[])) {
-        assert_eq!(roots.isolated.len() + roots.unproven.len(), 1, "{name}: {roots:?}");
-        assert!(roots.undecided.iter().all(|doubt| doubt.why == Doubt::Budget), "{name}: {roots:?}");
-    }
+    let job = job(&graph, "specs/hobbing/helical_gear.chain", &[]);
+    let (surface, root) = (&job.surfaces[0], &anchors(&job)[0].1.isolated[0]);
+    let sample = surface.sample.as_ref().expect("it is sampled");
+    let target = sample.targets[(sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2];
+    let around = root.solution.unknowns.iter().zip(&root.alone_within);
+    let ranges = around.map(|(x, radius)| Range { low: x - radius, high: x + radius }).collect();
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let near = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let found = near.all_points(target);
+    assert_eq!((found.isolated.len(), found.undecided.len()), (1, 0), "{found:?}");
+    assert!(root.alone_within.iter().all(|radius| *radius > 1e-6), "{root:?}");
 }
 
 /// The hob's thread comes by again after a turn: without `keep` no tooth is taken silently.

@@ -120,20 +120,15 @@ impl Graph {
         order
     }
 
-    /// The expressions with variables replaced, simplified anew. Shared parts stay shared.
-    ///
-    /// # Panics
-    /// If a key of `replacements` is not a variable.
+    /// The expressions with variables, or longer parts, replaced wherever they stand as a whole; simplified anew. Shared parts
+    /// stay shared.
     pub fn substitute<'g>(&'g self, roots: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
-        let table: NodeMap<VariableId, Expr<'g>> = replacements
-            .iter()
-            .map(|(variable, value)| (variable.as_variable().expect("only variables are replaced"), *value))
-            .collect();
+        let table: NodeMap<NodeId, Expr<'g>> = replacements.iter().map(|(part, value)| (part.id, *value)).collect();
         let mut image: NodeMap<NodeId, Expr<'g>> = NodeMap::default();
         for id in self.reachable(roots.iter().map(|root| root.id)) {
             let new = match self.node(id) {
-                Node::Constant(_) => self.expr(id),
-                Node::Variable(variable) => table.get(&variable).copied().unwrap_or(self.expr(id)),
+                _ if table.contains_key(&id) => table[&id],
+                Node::Constant(_) | Node::Variable(_) => self.expr(id),
                 Node::Unary(op, a) => image[&a].unary(op),
                 Node::Curve(curve, order, a) => image[&a].on_curve(curve, order),
                 Node::Binary(op, a, b) => image[&a].binary(op, image[&b]),
@@ -141,6 +136,19 @@ impl Graph {
             image.insert(id, new);
         }
         roots.iter().map(|root| image[&root.id]).collect()
+    }
+
+    /// What the expressions take the sine or cosine of, in order of creation.
+    pub fn angles_in<'g>(&'g self, roots: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let angle = |id: NodeId| match self.node(id) {
+            Node::Unary(Unary::Sin | Unary::Cos, angle) => Some(angle),
+            _ => None,
+        };
+        let mut angles: Vec<NodeId> =
+            self.reachable(roots.iter().map(|root| root.id)).into_iter().filter_map(angle).collect();
+        angles.sort_unstable();
+        angles.dedup();
+        angles.into_iter().map(|id| self.expr(id)).collect()
     }
 
     /// The variables that the expressions depend on, in order of creation.

@@ -310,6 +310,18 @@ impl<'g> Expr<'g> {
         }
     }
 
+    /// Numerator and denominator.
+    pub(crate) fn as_quotient(self) -> (Expr<'g>, Expr<'g>) {
+        match self.node() {
+            Node::Binary(Binary::Div, a, b) => (self.graph.expr(a), self.graph.expr(b)),
+            Node::Unary(Unary::Neg, a) => {
+                let (numerator, denominator) = self.graph.expr(a).as_quotient();
+                (-numerator, denominator)
+            }
+            _ => (self, self.graph.constant(1.0)),
+        }
+    }
+
     /// True for the number zero.
     pub fn is_zero(self) -> bool {
         self.as_constant() == Some(0.0)

@@ -15,7 +15,7 @@ const DEEPEST: usize = 24;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Powers of the factors of one term, by node.
-type Monomial = BTreeMap<NodeId, u32>;
+pub(crate) type Monomial = BTreeMap<NodeId, u32>;
 
 /// A number with the size of what it was summed from.
 #[derive(Clone, Copy)]
@@ -148,6 +148,39 @@ impl<'g> Sum<'g> {
         common
     }
 
+    /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v are that.
+    pub(crate) fn turned(u: &Sum<'g>, v: &Sum<'g>) -> Option<(Expr<'g>, [Sum<'g>; 2])> {
+        let graph = u.graph;
+        let (first, _) = u.terms.first_key_value()?;
+        first.keys().find_map(|&factor| {
+            let (Node::Unary(Unary::Sin, angle) | Node::Unary(Unary::Cos, angle)) = graph.node(factor) else {
+                return None;
+            };
+            let angle = graph.expr(angle);
+            let (a, minus_b) = u.waves(angle)?;
+            let (b, also_a) = v.waves(angle)?;
+            let same =
+                differ_by_rounding(&a.terms, 1.0, &also_a.terms) && differ_by_rounding(&b.terms, -1.0, &minus_b.terms);
+            same.then_some((angle, [a, b]))
+        })
+    }
+
+    /// (a, b) of a·cos g + b·sin g, if each term is a multiple of one of the two.
+    fn waves(&self, angle: Expr<'g>) -> Option<(Sum<'g>, Sum<'g>)> {
+        let (cosine, sine) = (angle.cos().id, angle.sin().id);
+        let empty = || Sum { graph: self.graph, terms: Terms::new() };
+        let (mut a, mut b) = (empty(), empty());
+        for (monomial, &coefficient) in &self.terms {
+            let mut rest = monomial.clone();
+            match (rest.remove(&cosine), rest.remove(&sine)) {
+                (Some(1), None) => a.terms.insert(rest, coefficient),
+                (None, Some(1)) => b.terms.insert(rest, coefficient),
+                _ => return None,
+            };
+        }
+        Some((a, b))
+    }
+
     /// Divided by something that every term has as a factor.
     pub(crate) fn without(mut self, factor: &Monomial) -> Sum<'g> {
         self.terms = std::mem::take(&mut self.terms)
@@ -167,12 +200,16 @@ impl<'g> Sum<'g> {
     pub(crate) fn expression(&self) -> Expr<'g> {
         let graph = self.graph;
         self.terms.iter().fold(graph.constant(0.0), |sum, (monomial, coefficient)| {
-            let product = |product: Expr<'g>, (&factor, &power): (&NodeId, &u32)| {
-                product * graph.expr(factor).powi(i32::try_from(power).expect("a few factors"))
-            };
-            sum + coefficient.value * monomial.iter().fold(graph.constant(1.0), product)
+            sum + coefficient.value * product(graph, monomial)
         })
     }
+}
+
+/// Π factorᵖᵒʷᵉʳ.
+pub(crate) fn product<'g>(graph: &'g Graph, monomial: &Monomial) -> Expr<'g> {
+    monomial.iter().fold(graph.constant(1.0), |product, (&factor, &power)| {
+        product * graph.expr(factor).powi(i32::try_from(power).expect("a few factors"))
+    })
 }
 
 fn raise(monomial: &mut Monomial, factor: NodeId, power: u32) {
@@ -203,6 +240,14 @@ fn multiplied(a: &Terms, b: &Terms) -> Option<Terms> {
 fn add(terms: &mut Terms, monomial: Monomial, coefficient: Coefficient) {
     let sum = terms.get(&monomial).map_or(coefficient, |before| before.plus(coefficient));
     terms.insert(monomial, sum);
+}
+
+/// Whether a = factor · b, term by term.
+fn differ_by_rounding(a: &Terms, factor: f64, b: &Terms) -> bool {
+    a.len() == b.len()
+        && a.iter().all(|(monomial, coefficient)| {
+            b.get(monomial).is_some_and(|other| coefficient.plus(other.times(-factor)).is_rounding())
+        })
 }
 
 impl From<f64> for Coefficient {

@@ -271,3 +271,32 @@ fn long_chains_stay_linear() {
     assert!(long.0 * 10 < short.0 * 22, "{} then {}", short.0, long.0);
     assert!(long.1 * 10 < short.1 * 22, "{} then {} nodes", short.1, long.1);
 }
+
+/// A point of a thread, (r·cos g − w·sin g, r·sin g + w·cos g), on a spindle turned by another angle: the two angles become
+/// one, and so do those of a normal that is divided by its length.
+#[test]
+fn what_turns_already_turns_on() {
+    let graph = Graph::new();
+    let [thread, spindle, width] = ["thread", "spindle", "width"].map(|name| graph.variable(name));
+    let (c, s) = ((thread - width).cos(), (thread - width).sin());
+    let length = (1.0 + width * width).sqrt();
+    for axis in 0..3 {
+        let in_order = |parts: [_; 3]| Vector3(std::array::from_fn(|k| parts[(k + 3 - axis) % 3]));
+        let point = in_order([thread * 0.5, 2.0 * c - width * s, 2.0 * s + width * c]);
+        let normal = in_order([1.0 / length, -(width * s / length), width * c / length]);
+        let turn = Step::Rotate([Axis::X, Axis::Y, Axis::Z][axis], spindle);
+        let chain = Chain::new(&graph, vec![turn]);
+        let turned = [chain.point(point), chain.direction(normal)];
+        let dense = [point, normal].map(|vector| turn.pose(&graph).direction(vector));
+        let outputs: Vec<_> = turned.iter().chain(&dense).flat_map(|vector| vector.0).collect();
+        for at in [[0.3, 1.1, -0.7], [-2.0, 5.0, 0.4], [4.0, -0.2, 2.5]] {
+            let found = graph.evaluate(&outputs, &at);
+            for (a, b) in found[..6].iter().zip(&found[6..]) {
+                assert!((a - b).abs() < 1e-13, "axis {axis}: {a} instead of {b}");
+            }
+        }
+        let tape = Tape::new(&outputs[..6], &[thread, spindle, width]).expect("all given");
+        let angles: usize = tape.cost(&[0, 0, 0]).iter().map(|stage| stage.sincos).sum();
+        assert_eq!(angles, 1, "axis {axis}");
+    }
+}

@@ -10,7 +10,7 @@ use crate::field::{Field, NEAR};
 use crate::lanes::{LaneNewton, Start};
 use crate::line::{lattice, levels};
 use crate::newton::solve_with;
-use crate::roots::{MOST_BOXES, Undecided, all_roots};
+use crate::roots::{MOST_BOXES, Roots, Undecided, all_roots};
 use crate::solution::{Range, Solution, distance};
 use crate::start::{WIDELY, scan};
 use crate::system::{Evaluation, System};
@@ -53,8 +53,8 @@ pub(crate) enum Several {
 
 /// Which branch is meant.
 pub(crate) struct Choice<'c> {
-    /// Where it is at the anchor.
-    pub(crate) ranges: &'c [Range],
+    /// All branches at given targets.
+    pub(crate) roots: &'c dyn Fn(&[f64; 2]) -> Roots,
     /// Whether a branch with these unknowns at the anchor qualifies.
     pub(crate) keeps: &'c mut dyn FnMut(&[f64]) -> bool,
     pub(crate) several: Several,
@@ -78,7 +78,8 @@ pub fn solve_grid(
     targets: &[[f64; 2]],
     counts: [usize; 2],
 ) -> (Vec<Solution>, Effort) {
-    let choice = Choice { ranges, keeps: &mut |_| true, several: Several::TakeWidest };
+    let roots = |targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
+    let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::TakeWidest };
     let (field, effort) = solve_field(system, ranges, targets, counts, None, choice);
     let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
     ((0..targets.len()).map(solution).collect(), effort)
@@ -114,7 +115,7 @@ pub(crate) fn solve_field(
     let order = grid.middle_first();
     let mut failures = Field::new(system.size(), targets.len());
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
-        if !grid.look_for(anchor, choice.ranges, choice.keeps) {
+        if !grid.look_for(anchor, choice.roots, choice.keeps) {
             failures.put(anchor, &grid.failure(anchor));
             continue;
         }
@@ -153,8 +154,13 @@ impl Grid<'_> {
     }
 
     /// Finds all branches at a point; whether there are any.
-    fn look_for(&mut self, point: usize, ranges: &[Range], keeps: &mut dyn FnMut(&[f64]) -> bool) -> bool {
-        let found = all_roots(self.system, ranges, &self.targets[point], MOST_BOXES);
+    fn look_for(
+        &mut self,
+        point: usize,
+        roots: &dyn Fn(&[f64; 2]) -> Roots,
+        keeps: &mut dyn FnMut(&[f64]) -> bool,
+    ) -> bool {
+        let found = roots(&self.targets[point]);
         let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
         let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
         let proven = found.isolated.into_iter().map(|root| root.solution);

@@ -14,6 +14,7 @@
 //! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
 //! ```
 
+mod angles;
 mod certify;
 mod elimination;
 mod enclosure;

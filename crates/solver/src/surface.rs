@@ -3,6 +3,7 @@
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, LaneTape, ScalarEvaluator, Tape, TapeError};
 
+use crate::angles::SearchSystem;
 use crate::grid::{Choice, Effort, Several, solve_field};
 use crate::points::SurfacePoints;
 use crate::roots::{MOST_BOXES, Roots, all_roots};
@@ -13,6 +14,7 @@ use crate::system::System;
 #[derive(Clone, Debug)]
 pub struct SurfaceProblem {
     system: System,
+    search: Option<SearchSystem>,
     /// Position and normal.
     point: Tape,
     /// The same for many points at once.
@@ -101,6 +103,7 @@ impl SurfaceProblem {
         let point = Tape::new(&point, &bound.unknowns)?;
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
+            search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
             system: system.with_conditions(conditions, &bound.unknowns, &targets)?,
             lanes: LaneTape::new(&point),
             point,
@@ -124,7 +127,14 @@ impl SurfaceProblem {
     /// Every point of the surface with given values of the two coordinates: all roots in the ranges (and in what is kept of them),
     /// proven.
     pub fn all_points(&self, target: [f64; 2]) -> Roots {
-        all_roots(&self.system, &self.kept_ranges, &target, MOST_BOXES)
+        self.roots(&self.kept_ranges, &target)
+    }
+
+    fn roots(&self, ranges: &[Range], target: &[f64]) -> Roots {
+        match &self.search {
+            Some(search) => search.all_roots(ranges, target, MOST_BOXES),
+            None => all_roots(&self.system, ranges, target, MOST_BOXES),
+        }
     }
 
     /// The same problem, where only those branches qualify on which functions of the unknowns lie in ranges at the point
@@ -175,7 +185,8 @@ impl SurfaceProblem {
             keep.run(unknowns, &mut values);
             values.iter().zip(ranges).all(|(value, range)| range.low <= *value && *value <= range.high)
         };
-        let choice = Choice { ranges: &self.kept_ranges, keeps: &mut keeps, several: self.several };
+        let roots = |target: &[f64; 2]| self.roots(&self.kept_ranges, target);
+        let choice = Choice { roots: &roots, keeps: &mut keeps, several: self.several };
         let (field, effort) = solve_field(&self.system, &self.ranges, targets, counts, start, choice);
         (SurfacePoints::new(field, &self.lanes, &self.ranges, targets.len()), effort)
     }

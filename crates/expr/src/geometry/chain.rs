@@ -3,6 +3,7 @@
 use crate::geometry::pose::{Pose, Twist};
 use crate::geometry::vector::{Matrix3, Vector3};
 use crate::graph::{Expr, Graph};
+use crate::terms::{Products, Sum, product};
 
 /// The line that a rotation turns about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -246,6 +247,7 @@ impl<'g> Chain<'g> {
     pub fn point(&self, p_child: Vector3<'g>) -> Vector3<'g> {
         self.steps.iter().rev().fold(p_child, |p, step| match *step {
             Step::Translate(by) => p + by,
+            Step::Rotate(axis, angle) => self.rotated(axis, angle, p),
             _ => step.pose(self.graph).point(p),
         })
     }
@@ -254,8 +256,43 @@ impl<'g> Chain<'g> {
     pub fn direction(&self, n_child: Vector3<'g>) -> Vector3<'g> {
         self.steps.iter().rev().fold(n_child, |n, step| match *step {
             Step::Translate(_) => n,
+            Step::Rotate(axis, angle) => self.rotated(axis, angle, n),
             _ => step.pose(self.graph).direction(n),
         })
+    }
+
+    /// A vector turned about an axis. What the vector's own turn about it is, as that of a point of a cutter of revolution,
+    /// goes on: two angles become one. Turns of the chain stay apart, for what a translation between them does to points but
+    /// not to directions.
+    fn rotated(&self, axis: Axis<'g>, angle: Expr<'g>, vector: Vector3<'g>) -> Vector3<'g> {
+        let goes_on = || {
+            let (i, j) = match axis {
+                Axis::X => (1, 2),
+                Axis::Y => (2, 0),
+                Axis::Z => (0, 1),
+                Axis::Along(_) => return None,
+            };
+            let ((u, divisor), (v, same)) = (vector.0[i].as_quotient(), vector.0[j].as_quotient());
+            if divisor != same {
+                return None;
+            }
+            let written_out = |numerator: Expr<'g>| Sum::of(numerator, Products::WrittenOut);
+            let (before, parts) = Sum::turned(&written_out(u)?, &written_out(v)?)?;
+            if self.steps.iter().any(|step| matches!(step, Step::Rotate(_, turn) if *turn == before)) {
+                return None;
+            }
+            let factor = Sum::common_factor(&parts);
+            let [a, b] = parts.map(|part| part.without(&factor).expression());
+            let factor = product(self.graph, &factor) / divisor;
+            let (c, s) = ((before + angle).cos(), (before + angle).sin());
+            let mut turned = vector;
+            turned.0[i] = factor * (a * c - b * s);
+            turned.0[j] = factor * (a * s + b * c);
+            Some(turned)
+        };
+        let is_number = angle.as_constant().is_some();
+        let apart = || rotation(self.graph, axis, angle).times(vector);
+        (!is_number).then(goes_on).flatten().unwrap_or_else(apart)
     }
 
     /// M⁻¹ ∂M/∂motion, given in the last frame; it does not depend on any point.
