@@ -82,12 +82,14 @@ fn storm(parts: &[&str], rounds: usize, seed: u64) {
 
 #[test]
 fn spur_gear() {
-    storm(&["machines/hobbing_6axis.chain", "tools/rack.chain", "hobbing/spur_gear.chain"], 400, 1);
+    let machines = ["machines/hobbing_6axis.chain", "machines/rack_generating.chain"];
+    storm(&[machines[0], machines[1], "tools/rack.chain", "hobbing/spur_gear.chain"], 400, 1);
 }
 
 #[test]
 fn helical_gear() {
-    storm(&["machines/hobbing_6axis.chain", "tools/hob_zi.chain", "hobbing/helical_gear.chain"], 400, 2);
+    let tools = ["tools/involute.chain", "tools/hob_zi.chain"];
+    storm(&["machines/hobbing_6axis.chain", tools[0], tools[1], "hobbing/helical_gear.chain"], 400, 2);
 }
 
 #[test]

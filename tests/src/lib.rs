@@ -57,12 +57,12 @@ pub fn job<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Job<'g> {
     jobs(graph, spec, set).swap_remove(0)
 }
 
-/// One of several jobs of a spec.
+/// One of several jobs of a spec, with some values replaced.
 ///
 /// # Panics
 /// With the diagnostics, if there are errors; if there is no such job.
-pub fn job_named<'g>(graph: &'g Graph, spec: &str, name: &str) -> Job<'g> {
-    jobs(graph, spec, &[]).into_iter().find(|job| job.name == name).expect("the job is in the spec")
+pub fn job_named<'g>(graph: &'g Graph, spec: &str, name: &str, set: &[(&str, &str)]) -> Job<'g> {
+    jobs(graph, spec, set).into_iter().find(|job| job.name == name).expect("the job is in the spec")
 }
 
 fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> {
@@ -78,12 +78,36 @@ fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> 
 /// # Panics
 /// If there is no such surface or coordinate.
 pub fn points(job: &Job<'_>, surface: &str, coordinates: [&str; 2], targets: &[[f64; 2]]) -> Vec<SurfacePoint> {
-    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
-    let asked = coordinates.map(|name| surface.coordinate(name).expect("a coordinate of the surface").value);
-    let problem = problem(job, surface, asked);
+    let (problem, surface) = asked(job, surface, coordinates);
     // a reference's points are no grid: of several branches the one is taken that reaches them all
     let (solutions, _) = solve_grid(problem.system(), &ranges(surface), targets, [1, targets.len()]);
     problem.points(&solutions)
+}
+
+/// The same as `flank solve` does it: on the branch that the surface's sample keeps, where the targets are the rows of a
+/// lattice, each of so many columns.
+///
+/// # Panics
+/// If there is no such surface or coordinate, or the last row is not full.
+pub fn grid(
+    job: &Job<'_>,
+    surface: &str,
+    coordinates: [&str; 2],
+    targets: &[[f64; 2]],
+    columns: usize,
+) -> Vec<SurfacePoint> {
+    assert_eq!(targets.len() % columns, 0, "full rows");
+    asked(job, surface, coordinates).0.solve(targets, [targets.len() / columns, columns]).0
+}
+
+fn asked<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &str,
+    coordinates: [&str; 2],
+) -> (SurfaceProblem, &'j GeneratedSurface<'g>) {
+    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let values = coordinates.map(|name| surface.coordinate(name).expect("a coordinate of the surface").value);
+    (problem(job, surface, values), surface)
 }
 
 fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {

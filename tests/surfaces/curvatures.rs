@@ -5,7 +5,8 @@
 //! convex, as flank counts.
 
 use flank_expr::Graph;
-use flank_tests::{Evaluated, difference, evaluated, job, job_named, number, points, reference_json, reversed, vector};
+use flank_solver::Outcome;
+use flank_tests::{Evaluated, difference, evaluated, grid, job_named, number, reference_json, reversed, vector};
 use serde_json::Value;
 
 /// Position, mm, normal, and principal directions where they are told apart.
@@ -16,7 +17,7 @@ const OF_CURVATURE: f64 = 1e-12;
 /// All rows of a table on one surface of a job; `keys` name the unknowns in the table.
 fn meets(spec: &str, job: &str, surface: &str, rows: &[&Value], keys: &[&str]) {
     let graph = Graph::new();
-    let job = job_named(&graph, &format!("tests/machines/{spec}.chain"), job);
+    let job = job_named(&graph, &format!("tests/machines/{spec}.chain"), job, &[]);
     assert!(!rows.is_empty(), "{surface} has rows");
     let unknowns: Vec<Vec<f64>> = rows.iter().map(|row| keys.iter().map(|key| unknown(row, key)).collect()).collect();
     for (k, (row, point)) in rows.iter().zip(evaluated(&job, surface, &unknowns)).enumerate() {
@@ -51,9 +52,10 @@ fn meets_row(row: &Value, point: &Evaluated, what: &str) {
         let out: f64 = velocity.iter().zip(&point.normal).map(|(v, n)| v * n).sum();
         assert!(out.abs() < BOUND, "{what}: the tool slides {out:e} mm out of the tangent plane");
     }
-    if row.get("t").is_some() {
+    // some tables have the motion under the key of the others' tangent
+    if let Some(tangent) = ["t", "t_dir"].into_iter().find(|key| row[key].is_array()) {
         let line = point.geometry.contact.line.expect("one motion");
-        assert!(apart(&line, &vector(row, "t")) < BOUND, "{what}: contact line {line:?}");
+        assert!(apart(&line, &vector(row, tangent)) < BOUND, "{what}: contact line {line:?}");
         let induced = point.geometry.contact.induced.expect("a tool with a surface");
         let along = induced.along(line).expect("a tangent");
         assert!(along.abs() < OF_CURVATURE, "{what}: the gap's curvature along the contact line is {along:e}");
@@ -70,17 +72,30 @@ fn rows<'v>(reference: &'v Value, table: &str, of: Option<(&str, f64)>) -> Vec<&
     all.iter().filter(|row| of.is_none_or(|(key, value)| number(row, key) == value)).collect()
 }
 
-/// The same through a spec of the library, which is solved first.
-fn library_meets(spec: &str, surface: &str, coordinates: [&str; 2], rows: &[&Value], keys: [&str; 2]) {
+/// The same through a job of the library, which is solved first at two coordinates that the table lists.
+fn library_meets(
+    of: (&str, &str),
+    set: &[(&str, &str)],
+    surface: &str,
+    coordinates: [(&str, &str); 2],
+    rows: &[&Value],
+) {
+    let (spec, name) = of;
     let graph = Graph::new();
-    let job = job(&graph, spec, &[]);
-    let targets: Vec<[f64; 2]> = rows.iter().map(|row| keys.map(|key| number(row, key))).collect();
-    let solved = points(&job, surface, coordinates, &targets);
+    let job = job_named(&graph, &format!("specs/hobbing/{spec}.chain"), name, set);
+    assert!(!rows.is_empty(), "{surface} has rows");
+    let targets: Vec<[f64; 2]> = rows.iter().map(|row| coordinates.map(|(_, key)| number(row, key))).collect();
+    // a table is a lattice: its second coordinate runs first, and starts again where the first one changes
+    let columns = targets.iter().take_while(|target| target[0] == targets[0][0]).count();
+    let solved = grid(&job, surface, coordinates.map(|(coordinate, _)| coordinate), &targets, columns);
+    assert!(solved.iter().all(|point| point.outcome == Outcome::Solved), "{name}, {surface}: {solved:?}");
     let unknowns: Vec<Vec<f64>> = solved.into_iter().map(|point| point.unknowns).collect();
     for (k, (row, point)) in rows.iter().zip(evaluated(&job, surface, &unknowns)).enumerate() {
-        meets_row(row, &point, &format!("{spec}, {surface}, row {k}"));
+        meets_row(row, &point, &format!("{name}, {surface}, row {k}"));
     }
 }
+
+const Z_AND_RADIUS: [(&str, &str); 2] = [("z", "z"), ("rho", "rho")];
 
 const SIDES: [(&str, f64); 2] = [("plus", 1.0), ("minus", -1.0)];
 
@@ -105,49 +120,80 @@ fn formate_flanks_and_fillets() {
 }
 
 #[test]
-fn spur_gear_of_the_library() {
+fn spur_gear() {
     let reference = reference_json("spur_rack.json");
-    let spec = "specs/hobbing/spur_gear.chain";
+    let spec = ("spur_gear", "spur_gear");
     for (side, sigma) in SIDES {
         let flank = rows(&reference, "flank_rows", Some(("sigma", sigma)));
-        library_meets(spec, &format!("flank_{side}"), ["z", "rho"], &flank, ["z", "rho"]);
+        library_meets(spec, &[], &format!("flank_{side}"), Z_AND_RADIUS, &flank);
         let fillet = rows(&reference, "fillet_rows", Some(("sigma", sigma)));
-        library_meets(spec, &format!("fillet_{side}"), ["theta", "v"], &fillet, ["u", "v"]);
+        library_meets(spec, &[], &format!("fillet_{side}"), [("theta", "u"), ("v", "v")], &fillet);
     }
 }
 
-#[test]
-fn helical_gear_of_the_library() {
-    let reference = reference_json("helical_zi_hob.json");
-    let spec = "specs/hobbing/helical_gear.chain";
-    for (surface, sigma) in [("lower_flank", 1.0), ("upper_flank", -1.0)] {
-        let rows = rows(&reference, "rows", Some(("sigma", sigma)));
-        library_meets(spec, surface, ["z", "rho"], &rows, ["z", "rho"]);
-    }
-}
-
+/// The tables' radial feeds are those of a gear that is hollow along the face: negative crowning.
 #[test]
 fn hobbed_gears() {
-    let cases = [
-        ("beveloid", "beveloid"),
-        ("crowned", "helical_crowned"),
-        ("crowned_quartic", "helical_crowned_quartic"),
-        ("six_axis", "helical_six_axis"),
-    ];
-    for (job, table) in cases {
+    let quartic = [("crowning_2", "-0.0512 mm"), ("crowning_4", "-0.0262144 mm")];
+    for (spec, set, table) in [
+        ("helical_gear", &[][..], "helical_zi_hob"),
+        ("crowned_gear", &[("crowning", "-0.064 mm")], "helical_crowned"),
+        ("crowned_gear_quartic", &quartic, "helical_crowned_quartic"),
+        ("beveloid", &[], "beveloid"),
+        ("chang_tsay_nagata", &[], "helical_six_axis"),
+    ] {
         let reference = reference_json(&format!("{table}.json"));
-        for (surface, sigma) in SIDES {
-            meets("hobbed", job, surface, &rows(&reference, "rows", Some(("sigma", sigma))), &["u", "v", "B", "Z"]);
+        for (surface, sigma) in [("lower_flank", 1.0), ("upper_flank", -1.0)] {
+            let rows = rows(&reference, "rows", Some(("sigma", sigma)));
+            library_meets((spec, spec), set, surface, Z_AND_RADIUS, &rows);
         }
     }
 }
 
+/// By the hob of the worm's own size, as the conjugate of the worm, and by one tooth of it in tangential feed.
 #[test]
 fn worm_wheel() {
     let reference = reference_json("worm_wheel.json");
-    for (surface, sigma) in SIDES {
+    for (side, sigma) in [("upper", 1.0), ("lower", -1.0)] {
         let rows = rows(&reference, "rows", Some(("sigma", sigma)));
-        meets("worm_wheel", "worm_wheel", surface, &rows, &["u", "v", "B"]);
+        let radial = ("worm_wheel", "worm_wheel");
+        library_meets(radial, &[("oversize", "0 mm")], &format!("{side}.flank"), Z_AND_RADIUS, &rows);
+        library_meets(radial, &[], &format!("conjugate_{side}.flank"), Z_AND_RADIUS, &rows);
+    }
+}
+
+#[test]
+fn elliptical_gears() {
+    for (spec, table, coordinates) in [
+        ("elliptical_gear", "elliptical_gear", [("u", "u"), ("v", "v")]),
+        ("elliptical_gear_hobbed", "elliptical_gear_hobbed", [("xi", "u"), ("z", "z")]),
+    ] {
+        let reference = reference_json(&format!("{table}.json"));
+        let mut met = 0;
+        for space in 0..36 {
+            for (side, sigma) in SIDES {
+                let hobbed = spec.ends_with("hobbed");
+                let surface = match (hobbed, side) {
+                    (false, side) => format!("flank_{side}"),
+                    (true, "plus") => "lower_flank".to_owned(),
+                    (true, _) => "upper_flank".to_owned(),
+                };
+                let mut rows = rows(&reference, "rows", Some(("sigma", sigma)));
+                rows.retain(|row| number(row, "k") == f64::from(space));
+                if !rows.is_empty() {
+                    let set = [("space", space.to_string())];
+                    library_meets(
+                        (spec, spec),
+                        &set.each_ref().map(|(n, v)| (*n, v.as_str())),
+                        &surface,
+                        coordinates,
+                        &rows,
+                    );
+                    met += rows.len();
+                }
+            }
+        }
+        assert_eq!(met, reference["rows"].as_array().expect("a table").len(), "every row is met: {spec}");
     }
 }
 
@@ -166,22 +212,32 @@ fn grinding_discs() {
 #[test]
 fn shaped_gear_and_face_gear() {
     let reference = reference_json("shaper.json");
-    for job in ["gear", "face_gear"] {
-        for (surface, sigma) in SIDES {
-            let rows = rows(&reference, &format!("{job}_rows"), Some(("sigma", sigma)));
-            meets("shaper", job, surface, &rows, &["u", "v", "B"]);
-        }
+    for (side, sigma) in SIDES {
+        let surface = format!("flank_{side}");
+        let external = rows(&reference, "gear_rows", Some(("sigma", sigma)));
+        library_meets(("shaped_gear", "shaped_gear"), &[], &surface, Z_AND_RADIUS, &external);
+        let face = rows(&reference, "face_gear_rows", Some(("sigma", sigma)));
+        library_meets(("face_gear", "face_gear"), &[], &surface, Z_AND_RADIUS, &face);
     }
 }
 
+/// The flank's own points are cut away by the unrelieved flank, so that they are not solved but only evaluated.
 #[test]
 fn skived_flanks_of_a_surface_and_of_an_edge() {
     let reference = reference_json("skiving.json");
+    let graph = Graph::new();
+    let name = "skived_internal_gear";
+    let job = job_named(&graph, &format!("specs/hobbing/{name}.chain"), name, &[]);
     for (side, sigma) in SIDES {
         let of_surface = rows(&reference, "surface_rows", Some(("sigma", sigma)));
-        meets("skiving", "skiving", side, &of_surface, &["u", "v", "B", "Z"]);
+        let lead = number(&reference["inputs"], "p0");
+        let keys = |row: &Value| vec![number(row, "u"), lead * number(row, "v"), number(row, "B"), number(row, "Z")];
+        let unknowns: Vec<Vec<f64>> = of_surface.iter().map(|row| keys(row)).collect();
+        for (row, point) in of_surface.iter().zip(evaluated(&job, &format!("flank_{side}"), &unknowns)) {
+            meets_row(row, &point, side);
+        }
         let of_edge = rows(&reference, "edge_rows", Some(("sigma", sigma)));
-        meets("skiving", "skiving", &format!("{side}_edge"), &of_edge, &["u", "B", "Z"]);
+        library_meets((name, name), &[], &format!("edge_{side}"), Z_AND_RADIUS, &of_edge);
     }
 }
 

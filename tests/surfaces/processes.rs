@@ -122,8 +122,10 @@ fn a_moved_surface_is_the_tool_seen_from_elsewhere() {
 /// The mirror image of the right-hand gear of the reference table is the left-hand one, point by point.
 #[test]
 fn a_mirrored_work_is_the_other_hand() {
-    let read = |path: &str| std::fs::read_to_string(repository("specs").join(path)).expect("the spec is there");
-    let text = ["machines/hobbing_6axis.chain", "tools/hob_zi.chain", "hobbing/helical_gear.chain"].map(read).concat();
+    let read = |path: &str| {
+        std::fs::read_to_string(repository("specs").join(path).with_extension("chain")).expect("the spec is there")
+    };
+    let text = ["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"].map(read).concat();
     let text: String = text.lines().filter(|line| !line.starts_with("use ") && !line.starts_with("//!")).fold(
         String::from("machine left extends hobbing_6axis { frame table in bed = rotate_z(C) mirror_z() }\n"),
         |text, line| text + line + "\n",

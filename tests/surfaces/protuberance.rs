@@ -3,7 +3,7 @@
 use flank_expr::Graph;
 use flank_tests::{assert_point, job, number, points, reference_json, reversed, vector};
 
-const SPEC: &str = "tests/machines/protuberance.chain";
+const SPEC: &str = "specs/hobbing/ground_stock_gear.chain";
 /// The plain rack's tip, and a protuberance that goes on as the flank does.
 const PLAIN: [(&str, &str); 4] = [
     ("r.protuberance_angle", "20 deg"),

@@ -98,8 +98,8 @@ fn a_hobbed_gear_moves_as_predicted() {
 #[test]
 fn a_spur_gear_moves_as_predicted() {
     let spec = "specs/hobbing/spur_gear.chain";
-    assert_eq!(predicts(spec, "flank_plus", ["rho", "z"], BOUND), [5, 4]);
-    assert_eq!(predicts(spec, "fillet_plus", ["theta", "v"], BOUND), [3, 6]);
+    assert_eq!(predicts(spec, "flank_plus", ["rho", "z"], BOUND), [5, 7]);
+    assert_eq!(predicts(spec, "fillet_plus", ["theta", "v"], BOUND), [3, 9]);
 }
 
 /// A cone of blade angle α, seen along its radius and along its axis.

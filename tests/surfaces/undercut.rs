@@ -272,13 +272,14 @@ fn a_hobbed_gear_turns_back_on_its_base_cylinder() {
     }
 }
 
-/// The least profile shift without undercut: the singular point is where the rack's straight flank ends. The shift is one
-/// more unknown.
+/// The least profile shift without undercut: the singular point is where the rack's straight flank ends. The machine's
+/// shift is one more unknown.
 fn least_shift(set: &[(&str, &str)]) -> f64 {
     let graph = Graph::new();
     let job = job(&graph, SPUR, set);
     let generated = surface(&job, "flank_plus");
-    let shift = job.parameters.iter().find(|p| p.name == "profile_shift").expect("a parameter").variable;
+    let parameter = |name: &str| job.parameters.iter().find(|p| p.name == name).expect("a parameter");
+    let shift = parameter("m.shift").variable;
     let bindings: Vec<_> = job.bindings().into_iter().filter(|(variable, _)| *variable != shift).collect();
     let bound = generated.surface.bound(&bindings);
     let [u, v, _] = bound.unknowns[..] else { panic!("three unknowns") };
@@ -290,7 +291,7 @@ fn least_shift(set: &[(&str, &str)]) -> f64 {
     let ranges = [ranges, vec![Range { low: -2.0, high: 2.0 }]].concat();
     let solution = solve(&system, &ranges, &[], &[ranges[0].high, 0.0, 0.0, 0.0]);
     assert_eq!(solution.outcome, Outcome::Solved);
-    solution.unknowns[3]
+    solution.unknowns[3] / parameter("module").value
 }
 
 #[test]
