@@ -15,8 +15,8 @@ for target in parser layout meaning; do
         docs/language.md
     cat specs/machines/cradle.chain specs/tools/face_mill.chain specs/bevel/pinion_19x62.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-pinion"
-    cat specs/machines/hobbing_6axis.chain specs/tools/rack.chain specs/hobbing/spur_gear.chain |
+    cat specs/machines/hobbing_6axis.chain specs/machines/rack_generating.chain specs/tools/rack.chain specs/hobbing/spur_gear.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-spur-gear"
-    cat specs/machines/hobbing_6axis.chain specs/tools/hob_zi.chain specs/hobbing/helical_gear.chain |
+    cat specs/machines/hobbing_6axis.chain specs/tools/involute.chain specs/tools/hob_zi.chain specs/hobbing/helical_gear.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-helical-gear"
 done
