@@ -3,9 +3,14 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{Bounded, Dimension};
-use flank_solver::{Doubt, Outcome, SurfacePoint};
+use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
+use serde_json::{Value, json};
 
 use crate::table::Solved;
+use crate::units;
+
+/// Of values in messages.
+const DECIMALS: usize = 4;
 
 /// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
 pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
@@ -50,12 +55,7 @@ pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
             let sides: Vec<String> = sides
                 .map(|(u, range)| format!("{} {} .. {}", u.name, value(u, range.low), value(u, range.high)))
                 .collect();
-            let why = match doubt.why {
-                Doubt::Singular => "the equations are singular there",
-                Doubt::Undefined => "the equations are not smooth everywhere there",
-                Doubt::Budget => "too many boxes; narrower ranges need fewer",
-            };
-            let _ = writeln!(out, "  {}: {why}", sides.join(", "));
+            let _ = writeln!(out, "  {}: {}", sides.join(", "), why(doubt.why));
         }
         if count > SHOWN {
             let _ = writeln!(out, "  and {} more", count - SHOWN);
@@ -64,10 +64,41 @@ pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
     out
 }
 
+/// The branches of a surface at the place where they were looked for, and what is not excluded there.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    let unknowns = &solved.surface.unknowns;
+    let range = |of: &Bounded<'_>, low: f64, high: f64| {
+        let [low, high] = [low, high].map(|x| units::shown(of.dimension, x));
+        json!({ "name": of.name, "unit": units::symbol(of.dimension), "low": low, "high": high })
+    };
+    let chosen = tells_apart(&solved.branches, unknowns).filter(|_| solved.branches.len() > 1);
+    let branch = |(number, branch): (usize, &SurfacePoint)| {
+        let values = unknowns.iter().zip(&branch.unknowns);
+        let values: Vec<Value> = values
+            .map(|(of, x)| json!({ "name": of.name, "unit": units::symbol(of.dimension), "value": units::shown(of.dimension, *x) }))
+            .collect();
+        let keep = chosen.map(|k| {
+            let (low, high) = around(&solved.branches, number, &unknowns[k], k);
+            range(&unknowns[k], low, high)
+        });
+        json!({ "unknowns": values, "position": branch.position, "keep": keep })
+    };
+    let sides = |ranges: &[Range]| {
+        unknowns.iter().zip(ranges).map(|(of, side)| range(of, side.low, side.high)).collect::<Vec<Value>>()
+    };
+    let undecided = solved.effort.undecided.iter();
+    let undecided = undecided.map(|doubt| json!({ "ranges": sides(&doubt.ranges), "why": why(doubt.why) }));
+    json!({
+        "boxes": solved.effort.boxes,
+        "found": solved.branches.iter().enumerate().map(branch).collect::<Vec<Value>>(),
+        "undecided": undecided.collect::<Vec<Value>>(),
+    })
+}
+
 /// The place at which branches were looked for.
 fn anchor(solved: &Solved<'_, '_>) -> String {
     let [a, b] = &solved.sample.coordinates;
-    let show = |name: &str, dimension: Dimension, x: f64| format!("{name} {}", in_unit(dimension, x));
+    let show = |name: &str, dimension: Dimension, x: f64| format!("{name} {}", units::text(dimension, x, DECIMALS));
     let [x, y] = solved.effort.anchor;
     format!("{}, {}", show(&a.name, a.dimension, x), show(&b.name, b.dimension, y))
 }
@@ -80,7 +111,7 @@ fn tells_apart(branches: &[SurfacePoint], unknowns: &[Bounded<'_>]) -> Option<us
         let least = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         least / (unknowns[k].high - unknowns[k].low)
     };
-    // what four decimals can tell apart
+    // what the decimals can tell apart
     (0..unknowns.len()).filter(|&k| gap(k) > 1e-3).max_by(|&a, &b| gap(a).total_cmp(&gap(b)))
 }
 
@@ -93,18 +124,18 @@ fn around(branches: &[SurfacePoint], number: usize, of: &Bounded<'_>, unknown: u
     (below, above)
 }
 
+fn why(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::Singular => "the equations are singular there",
+        Doubt::Undefined => "the equations are not smooth everywhere there",
+        Doubt::Budget => "too many boxes; narrower ranges need fewer",
+    }
+}
+
 fn named(of: &Bounded<'_>, x: f64) -> String {
     format!("{} {}", of.name, value(of, x))
 }
 
 fn value(of: &Bounded<'_>, x: f64) -> String {
-    in_unit(of.dimension, x)
-}
-
-fn in_unit(dimension: Dimension, x: f64) -> String {
-    match dimension {
-        Dimension::ANGLE => format!("{:.4} deg", x.to_degrees()),
-        Dimension::LENGTH => format!("{x:.4} mm"),
-        _ => format!("{x:.4}"),
-    }
+    units::text(of.dimension, x, DECIMALS)
 }

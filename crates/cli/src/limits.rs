@@ -16,6 +16,20 @@ pub(crate) struct Line<'j, 'g> {
     /// What changes along it.
     pub(crate) along: String,
     pub(crate) points: Vec<SurfacePoint>,
+    /// Lines of this kind that cross the place at which they were looked for; `points` are those of the longest.
+    pub(crate) several: usize,
+}
+
+/// What is not shown of the lines; empty if everything is.
+pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
+    let several = lines.iter().filter(|line| line.several > 1);
+    let told = |line: &&Line<'_, '_>| {
+        format!(
+            "note: {} has {} of its kind beside each other within the ranges; the longest is shown, narrower ranges show the others\n",
+            line.name, line.several
+        )
+    };
+    several.map(told).collect()
 }
 
 /// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
@@ -51,9 +65,9 @@ fn line<'j, 'g>(
     let problem =
         SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())
             .expect("a job without errors leaves nothing unbound");
-    let points = problem.solve(&targets, [1, targets.len()]).0;
+    let (points, effort) = problem.solve(&targets, [1, targets.len()]);
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
-    Line { surface, name, kind, along: along.name.clone(), points }
+    Line { surface, name, kind, along: along.name.clone(), points, several: effort.branches.len() }
 }
 
 impl Line<'_, '_> {
@@ -62,9 +76,9 @@ impl Line<'_, '_> {
     }
 
     /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
-    pub(crate) fn patch(&self) -> Option<Patch> {
+    pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
         let rows = Axis { label: self.kind.to_string(), count: 1 };
         let columns = Axis { label: self.along.clone(), count: self.points.len() };
-        (self.count() > 0).then(|| solve::patch(&self.name, self.surface, [rows, columns], &self.points))
+        (self.count() > 0).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
     }
 }

@@ -11,12 +11,14 @@ mod fields;
 mod fmt;
 mod geometry;
 mod limits;
+mod reasons;
 mod sensitivity;
 mod solve;
 mod spec;
 mod table;
 mod travel;
 mod trims;
+mod units;
 
 use std::process::ExitCode;
 

@@ -16,7 +16,7 @@ use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::table::{Solved, Table};
 use crate::{Ending, print, spec, travel, trims};
-use crate::{branches, certify, geometry};
+use crate::{branches, certify, geometry, reasons};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
     let start = Instant::now();
@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
         anstream::eprintln!("{}", table.time());
-        anstream::eprint!("{}", branches::undecided(&solved));
+        anstream::eprint!("{}{}", branches::undecided(&solved), limits::untold(&lines));
         let told = branches::ambiguous(&solved)
             + &table.unsolved()
             + &certify::failed(&solved)
@@ -112,7 +112,7 @@ fn dataset(
 ) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
         let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
-        let patch = patch(&solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
+        let patch = patch(job, &solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
         let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
         Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
@@ -125,12 +125,13 @@ fn dataset(
             job: job.name.clone(),
             conventions: settings.collect(),
         },
-        patches: surfaces.chain(lines.iter().filter_map(|line| line.patch())).collect(),
+        patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect(),
     }
 }
 
 /// A grid of points of a surface, without further fields.
 pub(crate) fn patch(
+    job: &Job<'_>,
     name: &str,
     surface: &GeneratedSurface<'_>,
     [rows, columns]: [Axis; 2],
@@ -143,7 +144,7 @@ pub(crate) fn patch(
         rows,
         columns,
         unknowns: unknowns.map(|u| Unknown { name: u.name.clone(), unit: unit(u.dimension) }).collect(),
-        points: points.iter().map(point).collect(),
+        points: points.iter().map(|solved| point(job, surface, solved)).collect(),
         fields: Vec::new(),
     }
 }
@@ -156,9 +157,13 @@ fn unit(dimension: Dimension) -> Unit {
     }
 }
 
-fn point(solved: &SurfacePoint) -> Point {
+fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
     if solved.outcome != flank_solver::Outcome::Solved {
-        return Point::unsolved(solved.outcome.word(), solved.residual);
+        return Point::unsolved(
+            solved.outcome.word(),
+            solved.residual,
+            reasons::of_point(job, surface, solved.outcome),
+        );
     }
     Point {
         outcome: Outcome::Solved,
@@ -166,6 +171,7 @@ fn point(solved: &SurfacePoint) -> Point {
         normal: solved.normal,
         unknowns: solved.unknowns.clone(),
         residual: solved.residual,
+        reason: String::new(),
     }
 }
 

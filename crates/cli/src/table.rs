@@ -3,14 +3,14 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
+use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::Field;
-use flank_solver::{CutBy, Effort, Outcome, SurfacePoint};
+use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::limits::Line;
 use crate::sensitivity::{self, Sensitivity};
-use crate::{certify, fields};
+use crate::{branches, certify, fields, reasons, units};
 
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
@@ -80,12 +80,8 @@ impl Row<'_, '_> {
             of("z", "mm", &|point| point.position[2]),
         ];
         for (k, unknown) in self.surface.unknowns.iter().enumerate() {
-            let (unit, size) = match unknown.dimension {
-                Dimension::ANGLE => ("deg", 1f64.to_degrees()),
-                Dimension::LENGTH => ("mm", 1.0),
-                _ => ("", 1.0),
-            };
-            all.push(of(&unknown.name, unit, &|point| size * point.unknowns[k]));
+            let unit = units::symbol(unknown.dimension);
+            all.push(of(&unknown.name, unit, &|point| units::shown(unknown.dimension, point.unknowns[k])));
         }
         all
     }
@@ -169,7 +165,7 @@ impl Table<'_, '_, '_> {
     pub(crate) fn json(&self) -> String {
         let surfaces: Vec<Value> = self.solved.iter().map(surface_json).collect();
         let table = json!({
-            "schema": "flank.solve/1",
+            "schema": "flank.solve/2",
             "job": self.job.name,
             "spec": self.spec,
             "surfaces": surfaces,
@@ -187,7 +183,7 @@ impl Table<'_, '_, '_> {
             let missing = asked - solved.row().count();
             if missing > 0 {
                 let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
-                reasons(self.job, solved).iter().for_each(|reason| {
+                reasons::counted(self.job, solved).iter().for_each(|reason| {
                     let _ = writeln!(out, "  {reason}");
                 });
             }
@@ -207,56 +203,6 @@ pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> Stri
     rows.iter().map(|row| line(row).trim_end().to_string() + "\n").collect()
 }
 
-/// Why points of a surface were not solved, with the number of points for each reason.
-fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    let unknowns = &solved.surface.unknowns;
-    let mut reasons = Vec::new();
-    for (k, unknown) in unknowns.iter().enumerate() {
-        let excess = solved.points.iter().filter_map(|point| match point.outcome {
-            Outcome::Outside { unknown, by } if unknown == k => Some(by),
-            _ => None,
-        });
-        let (count, most) = excess.fold((0, 0.0), |(count, most), by| (count + 1, f64::max(most, by)));
-        if count > 0 {
-            let (size, unit) = match unknown.dimension {
-                Dimension::ANGLE => (1f64.to_degrees(), " deg"),
-                Dimension::LENGTH => (1.0, " mm"),
-                _ => (1.0, ""),
-            };
-            reasons.push(format!("{count}: {} outside its range, by up to {:.6}{unit}", unknown.name, size * most));
-        }
-    }
-    let cut_away = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway(CutBy::ItsTool)).count();
-    if cut_away > 0 {
-        reasons.push(format!(
-            "{cut_away}: cut away by the tool itself, beyond the singular line of the envelope (undercut)"
-        ));
-    }
-    for (number, &by) in solved.surface.trimmed_by.iter().enumerate() {
-        let cut = solved.points.iter().filter(|point| point.outcome == Outcome::CutAway(CutBy::Other(number))).count();
-        if cut > 0 {
-            reasons.push(format!("{cut}: cut away by what makes {}, as `trim` asks for", job.surfaces[by].name));
-        }
-    }
-    let undecided = solved.points.iter().filter(|point| point.outcome == Outcome::Undecided).count();
-    if undecided > 0 {
-        reasons.push(format!("{undecided}: undecided, the lines of the grid disagree on what a trim leaves of them"));
-    }
-    let singular = solved.points.iter().filter(|point| point.outcome == Outcome::Singular).count();
-    if singular > 0 {
-        reasons.push(format!(
-            "{singular}: singular, the equations do not fix a single point there, or the surface has no normal"
-        ));
-    }
-    let open = solved.points.iter().filter(|point| point.outcome == Outcome::NotConverged);
-    let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
-    if count > 0 {
-        let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
-        reasons.push(format!("{count}: not converged{near}: no point of this branch was found there"));
-    }
-    reasons
-}
-
 impl Reached {
     fn text(&self) -> String {
         match self.ends {
@@ -271,6 +217,6 @@ fn surface_json(solved: &Solved<'_, '_>) -> Value {
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
     entries.insert("fields".to_string(), fields::json(solved));
     entries.insert("sensitivity".to_string(), sensitivity::json(solved));
-    entries.insert("branches".to_string(), json!(solved.effort.branches.len()));
+    entries.insert("branches".to_string(), branches::json(solved));
     Value::Object(entries)
 }

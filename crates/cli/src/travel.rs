@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 
-use flank_chain_dsl::{Dimension, Job};
+use flank_chain_dsl::Job;
 use flank_expr::{Expr, VariableId};
 use flank_solver::{Outcome, Range, extent};
 
 use crate::table::Solved;
+use crate::units;
 
 /// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
 pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
@@ -22,19 +23,13 @@ pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
             // rounding of the law itself
             let slack = 1e-9 * (high - low);
             if found.low < low - slack || found.high > high + slack {
-                let (size, unit) = match axis.dimension {
-                    Dimension::ANGLE => (1f64.to_degrees(), "deg"),
-                    _ => (1.0, "mm"),
-                };
+                let unit = units::symbol(axis.dimension);
+                let [from, to, low, high] =
+                    [found.low, found.high, low, high].map(|value| units::shown(axis.dimension, value));
                 let _ = writeln!(
                     out,
-                    "beyond its travel: axis {}.{} runs from {:.4} to {:.4} {unit}, its travel is {:.4} to {:.4} {unit}",
-                    machine.name,
-                    axis.name,
-                    size * found.low,
-                    size * found.high,
-                    size * low,
-                    size * high
+                    "beyond its travel: axis {}.{} runs from {from:.4} to {to:.4} {unit}, its travel is {low:.4} to {high:.4} {unit}",
+                    machine.name, axis.name
                 );
             }
         }

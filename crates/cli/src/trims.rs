@@ -29,5 +29,6 @@ pub(crate) fn cut<'j, 'g>(
         kind: "intersection",
         along: along.clone(),
         points: meetings.into_iter().map(|meeting| meeting.first).collect(),
+        several: 1,
     }
 }

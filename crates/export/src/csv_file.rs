@@ -10,11 +10,12 @@ use crate::tally::Tally;
 
 const FIRST: [&str; 9] = ["surface", "i", "j", "x", "y", "z", "nx", "ny", "nz"];
 const LAST: [&str; 2] = ["residual", "status"];
+const REASON: &str = "reason";
 
 /// Writes all points as CSV.
 ///
 /// `# ` lines state the conventions. The columns are `surface, i, j, x, y, z, nx, ny, nz`, then the unknowns of all
-/// patches in order of first appearance, then `residual, status`, then the fields of all patches (three columns for a
+/// patches in order of first appearance, then `residual, status`, `reason` if a point has one, then the fields of all patches (three columns for a
 /// vector). Positions are mm, angles degrees, numbers the shortest
 /// text that reads back as the same bits. Cells are empty where a patch has no such unknown or field, where a field is
 /// not defined and where a point is not solved. An unknown or a field whose title is taken by another column is written as
@@ -28,7 +29,8 @@ pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     let unknowns = union_of_unknowns(&dataset.patches);
     let fields = union_of_fields(&dataset.patches);
     let mut table = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(out);
-    table.write_record(titles(&unknowns, &fields)).map_err(io::Error::from)?;
+    let told = dataset.patches.iter().flat_map(|patch| &patch.points).any(|point| !point.reason.is_empty());
+    table.write_record(titles(&unknowns, told, &fields)).map_err(io::Error::from)?;
     for patch in &dataset.patches {
         let places: Vec<Option<usize>> =
             unknowns.iter().map(|wanted| patch.unknowns.iter().position(|unknown| unknown == *wanted)).collect();
@@ -37,6 +39,7 @@ pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
         for (i, j, point) in patch.indexed_points() {
             let mut cells = record(patch, i, j, point, &places);
             let at = i * patch.columns.count + j;
+            cells.extend(told.then(|| one_line(&point.reason)));
             cells.extend(fields.iter().zip(&own).flat_map(|(wanted, own)| field_cells(wanted, *own, at, point)));
             table.write_record(cells).map_err(io::Error::from)?;
         }
@@ -108,12 +111,17 @@ fn union_of_fields(patches: &[Patch]) -> Vec<&Field> {
 }
 
 /// The titles of all columns; those of unknowns and fields that are not unique have the unit behind them.
-fn titles(unknowns: &[&Unknown], fields: &[&Field]) -> Vec<String> {
+fn titles(unknowns: &[&Unknown], told: bool, fields: &[&Field]) -> Vec<String> {
     let fixed = |names: &[&str]| names.iter().map(|&name| (name.to_owned(), None)).collect::<Vec<_>>();
     let of_unknowns = unknowns.iter().map(|unknown| (unknown.name.clone(), Some(unknown.unit.symbol())));
     let of_fields = fields.iter().flat_map(|field| field.columns().into_iter().map(|name| (name, Some(&*field.unit))));
-    let all: Vec<(String, Option<&str>)> =
-        fixed(&FIRST).into_iter().chain(of_unknowns).chain(fixed(&LAST)).chain(of_fields).collect();
+    let all: Vec<(String, Option<&str>)> = fixed(&FIRST)
+        .into_iter()
+        .chain(of_unknowns)
+        .chain(fixed(&LAST))
+        .chain(fixed(if told { &[REASON] } else { &[] }))
+        .chain(of_fields)
+        .collect();
     let shared = |name: &str| all.iter().filter(|(other, _)| other == name).count() > 1;
     let title = |(name, unit): &(String, Option<&str>)| match unit {
         Some(unit) if shared(name) => format!("{name} [{unit}]"),

@@ -109,6 +109,9 @@ pub struct Point {
     pub unknowns: Vec<f64>,
     /// What the solved equations leave.
     pub residual: f64,
+    /// More on a status other than `solved`: which unknown lies how far outside, how long was iterated, what cuts the
+    /// point away. May be empty.
+    pub reason: String,
 }
 
 /// Whether a point was solved.
@@ -117,7 +120,7 @@ pub enum Outcome {
     /// Position, normal, unknowns and residual are those of a root.
     Solved,
     /// There is no such point, and the word says why: `cut away`, `outside`, `singular`, `not converged`. Of the point's numbers
-    /// only the residual is written: what the best attempt left.
+    /// only the residual is written: what the best attempt left. [`Point::reason`] says more.
     Unsolved(&'static str),
 }
 
@@ -186,15 +189,16 @@ impl Outcome {
 
 impl Point {
     /// A point that was asked for and has no solution; `why` is its status word, `residual` what the best attempt left
-    /// (NaN if there was none).
+    /// (NaN if there was none), `reason` what more there is to say.
     #[must_use]
-    pub fn unsolved(why: &'static str, residual: f64) -> Self {
+    pub fn unsolved(why: &'static str, residual: f64, reason: String) -> Self {
         Point {
             outcome: Outcome::Unsolved(why),
             position: [f64::NAN; 3],
             normal: [f64::NAN; 3],
             unknowns: Vec::new(),
             residual,
+            reason,
         }
     }
 

@@ -78,7 +78,7 @@ struct SurfaceOut<'a> {
     fields: Vec<FieldOut<'a>>,
     #[serde(flatten)]
     tally: TallyOut,
-    points: Vec<PointOut>,
+    points: Vec<PointOut<'a>>,
 }
 
 #[derive(Serialize)]
@@ -109,7 +109,7 @@ enum ValueOut {
 }
 
 #[derive(Serialize)]
-struct PointOut {
+struct PointOut<'a> {
     i: usize,
     j: usize,
     status: &'static str,
@@ -117,6 +117,8 @@ struct PointOut {
     normal: Option<[f64; 3]>,
     unknowns: Option<Vec<f64>>,
     residual: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'a str>,
     fields: Option<Vec<ValueOut>>,
 }
 
@@ -151,7 +153,7 @@ fn value_out(values: &Values, point: usize) -> ValueOut {
     }
 }
 
-fn point_out(patch: &Patch, i: usize, j: usize, point: &Point) -> PointOut {
+fn point_out<'a>(patch: &Patch, i: usize, j: usize, point: &'a Point) -> PointOut<'a> {
     let values =
         || patch.unknowns.iter().zip(&point.unknowns).map(|(u, &value)| plain(u.unit.written(value))).collect();
     let at = i * patch.columns.count + j;
@@ -165,6 +167,7 @@ fn point_out(patch: &Patch, i: usize, j: usize, point: &Point) -> PointOut {
         normal: solved.then(|| point.normal.map(plain)),
         unknowns: solved.then(values),
         residual: point.known_residual().map(plain),
+        reason: Some(&*point.reason).filter(|reason| !reason.is_empty()),
         fields: solved.then(fields),
     }
 }

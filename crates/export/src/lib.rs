@@ -15,6 +15,7 @@
 //!     normal: [1.0, 0.0, 0.0],
 //!     unknowns: vec![std::f64::consts::FRAC_PI_2],
 //!     residual: 0.0,
+//!     reason: String::new(),
 //! };
 //! let dataset = Dataset {
 //!     header: Header {

@@ -24,7 +24,7 @@ fn read(text: &str) -> (Vec<String>, Vec<csv::StringRecord>) {
 fn numbers_come_back_to_the_bit() {
     let patch = Gear { helix: 0.3, width: 30.0 }.flank("flank", [7, 5]);
     let (titles, records) = read(&text_of(&dataset("job", vec![patch.clone()])));
-    assert_eq!(titles.join(","), "surface,i,j,x,y,z,nx,ny,nz,phi,s,residual,status");
+    assert_eq!(titles.join(","), "surface,i,j,x,y,z,nx,ny,nz,phi,s,residual,status,reason");
     assert_eq!(records.len(), 35);
     for (at, (record, point)) in records.iter().zip(&patch.points).enumerate() {
         assert_eq!(&record[1], (at / 5).to_string());
@@ -143,7 +143,8 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     poor.points[3].unknowns.pop();
     assert_eq!(refusal(poor).to_string(), "surface `flank`, point (1, 1): 1 values for 2 unknowns");
     let mut invented = sound();
-    invented.points[4] = Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("outside", f64::NAN) };
+    invented.points[4] =
+        Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("outside", f64::NAN, String::new()) };
     assert!(matches!(refusal(invented), Malformed::UnknownCount { .. }));
     let mut endless = sound();
     endless.points[4].normal[1] = f64::INFINITY;

@@ -365,7 +365,7 @@ impl Grid<'_> {
         let mut lost = last.unwrap_or_else(|| Solution::never_reached(self.ranges));
         if lost.is_root() {
             // a root, but not one that the way leads to, or not of this target: its residual would mislead
-            lost.outcome = Outcome::NotConverged;
+            lost.outcome = Outcome::NotConverged { iterations: lost.iterations };
             lost.residual = f64::NAN;
         }
         lost

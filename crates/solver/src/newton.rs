@@ -67,6 +67,7 @@ pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], star
     }
     let outcome = match verdict(&p, ranges, is_root, singular) {
         Outcome::Solved => evaluation.side(),
+        Outcome::NotConverged { .. } => Outcome::NotConverged { iterations },
         other => other,
     };
     Solution { outcome, unknowns: p, residual, iterations }

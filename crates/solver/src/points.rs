@@ -78,7 +78,7 @@ impl SurfacePoints {
     /// # Panics
     /// If there is no such point, as for all that follow.
     pub fn outcome(&self, point: usize) -> Outcome {
-        self.field.outcome(point).unwrap_or(Outcome::NotConverged).of_placed(&self.placed[point])
+        self.field.outcome(point).unwrap_or(Outcome::NotConverged { iterations: 0 }).of_placed(&self.placed[point])
     }
 
     /// The surface's unknowns, mm or radians.

@@ -67,7 +67,10 @@ pub enum Outcome {
     /// The Jacobian has no inverse where the iteration ended, or the surface no normal there.
     Singular,
     /// The iteration ended without a root.
-    NotConverged,
+    NotConverged {
+        /// Evaluations of the system that the last attempt took; zero where nothing led there.
+        iterations: u32,
+    },
     /// The ranges hold several branches, and nothing says which one is meant.
     Ambiguous,
 }
@@ -91,14 +94,14 @@ impl Outcome {
             Outcome::Undecided => "undecided",
             Outcome::Outside { .. } => "outside",
             Outcome::Singular => "singular",
-            Outcome::NotConverged => "not converged",
+            Outcome::NotConverged { .. } => "not converged",
             Outcome::Ambiguous => "ambiguous",
         }
     }
 
     /// There is a root, whether or not it is one that is looked for.
     pub(crate) fn is_root(self) -> bool {
-        !matches!(self, Outcome::Singular | Outcome::NotConverged)
+        !matches!(self, Outcome::Singular | Outcome::NotConverged { .. })
     }
 
     /// The verdict once position and normal are known: where a surface has no normal, a root of its equations is no point
@@ -115,7 +118,7 @@ impl Outcome {
             Outcome::CutAway(_) | Outcome::Undecided => 3,
             Outcome::Outside { .. } => 2,
             Outcome::Singular => 1,
-            Outcome::NotConverged | Outcome::Ambiguous => 0,
+            Outcome::NotConverged { .. } | Outcome::Ambiguous => 0,
         }
     }
 }
@@ -137,7 +140,8 @@ impl Solution {
     /// A point that no iteration came near.
     pub(crate) fn never_reached(ranges: &[Range]) -> Solution {
         let middle = ranges.iter().map(|range| range.middle()).collect();
-        Solution { outcome: Outcome::NotConverged, unknowns: middle, residual: f64::NAN, iterations: 0 }
+        let outcome = Outcome::NotConverged { iterations: 0 };
+        Solution { outcome, unknowns: middle, residual: f64::NAN, iterations: 0 }
     }
 
     pub(crate) fn is_solved(&self) -> bool {
@@ -166,7 +170,7 @@ pub(crate) fn distance(a: &[f64], b: &[f64], ranges: &[Range]) -> f64 {
 /// What the end of an iteration means.
 pub(crate) fn verdict(p: &[f64], ranges: &[Range], is_root: bool, singular: bool) -> Outcome {
     if !is_root {
-        return if singular { Outcome::Singular } else { Outcome::NotConverged };
+        return if singular { Outcome::Singular } else { Outcome::NotConverged { iterations: 0 } };
     }
     let share = |(range, value): (&Range, &f64)| range.excess(*value) / range.width();
     let farthest = ranges

@@ -110,6 +110,7 @@ pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
 /// #     normal: [1.0, 0.0, 0.0],
 /// #     unknowns: Vec::new(),
 /// #     residual: 0.0,
+/// #     reason: String::new(),
 /// # };
 /// let patch = Patch {
 ///     fields: vec![Field {

@@ -60,7 +60,14 @@ pub(crate) fn with_fields(mut patch: Patch) -> Patch {
 
 pub(crate) fn point(position: Vector, normal: Vector, unknowns: [f64; 2]) -> Point {
     let residual = 1e-15 * (1.0 + position[2].abs());
-    Point { outcome: Outcome::Solved, position, normal: unit(normal), unknowns: unknowns.into(), residual }
+    Point {
+        outcome: Outcome::Solved,
+        position,
+        normal: unit(normal),
+        unknowns: unknowns.into(),
+        residual,
+        reason: String::new(),
+    }
 }
 
 /// A gear that a rack generates: module 3, 24 teeth, pressure angle 20°, addendum 1, dedendum 1.25, tip radius 0.38.
@@ -167,7 +174,7 @@ pub(crate) fn without(mut patch: Patch, lost: impl Fn(usize, usize) -> Option<&'
     let columns = patch.columns.count;
     for (at, point) in patch.points.iter_mut().enumerate() {
         if let Some(why) = lost(at / columns, at % columns) {
-            *point = Point::unsolved(why, 0.25);
+            *point = Point::unsolved(why, 0.25, format!("{why}, as the test wants it"));
         }
     }
     patch

@@ -1,0 +1,68 @@
+//! Why points were not solved, in words.
+
+use flank_chain_dsl::{Bounded, GeneratedSurface, Job};
+use flank_solver::{CutBy, Outcome};
+
+use crate::table::Solved;
+use crate::units;
+
+/// Why points of a surface were not solved, with the number of points for each reason.
+pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
+    let count = |outcome: Outcome| solved.points.iter().filter(|point| point.outcome == outcome).count();
+    let mut reasons = Vec::new();
+    let mut tell = |count: usize, text: String| {
+        if count > 0 {
+            reasons.push(format!("{count}: {text}"));
+        }
+    };
+    for (k, unknown) in solved.surface.unknowns.iter().enumerate() {
+        let excess = solved.points.iter().filter_map(|point| match point.outcome {
+            Outcome::Outside { unknown, by } if unknown == k => Some(by),
+            _ => None,
+        });
+        let (count, most) = excess.fold((0, 0.0), |(count, most), by| (count + 1, f64::max(most, by)));
+        tell(count, format!("{} outside its range, by up to {}", unknown.name, amount(unknown, most)));
+    }
+    let cutters = (0..solved.surface.trimmed_by.len()).map(CutBy::Other);
+    for cutter in [CutBy::ItsTool].into_iter().chain(cutters) {
+        tell(count(Outcome::CutAway(cutter)), format!("cut away {}", by_what(job, solved.surface, cutter)));
+    }
+    tell(
+        count(Outcome::Undecided),
+        "undecided, the lines of the grid disagree on what a trim leaves of them".to_string(),
+    );
+    let singular = "singular, the equations do not fix a single point there, or the surface has no normal";
+    tell(count(Outcome::Singular), singular.to_string());
+    let open = solved.points.iter().filter(|point| matches!(point.outcome, Outcome::NotConverged { .. }));
+    let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
+    let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
+    tell(count, format!("not converged{near}: no point of this branch was found there"));
+    reasons
+}
+
+/// What an outcome's word does not tell of one point; may be empty.
+pub(crate) fn of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, outcome: Outcome) -> String {
+    match outcome {
+        Outcome::Outside { unknown, by } => {
+            let unknown = &surface.unknowns[unknown];
+            format!("{} by {}", unknown.name, amount(unknown, by))
+        }
+        Outcome::CutAway(cutter) => by_what(job, surface, cutter),
+        Outcome::NotConverged { iterations: 0 } => "no start leads there".to_string(),
+        Outcome::NotConverged { iterations } => format!("{iterations} iterations"),
+        Outcome::Solved | Outcome::Undecided | Outcome::Singular | Outcome::Ambiguous => String::new(),
+    }
+}
+
+fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> String {
+    match cutter {
+        CutBy::ItsTool => "by the tool itself, beyond the singular line of the envelope (undercut)".to_string(),
+        CutBy::Other(number) => {
+            format!("by what makes {}, as `trim` asks for", job.surfaces[surface.trimmed_by[number]].name)
+        }
+    }
+}
+
+fn amount(of: &Bounded<'_>, by: f64) -> String {
+    units::text(of.dimension, by, 6)
+}
