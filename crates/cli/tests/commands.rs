@@ -403,7 +403,7 @@ fn statuses_have_reasons() {
 #[test]
 fn branches_are_listed_as_json() {
     let out = folder("branches");
-    let spec = self_contained(&["machines/hobbing_6axis", "tools/hob_zi", "hobbing/helical_gear"]);
+    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
     let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
     let spec = written(&out, "unsaid.chain", &(unsaid.join("\n") + "\n"));
     let run = flank(&["solve", &spec, "--json", "--no-picture", "--out", out.to_str().unwrap()]);
