@@ -2,17 +2,7 @@
 
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
-use flank_tests::{Dice, problem, repository};
-
-/// A spec and what it uses as one text.
-fn whole(parts: &[&str]) -> String {
-    let read = |part: &&str| std::fs::read_to_string(repository("specs").join(part)).expect("the spec is there");
-    let text: String = parts.iter().map(read).collect();
-    text.lines()
-        .filter(|line| !line.starts_with("use ") && !line.starts_with("//!"))
-        .map(|line| format!("{line}\n"))
-        .collect()
-}
+use flank_tests::{Dice, library, problem};
 
 fn words(text: &str) -> Vec<&str> {
     text.split_inclusive(|c: char| !c.is_alphanumeric() && c != '_').collect()
@@ -72,7 +62,7 @@ fn survive(text: &str) -> bool {
 }
 
 fn storm(parts: &[&str], rounds: usize, seed: u64) {
-    let text = whole(parts);
+    let text = library(parts);
     assert!(!survive(&text), "the spec itself is right");
     let mut dice = Dice(seed);
     let wrong = (0..rounds).filter(|_| survive(&mutated(&text, &mut dice))).count();

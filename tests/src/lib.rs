@@ -6,7 +6,7 @@ pub mod targets;
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{GeneratedSurface, Job, compile_file, render};
+use flank_chain_dsl::{Compilation, GeneratedSurface, Job, compile_file, compile_text, render};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem, solve_grid};
 use serde_json::Value;
@@ -67,10 +67,32 @@ pub fn job_named<'g>(graph: &'g Graph, spec: &str, name: &str, set: &[(&str, &st
 
 fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> {
     let set: Vec<(String, String)> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
-    let compilation = compile_file(graph, &repository(spec), &set);
+    right(compile_file(graph, &repository(spec), &set), spec)
+}
+
+fn right<'g>(compilation: Compilation<'g>, what: &str) -> Vec<Job<'g>> {
     let told = render(&compilation.diagnostics, &compilation.sources, false);
-    assert!(!compilation.has_errors(), "{spec} is wrong:\n{told}");
+    assert!(!compilation.has_errors(), "{what} is wrong:\n{told}");
     compilation.jobs
+}
+
+/// The first job of a text.
+///
+/// # Panics
+/// With the diagnostics, if there are errors.
+pub fn job_of_text<'g>(graph: &'g Graph, text: &str) -> Job<'g> {
+    right(compile_text(graph, "text", text, &[]), "the text").swap_remove(0)
+}
+
+/// Specs given by their paths below `specs`, as one text: what a file uses must stand there, too.
+///
+/// # Panics
+/// If one cannot be read.
+pub fn library(paths: &[&str]) -> String {
+    let read = |path: &&str| std::fs::read_to_string(repository("specs").join(path)).expect("the spec is there");
+    let all: String = paths.iter().map(read).collect();
+    let lines = all.lines().filter(|line| !line.starts_with("use ") && !line.starts_with("//!"));
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// Points of a surface at given values of two of its coordinates, in the order given.

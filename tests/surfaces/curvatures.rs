@@ -4,10 +4,13 @@
 //! The tables measure by the normal out of the tool: positive where the surface bends towards it, which is where the gear is
 //! convex, as flank counts.
 
+use flank_chain_dsl::Job;
 use flank_expr::Graph;
-use flank_solver::Outcome;
-use flank_tests::{Evaluated, difference, evaluated, grid, job_named, number, reference_json, reversed, vector};
-use serde_json::Value;
+use flank_solver::{Outcome, SurfacePoint};
+use flank_tests::{
+    Evaluated, difference, evaluated, grid, job, job_named, number, points, reference_json, reversed, vector,
+};
+use serde_json::{Value, json};
 
 /// Position, mm, normal, and principal directions where they are told apart.
 const BOUND: f64 = 1e-9;
@@ -17,7 +20,7 @@ const OF_CURVATURE: f64 = 1e-12;
 /// All rows of a table on one surface of a job; `keys` name the unknowns in the table.
 fn meets(spec: &str, job: &str, surface: &str, rows: &[&Value], keys: &[&str]) {
     let graph = Graph::new();
-    let job = job_named(&graph, &format!("tests/machines/{spec}.chain"), job, &[]);
+    let job = job_named(&graph, &format!("specs/{spec}.chain"), job, &[]);
     assert!(!rows.is_empty(), "{surface} has rows");
     let unknowns: Vec<Vec<f64>> = rows.iter().map(|row| keys.iter().map(|key| unknown(row, key)).collect()).collect();
     for (k, (row, point)) in rows.iter().zip(evaluated(&job, surface, &unknowns)).enumerate() {
@@ -83,15 +86,19 @@ fn library_meets(
     let (spec, name) = of;
     let graph = Graph::new();
     let job = job_named(&graph, &format!("specs/hobbing/{spec}.chain"), name, set);
-    assert!(!rows.is_empty(), "{surface} has rows");
     let targets: Vec<[f64; 2]> = rows.iter().map(|row| coordinates.map(|(_, key)| number(row, key))).collect();
     // a table is a lattice: its second coordinate runs first, and starts again where the first one changes
     let columns = targets.iter().take_while(|target| target[0] == targets[0][0]).count();
     let solved = grid(&job, surface, coordinates.map(|(coordinate, _)| coordinate), &targets, columns);
-    assert!(solved.iter().all(|point| point.outcome == Outcome::Solved), "{name}, {surface}: {solved:?}");
-    let unknowns: Vec<Vec<f64>> = solved.into_iter().map(|point| point.unknowns).collect();
-    for (k, (row, point)) in rows.iter().zip(evaluated(&job, surface, &unknowns)).enumerate() {
-        meets_row(row, &point, &format!("{name}, {surface}, row {k}"));
+    solved_meet(&job, surface, &solved, rows);
+}
+
+fn solved_meet(job: &Job<'_>, surface: &str, solved: &[SurfacePoint], rows: &[&Value]) {
+    assert!(!rows.is_empty(), "{surface} has rows");
+    assert!(solved.iter().all(|point| point.outcome == Outcome::Solved), "{}, {surface}: {solved:?}", job.name);
+    let unknowns: Vec<Vec<f64>> = solved.iter().map(|point| point.unknowns.clone()).collect();
+    for (k, (row, point)) in rows.iter().zip(evaluated(job, surface, &unknowns)).enumerate() {
+        meets_row(row, &point, &format!("{}, {surface}, row {k}", job.name));
     }
 }
 
@@ -99,24 +106,53 @@ const Z_AND_RADIUS: [(&str, &str); 2] = [("z", "z"), ("rho", "rho")];
 
 const SIDES: [(&str, f64); 2] = [("plus", 1.0), ("minus", -1.0)];
 
-#[test]
-fn generated_spiral_bevel_flanks_and_fillets() {
-    let reference = reference_json("cradle_flank.json");
-    for side in ["concave", "convex"] {
-        let job = format!("generated_{side}");
-        meets("cradle", &job, "flank", &rows(&reference, side, None), &["u", "v", "psi"]);
-        meets("cradle", &job, "fillet", &rows(&reference, &format!("{side}_fillet"), None), &["u", "v", "psi"]);
+/// A row in a work frame that the library's cradle has turned half round against the table's.
+fn half_turned(row: &Value) -> Value {
+    let mut turned = row.clone();
+    for key in ["p", "n", "d1", "d2", "t"].into_iter().filter(|key| row.get(key).is_some()) {
+        let [x, y, z] = vector(row, key);
+        turned[key] = json!([-x, -y, z]);
+    }
+    turned
+}
+
+/// All rows of tables of a cradle on surfaces of the library, found where they lie in the axial section.
+fn cradle_meets(spec: &str, reference: &Value, tables: &[(&str, &str)]) {
+    for (table, surface) in tables {
+        let turned: Vec<Value> = rows(reference, table, None).into_iter().map(half_turned).collect();
+        let in_section = |row: &Value| {
+            let [x, y, z] = vector(row, "p");
+            [z, x.hypot(y)]
+        };
+        let targets: Vec<[f64; 2]> = turned.iter().map(in_section).collect();
+        let graph = Graph::new();
+        let job = job(&graph, &format!("specs/bevel/{spec}.chain"), &[]);
+        let solved = points(&job, surface, ["z", "rho"], &targets);
+        solved_meet(&job, surface, &solved, &turned.iter().collect::<Vec<_>>());
     }
 }
 
 #[test]
+fn generated_spiral_bevel_flanks_and_fillets() {
+    let tables = ["concave", "concave_fillet", "convex", "convex_fillet"].map(|name| (name, name));
+    cradle_meets("tilted_pinion", &reference_json("cradle_flank.json"), &tables);
+}
+
+#[test]
 fn formate_flanks_and_fillets() {
-    let reference = reference_json("formate_flank.json");
-    for side in ["concave", "convex"] {
-        let job = format!("formate_{side}");
-        meets("cradle", &job, "flank", &rows(&reference, side, None), &["u", "v"]);
-        meets("cradle", &job, "fillet", &rows(&reference, &format!("{side}_fillet"), None), &["u", "v"]);
+    let tables = ["concave", "concave_fillet", "convex", "convex_fillet"].map(|name| (name, name));
+    cradle_meets("formate_gear", &reference_json("formate_flank.json"), &tables);
+}
+
+#[test]
+fn face_hobbed_flanks() {
+    let mut reference = reference_json("face_hobbing.json");
+    for table in ["concave", "convex"] {
+        let rows = reference[table].as_array_mut().expect("a table");
+        // the line at a fixed roll; an edge that moves with both motions has only a point of contact
+        rows.iter_mut().for_each(|row| drop(row.as_object_mut().expect("a row").remove("t")));
     }
+    cradle_meets("face_hobbed_pinion", &reference, &[("concave", "concave"), ("convex", "convex")]);
 }
 
 #[test]
@@ -204,7 +240,7 @@ fn grinding_discs() {
         for (side, s) in SIDES {
             let table = format!("{}_rows", job.to_uppercase());
             let rows = rows(&reference, &table, Some(("s", s)));
-            meets("grinding_disc", job, &format!("{side}_wheel"), &rows, &["u", "v", "0"]);
+            meets("grinding/thread_wheel", job, &format!("{side}_wheel"), &rows, &["u", "v", "0"]);
         }
     }
 }
@@ -247,7 +283,8 @@ fn envelopes_of_envelopes() {
     let keys = ["u", "v", "phi", "B"];
     for (surface, sigma) in SIDES {
         let rows = rows(&reference, "rack_shaper_gear_rows", Some(("sigma", sigma)));
-        meets("double_envelope", "gear_of_shaper", surface, &rows, &keys);
+        meets("double_envelope/shaped_ring_gear", "shaped_ring_gear", surface, &rows, &keys);
     }
-    meets("double_envelope", "worm_wheel_of_plane", "wheel", &rows(&reference, "hourglass_rows", None), &keys);
+    let hourglass = rows(&reference, "hourglass_rows", None);
+    meets("double_envelope/hourglass_worm_wheel", "hourglass_worm_wheel", "wheel", &hourglass, &keys);
 }

@@ -1,21 +1,13 @@
 //! Sweeps, moves and mirrors against closed forms and against the same surface made another way.
 
-use flank_chain_dsl::{Job, compile_text, render};
 use flank_expr::Graph;
-use flank_tests::{assert_point, number, points, reference_json, repository, reversed, vector};
-
-fn compiled<'g>(graph: &'g Graph, text: &str) -> Job<'g> {
-    let mut compilation = compile_text(graph, "text", text, &[]);
-    let told = render(&compilation.diagnostics, &compilation.sources, false);
-    assert!(!compilation.has_errors(), "{told}");
-    compilation.jobs.swap_remove(0)
-}
+use flank_tests::{assert_point, job_of_text, library, number, points, reference_json, reversed, vector};
 
 /// A radial edge that advances while the work turns leaves a helicoid: (u cos t, −u sin t, p t).
 #[test]
 fn a_radial_edge_cuts_a_helicoid() {
     let graph = Graph::new();
-    let job = compiled(
+    let job = job_of_text(
         &graph,
         "machine lathe {
             axis Z : linear
@@ -54,7 +46,7 @@ fn a_radial_edge_cuts_a_helicoid() {
 #[test]
 fn a_spinning_edge_fed_along_a_line_leaves_a_cylinder() {
     let graph = Graph::new();
-    let job = compiled(
+    let job = job_of_text(
         &graph,
         "machine mill {
             axis X : linear
@@ -93,7 +85,7 @@ fn a_spinning_edge_fed_along_a_line_leaves_a_cylinder() {
 #[test]
 fn a_moved_surface_is_the_tool_seen_from_elsewhere() {
     let graph = Graph::new();
-    let job = compiled(
+    let job = job_of_text(
         &graph,
         "machine stand {
             frame bed
@@ -122,16 +114,16 @@ fn a_moved_surface_is_the_tool_seen_from_elsewhere() {
 /// The mirror image of the right-hand gear of the reference table is the left-hand one, point by point.
 #[test]
 fn a_mirrored_work_is_the_other_hand() {
-    let read = |path: &str| {
-        std::fs::read_to_string(repository("specs").join(path).with_extension("chain")).expect("the spec is there")
-    };
-    let text = ["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"].map(read).concat();
-    let text: String = text.lines().filter(|line| !line.starts_with("use ") && !line.starts_with("//!")).fold(
-        String::from("machine left extends hobbing_6axis { frame table in bed = rotate_z(C) mirror_z() }\n"),
-        |text, line| text + line + "\n",
-    );
+    let text = library(&[
+        "machines/hobbing_6axis.chain",
+        "tools/involute.chain",
+        "tools/hob_zi.chain",
+        "hobbing/helical_gear.chain",
+    ])
+    .replace("machine m = hobbing_6axis", "machine m = left")
+        + "machine left extends hobbing_6axis { frame table in bed = rotate_z(C) mirror_z() }";
     let graph = Graph::new();
-    let job = compiled(&graph, &text.replace("machine m = hobbing_6axis", "machine m = left"));
+    let job = job_of_text(&graph, &text);
     let reference = reference_json("helical_zi_hob.json");
     let mirrored = |[x, y, z]: [f64; 3]| [x, y, -z];
     for (surface, sigma) in [("lower_flank", 1.0), ("upper_flank", -1.0)] {

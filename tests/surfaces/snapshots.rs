@@ -61,3 +61,58 @@ fn helical_gear() {
 fn pinion_19x62() {
     insta::assert_snapshot!(described("specs/bevel/pinion_19x62.chain"));
 }
+
+#[test]
+fn gear_19x62() {
+    insta::assert_snapshot!(described("specs/bevel/gear_19x62.chain"));
+}
+
+#[test]
+fn conjugate_pinion_19x62() {
+    insta::assert_snapshot!(described("specs/bevel/conjugate_pinion_19x62.chain"));
+}
+
+#[test]
+fn tilted_pinion() {
+    insta::assert_snapshot!(described("specs/bevel/tilted_pinion.chain"));
+}
+
+#[test]
+fn formate_gear() {
+    insta::assert_snapshot!(described("specs/bevel/formate_gear.chain"));
+}
+
+#[test]
+fn face_hobbed_pinion() {
+    insta::assert_snapshot!(described("specs/bevel/face_hobbed_pinion.chain"));
+}
+
+#[test]
+fn helixform_gear() {
+    insta::assert_snapshot!(described("specs/bevel/helixform_gear.chain"));
+}
+
+#[test]
+fn duplex_helical_pinion() {
+    insta::assert_snapshot!(described("specs/bevel/duplex_helical_pinion.chain"));
+}
+
+#[test]
+fn hypoid_pinion() {
+    insta::assert_snapshot!(described("specs/bevel/hypoid_pinion.chain"));
+}
+
+#[test]
+fn shaped_ring_gear() {
+    insta::assert_snapshot!(described("specs/double_envelope/shaped_ring_gear.chain"));
+}
+
+#[test]
+fn hourglass_worm_wheel() {
+    insta::assert_snapshot!(described("specs/double_envelope/hourglass_worm_wheel.chain"));
+}
+
+#[test]
+fn thread_wheel() {
+    insta::assert_snapshot!(described("specs/grinding/thread_wheel.chain"));
+}

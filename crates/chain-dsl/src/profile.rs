@@ -36,6 +36,9 @@ enum Shape<'g> {
     Line { from: [Expr<'g>; 2], direction: [Expr<'g>; 2] },
     /// The angle goes from the first coordinate to the second, and with the run if `sense` is 1, against it if −1.
     Arc { center: [Expr<'g>; 2], radius: Expr<'g>, from: Expr<'g>, sense: f64 },
+    /// An arc by the point and the direction in which it begins; the radius is negative if it turns against the angles. It may
+    /// be as large as that of a nearly straight line: nothing is a difference of large numbers.
+    Bow { from: [Expr<'g>; 2], direction: Expr<'g>, radius: Expr<'g> },
     /// Both coordinates over the length of the chords between the points.
     Spline([CurveId; 2]),
     /// A spline through points that have no values yet.
@@ -136,7 +139,13 @@ fn line<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
     Some((Shape::Line { from, direction: way.map(|part| part / length) }, length))
 }
 
+/// By its centre, or through two points.
 fn arc<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+    let is_named =
+        |label: &str| call.arguments.iter().any(|argument| matches!(&argument.name, Some(name) if name.node == label));
+    if call.arguments.len() == 3 && ["from", "to", "radius"].into_iter().all(is_named) {
+        return bow(context, call, scope);
+    }
     let labels = ["center", "radius", "from", "to"];
     let written = arguments(context, call, labels, "arc(center: [x, y], radius: r, from: 0 deg, to: 90 deg)")?;
     let center = context.vector(written[0], scope, Dimension::LENGTH, "the centre of the arc");
@@ -156,6 +165,31 @@ fn arc<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<
     }
     let (sense, turn) = if turn < 0.0 { (-1.0, from - to) } else { (1.0, to - from) };
     Some((Shape::Arc { center, radius, from, sense }, turn * radius))
+}
+
+fn bow<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+    let written = arguments(context, call, ["from", "to", "radius"], "arc(from: [x, y], to: [x, y], radius: r)")?;
+    let from = context.vector(written[0], scope, Dimension::LENGTH, "the beginning of the arc");
+    let to = context.vector(written[1], scope, Dimension::LENGTH, "the end of the arc");
+    let radius = context.scalar(written[2], scope, Dimension::LENGTH, "the radius of the arc");
+    let (from, to, radius): ([Expr<'g>; 2], [Expr<'g>; 2], _) = (from?, to?, radius?);
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let distance = hypot(way);
+    let (apart, size) = (value(context, distance, call.span, "the ends of the arc")?, written[2].span);
+    let size = value(context, radius, size, "the radius of the arc")?;
+    if apart == 0.0 {
+        return no_run(context, call.span, "this arc ends where it begins", "give it two different ends");
+    }
+    if 2.0 * size.abs() < apart {
+        let [apart, size] = [apart, size].map(|length| shown(length, Dimension::LENGTH));
+        let message = format!("no circle of radius {size} goes through two points that are {apart} apart");
+        let help = "the radius is at least half of that; it is positive if the arc turns from the first coordinate to the second";
+        return no_run(context, written[2].span, &message, help);
+    }
+    // with the sign of the radius
+    let half_turn = (distance / (radius + radius)).asin();
+    let direction = way[1].atan2(way[0]) - half_turn;
+    Some((Shape::Bow { from, direction, radius }, (radius + radius) * half_turn))
 }
 
 fn spline<'g>(context: &mut Context<'g>, call: &Call, name: &str, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
@@ -311,6 +345,12 @@ impl<'g> Segment<'g> {
             Shape::Arc { center, radius, from, sense } => {
                 let angle = *from + own / *radius * own.graph().constant(*sense);
                 [center[0] + *radius * angle.cos(), center[1] + *radius * angle.sin()]
+            }
+            Shape::Bow { from, direction, radius } => {
+                let half_turn = own / (*radius + *radius);
+                let chord = (*radius + *radius) * half_turn.sin();
+                let towards = *direction + half_turn;
+                [from[0] + chord * towards.cos(), from[1] + chord * towards.sin()]
             }
             Shape::Spline(coordinates) => coordinates.map(|curve| own.on_curve(curve, 0)),
             Shape::Unknown(point) => *point,

@@ -112,6 +112,56 @@ fn each_piece_is_the_surface_written_by_itself() {
     }
 }
 
+/// An arc between two points is the one about its centre, in both senses; a very large one is a line but for its height.
+#[test]
+fn an_arc_through_two_points_is_the_arc_about_its_centre() {
+    const TOOL: &str = "
+        tool cutter {
+            profile by_center {
+                there = arc(center: [1 mm, 2 mm], radius: 5 mm, from: 10 deg, to: 70 deg)
+                back  = arc(center: [1 mm, 2 mm], radius: 5 mm, from: 70 deg, to: 10 deg)
+            }
+            let from = [1 mm + 5 mm * cos(10 deg), 2 mm + 5 mm * sin(10 deg)]
+            let to = [1 mm + 5 mm * cos(70 deg), 2 mm + 5 mm * sin(70 deg)]
+            profile by_ends {
+                there  = arc(from: from, to: to, radius: 5 mm)
+                back   = arc(from: to, to: from, radius: -5 mm)
+                nearly = arc(from: from, to: [from[0], from[1] - 8 mm], radius: 1e12 mm)
+            }
+            surface side(s: along by_center, v: length in 0 mm .. 1 mm) {
+                let p = by_center(s)
+                at = [p[0], p[1], v]
+                body towards [1 mm - p[0], 2 mm - p[1], 0 mm]
+            }
+            surface other(s: along by_ends, v: length in 0 mm .. 1 mm) {
+                let p = by_ends(s)
+                at = [p[0], p[1], v]
+                body towards [1 mm - p[0], 2 mm - p[1], 0 mm]
+            }
+        }";
+    let graph = Graph::new();
+    let compilation = compiled(&graph, "bows", TOOL, "surface other in m.bed = move(t.other)");
+    let job = &compilation.jobs[0];
+    for piece in ["there", "back"] {
+        let [one, other] = ["whole", "other"].map(|surface| format!("{surface}.{piece}"));
+        let (low, high) = range(job, &one);
+        assert!((range(job, &other).0 - low).abs() < 1e-14 && (range(job, &other).1 - high).abs() < 1e-14);
+        for k in 0..=10 {
+            let values = [low + (high - low) * f64::from(k) / 10.0, 0.5];
+            let (one, other) = (at(job, &one, &values, Vec::from), at(job, &other, &values, Vec::from));
+            assert!(one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14), "{piece}: {one:?} {other:?}");
+        }
+    }
+    let (low, high) = range(job, "other.nearly");
+    let (start, middle) = (
+        at(job, "other.nearly", &[low, 0.5], Vec::from),
+        at(job, "other.nearly", &[0.5 * (low + high), 0.5], Vec::from),
+    );
+    assert!((high - low - 8.0).abs() < 1e-14 && (middle[1] - start[1] + 4.0).abs() < 1e-14);
+    // 4² / 2R
+    assert!((start[0] - middle[0] - 8e-12).abs() < 1e-14, "{}", start[0] - middle[0]);
+}
+
 /// A tool with one spline, through these points of the plane.
 fn spline(graph: &Graph, name: &str, points: &str) -> f64 {
     let tool = format!(

@@ -1,0 +1,337 @@
+//! Bevel gear machines and tools of the library against each other, closed forms, and chains of dense matrices.
+
+use flank_chain_dsl::Job;
+use flank_expr::Graph;
+use flank_solver::{Outcome, SurfacePoint};
+use flank_tests::{
+    assert_point, difference, job, job_of_text, library, number, points, reference_json, reversed, vector,
+};
+use nalgebra::{Matrix4, Vector3, Vector4};
+
+/// The points of a surface's sample, all of which must be solved.
+fn sampled(job: &Job<'_>, surface: &str) -> Vec<SurfacePoint> {
+    let generated = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let sample = generated.sample.as_ref().expect("it is sampled");
+    let names = [0, 1].map(|k| sample.coordinates[k].name.as_str());
+    let solved = points(job, surface, names, &sample.targets);
+    assert!(solved.iter().all(|point| point.outcome == Outcome::Solved), "{} {surface}", job.name);
+    solved
+}
+
+/// The thesis's machine, frame by frame another one, leaves what the universal generator leaves with the same settings.
+#[test]
+fn the_machine_of_the_thesis_leaves_the_same_surface() {
+    let machines = library(&["machines/cradle.chain", "machines/cradle_tilt.chain", "tools/face_mill.chain"]);
+    let text = machines
+        + "job both {
+            let ratio = 2.8
+            machine u = cradle_generator(
+                radial_distance: 68 mm, cradle_angle: -50 deg, cutter_tilt: 3.5 deg, cutter_swivel: 55 deg,
+                work_offset: 0.8 mm, sliding_base: 0.3 mm, machine_center_to_crossing_point: -0.4 mm,
+                machine_root_angle: 19 deg, ratio_of_roll: ratio, modified_roll_2c: -0.021, helical_motion_1: -1.7 mm
+            )
+            machine t = cradle_tilt(
+                radial_cutter_position: 68 mm, angular_cutter_position: -50 deg, cutter_tilt: 3.5 deg,
+                cutter_swivel: -35 deg, vertical_offset: 0.8 mm, machine_center_to_crossing_point: -0.4 mm,
+                root_angle: 19 deg
+            )
+            tool c = face_mill_straight(
+                outside_point_radius: 64.6 mm, inside_point_radius: 62.3 mm, edge_radius: 0.9 mm,
+                theta_from: 80 deg, theta_to: 200 deg
+            )
+            tool d = face_mill_straight(
+                outside_point_radius: 64.6 mm, inside_point_radius: 62.3 mm, edge_radius: 0.9 mm,
+                theta_from: 80 deg, theta_to: 200 deg
+            )
+            mount c on u.cutter
+            mount d on t.cutter
+            motion roll : angle in -30 deg .. 30 deg
+            drive u.roll = roll
+            drive t.roll = roll
+            drive t.bed = 0.3 mm - 1.7 mm/rad * roll
+            drive t.work = ratio * (roll + 0.021 * roll ^ 2 / 2)
+            surface universal in u.work = envelope(c.outside.blade, over: roll)
+            surface thesis in t.work = envelope(d.outside.blade, over: roll)
+        }";
+    let graph = Graph::new();
+    let job = job_of_text(&graph, &text);
+    let targets: Vec<[f64; 2]> = (0..15)
+        .map(|k| [66.0 + 3.0 * f64::from(k % 5), 26.5 + 1.15 * f64::from(k % 5) + 1.5 * f64::from(k / 5)])
+        .collect();
+    let [universal, thesis] = ["universal", "thesis"].map(|surface| points(&job, surface, ["z", "rho"], &targets));
+    for (one, other) in universal.iter().zip(&thesis) {
+        assert_point(one, other.position, other.normal, "the thesis's machine");
+        assert!(difference(&one.unknowns, &other.unknowns) < 1e-10, "{:?} {:?}", one.unknowns, other.unknowns);
+    }
+}
+
+/// The right-hand machine shows the left-hand job in the mirror.
+#[test]
+fn the_mirrored_generator_cuts_the_other_hand() {
+    let parts = ["machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"];
+    let [left, right] = [Graph::new(), Graph::new()];
+    let left = job_of_text(&left, &library(&parts));
+    let other = library(&parts).replace("machine m = cradle_generator(", "machine m = cradle_generator_mirrored(");
+    let right = job_of_text(&right, &other);
+    for flank in ["concave", "convex", "root"] {
+        for (one, other) in sampled(&left, flank).iter().zip(&sampled(&right, flank)) {
+            let mirrored = |[x, y, z]: [f64; 3]| [x, -y, z];
+            assert_point(other, mirrored(one.position), mirrored(one.normal), flank);
+        }
+    }
+}
+
+/// On its inclined spindle, the flared cup touches the gear along the line in which the cutter's cone would stand.
+#[test]
+fn a_flared_cup_grinds_the_formate_gear() {
+    let parts = library(&["machines/cradle.chain", "machines/formate.chain", "tools/cup_wheel.chain"]);
+    let text = parts
+        + "job ground {
+            machine m = flared_cup(
+                radial_distance: 68.926410763489 mm, cradle_angle: 0.869132768457406 rad, sliding_base: -0.2 mm,
+                machine_center_to_crossing_point: 0.5 mm, machine_root_angle: 1.150171977064263 rad,
+                point_radius: 64.8 mm, wheel_radius: 40 mm, wheel_inclination: 8 deg
+            )
+            tool w = cup_wheel(
+                outside_radius: 40 mm, inside_radius: 37 mm, outside_angle: 12 deg, inside_angle: 30 deg,
+                edge_radius: 0.5 mm, theta_from: -30 deg, theta_to: 30 deg
+            )
+            mount w on m.wheel
+            motion orbit : angle in -160 deg .. -70 deg
+            drive m.orbit = orbit
+            surface concave in m.work = envelope(w.outside.side, over: orbit)
+        }";
+    let graph = Graph::new();
+    let job = job_of_text(&graph, &text);
+    let reference = reference_json("formate_flank.json");
+    let rows = reference["concave"].as_array().expect("a table");
+    let targets: Vec<[f64; 2]> = rows.iter().map(|row| [number(row, "z"), number(row, "rho")]).collect();
+    for (row, point) in rows.iter().zip(points(&job, "concave", ["z", "rho"], &targets)) {
+        let half_turned = |[x, y, z]: [f64; 3]| [-x, -y, z];
+        assert_point(&point, half_turned(vector(row, "p")), half_turned(reversed(vector(row, "n"))), "ground");
+    }
+}
+
+/// A blade that turns and advances leaves (R cos t, R sin t, z + lead t).
+#[test]
+fn helixform_blades_leave_helicoids() {
+    let text = library(&["machines/cradle.chain", "machines/formate.chain", "tools/face_hobbing_head.chain"])
+        + "machine plain extends helixform { frame swivel in eccentric = rotate_y(90 deg) }
+        job screwed {
+            machine m = plain(
+                radial_distance: 0 mm, cradle_angle: 0 deg, machine_root_angle: 0 deg, lead: 1.5 mm/rad,
+                spindle_start: 10 deg
+            )
+            tool c = face_hobbing_head(
+                head_radius: 60 mm, offset_angle: 0 deg, blade_angle: 20 deg, tip_distance: 1 mm, edge_radius: 0.5 mm
+            )
+            mount c on m.cutter
+            motion turn : angle in -90 deg .. 90 deg
+            drive m.spindle = turn
+            surface outer in m.swivel = sweep(c.outside.blade, over: turn)
+        }";
+    let graph = Graph::new();
+    let job = job_of_text(&graph, &text);
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    let targets: Vec<[f64; 2]> =
+        (0..12).map(|k| [1.0 + 0.5 * f64::from(k % 4), -0.8 + 0.6 * f64::from(k / 4)]).collect();
+    for ([s, t], point) in targets.iter().zip(points(&job, "outer", ["s", "turn"], &targets)) {
+        // from where the rounding, 70 degrees of a circle of 0.5 mm, touches the blade
+        let along = s - 0.5 * 70f64.to_radians();
+        let (radius, height) =
+            (61.0 + 0.5 * (1.0 - sine) * sine / cosine + along * sine, -0.5 * (1.0 - sine) - along * cosine);
+        let lead_way = 1.5 * (t - 10f64.to_radians());
+        // the plain swivel frame has the cutter's x along -z, y along y and z along x: rotate_y(-90 deg)
+        let position = [-(height + lead_way), radius * t.sin(), radius * t.cos()];
+        assert!(difference(&point.position, &position) < 1e-10, "{:?} {position:?}", point.position);
+        assert_eq!(point.outcome, Outcome::Solved);
+    }
+}
+
+/// The universal generator as a product of 4 × 4 matrices, after `universal_generator.md`, for settings that do not move.
+struct Dense {
+    radial: f64,
+    tilt: f64,
+    swivel: f64,
+    offset: f64,
+    base: [f64; 2],
+    cradle: f64,
+    root: f64,
+    ratio: f64,
+}
+
+impl Dense {
+    fn t_work_cutter(&self, roll: f64) -> Matrix4<f64> {
+        let [along, across] = [self.base[0] + self.base[1] * roll, self.offset];
+        let shift = |x, y, z| Matrix4::new_translation(&Vector3::new(x, y, z));
+        let turn = |axis: Vector3<f64>, angle: f64| Matrix4::from_scaled_axis(axis * angle);
+        turn(Vector3::z(), -self.ratio * roll)
+            * turn(Vector3::y(), self.root)
+            * shift(along, across, 0.0)
+            * turn(Vector3::x(), -(self.cradle + roll))
+            * shift(0.0, 0.0, self.radial)
+            * turn(Vector3::x(), self.swivel)
+            * turn(Vector3::z(), self.tilt)
+            * turn(Vector3::y(), -std::f64::consts::FRAC_PI_2)
+    }
+
+    /// Position, normal out of the steel, and how fast the cutter leaves there: mm per radian along the normal.
+    fn point(&self, cone: &Cone, [s, theta, roll]: [f64; 3]) -> ([f64; 3], [f64; 3], f64) {
+        let (position, normal) = cone.point(s, theta);
+        let step = 1e-5;
+        let placed = |roll: f64| (self.t_work_cutter(roll) * position).xyz();
+        let normal = (self.t_work_cutter(roll) * normal).xyz();
+        let velocity = (placed(roll + step) - placed(roll - step)) / (2.0 * step);
+        (placed(roll).into(), normal.into(), normal.dot(&velocity))
+    }
+}
+
+/// A straight blade with a rounded edge: side +1 outside, −1 inside.
+struct Cone {
+    side: f64,
+    point_radius: f64,
+    blade_angle: f64,
+    edge_radius: f64,
+}
+
+impl Cone {
+    /// `s` counts from the tip over the rounding.
+    fn point(&self, s: f64, theta: f64) -> (Vector4<f64>, Vector4<f64>) {
+        let (sine, cosine) = self.blade_angle.sin_cos();
+        let rounding = self.edge_radius * (std::f64::consts::FRAC_PI_2 - self.blade_angle);
+        let height = self.edge_radius * (1.0 - sine) + (s - rounding) * cosine;
+        let radius = self.point_radius + self.side * height * sine / cosine;
+        let around = |radius: f64, z: f64, w: f64| Vector4::new(radius * theta.cos(), radius * theta.sin(), z, w);
+        (around(radius, -height, 1.0), around(self.side * cosine, sine, 0.0))
+    }
+}
+
+fn meets_matrices(spec: &str, surface: &str, dense: &Dense, cone: &Cone) {
+    let graph = Graph::new();
+    let job = job(&graph, spec, &[]);
+    for point in sampled(&job, surface) {
+        let [s, theta, roll] = point.unknowns[..] else { panic!("three unknowns") };
+        let (position, normal, leaving) = dense.point(cone, [s, theta, roll]);
+        assert_point(&point, position, reversed(normal), &format!("{spec}, {surface}"));
+        // central differences of a chain of 100 mm at a step of 1e-5 are good to 1e-8 mm
+        assert!(leaving.abs() < 1e-7, "{spec}, {surface}: {leaving:e} mm per radian");
+    }
+}
+
+/// A hypoid pinion with an offset of 25 mm and a tilt of 17.5 degrees.
+#[test]
+fn a_hypoid_pinion_meets_dense_matrices() {
+    let dense = |ratio| Dense {
+        radial: 86.8455,
+        tilt: 17.5f64.to_radians(),
+        swivel: 17.8243f64.to_radians(),
+        offset: -25.0,
+        base: [-3.7839, 0.0],
+        cradle: 72.1418f64.to_radians(),
+        root: 8f64.to_radians(),
+        ratio,
+    };
+    let cone = |side| Cone { side, point_radius: 76.2, blade_angle: 20f64.to_radians(), edge_radius: 0.8 };
+    let spec = "specs/bevel/hypoid_pinion.chain";
+    meets_matrices(spec, "concave", &dense(3.4243721), &cone(1.0));
+    meets_matrices(spec, "convex", &dense(2.7751093), &cone(-1.0));
+}
+
+/// Both flanks of one cut with helical motion.
+#[test]
+fn a_duplex_helical_pinion_meets_dense_matrices() {
+    let dense = Dense {
+        radial: 97.959,
+        tilt: 0.0,
+        swivel: 0.0,
+        offset: 0.0,
+        base: [-1.5, -5.5],
+        cradle: (-52.797f64).to_radians(),
+        root: 16.4f64.to_radians(),
+        ratio: 3.3397,
+    };
+    let cone = |side, point_radius| Cone { side, point_radius, blade_angle: 20f64.to_radians(), edge_radius: 0.2 };
+    let spec = "specs/bevel/duplex_helical_pinion.chain";
+    meets_matrices(spec, "concave", &dense, &cone(1.0, 95.95));
+    meets_matrices(spec, "convex", &dense, &cone(-1.0, 94.55));
+}
+
+/// Neighbouring segments of a blade's profile share their point; edge and blade touch without a kink, also for a parabola.
+#[test]
+fn roundings_touch_the_blades() {
+    let text = library(&["tools/face_mill.chain", "tools/face_mill_profiles.chain"])
+        + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
+        job show {
+            machine m = stand
+            tool r = face_mill_relieved(
+                outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, toprem_angle: 15 deg,
+                toprem_height: 1.5 mm, flankrem_angle: 26 deg, flankrem_height: 6 mm, edge_radius: 0.4 mm
+            )
+            tool p = face_mill_parabolic(
+                outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, vertex_height: 4 mm,
+                parabola: 0.003 / 1 mm, edge_radius: 0.7 mm
+            )
+            mount r on m.cutter
+            mount p on m.cutter
+            surface outside in m.bed = move(r.outside)
+            surface inside in m.bed = move(r.inside)
+            surface parabola_outside in m.bed = move(p.outside_blade)
+            surface parabola_inside in m.bed = move(p.inside_blade)
+            surface edge_outside in m.bed = move(p.outside_edge)
+            surface edge_inside in m.bed = move(p.inside_edge)
+        }";
+    let graph = Graph::new();
+    let job = job_of_text(&graph, &text);
+    let end = |surface: &str, high: bool| {
+        let unknowns = &job.surfaces.iter().find(|s| s.name == surface).expect("a surface").unknowns;
+        let at = if high { unknowns[0].high } else { unknowns[0].low };
+        points(&job, surface, [unknowns[0].name.as_str(), "theta"], &[[at, 0.3]]).remove(0)
+    };
+    for side in ["outside", "inside"] {
+        let [edge, toprem] = ["edge", "toprem"].map(|piece| format!("{side}.{piece}"));
+        let (one, next) = (end(&edge, true), end(&toprem, false));
+        assert_point(&next, one.position, one.normal, "toprem");
+        let (blade, edge) = (end(&format!("parabola_{side}"), false), end(&format!("edge_{side}"), false));
+        assert_point(&edge, blade.position, blade.normal, "parabola");
+        let tip = end(&format!("edge_{side}"), true);
+        assert!(tip.position[2].abs() < 1e-12 && (tip.normal[2] - 1.0).abs() < 1e-12, "{tip:?}");
+    }
+}
+
+/// Blades of the relieved cutter: heights and radii where the pieces begin, from the angles alone.
+#[test]
+fn relieved_blades_have_their_angles() {
+    let graph = Graph::new();
+    let job = job_of_text(
+        &graph,
+        &(library(&["tools/face_mill.chain", "tools/face_mill_profiles.chain"])
+            + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
+            job show {
+                machine m = stand
+                tool r = face_mill_relieved(
+                    outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, toprem_angle: 15 deg,
+                    toprem_height: 1.5 mm, flankrem_angle: 26 deg, flankrem_height: 6 mm, edge_radius: 0.4 mm
+                )
+                mount r on m.cutter
+                surface outside in m.bed = move(r.outside)
+                surface inside in m.bed = move(r.inside)
+            }"),
+    );
+    for (surface, side, point_radius) in [("outside", 1.0, 76.0), ("inside", -1.0, 74.0)] {
+        let tangents = [("toprem", 15f64, 1.0), ("blade", 20.0, 3.0), ("flankrem", 26.0, 8.0)];
+        for (piece, angle, height) in tangents {
+            let name = format!("{surface}.{piece}");
+            let point = points(&job, &name, ["z", "theta"], &[[-height, 0.0]]).remove(0);
+            let tan = |degrees: f64| degrees.to_radians().tan();
+            let radius = point_radius
+                + side
+                    * match piece {
+                        "toprem" => 1.5 * tan(20.0) + (height - 1.5) * tan(angle),
+                        "flankrem" => 6.0 * tan(20.0) + (height - 6.0) * tan(angle),
+                        _ => height * tan(angle),
+                    };
+            let (sine, cosine) = angle.to_radians().sin_cos();
+            assert_point(&point, [radius, 0.0, -height], [side * cosine, 0.0, sine], &name);
+        }
+    }
+}
