@@ -9,7 +9,7 @@ use digits::Digits;
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::{Binary, Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::PointGeometry;
-use flank_tests::{evaluated, job, job_named, number, problem, reference_json};
+use flank_tests::{evaluated, job, problem};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Step of the differences: they are good to its square.
