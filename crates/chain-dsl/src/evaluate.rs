@@ -331,6 +331,20 @@ impl<'g> Context<'g> {
         }))
     }
 
+    /// Whether a condition holds, if its values are known; nothing if it is none (which has been reported).
+    pub(crate) fn truth(&mut self, condition: &Expression, scope: &Scope<'g>) -> Option<Option<bool>> {
+        match self.evaluate(condition, scope) {
+            Value::Truth(truth) => Some(truth),
+            Value::Poison => None,
+            other => {
+                let message = format!("this must be a condition, it is {}", other.described());
+                let help = "compare it with something, as in `a > 0`";
+                self.report(Diagnostic::new(Code::WrongDimension, condition.span, message).help(help));
+                None
+            }
+        }
+    }
+
     fn conditional(
         &mut self,
         condition: &Expression,
@@ -338,16 +352,7 @@ impl<'g> Context<'g> {
         no: &Expression,
         scope: &Scope<'g>,
     ) -> Value<'g> {
-        let truth = match self.evaluate(condition, scope) {
-            Value::Truth(truth) => truth,
-            Value::Poison => return Value::Poison,
-            other => {
-                let message = format!("this must be a condition, it is {}", other.described());
-                let help = "compare it with something, as in `if a > 0 then …`";
-                self.report(Diagnostic::new(Code::WrongDimension, condition.span, message).help(help));
-                return Value::Poison;
-            }
-        };
+        let Some(truth) = self.truth(condition, scope) else { return Value::Poison };
         match truth {
             Some(true) => self.evaluate(yes, scope),
             Some(false) => self.evaluate(no, scope),

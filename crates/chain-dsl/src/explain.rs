@@ -61,7 +61,7 @@ mod tests {
         let nearest = |text: &str| text.parse::<Code>().expect_err("not a code").nearest;
         assert_eq!(nearest("E301"), Some(Code::WrongDimension));
         assert_eq!(nearest("E0310"), Some(Code::WrongDimension));
-        assert_eq!(nearest("E0309"), Some(Code::BrokenProfile));
+        assert_eq!(nearest("E0319"), Some(Code::Unmet));
         assert_eq!(nearest("E0999"), None);
         assert_eq!(nearest("dimension"), None);
         let told = "E301".parse::<Code>().expect_err("not a code").to_string();

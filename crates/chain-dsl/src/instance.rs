@@ -24,6 +24,16 @@ pub(crate) enum Source<'a, 'g> {
     Job,
 }
 
+impl<'a> Source<'a, '_> {
+    /// The place of the one who gives the values.
+    pub(crate) fn user(&self) -> Option<Span> {
+        match self {
+            Source::Instance { name, .. } => Some(name.span),
+            Source::Definition | Source::Job => None,
+        }
+    }
+}
+
 /// Makes a variable for each `param`, puts it into the scope and gives the list of them.
 pub(crate) struct Binder<'a, 'g> {
     pub(crate) source: Source<'a, 'g>,

@@ -50,6 +50,7 @@ mod machine;
 mod model;
 mod profile;
 mod render;
+mod requirement;
 mod sample;
 mod source;
 mod steel;

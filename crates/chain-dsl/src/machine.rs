@@ -13,8 +13,9 @@ use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::limits;
 use crate::model::{Frame, Parameter};
+use crate::requirement;
 use crate::source::{Name, Span};
-use crate::syntax::ast::{self, AxisKind, MachineStatement};
+use crate::syntax::ast::{self, AxisKind, Let, MachineStatement, Param, Requirement};
 use crate::transforms;
 
 /// What a statement of a machine costs each time that the machine is built: it is looked for twins, replaces others, gets a
@@ -36,6 +37,8 @@ pub(crate) struct Flat<'a> {
     /// Laws beside the first of their axis: perhaps meant for another one.
     repeated_laws: usize,
     frames: Named<'a, &'a ast::Frame>,
+    /// Of all machines of the line: what a variant demands comes on top of what its parents do.
+    requirements: Vec<&'a Requirement>,
 }
 
 /// A law that the machine itself states.
@@ -112,23 +115,23 @@ pub(crate) fn flatten<'a, 'g>(
     Some(flat)
 }
 
-/// Name and place of what a statement defines, with a word for its namespace.
-fn defined(statement: &MachineStatement) -> (&Name, &'static str) {
-    match statement {
+/// Name and place of what a statement defines, with a word for its namespace; nothing for a requirement.
+fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
+    Some(match statement {
         MachineStatement::Param(param) => (&param.name, "value"),
         MachineStatement::Let(binding) => (&binding.name, "value"),
         MachineStatement::Axis(axis) => (&axis.name, "value"),
         MachineStatement::Frame(frame) => (&frame.name, "frame"),
         MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
-    }
+        MachineStatement::Require(_) => return None,
+    })
 }
 
 /// Reports what is defined twice; gives the number of laws among it.
 fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) -> usize {
     let mut laws = 0;
     let mut seen: HashMap<(&str, &str), Span> = HashMap::new();
-    for statement in &machine.statements {
-        let (name, kind) = defined(statement);
+    for (name, kind) in machine.statements.iter().filter_map(defined) {
         let Some(&first) = seen.get(&(kind, name.node.as_str())) else {
             seen.insert((kind, &name.node), name.span);
             continue;
@@ -171,13 +174,15 @@ impl<'a, T> Named<'a, T> {
 
 impl<'a> Flat<'a> {
     fn add(&mut self, statement: &'a MachineStatement) {
-        let name = defined(statement).0;
         match statement {
-            MachineStatement::Param(_) | MachineStatement::Let(_) => self.constants.put(name, statement),
-            MachineStatement::Axis(axis) => self.axes.put(name, axis),
-            MachineStatement::Frame(frame) => self.frames.put(name, frame),
-            MachineStatement::Fix(law) => self.laws.put(name, (law, LawKind::Fix)),
-            MachineStatement::Couple(law) => self.laws.put(name, (law, LawKind::Couple)),
+            MachineStatement::Param(Param { name, .. }) | MachineStatement::Let(Let { name, .. }) => {
+                self.constants.put(name, statement);
+            }
+            MachineStatement::Axis(axis) => self.axes.put(&axis.name, axis),
+            MachineStatement::Frame(frame) => self.frames.put(&frame.name, frame),
+            MachineStatement::Fix(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Fix)),
+            MachineStatement::Couple(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Couple)),
+            MachineStatement::Require(required) => self.requirements.push(required),
         }
     }
 
@@ -204,6 +209,7 @@ impl<'a> Flat<'a> {
             Source::Instance { name, .. } => format!("{}.", name.node),
             _ => String::new(),
         };
+        let user = source.user();
         let mut binder = Binder::new(source, overrides);
         let mut scope = Scope::new();
         for statement in &self.constants.list {
@@ -221,6 +227,7 @@ impl<'a> Flat<'a> {
         for axis in &axes {
             scope.insert(axis.name.node.clone(), Value::Scalar(axis.variable, axis.dimension));
         }
+        self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         let frames = self.build_frames(context, machine, &scope);
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();

@@ -13,6 +13,7 @@ use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::model::{Bounded, Parameter, ToolShape};
 use crate::profile::{self, Segment};
+use crate::requirement;
 use crate::source::Name;
 use crate::steel::{self, Places};
 use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
@@ -53,17 +54,21 @@ pub(crate) fn build<'g>(
     source: Source<'_, 'g>,
     overrides: &Overrides,
 ) -> BuiltTool<'g> {
+    let user = source.user();
     let mut binder = Binder::new(source, overrides);
     let mut scope = Scope::new();
     let mut seen: HashMap<&str, crate::Span> = HashMap::new();
     for statement in &tool.statements {
         let name = match statement {
-            ToolStatement::Param(param) => &param.name,
-            ToolStatement::Let(binding) => &binding.name,
-            ToolStatement::Profile(profile) => &profile.name,
-            ToolStatement::Surface(surface) => &surface.name,
+            ToolStatement::Param(param) => Some(&param.name),
+            ToolStatement::Let(binding) => Some(&binding.name),
+            ToolStatement::Profile(profile) => Some(&profile.name),
+            ToolStatement::Surface(surface) => Some(&surface.name),
+            ToolStatement::Require(_) => None,
         };
-        if let Some(first) = seen.insert(&name.node, name.span) {
+        if let Some(name) = name
+            && let Some(first) = seen.insert(&name.node, name.span)
+        {
             context.duplicate(name, first);
         }
         match statement {
@@ -73,6 +78,7 @@ pub(crate) fn build<'g>(
                 scope.insert(binding.name.node.clone(), value);
             }
             ToolStatement::Profile(written) => profile::build(context, written, &mut scope),
+            ToolStatement::Require(required) => requirement::check(context, required, &scope, user),
             ToolStatement::Surface(_) => {}
         }
     }

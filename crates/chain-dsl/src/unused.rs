@@ -109,18 +109,11 @@ impl Used {
     }
 
     fn expression(&mut self, expression: &Expression) {
-        match &expression.kind {
-            ExpressionKind::Number(..) | ExpressionKind::Text(_) | ExpressionKind::Error => {}
+        expression.each(&mut |part| match &part.kind {
             ExpressionKind::Path(path) => self.path(path),
-            ExpressionKind::Call(call) => self.call(call),
-            ExpressionKind::Vector(parts) => parts.iter().for_each(|part| self.expression(part)),
-            ExpressionKind::Unary(_, a) => self.expression(a),
-            ExpressionKind::Index(a, b) | ExpressionKind::Binary(_, a, b) => {
-                self.expression(a);
-                self.expression(b);
-            }
-            ExpressionKind::If(a, b, c) => [a, b, c].into_iter().for_each(|part| self.expression(part)),
-        }
+            ExpressionKind::Call(call) => drop(self.0.insert(call.function.node.clone())),
+            _ => {}
+        });
     }
 
     fn range(&mut self, range: &ast::Range) {
@@ -141,6 +134,7 @@ impl Used {
                 MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
                 MachineStatement::Frame(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
+                MachineStatement::Require(required) => self.expression(&required.condition),
             }
         }
     }
@@ -150,6 +144,7 @@ impl Used {
             match statement {
                 ToolStatement::Param(param) => self.param(param),
                 ToolStatement::Let(binding) => self.expression(&binding.value),
+                ToolStatement::Require(required) => self.expression(&required.condition),
                 ToolStatement::Profile(profile) => {
                     profile.segments.iter().for_each(|segment| self.expression(&segment.value));
                 }
@@ -175,6 +170,7 @@ impl Used {
             match statement {
                 JobStatement::Param(param) => self.param(param),
                 JobStatement::Let(binding) => self.expression(&binding.value),
+                JobStatement::Require(required) => self.expression(&required.condition),
                 JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
                     self.0.insert(instance.definition.node.clone());
                     instance.settings.iter().for_each(|setting| self.expression(&setting.value));

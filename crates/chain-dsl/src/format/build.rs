@@ -33,7 +33,8 @@ impl Builder<'_> {
     }
 
     fn statement(&mut self, part: &Part<'_>) -> Statement {
-        let equals = part.parts.iter().position(|part| part.is("="));
+        // the value of a requirement is its message
+        let equals = part.parts.iter().position(|part| part.is("=") || part.is(","));
         let (head, value) = part.parts.split_at(equals.map_or(part.parts.len(), |equals| equals + 1));
         let (family, stops) = family(head).unzip();
         let mut head = self.pieces(Kind::Statement, head);
@@ -150,7 +151,7 @@ fn gap(kind: Kind, parts: &[Part<'_>], index: usize) -> bool {
         Kind::Element => !right.is(":"),
         // without a space, the exponent would be that of the unit
         Kind::Power => parts[0].kind == Kind::Number && parts[0].parts.len() > 1,
-        Kind::Statement => !(right.kind == Kind::List && right.parts[0].is("(")),
+        Kind::Statement => !(right.kind == Kind::List && right.parts[0].is("(") || right.is(",")),
         _ => true,
     }
 }

@@ -16,6 +16,7 @@ use crate::instance::{Binder, Overrides, Source};
 use crate::limits;
 use crate::machine::{self, Built, Machines};
 use crate::model::{Bounded, GeneratedSurface, Job};
+use crate::requirement;
 use crate::source::{Name, Span};
 use crate::syntax::ast::{self, JobStatement};
 use crate::tool::{self, BuiltTool, Tools};
@@ -155,6 +156,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Machine(instance) => self.machine(context, instance),
             JobStatement::Tool(instance) => self.tool(context, instance),
             JobStatement::Surface(surface) => self.define(context, &surface.name),
+            JobStatement::Require(required) => requirement::check(context, required, &self.scope, None),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }

@@ -85,6 +85,8 @@ pub enum MachineStatement {
     Fix(Assignment),
     /// `couple C = …`: an axis that follows others.
     Couple(Assignment),
+    /// `require a < b, "…"`
+    Require(Requirement),
 }
 
 /// `param name : dimension in a .. b = default`
@@ -177,6 +179,8 @@ pub enum ToolStatement {
     Profile(Profile),
     /// `surface name(u: length in a .. b, …) { … }`
     Surface(ToolSurface),
+    /// `require a < b, "…"`
+    Require(Requirement),
 }
 
 /// A plane line of a tool, made of segments that one length runs over.
@@ -319,6 +323,17 @@ pub enum JobStatement {
     },
     /// `sample name { … }`
     Sample(Sample),
+    /// `require a < b, "…"`
+    Require(Requirement),
+}
+
+/// `require condition, "message"`: what must hold of the values, and what is told if it does not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirement {
+    /// The condition.
+    pub condition: Expression,
+    /// In the words of the one who wrote it.
+    pub message: String,
 }
 
 /// `name = definition(setting: value, …)`
@@ -449,6 +464,21 @@ pub struct Expression {
 }
 
 impl Expression {
+    /// Shows the expression and all that it is made of, from left to right.
+    pub(crate) fn each<'e>(&'e self, show: &mut impl FnMut(&'e Expression)) {
+        show(self);
+        match &self.kind {
+            ExpressionKind::Number(..) | ExpressionKind::Text(_) | ExpressionKind::Path(_) | ExpressionKind::Error => {}
+            ExpressionKind::Call(call) => call.arguments.iter().for_each(|argument| argument.value.each(show)),
+            ExpressionKind::Vector(parts) => parts.iter().for_each(|part| part.each(show)),
+            ExpressionKind::Unary(_, a) => a.each(show),
+            ExpressionKind::Index(a, b) | ExpressionKind::Binary(_, a, b) => {
+                [a, b].into_iter().for_each(|part| part.each(show))
+            }
+            ExpressionKind::If(a, b, c) => [a, b, c].into_iter().for_each(|part| part.each(show)),
+        }
+    }
+
     /// What the elements of a value that is a vector of this length are written as: itself for each, unless it is written as
     /// a vector.
     pub(crate) fn parts(&self, length: usize) -> Vec<&Expression> {

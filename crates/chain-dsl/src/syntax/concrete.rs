@@ -99,7 +99,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
         Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
-        Rule::drive | Rule::surface | Rule::trim | Rule::sample | Rule::segment => Kind::Statement,
+        Rule::drive | Rule::surface | Rule::trim | Rule::sample | Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::keep => Kind::Element,
         Rule::arguments | Rule::settings | Rule::vector => Kind::List,

@@ -80,6 +80,7 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::dots => "`..` between the ends of the range".to_owned(),
         Rule::axis_kind => "`linear` or `rotary`".to_owned(),
         Rule::side => "`inside`, `outside`".to_owned(),
+        Rule::string if before.statement == "require" => "what to tell, such as `\"too few teeth\"`".to_owned(),
         Rule::string => "a path such as `\"machines/hobbing.chain\"`".to_owned(),
         Rule::infix => "an operator".to_owned(),
         Rule::integer => "a whole number".to_owned(),
@@ -155,6 +156,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "fix" | "couple" | "drive" => "axis",
         "mount" => "tool",
         "sample" | "trim" => "surface",
+        "require" => "condition",
         "fn" => "function",
         other => other,
     }

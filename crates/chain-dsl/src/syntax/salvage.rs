@@ -23,6 +23,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
         "frame" => MachineStatement::Frame(piece.frame(name)),
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
+        "require" => return None,
         _ => MachineStatement::Let(piece.let_statement(name)),
     })
 }
@@ -33,6 +34,7 @@ pub(super) fn tool_statement(scan: &Scan, word: &str, range: Range<usize>) -> Op
     let name = piece.defined()?;
     Some(match word {
         "param" => ToolStatement::Param(piece.param(name)),
+        "require" => return None,
         _ => ToolStatement::Let(piece.let_statement(name)),
     })
 }
@@ -56,6 +58,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         }),
         "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
+        "require" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }

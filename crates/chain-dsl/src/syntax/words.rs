@@ -15,17 +15,17 @@ pub(super) enum Reserved {
 pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
-pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple"];
+pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple", "require"];
 
 /// Words that begin a statement in a tool.
-pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface"];
+pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
 
 /// Words that begin a statement in a tool's surface.
 pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] =
-    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample"];
+    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample", "require"];
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] =

@@ -225,9 +225,10 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(7) {
+        match self.random.below(8) {
             0 => self.param(),
             1 => self.assignment("let"),
+            7 => self.requirement(),
             2 => self.assignment("fix"),
             3 => self.assignment("couple"),
             4 => {
@@ -241,6 +242,12 @@ impl Writer {
             }
             _ => self.frame(),
         }
+    }
+
+    fn requirement(&mut self) {
+        self.put("require");
+        self.value();
+        self.all(&[",", "\"a // b\""]);
     }
 
     fn frame(&mut self) {
@@ -258,10 +265,11 @@ impl Writer {
     }
 
     fn tool_statement(&mut self) {
-        match self.random.below(5) {
+        match self.random.below(6) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 => self.profile(),
+            3 => self.requirement(),
             _ => self.tool_surface(),
         }
     }
@@ -310,7 +318,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(10) {
+        match self.random.below(11) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -339,6 +347,7 @@ impl Writer {
                 self.put("by");
                 self.name();
             }
+            9 => self.requirement(),
             _ => self.sample(),
         }
     }

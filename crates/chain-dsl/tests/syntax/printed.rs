@@ -57,6 +57,7 @@ fn machine_statement(statement: &MachineStatement) -> String {
         }
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),
+        MachineStatement::Require(it) => requirement(it),
     }
 }
 
@@ -64,6 +65,7 @@ fn tool_statement(statement: &ToolStatement) -> Vec<String> {
     match statement {
         ToolStatement::Param(it) => vec![param(it)],
         ToolStatement::Let(it) => vec![let_statement(it)],
+        ToolStatement::Require(it) => vec![requirement(it)],
         ToolStatement::Profile(it) => {
             let head = format!("{}profile {}", doc(&it.doc), it.name.node);
             let segment = |it: &Segment| format!("  {}{} {}", doc(&it.doc), it.name.node, expression(&it.value));
@@ -97,11 +99,16 @@ fn job_statement(statement: &JobStatement) -> String {
             format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
         }
         JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
+        JobStatement::Require(it) => requirement(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
             format!("sample {} {}", path(&it.surface), entries.join(", "))
         }
     }
+}
+
+fn requirement(it: &Requirement) -> String {
+    format!("require {} {:?}", expression(&it.condition), it.message)
 }
 
 fn surface_parameter(it: &SurfaceParameter) -> String {

@@ -154,6 +154,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_job
             | kw_param
             | kw_let
+            | kw_require
             | kw_axis
             | kw_frame
             | kw_fix

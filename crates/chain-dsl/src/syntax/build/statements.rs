@@ -8,7 +8,7 @@ use crate::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
-    MachineStatement, Param, Parameter, Path, Range, Sample, SampleEntry, SampleValues, ToolStatement,
+    MachineStatement, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -23,6 +23,7 @@ impl Build<'_> {
             Rule::frame => MachineStatement::Frame(self.frame(pair)),
             Rule::fix => MachineStatement::Fix(self.assignment(pair)),
             Rule::couple => MachineStatement::Couple(self.assignment(pair)),
+            Rule::requirement => MachineStatement::Require(self.requirement(pair)),
             _ => return None,
         })
     }
@@ -34,6 +35,7 @@ impl Build<'_> {
             Rule::let_statement => ToolStatement::Let(self.let_statement(pair)),
             Rule::profile => ToolStatement::Profile(self.profile(pair)),
             Rule::tool_surface => ToolStatement::Surface(self.tool_surface(pair)),
+            Rule::requirement => ToolStatement::Require(self.requirement(pair)),
             _ => return None,
         })
     }
@@ -51,6 +53,7 @@ impl Build<'_> {
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => self.trim(pair),
             Rule::sample => JobStatement::Sample(self.sample(pair)),
+            Rule::requirement => JobStatement::Require(self.requirement(pair)),
             _ => return None,
         })
     }
@@ -70,6 +73,12 @@ impl Build<'_> {
     pub(super) fn let_statement(&mut self, pair: Pair<'_, Rule>) -> Let {
         let mut parts = Parts::of(pair);
         Let { name: self.name(parts.required(Rule::name)), value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn requirement(&mut self, pair: Pair<'_, Rule>) -> Requirement {
+        let mut parts = Parts::of(pair);
+        let condition = self.expression(parts.required(Rule::expression));
+        Requirement { condition, message: self.text(parts.required(Rule::string)).node }
     }
 
     fn axis(&mut self, pair: Pair<'_, Rule>) -> Axis {
