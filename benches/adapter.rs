@@ -3,7 +3,8 @@
 //! `adapter --job flank|grid --n1 501 --n2 501 --threads 1 --reps 15 --out points.bin`
 
 use std::fmt::Write as _;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write as _};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -78,39 +79,40 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         .map_err(|error| error.to_string())?;
     let setup = start.elapsed().as_secs_f64();
 
-    let with_curvatures = arguments.job == "grid";
-    let (mut times, mut rows, mut evaluations) = (Vec::new(), vec![[0.0; 9]; sample.targets.len()], 0);
+    let (mut times, mut evaluations, mut memory) = (Vec::new(), 0, None);
     for _ in 0..arguments.repetitions {
         let start = Instant::now();
-        let (points, effort) = problem.solve_points(&sample.targets, sample.counts, Some(&START));
-        for (k, row) in rows.iter_mut().enumerate() {
-            if points.outcome(k) != Outcome::Solved {
-                return Err(format!("not solved: {:?}", points.point(k)));
-            }
-            let (unknowns, placed) = (points.unknowns(k), points.placed(k));
-            if with_curvatures {
-                row[0] = unknowns[0];
-                row[1..7].copy_from_slice(&placed);
-                let principal = geometry.at(unknowns).curvature.ok_or("a point has no curvature")?.principal();
-                row[7..].copy_from_slice(&[principal.k1, principal.k2]);
-            } else {
-                row[..3].copy_from_slice(unknowns);
-                row[3..].copy_from_slice(&placed);
-            }
+        let (points, effort) = problem.solve_points(&sample.targets, sample.counts, Some(&START), memory.take());
+        if let Some(k) = (0..points.len()).find(|k| points.outcome(*k) != Outcome::Solved) {
+            return Err(format!("not solved: {:?}", points.point(k)));
         }
         times.push(format!("{:.9}", start.elapsed().as_secs_f64()));
         evaluations = effort.evaluations;
+        memory = Some(points);
     }
+    let points = memory.ok_or("no repetition")?;
     if !arguments.out.is_empty() {
-        let bytes: Vec<u8> = rows.iter().flatten().copied().flat_map(f64::to_le_bytes).collect();
-        fs::write(&arguments.out, bytes).map_err(|error| format!("{}: {error}", arguments.out))?;
+        let failed = |error: std::io::Error| format!("{}: {error}", arguments.out);
+        let mut file = BufWriter::new(File::create(&arguments.out).map_err(failed)?);
+        for k in 0..points.len() {
+            let (mut row, placed) = (points.unknowns(k), points.placed(k));
+            if arguments.job == "grid" {
+                let principal = geometry.at(&row).curvature.ok_or("a point has no curvature")?.principal();
+                row.truncate(1);
+                row.extend(placed.iter().chain(&[principal.k1, principal.k2]));
+            } else {
+                row.extend(placed);
+            }
+            row.iter().try_for_each(|value| file.write_all(&value.to_le_bytes())).map_err(failed)?;
+        }
+        file.flush().map_err(failed)?;
     }
     let mut report = String::new();
     let _ = write!(
         report,
         "{{\"cand\":\"flank\",\"job\":\"{}\",\"setup_s\":{setup:.6},\"evals_per_pt\":{:.3},\"peak_mb\":{:.1},\"solve_s\":[{}]}}",
         arguments.job,
-        evaluations as f64 / rows.len() as f64,
+        evaluations as f64 / points.len() as f64,
         peak_memory(),
         times.join(",")
     );

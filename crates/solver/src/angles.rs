@@ -55,7 +55,9 @@ impl SearchSystem {
             unknowns.iter().copied().chain(replaced.iter().map(|(_, variable)| *variable)).collect();
         let angles: Vec<Expr<'g>> = replaced.iter().map(|(angle, _)| *angle).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).copied().collect();
-        let system = System::new(&equations, &all, parameters)?.with_conditions(conditions, &all, parameters)?;
+        let searched: Vec<Expr<'g>> = all.iter().chain(parameters).copied().collect();
+        let system =
+            System::new(&equations, &all, parameters)?.with_conditions(&equations, conditions, &[], &searched)?;
         Ok(Some(SearchSystem { system, angles: Tape::new(&angles, &inputs)?, turns }))
     }
 

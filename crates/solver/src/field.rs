@@ -1,229 +1,556 @@
-//! The points of a grid as they become known, without an allocation for each of them.
+//! The points of a grid as they become known, in the order in which lanes work on them.
+//!
+//! Points stand in blocks of [`LANES`] points of a line, a row or a column of the grid. A block holds one number of each lane after
+//! the other, so that what is done for a block is done to whole vectors. The blocks of the same lanes, line by line, make
+//! a strip; a line follows from the lines around it.
+
+#![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
 use flank_expr::LANES;
 
-use crate::lanes::{LaneNewton, Start};
+use crate::lanes::{LaneNewton, Lanes};
 use crate::line::Midpoint;
-use crate::solution::{Outcome, Range, Solution, distance, verdict};
+use crate::solution::{CutBy, Outcome, Range, Solution, distance, verdict};
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
 const ASTRAY: f64 = 0.25;
 /// Distances below this share of the ranges are never a jump to another branch.
 pub(crate) const NEAR: f64 = 1e-3;
 /// Around a point the Jacobian has an inverse if its determinants there differ by less than this factor.
-const SAME_DETERMINANT: f64 = 4.0;
+pub(crate) const SAME_DETERMINANT: f64 = 4.0;
 
-/// Solutions of a grid, row by row.
+/// What is known of a point: its outcome, without what follows from its unknowns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Mark {
+    /// Nothing has come near.
+    #[default]
+    Unknown,
+    Solved,
+    CutByItsTool,
+    Outside,
+    Singular,
+    NotConverged,
+    Ambiguous,
+}
+
+impl Mark {
+    fn is_root(self) -> bool {
+        matches!(self, Mark::Solved | Mark::CutByItsTool | Mark::Outside)
+    }
+
+    fn of(outcome: Outcome) -> Mark {
+        match outcome {
+            Outcome::Solved => Mark::Solved,
+            Outcome::CutAway(_) | Outcome::Undecided => Mark::CutByItsTool,
+            Outcome::Outside { .. } => Mark::Outside,
+            Outcome::Singular => Mark::Singular,
+            Outcome::NotConverged { .. } => Mark::NotConverged,
+            Outcome::Ambiguous => Mark::Ambiguous,
+        }
+    }
+}
+
+/// What the lines of a field are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lines {
+    Rows,
+    Columns,
+}
+
+/// How a field is divided.
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    lines: Lines,
+    /// Columns of the grid.
+    columns: usize,
+    /// Number of lines, and of points on each.
+    count: usize,
+    length: usize,
+    /// Unknowns of a point.
+    size: usize,
+    /// Numbers of a point: unknowns, the scaled determinant of the Jacobian (NaN where it is not known), the largest residual,
+    /// and what else is wanted.
+    planes: usize,
+}
+
+impl Shape {
+    fn new(lines: Lines, [rows, columns]: [usize; 2], size: usize, planes: usize) -> Shape {
+        let [count, length] = if lines == Lines::Rows { [rows, columns] } else { [columns, rows] };
+        Shape { lines, columns, count, length, size, planes }
+    }
+
+    fn blocks(&self) -> usize {
+        self.count * self.length.div_ceil(LANES)
+    }
+
+    fn point(&self, line: usize, at: usize) -> usize {
+        if self.lines == Lines::Rows { line * self.columns + at } else { at * self.columns + line }
+    }
+
+    /// Block and lane of a point.
+    fn place(&self, point: usize) -> (usize, usize) {
+        let (i, j) = (point / self.columns, point % self.columns);
+        let (line, at) = if self.lines == Lines::Rows { (i, j) } else { (j, i) };
+        ((at / LANES) * self.count + line, at % LANES)
+    }
+}
+
+/// Solutions of a grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
-    size: usize,
-    /// Of each point the unknowns, then the scaled determinant of the Jacobian (NaN where it is not known).
-    states: Vec<f64>,
-    outcomes: Vec<Option<Outcome>>,
-    residuals: Vec<f64>,
+    shape: Shape,
+    ranges: Vec<Range>,
+    values: Vec<f64>,
+    marks: Vec<[Mark; LANES]>,
+    /// Points by the careful path, which does not compute what else is wanted.
+    loose: Vec<usize>,
 }
 
 impl Field {
-    pub(crate) fn new(size: usize, points: usize) -> Field {
-        Field {
-            size,
-            states: vec![f64::NAN; points * (size + 1)],
-            outcomes: vec![None; points],
-            residuals: vec![f64::NAN; points],
+    /// Nothing known of `counts` rows and columns, with room for `extras` further numbers a point; in the memory of another
+    /// field if there is one.
+    pub(crate) fn new(ranges: &[Range], counts: [usize; 2], extras: usize, memory: Option<Field>) -> Field {
+        let shape = Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras);
+        let (values, marks) = memory.map_or((Vec::new(), Vec::new()), |field| (field.values, field.marks));
+        let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new() };
+        field.clear();
+        field
+    }
+
+    fn clear(&mut self) {
+        // what is not marked is not read
+        let length = self.shape.blocks() * self.shape.planes * LANES;
+        if self.values.capacity() < length {
+            self.values = vec![0.0; length];
+        }
+        self.values.resize(length, 0.0);
+        self.marks.clear();
+        self.marks.resize(self.shape.blocks(), [Mark::Unknown; LANES]);
+    }
+
+    /// Divides it into other lines; of all that is known, only the given points stay so.
+    pub(crate) fn divide(&mut self, lines: Lines, points: &[usize]) {
+        let Shape { count, length, size, planes, .. } = self.shape;
+        if self.shape.lines == lines {
+            return;
+        }
+        let known: Vec<(usize, Mark, Vec<f64>)> = points
+            .iter()
+            .map(|&point| (point, self.mark(point), (0..planes).map(|plane| self.value(point, plane)).collect()))
+            .collect();
+        let counts = if lines == Lines::Rows { [length, count] } else { [count, length] };
+        self.shape = Shape::new(lines, counts, size, planes);
+        self.clear();
+        for (point, mark, values) in known {
+            let (block, lane) = self.shape.place(point);
+            self.marks[block][lane] = mark;
+            values.into_iter().enumerate().for_each(|(plane, value)| self.set(point, plane, value));
         }
     }
 
-    pub(crate) fn unknowns(&self, point: usize) -> &[f64] {
-        &self.states[point * (self.size + 1)..][..self.size]
+    /// Number of points.
+    pub(crate) fn len(&self) -> usize {
+        self.shape.count * self.shape.length
+    }
+
+    fn value(&self, point: usize, plane: usize) -> f64 {
+        let (block, lane) = self.shape.place(point);
+        self.values[(block * self.shape.planes + plane) * LANES + lane]
+    }
+
+    fn set(&mut self, point: usize, plane: usize, value: f64) {
+        let (block, lane) = self.shape.place(point);
+        self.values[(block * self.shape.planes + plane) * LANES + lane] = value;
+    }
+
+    fn mark(&self, point: usize) -> Mark {
+        let (block, lane) = self.shape.place(point);
+        self.marks[block][lane]
+    }
+
+    pub(crate) fn unknowns(&self, point: usize) -> Vec<f64> {
+        (0..self.shape.size).map(|k| self.value(point, k)).collect()
     }
 
     /// The verdict; none where nothing has come near.
     pub(crate) fn outcome(&self, point: usize) -> Option<Outcome> {
-        self.outcomes[point]
+        match self.mark(point) {
+            Mark::Unknown => None,
+            Mark::Solved => Some(Outcome::Solved),
+            Mark::CutByItsTool => Some(Outcome::CutAway(CutBy::ItsTool)),
+            Mark::Outside => Some(verdict(&self.unknowns(point), &self.ranges, true, false)),
+            Mark::Singular => Some(Outcome::Singular),
+            Mark::NotConverged => Some(Outcome::NotConverged { iterations: self.determinant(point) as u32 }),
+            Mark::Ambiguous => Some(Outcome::Ambiguous),
+        }
     }
 
     pub(crate) fn residual(&self, point: usize) -> f64 {
-        self.residuals[point]
+        if self.mark(point) == Mark::Unknown { f64::NAN } else { self.value(point, self.shape.size + 1) }
+    }
+
+    /// What else is wanted of a point.
+    pub(crate) fn extra(&self, point: usize, k: usize) -> f64 {
+        if self.mark(point) == Mark::Unknown { f64::NAN } else { self.value(point, self.shape.size + 2 + k) }
     }
 
     pub(crate) fn is_root(&self, point: usize) -> bool {
-        self.outcomes[point].is_some_and(Outcome::is_root)
+        self.mark(point).is_root()
     }
 
-    pub(crate) fn count(&self, outcome: Outcome) -> usize {
-        self.outcomes.iter().filter(|found| **found == Some(outcome)).count()
+    /// Number of solved points.
+    pub(crate) fn solved(&self) -> usize {
+        self.marks.iter().flatten().filter(|mark| **mark == Mark::Solved).count()
+    }
+
+    /// Whether nothing is left to look for.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.marks.iter().flatten().filter(|mark| mark.is_root()).count() == self.len()
     }
 
     /// A point by the careful path.
     pub(crate) fn put(&mut self, point: usize, solution: &Solution) {
-        let state = &mut self.states[point * (self.size + 1)..][..=self.size];
-        state[..self.size].copy_from_slice(&solution.unknowns);
-        state[self.size] = f64::NAN;
-        self.outcomes[point] = Some(solution.outcome);
-        self.residuals[point] = solution.residual;
+        for (k, value) in solution.unknowns.iter().enumerate() {
+            self.set(point, k, *value);
+        }
+        let determinant = match solution.outcome {
+            // where there is no root, the number of iterations takes the place
+            Outcome::NotConverged { iterations } => f64::from(iterations),
+            _ => f64::NAN,
+        };
+        self.set(point, self.shape.size, determinant);
+        self.set(point, self.shape.size + 1, solution.residual);
+        let (block, lane) = self.shape.place(point);
+        self.marks[block][lane] = Mark::of(solution.outcome);
+        self.loose.push(point);
+    }
+
+    /// Nothing is known of a point any more.
+    pub(crate) fn forget(&mut self, point: usize) {
+        let (block, lane) = self.shape.place(point);
+        self.marks[block][lane] = Mark::Unknown;
+    }
+
+    pub(crate) fn determinant(&self, point: usize) -> f64 {
+        self.value(point, self.shape.size)
     }
 
     pub(crate) fn set_determinant(&mut self, point: usize, determinant: f64) {
-        self.states[point * (self.size + 1) + self.size] = determinant;
+        self.set(point, self.shape.size, determinant);
     }
 
     pub(crate) fn solution(&self, point: usize) -> Option<Solution> {
         Some(Solution {
-            outcome: self.outcomes[point]?,
-            unknowns: self.unknowns(point).to_vec(),
-            residual: self.residuals[point],
+            outcome: self.outcome(point)?,
+            unknowns: self.unknowns(point),
+            residual: self.residual(point),
             iterations: 0,
         })
     }
 
-    /// The points at some places, as lines of their own.
-    pub(crate) fn gathered(&self, points: &[usize]) -> Field {
-        let mut taken = Field::new(self.size, 0);
-        for &point in points {
-            taken.states.extend_from_slice(&self.states[point * (self.size + 1)..][..=self.size]);
-            taken.outcomes.push(self.outcomes[point]);
-            taken.residuals.push(self.residuals[point]);
+    /// Takes what a lane has come to, if that is clear.
+    pub(crate) fn take(&mut self, point: usize, newton: &mut LaneNewton<'_>, lane: usize) {
+        let (block, column) = self.shape.place(point);
+        let values = &mut self.values[block * self.shape.planes * LANES..][..self.shape.planes * LANES];
+        take(self.shape, values, &mut self.marks[block], column, newton, lane);
+    }
+
+    /// What else is wanted of the points that came by the careful path: where it is no number, a root is no point that is solved.
+    pub(crate) fn place_loose(&mut self, newton: &mut LaneNewton<'_>) {
+        let extras = self.shape.planes - self.shape.size - 2;
+        let loose = std::mem::take(&mut self.loose);
+        for block in loose.chunks(LANES).filter(|_| extras > 0) {
+            for k in 0..self.shape.size {
+                for (lane, point) in block.iter().enumerate() {
+                    newton.input(k)[lane] = self.value(*point, k);
+                }
+            }
+            newton.place(block.len());
+            for k in 0..extras {
+                for (lane, point) in block.iter().enumerate() {
+                    let value = newton.extra(k)[lane];
+                    self.set(*point, self.shape.size + 2 + k, value);
+                    let (block, lane) = self.shape.place(*point);
+                    let mark = &mut self.marks[block][lane];
+                    *mark = if *mark == Mark::Solved && !value.is_finite() { Mark::Singular } else { *mark };
+                }
+            }
         }
-        taken
     }
 
-    /// Puts back what `gathered` took.
-    pub(crate) fn scatter(&mut self, taken: &Field, points: &[usize]) {
-        let width = self.size + 1;
-        for (from, &to) in points.iter().enumerate() {
-            self.states[to * width..][..width].copy_from_slice(&taken.states[from * width..][..width]);
-            self.outcomes[to] = taken.outcomes[from];
-            self.residuals[to] = taken.residuals[from];
-        }
-    }
-
-    /// The whole in pieces of some points each, one behind the other.
-    pub(crate) fn pieces(&mut self, points: usize) -> Vec<Piece<'_>> {
-        let width = self.size + 1;
-        let states = self.states.chunks_mut(points * width);
-        let verdicts = self.outcomes.chunks_mut(points).zip(self.residuals.chunks_mut(points));
-        let piece = |(states, (outcomes, residuals))| Piece { size: width - 1, states, outcomes, residuals };
-        states.zip(verdicts).map(piece).collect()
-    }
-}
-
-/// A point in a lane, and its neighbours.
-#[derive(Clone, Copy)]
-struct Waiting {
-    at: usize,
-    beside: [usize; 2],
-}
-
-/// Some lines of a field.
-pub(crate) struct Piece<'f> {
-    size: usize,
-    states: &'f mut [f64],
-    outcomes: &'f mut [Option<Outcome>],
-    residuals: &'f mut [f64],
-}
-
-impl Piece<'_> {
-    /// Solves what follows from the known points of lines of `length` points; what fails stays unknown, for the careful path.
+    /// Solves what follows from the known points of some lines, along these; what fails stays unknown, for the careful path.
     /// Gives the number of evaluations.
+    pub(crate) fn refine_lines(
+        &mut self,
+        newton: &mut LaneNewton<'_>,
+        lines: &[usize],
+        levels: &[Vec<Midpoint>],
+        targets: &[[f64; 2]],
+    ) -> u64 {
+        let shape = self.shape;
+        let mut evaluations = 0;
+        let mut waiting = Vec::with_capacity(LANES);
+        for level in levels {
+            for (line, midpoint) in lines.iter().flat_map(|line| level.iter().map(move |midpoint| (*line, midpoint))) {
+                let at = shape.point(line, midpoint.at);
+                let known = |at: usize| self.is_root(shape.point(line, at));
+                if !follows(midpoint, known) {
+                    continue;
+                }
+                let lane = waiting.len();
+                interpolate(shape, midpoint, known, |at, plane| self.value(shape.point(line, at), plane), newton, lane);
+                newton.input(shape.size)[lane] = targets[at][0];
+                newton.input(shape.size + 1)[lane] = targets[at][1];
+                waiting.push((at, midpoint.beside.map(|at| shape.point(line, at))));
+                if waiting.len() == LANES {
+                    evaluations += self.solve(newton, &mut waiting);
+                }
+            }
+            evaluations += self.solve(newton, &mut waiting);
+        }
+        evaluations
+    }
+
+    /// Solves the points that wait in the first lanes, each between two neighbours.
+    fn solve(&mut self, newton: &mut LaneNewton<'_>, waiting: &mut Vec<(usize, [usize; 2])>) -> u64 {
+        if waiting.is_empty() {
+            return 0;
+        }
+        let evaluations = newton.run(&[true; LANES][..waiting.len()], newton.were_rough());
+        for (lane, (at, [before, behind])) in waiting.drain(..).enumerate() {
+            let apart = || distance(&self.unknowns(before), &self.unknowns(behind), &self.ranges);
+            if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+                self.take(at, newton, lane);
+            }
+        }
+        evaluations
+    }
+
+    /// The strips, one beside the other.
+    pub(crate) fn strips(&mut self) -> Vec<Strip<'_>> {
+        let Field { shape, ranges, values, marks, .. } = self;
+        let values = values.chunks_mut((shape.count * shape.planes * LANES).max(1));
+        let strip = |(k, (values, marks)): (usize, (_, _))| {
+            let first = k * LANES;
+            Strip { shape: *shape, ranges, first, width: LANES.min(shape.length - first), values, marks }
+        };
+        values.zip(marks.chunks_mut(shape.count.max(1))).enumerate().map(strip).collect()
+    }
+}
+
+/// The same part of all lines of a field.
+pub(crate) struct Strip<'f> {
+    shape: Shape,
+    ranges: &'f [Range],
+    /// Where the lanes are on the lines.
+    first: usize,
+    width: usize,
+    values: &'f mut [f64],
+    marks: &'f mut [[Mark; LANES]],
+}
+
+impl Strip<'_> {
+    /// Solves what follows from the known lines; what fails stays unknown, for the careful path. Gives the number of
+    /// evaluations.
     pub(crate) fn refine(
         &mut self,
         newton: &mut LaneNewton<'_>,
-        ranges: &[Range],
         levels: &[Vec<Midpoint>],
-        length: usize,
         targets: &[[f64; 2]],
     ) -> u64 {
-        let mut evaluations = 0;
-        let mut state = vec![0.0; self.size + 1];
-        let mut lanes = [Waiting { at: 0, beside: [0; 2] }; LANES];
-        for level in levels {
-            let mut count = 0;
-            for first in (0..self.outcomes.len()).step_by(length) {
-                for midpoint in level {
-                    let at = first + midpoint.at;
-                    if !self.interpolate(first, midpoint, &mut state) {
-                        continue;
+        let (mut evaluations, mut rough) = (0, true);
+        for midpoint in levels.iter().flatten() {
+            self.set_targets(midpoint.at, newton, targets);
+            let all_known = midpoint.known.iter().all(|(line, _)| self.is_line_of_roots(*line));
+            let none_known = self.marks[midpoint.at][..self.width].iter().all(|mark| *mark == Mark::Unknown);
+            if all_known && none_known {
+                self.interpolate_line(midpoint, newton);
+                evaluations += newton.run(&[true; LANES][..self.width], rough);
+            } else {
+                let mut active = [false; LANES];
+                for lane in 0..self.width {
+                    active[lane] = self.interpolate_lane(midpoint, newton, lane);
+                }
+                let Some(first) = active.iter().position(|active| *active) else { continue };
+                repeat_lane(self.shape, newton, first, &active[..self.width]);
+                evaluations += newton.run(&active[..self.width], rough);
+            }
+            rough = newton.were_rough();
+            self.take_line(midpoint, newton);
+        }
+        evaluations
+    }
+
+    fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {
+        let next = self.shape.point(line, 1) - self.shape.point(line, 0);
+        let targets = targets[self.shape.point(line, self.first)..].iter().step_by(next).take(self.width);
+        for k in 0..2 {
+            let values = newton.input(self.shape.size + k);
+            for (value, target) in values.iter_mut().zip(targets.clone()) {
+                *value = target[k];
+            }
+        }
+    }
+
+    fn is_line_of_roots(&self, line: usize) -> bool {
+        self.marks[line][..self.width].iter().all(|mark| mark.is_root())
+    }
+
+    fn plane(&self, line: usize, plane: usize) -> &Lanes {
+        &self.values.as_chunks::<LANES>().0[line * self.shape.planes + plane]
+    }
+
+    /// The starts of a whole line, from whole lines.
+    fn interpolate_line(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) {
+        let size = self.shape.size;
+        newton.instructions().dispatch(
+            #[inline(always)]
+            || {
+                for plane in 0..=size {
+                    let mut sums = [0.0; LANES];
+                    for (line, weight) in &midpoint.known {
+                        let values = self.plane(*line, plane);
+                        for lane in 0..LANES {
+                            sums[lane] += weight * values[lane];
+                        }
                     }
-                    let (unknowns, determinant) = (&state[..self.size], state[self.size]);
-                    let determinant = (!determinant.is_nan()).then_some(determinant);
-                    newton.put(count, &Start { unknowns, parameters: &targets[at], determinant });
-                    lanes[count] = Waiting { at, beside: midpoint.beside.map(|place| first + place) };
-                    count += 1;
-                    if count == LANES {
-                        evaluations += self.solve(newton, ranges, &lanes);
-                        count = 0;
+                    if plane < size {
+                        *newton.input(plane) = sums;
+                    } else {
+                        *newton.determinant() = sums;
                     }
                 }
-            }
-            if count > 0 {
-                evaluations += self.solve(newton, ranges, &lanes[..count]);
-            }
-        }
-        evaluations
+                let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+                for (line, _) in &midpoint.known {
+                    let values = self.plane(*line, size);
+                    for lane in 0..LANES {
+                        least[lane] = if values[lane] < least[lane] { values[lane] } else { least[lane] };
+                        most[lane] = if values[lane] > most[lane] { values[lane] } else { most[lane] };
+                    }
+                }
+                let determinant = newton.determinant();
+                for lane in 0..LANES {
+                    determinant[lane] = if keeps_sign(least[lane], most[lane]) { determinant[lane] } else { f64::NAN };
+                }
+            },
+        );
     }
 
-    /// The start of a point that is not known yet: on the polynomial through the known ones around it, or between its two
-    /// neighbours if some of them are no roots; the determinant where it cannot vanish between them, else NaN. False if
-    /// the point is known, or a neighbour is no root.
-    fn interpolate(&self, first: usize, midpoint: &Midpoint, state: &mut [f64]) -> bool {
-        let is_known = |place: usize| self.outcomes[first + place].is_some_and(Outcome::is_root);
-        let [before, behind] = midpoint.beside;
-        if is_known(midpoint.at) || !is_known(before) || !is_known(behind) {
-            return false;
+    /// The start of one point; false if the point is known, or does not follow.
+    fn interpolate_lane(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, lane: usize) -> bool {
+        let known = |line: usize| self.marks[line][lane].is_root();
+        let is_next = follows(midpoint, known);
+        if is_next {
+            interpolate(self.shape, midpoint, known, |line, plane| self.plane(line, plane)[lane], newton, lane);
         }
-        let width = self.size + 1;
-        let known = |place: usize| &self.states[(first + place) * width..][..width];
-        let share = (midpoint.at - before) as f64 / (behind - before) as f64;
-        let linear = [(before, 1.0 - share), (behind, share)];
-        let is_complete = midpoint.known.iter().all(|(place, _)| is_known(*place));
-        state.fill(0.0);
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &(place, weight) in if is_complete { midpoint.known.as_slice() } else { &linear } {
-            for (sum, value) in state.iter_mut().zip(known(place)) {
-                *sum += weight * value;
-            }
-            let determinant = known(place)[self.size];
-            (least, most) = (
-                if determinant < least { determinant } else { least },
-                if determinant > most { determinant } else { most },
-            );
-        }
-        // a NaN among them makes the sum one
-        let keeps_sign =
-            least > 0.0 && most < SAME_DETERMINANT * least || most < 0.0 && least > SAME_DETERMINANT * most;
-        if !keeps_sign {
-            state[self.size] = f64::NAN;
-        }
-        true
+        is_next
     }
 
-    /// Whether a point that came so far from its start may be on another branch than its neighbours.
-    fn is_astray(&self, moved: f64, [before, behind]: [usize; 2], ranges: &[Range]) -> bool {
-        let unknowns = |point: usize| &self.states[point * (self.size + 1)..][..self.size];
-        moved > NEAR && moved > ASTRAY * distance(unknowns(before), unknowns(behind), ranges) + NEAR
-    }
-
-    fn solve(&mut self, newton: &mut LaneNewton<'_>, ranges: &[Range], lanes: &[Waiting]) -> u64 {
-        let evaluations = newton.run(lanes.len());
-        for (lane, &Waiting { at, beside }) in lanes.iter().enumerate() {
-            if !newton.is_root(lane) || self.is_astray(newton.moved(lane), beside, ranges) {
-                continue;
+    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) {
+        let line = midpoint.at;
+        let (shape, width) = (self.shape, self.width);
+        if newton.all_plain(width, NEAR) {
+            let values = &mut self.values.as_chunks_mut::<LANES>().0[line * shape.planes..][..shape.planes];
+            for (k, values) in values.iter_mut().enumerate() {
+                *values = *number(shape, newton, k);
             }
-            let state = &mut self.states[at * (self.size + 1)..][..=self.size];
-            for (k, value) in state[..self.size].iter_mut().enumerate() {
-                *value = newton.unknown(k, lane);
-            }
-            state[self.size] = newton.determinant(lane);
-            let outcome = match verdict(&state[..self.size], ranges, true, false) {
-                Outcome::Solved => newton.side(lane),
-                other => other,
+            self.marks[line][..width].fill(Mark::Solved);
+            return;
+        }
+        for lane in 0..width {
+            let [before, behind] = midpoint.beside;
+            let apart = || {
+                let share = |(k, range): (usize, &Range)| {
+                    (self.plane(before, k)[lane] - self.plane(behind, k)[lane]).abs() / range.width()
+                };
+                self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
             };
-            // what the conditions call singular is told by the careful path
-            if outcome != Outcome::Singular {
-                self.outcomes[at] = Some(outcome);
-                self.residuals[at] = newton.residual(lane);
+            if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+                let values = &mut self.values[line * shape.planes * LANES..][..shape.planes * LANES];
+                take(shape, values, &mut self.marks[line], lane, newton, lane);
             }
         }
-        evaluations
+    }
+}
+
+/// Whether a midpoint is to be solved next: it is not known, its neighbours are.
+fn follows(midpoint: &Midpoint, is_known: impl Fn(usize) -> bool) -> bool {
+    !is_known(midpoint.at) && midpoint.beside.iter().all(|place| is_known(*place))
+}
+
+/// Whether determinants between these two cannot vanish.
+#[inline(always)]
+fn keeps_sign(least: f64, most: f64) -> bool {
+    (least > 0.0) & (most < SAME_DETERMINANT * least) | (most < 0.0) & (least > SAME_DETERMINANT * most)
+}
+
+/// The start of a lane: on the polynomial through the known points around it, or between its two neighbours if some of them are no
+/// roots; the determinant where it cannot vanish between them, else NaN.
+fn interpolate(
+    shape: Shape,
+    midpoint: &Midpoint,
+    is_known: impl Fn(usize) -> bool,
+    value: impl Fn(usize, usize) -> f64,
+    newton: &mut LaneNewton<'_>,
+    lane: usize,
+) {
+    let [before, behind] = midpoint.beside;
+    let share = (midpoint.at - before) as f64 / (behind - before) as f64;
+    let linear = [(before, 1.0 - share), (behind, share)];
+    let is_complete = midpoint.known.iter().all(|(place, _)| is_known(*place));
+    let known = if is_complete { midpoint.known.as_slice() } else { &linear };
+    let sum = |plane: usize| known.iter().map(|(place, weight)| weight * value(*place, plane)).sum::<f64>();
+    for k in 0..shape.size {
+        newton.input(k)[lane] = sum(k);
+    }
+    let determinants = known.iter().map(|(place, _)| value(*place, shape.size));
+    let (least, most) = determinants.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), determinant| {
+        (least.min(determinant), most.max(determinant))
+    });
+    // a NaN among them makes the sum one
+    newton.determinant()[lane] = if keeps_sign(least, most) { sum(shape.size) } else { f64::NAN };
+}
+
+/// Lanes that are not active get the numbers of one that is.
+fn repeat_lane(shape: Shape, newton: &mut LaneNewton<'_>, from: usize, active: &[bool]) {
+    for k in 0..shape.size + 2 {
+        let values = newton.input(k);
+        for lane in (0..active.len()).filter(|lane| !active[*lane]) {
+            values[lane] = values[from];
+        }
+    }
+}
+
+/// Whether a point that came so far from its start may be on another branch than its neighbours, which are so far apart.
+fn is_astray(moved: f64, apart: impl Fn() -> f64) -> bool {
+    moved > NEAR && moved > ASTRAY * apart() + NEAR
+}
+
+/// A number of each lane in the order in which a field keeps them.
+fn number<'n>(shape: Shape, newton: &'n mut LaneNewton<'_>, plane: usize) -> &'n Lanes {
+    match plane.checked_sub(shape.size) {
+        None => newton.input(plane),
+        Some(0) => newton.determinant(),
+        Some(1) => newton.residuals(),
+        Some(extra) => newton.extra(extra - 2),
+    }
+}
+
+/// Puts what a lane has come to into a lane of a block.
+fn take(
+    shape: Shape,
+    values: &mut [f64],
+    marks: &mut [Mark; LANES],
+    column: usize,
+    newton: &mut LaneNewton<'_>,
+    lane: usize,
+) {
+    let outcome = newton.outcome(lane);
+    // what the conditions call singular is told by the careful path
+    if outcome != Outcome::Singular {
+        marks[column] = Mark::of(outcome);
+        for k in 0..shape.planes {
+            values[k * LANES + column] = number(shape, newton, k)[lane];
+        }
     }
 }

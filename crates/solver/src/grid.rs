@@ -6,9 +6,9 @@ use flank_expr::{InstructionSet, LANES};
 use rayon::prelude::*;
 
 use crate::Outcome;
-use crate::field::{Field, NEAR};
-use crate::lanes::{LaneNewton, Start};
-use crate::line::{lattice, levels};
+use crate::field::{Field, Lines, NEAR};
+use crate::lanes::LaneNewton;
+use crate::line::{Midpoint, divided_difference, lattice, levels};
 use crate::newton::solve_with;
 use crate::roots::{MOST_BOXES, Roots, Undecided, all_roots};
 use crate::solution::{Range, Solution, distance};
@@ -21,10 +21,9 @@ const MOST_ANCHORS: usize = 9;
 const SUBSTEPS: [u32; 3] = [1, 4, 16];
 /// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
 /// branch, and the step is divided. The last step to where a branch turns back like a parabola has one.
-const ASTRAY: f64 = 0.75;
-/// Points of a tile: the rows that one thread solves at a time, together enough for full blocks of lanes. Which they are
-/// depends on the grid alone.
-const TILE: usize = 256;
+pub(crate) const ASTRAY: f64 = 0.75;
+/// Grids with fewer points are not worth a second thread.
+const SHARED: usize = 4096;
 
 /// What a grid cost, and what is known about where it starts.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +79,7 @@ pub fn solve_grid(
 ) -> (Vec<Solution>, Effort) {
     let roots = |targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
     let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::TakeWidest };
-    let (field, effort) = solve_field(system, ranges, targets, counts, None, choice);
+    let (field, effort) = solve_field(system, ranges, (targets, counts), None, choice, None);
     let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
     ((0..targets.len()).map(solution).collect(), effort)
 }
@@ -90,10 +89,10 @@ pub fn solve_grid(
 pub(crate) fn solve_field(
     system: &System,
     ranges: &[Range],
-    targets: &[[f64; 2]],
-    counts: [usize; 2],
+    (targets, counts): (&[[f64; 2]], [usize; 2]),
     start: Option<&[f64]>,
     choice: Choice<'_>,
+    memory: Option<Field>,
 ) -> (Field, Effort) {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     let mut grid = Grid {
@@ -103,6 +102,7 @@ pub(crate) fn solve_field(
         targets,
         rows: counts[0],
         columns: counts[1],
+        memory,
         effort: Effort::default(),
     };
     let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
@@ -113,7 +113,8 @@ pub(crate) fn solve_field(
         return (filling, grid.effort);
     }
     let order = grid.middle_first();
-    let mut failures = Field::new(system.size(), targets.len());
+    let mut failures = grid.field();
+    let mut newton = LaneNewton::new(system, ranges, InstructionSet::fastest());
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
         if !grid.look_for(anchor, choice.roots, choice.keeps) {
             failures.put(anchor, &grid.failure(anchor));
@@ -122,22 +123,26 @@ pub(crate) fn solve_field(
         if grid.effort.branches.len() > 1 && choice.several == Several::Refuse {
             let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(ranges) };
             (0..targets.len()).for_each(|point| failures.put(point, &ambiguous));
+            failures.place_loose(&mut newton);
             return (failures, grid.effort);
         }
         let filling = grid.best_filling(anchor);
         return (filling, grid.effort);
     }
+    failures.place_loose(&mut newton);
     (failures, grid.effort)
 }
 
-struct Grid<'s> {
-    system: &'s System,
-    evaluation: Evaluation<'s>,
-    ranges: &'s [Range],
-    targets: &'s [[f64; 2]],
-    rows: usize,
-    columns: usize,
-    effort: Effort,
+pub(crate) struct Grid<'s> {
+    pub(crate) system: &'s System,
+    pub(crate) evaluation: Evaluation<'s>,
+    pub(crate) ranges: &'s [Range],
+    pub(crate) targets: &'s [[f64; 2]],
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
+    /// Of a field that is not needed any more.
+    memory: Option<Field>,
+    pub(crate) effort: Effort,
 }
 
 impl Grid<'_> {
@@ -192,97 +197,106 @@ impl Grid<'_> {
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
     /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
     fn best_filling(&mut self, anchor: usize) -> Field {
-        let (mut best, mut most) = (Field::new(self.ranges.len(), self.targets.len()), 0);
+        let mut best: Option<Field> = None;
         for root in self.effort.branches.clone() {
             let filling = self.fill(anchor, &root);
-            let solved = filling.count(Outcome::Solved);
-            if solved > most {
-                (best, most) = (filling, solved);
+            let (most, solved) = (best.as_ref().map_or(0, Field::solved), filling.solved());
+            if best.is_none() || solved > most {
+                best = Some(filling);
             }
-            if most == self.targets.len() {
+            if solved == self.targets.len() {
                 break;
             }
         }
-        best
+        best.unwrap_or_else(|| self.field())
+    }
+
+    fn field(&mut self) -> Field {
+        Field::new(self.ranges, [self.rows, self.columns], self.system.extra_count(), self.memory.take())
     }
 
     /// Everything that can be reached from the anchor.
     fn fill(&mut self, anchor: usize, root: &Solution) -> Field {
-        let mut field = Field::new(self.ranges.len(), self.targets.len());
+        let mut field = self.field();
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
-        self.spread(&mut field, VecDeque::from([anchor]), &rows, &columns);
-        let instructions = InstructionSet::fastest();
-        let mut newton = LaneNewton::new(self.system, self.ranges, instructions);
-        self.settle(&mut field, &mut newton, &rows, &columns);
-        self.refine_columns(&mut field, &mut newton, &rows, &columns);
-        self.refine_rows(&mut field, &mut newton, &columns);
-        let unfinished = self.edge_of_roots(&field);
-        if !unfinished.is_empty() {
+        let mut newton = LaneNewton::new(self.system, self.ranges, InstructionSet::fastest());
+        self.settle(&mut field, &mut newton, &[anchor]);
+        let by_hand = self.spread_in_lanes(&mut field, &mut newton, anchor, [rows.as_slice(), &columns]);
+        if !by_hand.is_empty() {
+            let solved = self.spread(&mut field, by_hand, &rows, &columns);
+            self.settle(&mut field, &mut newton, &solved);
+        }
+        let lines = self.smoother(&field, [&rows, &columns]);
+        let width = self.columns;
+        let points: Vec<usize> = rows.iter().flat_map(|i| columns.iter().map(move |j| i * width + j)).collect();
+        field.divide(lines, &points);
+        let (count, length) = ((self.rows, &rows), (self.columns, &columns));
+        let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
+        self.effort.evaluations += field.refine_lines(&mut newton, count.1, &levels(length.0, length.1), self.targets);
+        self.refine_strips(&mut field, &mut newton, &levels(count.0, count.1));
+        if !field.is_complete() {
             let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
+            let unfinished = self.edge_of_roots(&field);
             self.spread(&mut field, unfinished, &all[0], &all[1]);
         }
+        field.place_loose(&mut newton);
         field
     }
 
-    /// The determinants at the points of the lattice, which the careful path does not give.
-    fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, rows: &[usize], columns: &[usize]) {
-        let width = self.columns;
-        let points = rows.iter().flat_map(|i| columns.iter().map(move |j| i * width + j));
-        let points: Vec<usize> = points.filter(|point| field.is_root(*point)).collect();
-        for block in points.chunks(LANES) {
+    /// The lines across which the unknowns change more smoothly, by the highest divided differences on the lattice.
+    fn smoother(&self, field: &Field, [rows, columns]: [&[usize]; 2]) -> Lines {
+        let roughness = |places: &[usize], others: &[usize], point: &dyn Fn(usize, usize) -> usize| {
+            let rough = |other: &usize| {
+                let points: Vec<usize> = places.iter().map(|place| point(*place, *other)).collect();
+                let is_known = points.iter().all(|point| field.is_root(*point));
+                let unknowns: Vec<Vec<f64>> = points.iter().map(|point| field.unknowns(*point)).collect();
+                let of =
+                    |(k, range): (usize, &Range)| divided_difference(places, |n| unknowns[n][k]).abs() / range.width();
+                if is_known { self.ranges.iter().enumerate().map(of).fold(0.0, f64::max) } else { 0.0 }
+            };
+            // of the length of a step to that power
+            others.iter().map(rough).fold(0.0, f64::max).powf(1.0 / (places.len().max(2) - 1) as f64)
+        };
+        let down = roughness(rows, columns, &|i, j| i * self.columns + j);
+        let across = roughness(columns, rows, &|j, i| i * self.columns + j);
+        // lanes that are not there cost as much as those that are
+        if across < down && self.rows >= LANES / 2 { Lines::Columns } else { Lines::Rows }
+    }
+
+    /// The determinants at points by the careful path, which does not give them.
+    fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, points: &[usize]) {
+        let roots: Vec<usize> = points.iter().copied().filter(|point| field.is_root(*point)).collect();
+        for block in roots.chunks(LANES) {
             for (lane, &point) in block.iter().enumerate() {
-                let (unknowns, parameters) = (field.unknowns(point), &self.targets[point]);
-                newton.put(lane, &Start { unknowns, parameters, determinant: None });
+                newton.put(lane, &field.unknowns(point), &self.targets[point]);
             }
-            self.effort.evaluations += newton.run(block.len());
-            for (lane, &point) in
-                block.iter().enumerate().filter(|(lane, _)| newton.is_root(*lane) && newton.moved(*lane) <= NEAR)
-            {
-                field.set_determinant(point, newton.determinant(lane));
+            newton.tangents(block.len());
+            self.effort.evaluations += block.len() as u64;
+            for (lane, &point) in block.iter().enumerate() {
+                if newton.is_clear(lane) {
+                    field.set_determinant(point, newton.determinant()[lane]);
+                }
             }
         }
     }
 
-    /// All points of the lattice's columns.
-    fn refine_columns(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, rows: &[usize], columns: &[usize]) {
-        let levels = levels(self.rows, rows);
-        let (height, width) = (self.rows, self.columns);
-        let points: Vec<usize> = columns.iter().flat_map(|j| (0..height).map(move |i| i * width + j)).collect();
-        let targets: Vec<[f64; 2]> = points.iter().map(|point| self.targets[*point]).collect();
-        let mut lines = field.gathered(&points);
-        for mut piece in lines.pieces(targets.len().max(1)) {
-            self.effort.evaluations += piece.refine(newton, self.ranges, &levels, self.rows, &targets);
-        }
-        field.scatter(&lines, &points);
-    }
-
-    /// All points of all rows, from those in the lattice's columns; on as many threads as there are.
-    fn refine_rows(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, columns: &[usize]) {
-        let levels = levels(self.columns, columns);
-        let points = (TILE / self.columns).max(1) * self.columns;
-        let tiles: Vec<_> = field.pieces(points).into_iter().zip(self.targets.chunks(points)).collect();
-        let (system, ranges, length) = (self.system, self.ranges, self.columns);
-        self.effort.evaluations += if tiles.len() == 1 || rayon::current_num_threads() == 1 {
-            tiles
-                .into_iter()
-                .map(|(mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets))
-                .sum::<u64>()
+    /// All rows, from those that are known; on as many threads as there are.
+    fn refine_strips(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, levels: &[Vec<Midpoint>]) {
+        let (system, ranges, targets) = (self.system, self.ranges, self.targets);
+        let mut strips = field.strips();
+        self.effort.evaluations += if targets.len() < SHARED || rayon::current_num_threads() == 1 {
+            strips.iter_mut().map(|strip| strip.refine(newton, levels, targets)).sum::<u64>()
         } else {
             let another = || LaneNewton::new(system, ranges, InstructionSet::fastest());
-            let tiles = tiles
-                .into_par_iter()
-                .map_init(another, |newton, (mut tile, targets)| tile.refine(newton, ranges, &levels, length, targets));
-            tiles.sum::<u64>()
+            let strips = strips.into_par_iter();
+            strips.map_init(another, |newton, mut strip| strip.refine(newton, levels, targets)).sum::<u64>()
         };
     }
 
     /// Roots beside points that are not known to be roots.
     fn edge_of_roots(&self, field: &Field) -> VecDeque<usize> {
-        if (0..self.targets.len()).all(|point| field.is_root(point)) {
-            return VecDeque::new();
-        }
         let beside = |point: usize| {
             let (i, j) = (point / self.columns, point % self.columns);
             let vertical = [i.checked_sub(1), Some(i + 1).filter(|i| *i < self.rows)].map(|i| i.map(|i| (i, j)));
@@ -294,7 +308,15 @@ impl Grid<'_> {
     }
 
     /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns.
-    fn spread(&mut self, field: &mut Field, mut queue: VecDeque<usize>, rows: &[usize], columns: &[usize]) {
+    /// Gives the points it has solved.
+    fn spread(
+        &mut self,
+        field: &mut Field,
+        mut queue: VecDeque<usize>,
+        rows: &[usize],
+        columns: &[usize],
+    ) -> Vec<usize> {
+        let mut solved = Vec::new();
         let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
         while let Some(point) = queue.pop_front() {
             let (i, j) = (point / self.columns, point % self.columns);
@@ -310,13 +332,13 @@ impl Grid<'_> {
                 if field.is_root(next) {
                     continue;
                 }
-                let near = field.unknowns(point).to_vec();
+                let near = field.unknowns(point);
                 let far = beside(-di, -dj).filter(|far| field.is_root(index(*far)));
                 let start = far.map_or_else(
                     || near.clone(),
                     |far| {
                         let gap = |other: (usize, usize)| (other.0.abs_diff(i) + other.1.abs_diff(j)) as f64;
-                        extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
+                        extrapolated(&near, &field.unknowns(index(far)), gap(to) / gap(far))
                     },
                 );
                 let mut solution = self.step(point, next, &near, &start);
@@ -326,9 +348,11 @@ impl Grid<'_> {
                 field.put(next, &solution);
                 if solution.is_root() {
                     queue.push_back(next);
+                    solved.push(next);
                 }
             }
         }
+        solved
     }
 
     /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way.

@@ -14,6 +14,9 @@ const SEEDS: usize = 9;
 const PAIRS: usize = 6;
 /// Two iterations that end nearer than this share of the ranges found the same meeting.
 const SAME: f64 = 1e-6;
+/// Surfaces at a smaller angle only touch: with curvatures of 1/mm they then part by less than the tolerance of a point over the
+/// distance in which they could cross.
+const TOUCHING: f64 = 1e-5;
 
 /// Two surfaces in one frame, and the system that says where they meet: both sets of constraints, equal positions, and a
 /// line in the coordinates of the first.
@@ -87,7 +90,12 @@ impl Intersection {
         let probe: Vec<Expr<'g>> = vectors.chain([along]).chain(slopes).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(&line).copied().collect();
         Ok(Intersection {
-            system: System::new(&residuals, &unknowns, &line)?.with_conditions(&conditions, &unknowns, &line)?,
+            system: System::new(&residuals, &unknowns, &line)?.with_conditions(
+                &residuals,
+                &conditions,
+                &[],
+                &inputs,
+            )?,
             ranges: ranges.concat(),
             first_unknowns: first.unknowns.len(),
             probe: Tape::new(&probe, &inputs)?,
@@ -110,7 +118,10 @@ impl Intersection {
             if solution.outcome != Outcome::Solved || !found.iter().all(is_new) {
                 continue;
             }
-            found.push(self.meeting(&mut evaluation, &parameters, &solution));
+            let meeting = self.meeting(&mut evaluation, &parameters, &solution);
+            if !meeting.only_touches() {
+                found.push(meeting);
+            }
         }
         found.sort_by(|a, b| a.along.total_cmp(&b.along));
         found
@@ -160,6 +171,12 @@ impl Intersection {
 }
 
 impl Meeting {
+    /// Whether the surfaces have the same tangent plane there, as far as points within the tolerance can tell.
+    fn only_touches(&self) -> bool {
+        let [a, b] = [&self.first, &self.second].map(|point| nalgebra::Vector3::from(point.normal));
+        a.cross(&b).norm() < TOUCHING
+    }
+
     /// The unknowns of the first surface and of the second.
     pub fn unknowns(&self) -> Vec<f64> {
         [&self.first.unknowns[..], &self.second.unknowns].concat()

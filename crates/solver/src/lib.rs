@@ -24,6 +24,7 @@ mod geometry;
 mod grid;
 mod intersection;
 mod lanes;
+mod lattice;
 mod line;
 mod newton;
 mod points;

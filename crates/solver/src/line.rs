@@ -47,6 +47,15 @@ fn midpoint(known: &[usize], k: usize, beside: [usize; 2]) -> Midpoint {
     Midpoint { at, known: stencil.iter().map(|&place| (place, weight(stencil, place, at))).collect(), beside }
 }
 
+/// The coefficient of the highest power in the polynomial through some places and their values.
+pub(crate) fn divided_difference(places: &[usize], value: impl Fn(usize) -> f64) -> f64 {
+    let term = |k: usize| {
+        let others = places.iter().filter(|other| **other != places[k]);
+        value(k) / others.map(|&other| places[k] as f64 - other as f64).product::<f64>()
+    };
+    (0..places.len()).map(term).sum()
+}
+
 /// Lagrange's weight of one place among others, for a value at `at`.
 fn weight(places: &[usize], place: usize, at: usize) -> f64 {
     let others = places.iter().filter(|other| **other != place);

@@ -1,7 +1,7 @@
 //! Points of one surface at given values of two coordinates.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, LaneTape, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
 use crate::angles::SearchSystem;
 use crate::grid::{Choice, Effort, Several, solve_field};
@@ -17,8 +17,6 @@ pub struct SurfaceProblem {
     search: Option<SearchSystem>,
     /// Position and normal.
     point: Tape,
-    /// The same for many points at once.
-    lanes: LaneTape,
     ranges: Vec<Range>,
     several: Several,
     /// Functions of the unknowns, and between which values they lie on the branch that is meant.
@@ -100,13 +98,12 @@ impl SurfaceProblem {
         let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
         let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(on_target).collect();
         let point: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
-        let point = Tape::new(&point, &bound.unknowns)?;
+        let inputs: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain(targets).collect();
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
             search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
-            system: system.with_conditions(conditions, &bound.unknowns, &targets)?,
-            lanes: LaneTape::new(&point),
-            point,
+            system: system.with_conditions(&residuals, conditions, &point, &inputs)?,
+            point: Tape::new(&point, &bound.unknowns)?,
             kept_ranges: ranges.clone(),
             ranges,
             several,
@@ -164,12 +161,13 @@ impl SurfaceProblem {
     /// # Panics
     /// If there are not `counts[0] · counts[1]` targets.
     pub fn solve(&self, targets: &[[f64; 2]], counts: [usize; 2]) -> (Vec<SurfacePoint>, Effort) {
-        let (points, effort) = self.solve_points(targets, counts, None);
+        let (points, effort) = self.solve_points(targets, counts, None, None);
         ((0..points.len()).map(|k| points.point(k)).collect(), effort)
     }
 
     /// The same for very many points. `start`, if there is one, tells the branch: unknowns from which Newton reaches it at the
-    /// point in the middle of the grid. If it does not, the branch is looked for as without.
+    /// point in the middle of the grid. If it does not, the branch is looked for as without. `memory` may be points that are
+    /// not needed any more: those of a grid of the same size give their memory to the new ones.
     ///
     /// # Panics
     /// If there are not `counts[0] · counts[1]` targets, or `start` has not one number for each unknown.
@@ -178,6 +176,7 @@ impl SurfaceProblem {
         targets: &[[f64; 2]],
         counts: [usize; 2],
         start: Option<&[f64]>,
+        memory: Option<SurfacePoints>,
     ) -> (SurfacePoints, Effort) {
         let (tape, ranges) = &self.keep;
         let (mut keep, mut values) = (ScalarEvaluator::new(tape), vec![0.0; ranges.len()]);
@@ -187,8 +186,9 @@ impl SurfaceProblem {
         };
         let roots = |target: &[f64; 2]| self.roots(&self.kept_ranges, target);
         let choice = Choice { roots: &roots, keeps: &mut keeps, several: self.several };
-        let (field, effort) = solve_field(&self.system, &self.ranges, targets, counts, start, choice);
-        (SurfacePoints::new(field, &self.lanes, &self.ranges, targets.len()), effort)
+        let memory = memory.map(|points| points.field);
+        let (field, effort) = solve_field(&self.system, &self.ranges, (targets, counts), start, choice, memory);
+        (SurfacePoints { field, middle: self.ranges.iter().map(|range| range.middle()).collect() }, effort)
     }
 
     /// The points of the surface at solutions of its system.

@@ -19,10 +19,10 @@ pub struct System {
 /// The same for many points at once; all take unknowns, then parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneTapes {
-    pub(crate) residuals: LaneTape,
+    /// Residuals, conditions, and what else is wanted at a root, with what these have in common.
+    pub(crate) checked: LaneTape,
     /// Residuals, then the Jacobian row by row.
     pub(crate) linearized: LaneTape,
-    pub(crate) conditions: LaneTape,
 }
 
 impl System {
@@ -40,29 +40,36 @@ impl System {
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
         let residuals = Tape::new(residuals, &inputs)?;
-        let lanes = LaneTapes {
-            residuals: LaneTape::new(&residuals),
-            linearized: LaneTape::new(&tape),
-            conditions: LaneTape::new(&conditions),
-        };
+        let lanes = LaneTapes { checked: LaneTape::new(&residuals), linearized: LaneTape::new(&tape) };
         Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
-    /// the unknowns and parameters it was made with, is negative, and singular where one is zero.
+    /// the unknowns and parameters it was made with, is negative, and singular where one is zero. `extras` are computed at
+    /// the roots of a grid.
     ///
     /// # Errors
     /// If a condition depends on another variable.
-    pub fn with_conditions(
+    pub(crate) fn with_conditions<'g>(
         self,
-        conditions: &[Expr<'_>],
-        unknowns: &[Expr<'_>],
-        parameters: &[Expr<'_>],
+        residuals: &[Expr<'g>],
+        conditions: &[Expr<'g>],
+        extras: &[Expr<'g>],
+        inputs: &[Expr<'g>],
     ) -> Result<System, TapeError> {
-        let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
-        let conditions = Tape::new(conditions, &inputs)?;
-        let lanes = LaneTapes { conditions: LaneTape::new(&conditions), ..self.lanes };
+        let checked = Tape::new(&[residuals, conditions, extras].concat(), inputs)?;
+        let conditions = Tape::new(conditions, inputs)?;
+        let lanes = LaneTapes { checked: LaneTape::new(&checked), ..self.lanes };
         Ok(System { conditions, lanes, ..self })
+    }
+
+    pub(crate) fn condition_count(&self) -> usize {
+        self.conditions.output_count()
+    }
+
+    /// Numbers that are wanted at a root beside the unknowns.
+    pub(crate) fn extra_count(&self) -> usize {
+        self.lanes.checked.output_count() - self.size - self.condition_count()
     }
 
     /// Number of unknowns.

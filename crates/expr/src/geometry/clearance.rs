@@ -60,7 +60,7 @@ impl<'g> Surface<'g> {
 }
 
 /// Of the columns of `rows` that are named.
-fn determinant<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>], columns: &[usize]) -> Expr<'g> {
+pub(super) fn determinant<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>], columns: &[usize]) -> Expr<'g> {
     let Some((first, rest)) = rows.split_first() else { return graph.constant(1.0) };
     let mut sum = graph.constant(0.0);
     for (k, &column) in columns.iter().enumerate() {

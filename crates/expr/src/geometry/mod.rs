@@ -1,5 +1,6 @@
 //! Rigid motions and surfaces over symbolic scalars.
 
+mod bending;
 mod chain;
 mod clearance;
 mod edge;

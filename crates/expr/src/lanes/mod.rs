@@ -130,6 +130,11 @@ impl<'t> LaneEvaluator<'t> {
         }
     }
 
+    /// Number of outputs.
+    pub fn output_count(&self) -> usize {
+        self.tape.outputs.len()
+    }
+
     /// An output after a run.
     ///
     /// # Panics

@@ -1,0 +1,116 @@
+//! The lattice of points that a grid is filled from, many points at once.
+
+use std::collections::VecDeque;
+
+use flank_expr::LANES;
+
+use crate::field::{Field, NEAR, SAME_DETERMINANT};
+use crate::grid::{ASTRAY, Grid};
+use crate::lanes::LaneNewton;
+use crate::solution::distance;
+
+/// A step from a solved point to the next one.
+#[derive(Clone, Copy)]
+struct Leap {
+    from: usize,
+    to: usize,
+}
+
+impl Grid<'_> {
+    /// From the anchor to the points of the lattice of some rows and columns, in waves: along the tangent, then by Newton. A
+    /// step counts only if it passes the test of the careful path in `stays_near` and the determinant hardly changes. Gives
+    /// the solved points beside those that are left for that path.
+    pub(crate) fn spread_in_lanes(
+        &mut self,
+        field: &mut Field,
+        newton: &mut LaneNewton<'_>,
+        anchor: usize,
+        lattice: [&[usize]; 2],
+    ) -> VecDeque<usize> {
+        let mut unfinished = VecDeque::new();
+        let mut wave = vec![anchor];
+        while !wave.is_empty() {
+            let leaps = self.leaps(field, &wave, lattice);
+            let mut next = Vec::new();
+            for block in leaps.chunks(LANES) {
+                self.leap(field, newton, block);
+                next.extend(block.iter().map(|leap| leap.to).filter(|to| field.is_root(*to)));
+            }
+            unfinished.extend(leaps.iter().filter(|leap| !field.is_root(leap.to)).map(|leap| leap.from));
+            wave = next;
+        }
+        unfinished
+    }
+
+    /// Where the points of a wave lead that is not solved yet; each point once.
+    fn leaps(&self, field: &Field, wave: &[usize], [rows, columns]: [&[usize]; 2]) -> Vec<Leap> {
+        let mut leaps: Vec<Leap> = Vec::new();
+        for &from in wave {
+            let (i, j) = (from / self.columns, from % self.columns);
+            let beside = |places: &[usize], at: usize| {
+                let index = places.partition_point(|place| *place < at);
+                [index.checked_sub(1), Some(index + 1)].map(|k| k.and_then(|k| places.get(k).copied()))
+            };
+            let across = beside(columns, j).into_iter().flatten().map(|j| i * self.columns + j);
+            let along = beside(rows, i).into_iter().flatten().map(|i| i * self.columns + j);
+            for to in across.chain(along) {
+                if !field.is_root(to) && leaps.iter().all(|leap| leap.to != to) {
+                    leaps.push(Leap { from, to });
+                }
+            }
+        }
+        leaps
+    }
+
+    fn leap(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, leaps: &[Leap]) {
+        let count = leaps.len();
+        let starts: Vec<Vec<f64>> = leaps.iter().map(|leap| field.unknowns(leap.from)).collect();
+        let put = |newton: &mut LaneNewton<'_>, unknowns: &[Vec<f64>], target: fn(&Leap) -> usize| {
+            for (lane, (leap, unknowns)) in leaps.iter().zip(unknowns).enumerate() {
+                newton.put(lane, unknowns, &self.targets[target(leap)]);
+            }
+        };
+        put(newton, &starts, |leap| leap.to);
+        let led = self.along_tangents(newton, &starts);
+        put(newton, &led, |leap| leap.to);
+        // a start that is not finite fails like any other
+        self.effort.evaluations += 2 * count as u64 + newton.run(&[true; LANES][..count], true);
+        let is_root: Vec<bool> = (0..count).map(|lane| newton.is_root(lane)).collect();
+        let before: Vec<f64> = leaps.iter().map(|leap| field.determinant(leap.from)).collect();
+        for (lane, leap) in leaps.iter().enumerate().filter(|(lane, _)| is_root[*lane]) {
+            let ratio = newton.determinant()[lane] / before[lane];
+            if ratio < SAME_DETERMINANT && ratio * SAME_DETERMINANT > 1.0 {
+                field.take(leap.to, newton, lane);
+            }
+        }
+        let ends: Vec<Vec<f64>> = leaps
+            .iter()
+            .zip(&starts)
+            .map(|(leap, start)| if field.is_root(leap.to) { field.unknowns(leap.to) } else { start.clone() })
+            .collect();
+        put(newton, &ends, |leap| leap.from);
+        let back = self.along_tangents(newton, &ends);
+        for (lane, leap) in leaps.iter().enumerate() {
+            let (start, end) = (&starts[lane], &ends[lane]);
+            let leads = |from: &[f64], led: &[f64], to: &[f64]| {
+                let allowed = ASTRAY * distance(from, led, self.ranges) + NEAR;
+                distance(led, to, self.ranges) <= allowed
+            };
+            let stays = distance(start, end, self.ranges) <= NEAR
+                || leads(start, &led[lane], end) && leads(end, &back[lane], start);
+            if field.is_root(leap.to) && !stays {
+                field.forget(leap.to);
+            }
+        }
+    }
+
+    /// Where the tangents at the first lanes lead, from the points that they hold.
+    fn along_tangents(&self, newton: &mut LaneNewton<'_>, from: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let steps = newton.tangents(from.len());
+        let led = |(lane, from): (usize, &Vec<f64>)| {
+            let moved = from.iter().zip(steps).zip(self.ranges);
+            moved.map(|((from, steps), range)| from + steps[lane] * range.width()).collect()
+        };
+        from.iter().enumerate().map(led).collect()
+    }
+}
