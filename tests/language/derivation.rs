@@ -6,7 +6,7 @@ mod parser;
 
 use std::collections::HashMap;
 
-use flank_chain_dsl::derivation;
+use flank_chain_dsl::{Job, derivation};
 use flank_expr::{Graph, Style};
 use flank_tests::job;
 use nalgebra::{Matrix4, Rotation3, Translation3, Vector3};
@@ -77,12 +77,26 @@ fn table_to_hob(axes: &HashMap<String, f64>) -> [Matrix4<f64>; 6] {
     ]
 }
 
+/// The axes of the six-axis machine, each with a rate.
+const RATES: [(&str, f64); 6] = [("X", 1.7), ("Y", -0.6), ("Z", 2.3), ("A", 0.11), ("B", -1.9), ("C", 0.4)];
+
+/// A point in the fixed frame, and the rates of the axes.
+fn moving() -> HashMap<String, f64> {
+    let point = [("P_x", 51.0), ("P_y", -7.0), ("P_z", 13.0)].map(|(name, value)| (name.to_string(), value));
+    point.into_iter().chain(RATES.map(|(axis, rate)| (format!("m.{axis}_rate"), rate))).collect()
+}
+
 struct Page {
     text: String,
     parameters: HashMap<String, f64>,
 }
 
 impl Page {
+    fn new(job: &Job<'_>) -> Page {
+        let parameters = job.parameters.iter().map(|parameter| (parameter.name.clone(), parameter.value)).collect();
+        Page { text: derivation(job, Style::Text), parameters }
+    }
+
     /// The axes' laws as they are printed, at values of the motions.
     fn axes(&self, spindle: f64, feed: f64) -> HashMap<String, f64> {
         let mut values = self.parameters.clone();
@@ -102,11 +116,11 @@ impl Page {
 fn the_stages_of_the_six_axis_machine_are_products_of_its_matrices() {
     let graph = Graph::new();
     let job = job(&graph, "specs/hobbing/helical_gear.chain", &[("hob_shift", "-7.3 mm"), ("helix_angle", "-17 deg")]);
-    let parameters = job.parameters.iter().map(|parameter| (parameter.name.clone(), parameter.value)).collect();
-    let page = Page { text: derivation(&job, Style::Text), parameters };
+    let page = Page::new(&job);
     for (spindle, feed, xi, tau) in [(1.3, -4.0, 4.4, 0.7), (4.1, 11.5, 5.0, -2.1), (-0.6, 0.3, 3.9, 1.9)] {
         let mut values = page.axes(spindle, feed);
         values.extend([("xi".to_string(), xi), ("tau".to_string(), tau)]);
+        values.extend(moving());
         let found = stages(&page.text, "\nsurface lower_flank", "\nsurface upper_flank", &values);
 
         let steps = table_to_hob(&values);
@@ -138,6 +152,81 @@ fn the_stages_of_the_six_axis_machine_are_products_of_its_matrices() {
         let in_work = pose * r.push(1.0);
         assert_near(all(&found, "r")[0], &in_work.as_slice()[..3], 1e-12, "position");
         assert_near(all(&found, "n")[0], (-(rotation * n)).as_slice(), 1e-14, "normal");
+    }
+}
+
+/// The paper's stages: each matrix, locus and normal in the fixed and in the work frame, the velocities of a common point by
+/// differences of dense matrices, and the equation of meshing.
+#[test]
+fn the_stages_of_the_paper_are_products_and_differences_of_its_matrices() {
+    let graph = Graph::new();
+    let page = Page::new(&job(&graph, "specs/hobbing/chang_tsay_nagata.chain", &[]));
+    for (spindle, feed, xi, tau) in [(1.3, -4.0, 5.1, 0.7), (4.1, 11.5, 5.3, -2.1), (-0.6, 0.3, 5.4, 1.9)] {
+        let axes = page.axes(spindle, feed);
+        let mut values = axes.clone();
+        values.extend([("xi".to_string(), xi), ("tau".to_string(), tau)]);
+        values.extend(moving());
+        let read = |values: &HashMap<String, f64>| {
+            stages(&page.text, "\nsurface lower_flank", "\nsurface upper_flank", values)
+        };
+        let found = read(&values);
+
+        let [table_bed, bed_slide, swivel, shift, laid, turned] = table_to_hob(&values);
+        let (slide_head, head_hob) = (swivel * shift, laid * turned);
+        let steps =
+            [("head_hob", head_hob), ("slide_head", slide_head), ("bed_slide", bed_slide), ("table_bed", table_bed)];
+        for (name, matrix) in steps {
+            assert_near(all(&found, &format!("M_{name}"))[0], &rows(&matrix), 1e-13, name);
+            let rotation = matrix.fixed_view::<3, 3>(0, 0).transpose();
+            assert_near(all(&found, &format!("L_{name}"))[0], rotation.as_slice(), 1e-15, name);
+        }
+        let vector = |name: &str| Vector3::from_column_slice(all(&found, name)[0]);
+        let (r, n) = (vector("r_t").push(1.0), vector("n_t").push(0.0));
+        let bed_hob = bed_slide * slide_head * head_hob;
+        for (frame, pose) in [("bed", bed_hob), ("table", table_bed * bed_hob)] {
+            assert_near(all(&found, &format!("r_{frame}"))[0], &(pose * r).as_slice()[..3], 1e-12, frame);
+            assert_near(all(&found, &format!("n_{frame}"))[0], &(pose * n).as_slice()[..3], 1e-14, frame);
+        }
+
+        // a point of the hob and one of the table, both at P, a little before and after
+        let at = |time: f64| {
+            let moved = RATES.map(|(axis, rate)| (format!("m.{axis}"), axes[&format!("m.{axis}")] + rate * time));
+            let [table_bed, rest @ ..] = table_to_hob(&moved.into_iter().collect());
+            (table_bed.try_inverse().expect("a rigid motion"), rest.iter().product::<Matrix4<f64>>())
+        };
+        let h = 1e-5;
+        let ((table_after, hob_after), (table_before, hob_before), (table, hob)) = (at(h), at(-h), at(0.0));
+        let point = vector("P").push(1.0);
+        let speed = |after: Matrix4<f64>, before: Matrix4<f64>, now: Matrix4<f64>| {
+            let speed = (after - before) * (now.try_inverse().expect("a rigid motion") * point) / (2.0 * h);
+            speed.fixed_rows::<3>(0).into_owned()
+        };
+        let (of_work, of_tool) = (speed(table_after, table_before, table), speed(hob_after, hob_before, hob));
+        assert_near(all(&found, "V_work")[0], of_work.as_slice(), 1e-7, "work");
+        assert_near(all(&found, "V_tool")[0], of_tool.as_slice(), 1e-7, "tool");
+        assert_near(all(&found, "V")[0], (vector("V_tool") - vector("V_work")).as_slice(), 1e-12, "relative");
+        assert_near(all(&found, "f")[0], &[vector("n_bed").dot(&vector("V"))], 1e-12, "equation of meshing");
+
+        // with the rates of the two motions and at the point of the hob, it is the equation that is solved
+        for (k, (by_spindle, by_feed)) in [(h, 0.0), (0.0, h)].into_iter().enumerate() {
+            let ahead = page.axes(spindle + by_spindle, feed + by_feed);
+            let behind = page.axes(spindle - by_spindle, feed - by_feed);
+            let mut along = values.clone();
+            along.extend(["x", "y", "z"].into_iter().zip(all(&found, "r_bed")[0]).map(|(k, v)| (format!("P_{k}"), *v)));
+            for (axis, _) in RATES {
+                let slope = (ahead[&format!("m.{axis}")] - behind[&format!("m.{axis}")]) / (2.0 * h);
+                along.insert(format!("m.{axis}_rate"), slope);
+                let printed = all(&found, &format!("m.{axis}_rate"));
+                // printed for each motion along which the axis moves
+                let told = if printed.len() == 2 { printed.get(k) } else { printed.first() };
+                assert!(
+                    slope.abs() < 1e-9 || told.is_some_and(|told| (told[0] - slope).abs() < 1e-7),
+                    "{axis}: {slope}"
+                );
+            }
+            let found = read(&along);
+            assert_near(all(&found, "f")[0], all(&found, "meshing")[k], 1e-6, "the equation that is solved");
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What was built from a job, written out stage by stage.
 
+mod fixed_frame;
+
 use std::fmt::Write;
 
 use flank_expr::geometry::{Axis as Line, Pose, Step, Vector3};
@@ -17,7 +19,7 @@ pub fn derivation(job: &Job<'_>, style: Style) -> String {
     job.doc.iter().for_each(|line| page.text(line));
     page.parameters(job);
     job.machines.iter().for_each(|machine| page.machine(machine));
-    job.surfaces.iter().for_each(|surface| page.surface(surface));
+    job.surfaces.iter().for_each(|surface| page.surface(surface, &job.machines));
     page.finish()
 }
 
@@ -135,11 +137,12 @@ impl Page {
         }
     }
 
-    fn surface(&mut self, surface: &GeneratedSurface<'_>) {
+    fn surface(&mut self, surface: &GeneratedSurface<'_>, machines: &[Machine<'_>]) {
         self.heading(&format!("surface {} in {}", surface.name, surface.frame));
         surface.doc.iter().for_each(|line| self.text(line));
         self.chain(&surface.generation, &surface.frame);
         self.tool(&surface.generation);
+        self.fixed_frame(surface, machines);
         self.motions(surface);
         self.text(&format!("position in {}, mm:", surface.frame));
         self.vector("r", surface.surface.position);
