@@ -78,6 +78,7 @@ codes! {
     FreeMotion        = "E0510" Error "a motion moves the tool, but the envelope is not over it";
     CyclicCouple      = "E0511" Error "axes follow each other in a circle";
     Trim              = "E0512" Error "a surface cannot be trimmed by this one";
+    Cut               = "E0513" Error "a surface cannot be cut by these edges";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";

@@ -9,7 +9,7 @@ use crate::dimension::shown;
 use crate::functions::plural;
 use crate::model::Parameter;
 use crate::source::{Name, Span};
-use crate::syntax::ast::{Argument, Expression, Param};
+use crate::syntax::ast::{Argument, Dimension, Expression, Param};
 
 /// Values from outside the text, by full name (`ratio`, `m.swivel`): they win over what the text says.
 pub(crate) type Overrides = HashMap<String, Expression>;
@@ -112,14 +112,14 @@ impl<'a, 'g> Binder<'a, 'g> {
         let variable = context.variable(full_name.clone(), Role::Parameter, value);
         scope.insert(name.clone(), Value::Scalar(variable, dimension));
         if let Some((definition, _)) = definition {
-            let is_count = is_count(param);
+            let is_count = is_count(&param.dimension);
             self.parameters.push(Parameter { name: full_name, variable, dimension, definition, value, is_count });
         }
     }
 
     /// Counts are whole, values lie in the declared range.
     fn check_value(&self, context: &mut Context<'g>, param: &Param, value: f64, scope: &Scope<'g>, span: Span) {
-        if is_count(param) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
+        if is_count(&param.dimension) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
             let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
         }
@@ -170,8 +170,9 @@ impl<'a, 'g> Binder<'a, 'g> {
     }
 }
 
-fn is_count(param: &Param) -> bool {
-    param.dimension.factors.iter().any(|(name, _)| name.node == "count")
+/// Whether a dimension is that of something that is counted.
+pub(crate) fn is_count(dimension: &Dimension) -> bool {
+    dimension.factors.iter().any(|(name, _)| name.node == "count")
 }
 
 fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &HashSet<&str>) {

@@ -56,6 +56,8 @@ pub struct Bounded<'g> {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+    /// Whether it counts something: on the machine it takes whole numbers only.
+    pub is_count: bool,
 }
 
 /// A machine of a job: a tree of frames moved by axes.
@@ -127,6 +129,9 @@ pub struct GeneratedSurface<'g> {
     pub unknowns: Vec<Bounded<'g>>,
     /// The surfaces of the job that cut points of it away, as indices into its surfaces.
     pub trimmed_by: Vec<usize>,
+    /// The sweep of the numbered edges that really cut it, as an index into the surfaces of the job: over the same motions, one
+    /// and counts.
+    pub cut_by: Option<usize>,
     /// The points that are asked for.
     pub sample: Option<Sample<'g>>,
 }

@@ -10,7 +10,7 @@ use crate::codes::Code;
 use crate::context::{Constant, Context, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
-use crate::instance::{Binder, Overrides, Source};
+use crate::instance::{Binder, Overrides, Source, is_count};
 use crate::model::{Bounded, Parameter, ToolShape};
 use crate::profile::{self, Segment};
 use crate::requirement;
@@ -213,7 +213,7 @@ fn run_along<'g>(context: &mut Context<'g>, name: &Name, segment: &Segment<'g>) 
         _ => f64::NAN,
     });
     let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
-    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high }
+    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high, is_count: false }
 }
 
 /// A direction: lengths or numbers alike.
@@ -247,6 +247,11 @@ pub(crate) fn bounded<'g>(
     let dimension = context.dimension(&parameter.dimension)?;
     let what = format!("`{name}`");
     let (low, high) = context.range(&parameter.range, scope, dimension, &what).unwrap_or((f64::NAN, f64::NAN));
+    let is_count = is_count(&parameter.dimension);
+    for end in [low, high].into_iter().filter(|end| is_count && end.is_finite() && end.fract() != 0.0) {
+        let message = format!("{what} is a count: it runs between whole numbers, not to {end}");
+        context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
+    }
     let variable = context.variable(name.clone(), role, f64::NAN);
-    Some(Bounded { name, variable, dimension, low, high })
+    Some(Bounded { name, variable, dimension, low, high, is_count })
 }

@@ -182,7 +182,7 @@ impl Used {
                     self.path(&surface.frame);
                     self.expression(&surface.value);
                 }
-                JobStatement::Trim { .. } => {}
+                JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
                 JobStatement::Sample(sample) => {
                     for entry in &sample.entries {
                         entry.definition.iter().for_each(|definition| self.expression(definition));

@@ -5,6 +5,7 @@ mod branches;
 mod certify;
 mod check;
 mod cost;
+mod cut;
 mod derive;
 mod explain;
 mod fields;

@@ -12,10 +12,11 @@ use flank_expr::Graph;
 use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Format, Solve};
+use crate::cut::Cut;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::table::{Solved, Table};
-use crate::{Ending, print, spec, travel, trims};
+use crate::{Ending, cut, print, spec, travel, trims};
 use crate::{branches, certify, geometry, reasons};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
@@ -57,6 +58,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         anstream::eprint!("{}{}", branches::undecided(&solved), limits::untold(&lines));
         let told = branches::ambiguous(&solved)
             + &table.unsolved()
+            + &cut::unknown(&solved)
             + &certify::failed(&solved)
             + &travel::beyond(job, &solved);
         if !told.is_empty() {
@@ -94,8 +96,10 @@ fn solve_surface<'j, 'g>(
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
     fields.extend(radii.as_deref().map(certify::field));
+    let cut = cut::of(job, surface, &points);
+    fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
-    Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims })
+    Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims, cut })
 }
 
 /// Where the unknowns of a surface are looked for.
@@ -201,8 +205,10 @@ fn write_files(
     if !arguments.no_picture {
         let moved = sensitivity::pictures(solved, dataset);
         let moved = moved.into_iter().map(|(surface, drawn)| (format!("{surface}.sensitivity."), drawn));
+        let left = cut::pictures(solved, dataset);
+        let left = left.into_iter().map(|(surface, drawn)| (format!("{surface}.left."), drawn));
         let all = picture(dataset, &PictureOptions::default());
-        for (part, drawn) in std::iter::once((String::new(), all)).chain(moved) {
+        for (part, drawn) in std::iter::once((String::new(), all)).chain(moved).chain(left) {
             let png = drawn.png().map_err(|error| error.to_string())?;
             write(&format!("{part}png"), &|out| Ok(out.write_all(&png)?))?;
             let svg = drawn.svg();

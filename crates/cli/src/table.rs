@@ -8,6 +8,7 @@ use flank_export::Field;
 use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
+use crate::cut::Cut;
 use crate::limits::Line;
 use crate::sensitivity::{self, Sensitivity};
 use crate::{branches, certify, fields, reasons, units};
@@ -27,6 +28,8 @@ pub(crate) struct Solved<'j, 'g> {
     /// What more is known of the points; files show it after the status.
     pub(crate) fields: Vec<Field>,
     pub(crate) sensitivity: Option<Sensitivity>,
+    /// What the single edges leave, if the job says which.
+    pub(crate) cut: Option<Cut>,
 }
 
 /// A job's surfaces.

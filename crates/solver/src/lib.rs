@@ -16,6 +16,7 @@
 
 mod angles;
 mod certify;
+mod cutting;
 mod elimination;
 mod enclosure;
 mod extent;
@@ -35,8 +36,10 @@ mod start;
 mod surface;
 mod system;
 mod trim;
+mod whole_numbers;
 
 pub use certify::Certifier;
+pub use cutting::{CuttingEdges, Left};
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};

@@ -2,6 +2,7 @@
 
 mod available;
 mod axes;
+mod cut;
 mod surfaces;
 
 use std::collections::{HashMap, HashSet};
@@ -93,6 +94,7 @@ pub(crate) fn build<'g>(
     for statement in &job.statements {
         match statement {
             JobStatement::Trim { surface, by } => builder.trim(context, surface, by, job),
+            JobStatement::Cut { surface, by } => builder.cut(context, surface, by, job),
             JobStatement::Sample(sample) => builder.sample(context, sample, job),
             _ => {}
         }
@@ -160,6 +162,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }
+            | JobStatement::Cut { .. }
             | JobStatement::Sample(_) => {}
         }
     }

@@ -87,6 +87,7 @@ impl<'g> Builder<'_, 'g> {
             surface,
             unknowns,
             trimmed_by: Vec::new(),
+            cut_by: None,
             sample: None,
         };
         self.surfaces.push((surface, frame));
@@ -267,7 +268,7 @@ impl<'g> Builder<'_, 'g> {
 
 impl<'g> Builder<'_, 'g> {
     /// A surface of the job that came out right, or a piece of one.
-    fn finished(&self, context: &mut Context<'g>, path: &ast::Path, job: &ast::Job) -> Option<usize> {
+    pub(super) fn finished(&self, context: &mut Context<'g>, path: &ast::Path, job: &ast::Job) -> Option<usize> {
         let (name, rest) = path.segments.split_first()?;
         let wanted = joined(path);
         let found = self.surfaces.iter().position(|(surface, _)| surface.name == wanted);

@@ -321,6 +321,13 @@ pub enum JobStatement {
         /// The surface that cuts them away.
         by: Path,
     },
+    /// `cut flank by edges`
+    Cut {
+        /// The ideal surface.
+        surface: Path,
+        /// The sweep of the edges that cut it.
+        by: Path,
+    },
     /// `sample name { … }`
     Sample(Sample),
     /// `require a < b, "…"`

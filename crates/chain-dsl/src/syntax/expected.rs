@@ -76,6 +76,7 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
             "`in` and a range".to_owned()
         }
         Rule::kw_by if before.statement == "trim" => "`by` and the surface that cuts".to_owned(),
+        Rule::kw_by if before.statement == "cut" => "`by` and the sweep of the edges that cut".to_owned(),
         Rule::kw_by => "`by` and a number of points".to_owned(),
         Rule::dots => "`..` between the ends of the range".to_owned(),
         Rule::axis_kind => "`linear` or `rotary`".to_owned(),
@@ -114,6 +115,7 @@ fn name(before: &Before<'_>) -> String {
         ("tool", "=") => "the name of a tool".to_owned(),
         ("machine" | "tool", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("trim", "by") => "the name of the surface that cuts".to_owned(),
+        ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
         ("surface", "along") => "the name of a profile".to_owned(),
         ("profile", _) => SEGMENT.to_owned(),
         ("surface", _) => "a parameter such as `u: length in 0 mm .. 12 mm`".to_owned(),
@@ -126,7 +128,7 @@ fn name(before: &Before<'_>) -> String {
 fn path(before: &Before<'_>) -> &'static str {
     match before.statement {
         "drive" => "an axis such as `m.X`",
-        "sample" | "trim" => "the name of the surface",
+        "sample" | "trim" | "cut" => "the name of the surface",
         _ => "a frame such as `m.work`",
     }
 }
@@ -155,7 +157,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "let" => "value",
         "fix" | "couple" | "drive" => "axis",
         "mount" => "tool",
-        "sample" | "trim" => "surface",
+        "sample" | "trim" | "cut" => "surface",
         "require" => "condition",
         "fn" => "function",
         other => other,

@@ -57,6 +57,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
             value: piece.error(),
         }),
         "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
+        "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
         "require" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),

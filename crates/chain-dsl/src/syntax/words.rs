@@ -25,14 +25,14 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] =
-    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "sample", "require"];
+    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "cut", "sample", "require"];
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] =
     &["fn", "machine", "tool", "job", "param", "let", "axis", "frame", "profile", "surface", "motion"];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile"];
+const FREE: &[&str] = &["profile", "cut"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

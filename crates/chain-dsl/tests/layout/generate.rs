@@ -342,7 +342,8 @@ impl Writer {
                 self.call(2);
             }
             8 => {
-                self.put("trim");
+                let keyword = self.random.of(&["trim", "cut"]);
+                self.put(keyword);
                 self.name();
                 self.put("by");
                 self.name();

@@ -99,6 +99,7 @@ fn job_statement(statement: &JobStatement) -> String {
             format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
         }
         JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
+        JobStatement::Cut { surface, by } => format!("cut {} {}", path(surface), path(by)),
         JobStatement::Require(it) => requirement(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();

@@ -147,6 +147,7 @@ fn everything() {
       drive m.X (* ratio roll)
       surface concave in m.bed (envelope! c.flank over: roll)
       trim concave convex
+      cut concave blades
       require (and (> ratio 1) (not (== start 0_deg))) "this rolls the wrong way"
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
       sample concave.edge z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3

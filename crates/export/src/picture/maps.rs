@@ -9,8 +9,9 @@ use crate::conventions::one_line;
 use crate::dataset::{Dataset, Field, Patch, Values};
 use crate::number::levelled;
 
-/// Cells that a map is painted in, up and across.
+/// Cells that a map is painted in at least, up and across; a finer grid has one for each of its points, down to a least side.
 const CELLS: [usize; 2] = [60, 90];
+const LEAST_SIDE: f64 = 3.0;
 const GAP: f64 = 40.0;
 /// Above a map: its name and the line below it; below it: the key.
 const HEAD: f64 = 50.0;
@@ -123,7 +124,9 @@ impl<'a> Panel<'a> {
 
     /// Bands of colour, in rows of cells so fine that their steps are small; neighbours of one colour are one shape.
     fn draw_bands(&self, levels: &Levels, map: Rect, sheet: &mut Sheet) {
-        let [rows, columns] = CELLS;
+        let cells = |points: usize, room: f64, least: usize| points.min((room / LEAST_SIDE) as usize).max(least);
+        let rows = cells(self.patch.rows.count, map.height(), CELLS[0]);
+        let columns = cells(self.patch.columns.count, map.width(), CELLS[1]);
         let place = |i: usize, j: usize| -> Place {
             let share = [j as f64 / columns as f64, i as f64 / rows as f64];
             [map.left + share[0] * map.width(), map.bottom - share[1] * map.height()]

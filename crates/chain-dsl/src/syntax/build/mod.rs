@@ -170,6 +170,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_motion
             | kw_drive
             | kw_trim
+            | kw_cut
             | kw_sample
             | kw_keep
             | kw_in

@@ -51,7 +51,14 @@ impl Build<'_> {
             Rule::motion => JobStatement::Motion(self.motion(pair)),
             Rule::drive => JobStatement::Drive(self.assignment(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
-            Rule::trim => self.trim(pair),
+            Rule::trim => {
+                let [surface, by] = self.two_surfaces(pair);
+                JobStatement::Trim { surface, by }
+            }
+            Rule::cut => {
+                let [surface, by] = self.two_surfaces(pair);
+                JobStatement::Cut { surface, by }
+            }
             Rule::sample => JobStatement::Sample(self.sample(pair)),
             Rule::requirement => JobStatement::Require(self.requirement(pair)),
             _ => return None,
@@ -140,9 +147,10 @@ impl Build<'_> {
         }
     }
 
-    fn trim(&mut self, pair: Pair<'_, Rule>) -> JobStatement {
+    /// The surfaces on both sides of a `by`.
+    fn two_surfaces(&mut self, pair: Pair<'_, Rule>) -> [Path; 2] {
         let mut parts = Parts::of(pair);
-        JobStatement::Trim { surface: self.path(parts.required(Rule::path)), by: self.path(parts.required(Rule::path)) }
+        [self.path(parts.required(Rule::path)), self.path(parts.required(Rule::path))]
     }
 
     fn motion(&mut self, pair: Pair<'_, Rule>) -> Parameter {

@@ -1,0 +1,42 @@
+//! `cut flank by edges`: single edges instead of the surface that they would leave if there were no end of them.
+
+use crate::codes::Code;
+use crate::context::Context;
+use crate::diagnostic::Diagnostic;
+use crate::model::{GeneratedSurface, Process};
+use crate::syntax::ast;
+
+use super::Builder;
+use super::available::joined;
+
+impl<'g> Builder<'_, 'g> {
+    pub(super) fn cut(&mut self, context: &mut Context<'g>, surface: &ast::Path, by: &ast::Path, job: &ast::Job) {
+        let found = [surface, by].map(|path| self.finished(context, path, job));
+        let [Some(index), Some(edges)] = found else { return };
+        let wrong = |message: String, help: &str| Diagnostic::new(Code::Cut, by.span, message).help(help);
+        let [ideal, cutting] = [index, edges].map(|k| &self.surfaces[k].0);
+        if !has_numbered_edges(cutting) {
+            let message = format!("`{}` is no sweep of numbered edges", joined(by));
+            let help = "sweep an edge over its motion, then over counts such as `motion gash : count in -20 .. 20`";
+            return context.report(wrong(message, help));
+        }
+        if ideal.generation.process != Process::Sweep || ideal.generation.motions != cutting.generation.motions {
+            let message = format!("`{}` is not swept over the motions of `{}`", joined(surface), joined(by));
+            let help = "the ideal surface is the sweep of the ideal edge over the same motions, in the same order";
+            return context.report(wrong(message, help));
+        }
+        if ideal.cut_by.is_some() {
+            let message = format!("`{}` is cut twice", joined(surface));
+            return context.report(wrong(message, "take one of them away"));
+        }
+        self.surfaces[index].0.cut_by = Some(edges);
+    }
+}
+
+/// Whether a surface is the sweep of an edge over one motion, then over counts.
+fn has_numbered_edges(surface: &GeneratedSurface<'_>) -> bool {
+    let motions = &surface.unknowns[surface.unknowns.len() - surface.generation.motions.len()..];
+    let is_swept = surface.generation.process == Process::Sweep;
+    let counts = |motions: &[crate::model::Bounded<'_>]| motions.iter().all(|motion| motion.is_count);
+    matches!(motions, [first, rest @ ..] if is_swept && !first.is_count && !rest.is_empty() && counts(rest))
+}
