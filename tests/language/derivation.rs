@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use flank_chain_dsl::{Job, derivation};
 use flank_expr::{Graph, Style};
-use flank_tests::job;
+use flank_tests::{job, points};
 use nalgebra::{Matrix4, Rotation3, Translation3, Vector3};
 
 /// One printed equation or matrix: its name and its value at the values so far.
@@ -228,13 +228,33 @@ fn the_stages_of_the_paper_are_products_and_differences_of_its_matrices() {
             assert_near(all(&found, "f")[0], all(&found, "meshing")[k], 1e-6, "the equation that is solved");
         }
     }
+/// The parameter of a straight blade that the equation of meshing gives in closed form is that of the solved points.
+#[test]
+fn the_printed_closed_form_is_the_solved_parameter() {
+    let graph = Graph::new();
+    let job =
+        job(&graph, "specs/bevel/thesis_gear.chain", &[("m.cutter_tilt", "3 deg"), ("m.cutter_swivel", "25 deg")]);
+    let page = derivation(&job, Style::Text);
+    for (theta, roll) in [(-0.2, 0.05), (-0.5, -0.1), (-0.35, 0.12)] {
+        let mut values: HashMap<String, f64> = job.parameters.iter().map(|p| (p.name.clone(), p.value)).collect();
+        values.extend([("theta".to_string(), theta), ("roll".to_string(), roll), ("m.roll".to_string(), roll)]);
+        values.extend([("s".to_string(), 1.0), ("m.bed".to_string(), 0.0), ("m.work".to_string(), 0.0)]);
+        let found = stages(&page, "\nsurface concave", "\nsurface convex", &values);
+        let printed = all(&found, "s")[0][0];
+        let solved = points(&job, "concave", ["theta", "roll"], &[[theta, roll]]).remove(0);
+        assert!((printed - solved.unknowns[0]).abs() < 1e-10, "{printed} {:?}", solved.unknowns);
+    }
+    assert_eq!(page.matches("it is linear in s,").count(), 2);
+    let curved = Graph::new();
+    let gear = derivation(&flank_tests::job(&curved, "specs/bevel/gear_19x62.chain", &[]), Style::Text);
+    assert_eq!(gear.matches("it is linear in s,").count(), 0, "its blades are curved");
 }
 
 /// Brackets of all kinds and environments are closed in their order, and nothing special of LaTeX stands bare in a text.
 #[test]
 fn latex_is_balanced() {
-    for spec in ["specs/hobbing/helical_gear.chain", "specs/hobbing/spur_gear.chain", "specs/bevel/pinion_19x62.chain"]
-    {
+    for spec in ["hobbing/helical_gear", "hobbing/spur_gear", "bevel/pinion_19x62", "bevel/thesis_gear"] {
+        let spec = &format!("specs/{spec}.chain");
         let graph = Graph::new();
         let page = derivation(&job(&graph, spec, &[]), Style::Latex);
         for (open, close) in [("\\[ ", " \\]"), ("\\begin{", "\\end{"), ("\\left(", "\\right)")] {

@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Print what was built: matrices, vector parts, twists, the equation of meshing
     Derive(Derive),
+    /// How far one surface lies off another one of the same body: ease-off, tooth-space width
+    Deviation(Deviation),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
     /// Lay out specs as all of them are laid out; comments stay
@@ -141,6 +143,40 @@ pub(crate) struct Derive {
     pub(crate) cost: bool,
     /// Print the numbers of operations as JSON
     #[arg(long, requires = "cost")]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The deviation is signed, in um, along the normal of the surface after --from, at the points of that one's sample; plus is
+material. A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are
+laid onto each other. Without --as-it-lies the surface is first turned about z until both meet in the middle of the grid.
+
+Examples:
+  flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave
+  flank deviation specs/bevel/gear_19x62.chain concave --from convex --as-it-lies    width of the tooth space")]
+pub(crate) struct Deviation {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// The surface
+    pub(crate) surface: String,
+    /// The surface that it is held against; it is sampled in the spec
+    #[arg(long, value_name = "SURFACE")]
+    pub(crate) from: String,
+    /// Do not turn it
+    #[arg(long)]
+    pub(crate) as_it_lies: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Files with the points: csv, json, stl, or several with commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<Format>,
+    /// Write no picture (otherwise a PNG and an SVG)
+    #[arg(long)]
+    pub(crate) no_picture: bool,
+    /// Print the numbers as JSON
+    #[arg(long)]
     pub(crate) json: bool,
 }
 

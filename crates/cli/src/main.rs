@@ -7,8 +7,10 @@ mod check;
 mod cost;
 mod cut;
 mod derive;
+mod deviation;
 mod explain;
 mod fields;
+mod files;
 mod fmt;
 mod geometry;
 mod limits;
@@ -43,6 +45,7 @@ fn main() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
+        Command::Deviation(arguments) => deviation::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
     };

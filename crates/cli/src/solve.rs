@@ -1,18 +1,15 @@
 //! `flank solve`
 
-use std::path::Path;
 use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
-use flank_export::{
-    Axis, Dataset, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, WriteError, picture, write_atomically,
-    write_csv, write_json, write_stl,
-};
-use flank_expr::Graph;
+use flank_export::{Axis, Dataset, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture};
+use flank_expr::{Expr, Graph};
 use flank_solver::{Range, SurfacePoint, SurfaceProblem};
 
-use crate::arguments::{Format, Solve};
+use crate::arguments::{Solve, Which};
 use crate::cut::Cut;
+use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::table::{Solved, Table};
@@ -76,15 +73,7 @@ fn solve_surface<'j, 'g>(
     arguments: &Solve,
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-    let keep: Vec<_> = sample
-        .keep
-        .iter()
-        .map(|(coordinate, (low, high))| (coordinate.value, Range { low: *low, high: *high }))
-        .collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
-        .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
-        .expect("a job without errors leaves nothing unbound");
+    let problem = problem(job, surface, [sample.coordinates[0].value, sample.coordinates[1].value]);
     let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
     let branches = problem.points(&effort.branches);
     let trims = surface.trimmed_by.iter().enumerate();
@@ -100,6 +89,15 @@ fn solve_surface<'j, 'g>(
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
     Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims, cut })
+}
+
+/// Points of a surface at values of two coordinates, on the branch that its sample keeps.
+pub(crate) fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2]) -> SurfaceProblem {
+    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
+    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
+    SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
+        .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
+        .expect("a job without errors leaves nothing unbound")
 }
 
 /// Where the unknowns of a surface are looked for.
@@ -120,16 +118,21 @@ fn dataset(
         let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
         Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
-    let settings = arguments.which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Dataset {
-        header: Header {
-            program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
-            spec: spec::shown(&arguments.which.file),
-            spec_hash: format!("sha256:{hash}"),
-            job: job.name.clone(),
-            conventions: settings.collect(),
-        },
+        header: header(&job.name, &arguments.which, hash),
         patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect(),
+    }
+}
+
+/// Where the data of a job comes from.
+pub(crate) fn header(job: &str, which: &Which, hash: &str) -> Header {
+    let settings = which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
+    Header {
+        program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
+        spec: spec::shown(&which.file),
+        spec_hash: format!("sha256:{hash}"),
+        job: job.to_string(),
+        conventions: settings.collect(),
     }
 }
 
@@ -186,34 +189,16 @@ fn write_files(
     name: &str,
     arguments: &Solve,
 ) -> Result<Vec<String>, String> {
-    let folder = &arguments.out;
-    std::fs::create_dir_all(folder).map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
-    let mut written = Vec::new();
-    let mut write = |extension: &str, content: &dyn Fn(&mut dyn std::io::Write) -> Result<(), WriteError>| {
-        let path = folder.join(format!("{name}.{extension}"));
-        write_atomically(&path, content).map_err(|error| error.to_string())?;
-        written.push(spec::shown(Path::new(&path)));
-        Ok::<(), String>(())
-    };
-    for format in &arguments.format {
-        match format {
-            Format::Csv => write("csv", &|out| write_csv(dataset, out))?,
-            Format::Json => write("json", &|out| write_json(dataset, out))?,
-            Format::Stl => write("stl", &|out| write_stl(dataset, out))?,
-        }
-    }
+    let mut folder = Folder::at(&arguments.out)?;
+    folder.data(name, dataset, &arguments.format)?;
     if !arguments.no_picture {
-        let moved = sensitivity::pictures(solved, dataset);
-        let moved = moved.into_iter().map(|(surface, drawn)| (format!("{surface}.sensitivity."), drawn));
-        let left = cut::pictures(solved, dataset);
-        let left = left.into_iter().map(|(surface, drawn)| (format!("{surface}.left."), drawn));
-        let all = picture(dataset, &PictureOptions::default());
-        for (part, drawn) in std::iter::once((String::new(), all)).chain(moved).chain(left) {
-            let png = drawn.png().map_err(|error| error.to_string())?;
-            write(&format!("{part}png"), &|out| Ok(out.write_all(&png)?))?;
-            let svg = drawn.svg();
-            write(&format!("{part}svg"), &|out| Ok(out.write_all(svg.as_bytes())?))?;
+        folder.picture(name, &picture(dataset, &PictureOptions::default()))?;
+        for (surface, drawn) in sensitivity::pictures(solved, dataset) {
+            folder.picture(&format!("{name}.{surface}.sensitivity"), &drawn)?;
+        }
+        for (surface, drawn) in cut::pictures(solved, dataset) {
+            folder.picture(&format!("{name}.{surface}.left"), &drawn)?;
         }
     }
-    Ok(written)
+    Ok(folder.written)
 }

@@ -28,6 +28,40 @@ impl<'g> Expr<'g> {
     }
 }
 
+/// An expression that is linear in a variable: `intercept + slope · variable`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Linear<'g> {
+    /// Its value where the variable is zero.
+    pub intercept: Expr<'g>,
+    /// Its derivative, which does not depend on the variable.
+    pub slope: Expr<'g>,
+}
+
+impl<'g> Linear<'g> {
+    /// Where it is zero: a root in closed form.
+    pub fn root(self) -> Expr<'g> {
+        -self.intercept / self.slope
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The expression as one that is linear in a variable, if its derivative can be seen not to depend on it and is not zero.
+    ///
+    /// Seen is what the graph's rules simplify: an expression may be linear without being written so.
+    ///
+    /// # Panics
+    /// If `variable` is not a variable, or of another graph.
+    pub fn linear_in(self, variable: Expr<'g>) -> Option<Linear<'g>> {
+        let slope = self.derivative(variable);
+        let depends = slope.graph.work(&[slope], &[variable]) > 0 || slope == variable;
+        if slope.is_zero() || depends {
+            return None;
+        }
+        let intercept = self.graph.substitute(&[self], &[(variable, self.graph.constant(0.0))])[0];
+        Some(Linear { intercept, slope })
+    }
+}
+
 fn known<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
     graph.expr(graph.known_derivative(variable, node).expect("operands come before what is made of them"))
 }

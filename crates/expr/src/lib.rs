@@ -37,6 +37,7 @@ mod terms;
 
 pub use cost::Cost;
 pub use curve::{Curve, CurveError};
+pub use derivative::Linear;
 pub use evaluate::ScalarEvaluator;
 pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use interval::{Interval, IntervalEvaluator};

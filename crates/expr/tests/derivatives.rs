@@ -322,3 +322,30 @@ fn tape_of_a_jacobian_gives_the_oracles_numbers() {
     ScalarEvaluator::new(&tape).run(&[0.7, 1.1], &mut found);
     assert_eq!(found.to_vec(), graph.evaluate(&jacobian, &[0.7, 1.1]));
 }
+
+#[test]
+fn what_is_linear_in_a_variable_is_solved_for_it() {
+    let graph = Graph::new();
+    let (s, a, q) = (graph.variable("s"), graph.variable("a"), graph.variable("q"));
+    // n · (ω × (r + s t) + v), written as a solver would meet it
+    let equation = (3.0 + s * a.sin()) * q.cos() - (s * a.cos() - 2.0) * q.sin() + 0.5;
+    let linear = equation.linear_in(s).expect("it is linear in s");
+    let at = |expr: Expr<'_>, values: [f64; 3]| {
+        let tape = Tape::new(&[expr], &[s, a, q]).expect("nothing else is unknown");
+        let mut out = [0.0];
+        ScalarEvaluator::new(&tape).run(&values, &mut out);
+        out[0]
+    };
+    for (a, q) in [(0.3, 0.7), (1.2, -2.0), (-0.4, 0.1)] {
+        let root = at(linear.root(), [f64::NAN, a, q]);
+        assert!(at(equation, [root, a, q]).abs() < 1e-14 * root.abs().max(1.0));
+        let values = [0.0, 1.0].map(|s| at(equation, [s, a, q]));
+        assert!((values[0] - at(linear.intercept, [7.0, a, q])).abs() < 1e-15);
+        assert!((values[1] - values[0] - at(linear.slope, [7.0, a, q])).abs() < 1e-14);
+    }
+    assert_eq!(equation.linear_in(a), None);
+    assert_eq!(equation.linear_in(q), None);
+    assert_eq!((s * s).linear_in(s), None);
+    assert_eq!(a.sin().linear_in(s), None, "it does not depend on s at all");
+    assert_eq!(s.linear_in(s).map(|linear| linear.root().as_constant()), Some(Some(0.0)));
+}

@@ -17,6 +17,7 @@
 mod angles;
 mod certify;
 mod cutting;
+mod deviation;
 mod elimination;
 mod enclosure;
 mod extent;
@@ -40,6 +41,7 @@ mod whole_numbers;
 
 pub use certify::Certifier;
 pub use cutting::{CuttingEdges, Left};
+pub use deviation::{Deviation, EaseOff};
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};

@@ -225,6 +225,23 @@ impl Page {
                 Style::Text => self.line(&format!("  {} = 0", listing.values[0])),
                 Style::Latex => self.line(&format!("\\[ f_{{{name}}} = {} = 0 \\]", listing.values[0])),
             }
+            self.closed_forms(meshing, &surface.surface.unknowns);
+        }
+    }
+
+    /// The unknowns that an equation can be solved for by hand: those that it is linear in.
+    fn closed_forms(&mut self, equation: Expr<'_>, unknowns: &[Expr<'_>]) {
+        for &unknown in unknowns {
+            let Some(linear) = equation.linear_in(unknown) else { continue };
+            let graph = equation.graph();
+            let listing = graph.listing(&[unknown, linear.intercept, linear.slope], self.style, "t");
+            let [name, intercept, slope] = [0, 1, 2].map(|k| listing.values[k].clone());
+            self.text(&format!("it is linear in {unknown}, which it gives in closed form:"));
+            self.definitions(&listing.definitions);
+            match self.style {
+                Style::Text => self.line(&format!("  {name} = -({intercept}) / ({slope})")),
+                Style::Latex => self.line(&format!("\\[ {name} = -\\frac{{{intercept}}}{{{slope}}} \\]")),
+            }
         }
     }
 

@@ -1,0 +1,277 @@
+//! `flank deviation`
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps};
+use flank_expr::Graph;
+use flank_solver::{EaseOff, Outcome, SurfacePoint};
+use serde_json::{Value, json};
+
+use crate::arguments::Deviation;
+use crate::files::Folder;
+use crate::solve::{header, patch, problem, ranges};
+use crate::{Ending, print, spec};
+
+const NOTE: &str = "along the normal, plus is material";
+
+/// A surface of a job.
+#[derive(Clone, Copy)]
+struct Named<'j, 'g> {
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+}
+
+impl Named<'_, '_> {
+    fn whole_name(&self) -> String {
+        format!("{}.{}", self.job.name, self.surface.name)
+    }
+}
+
+/// One surface held against another one.
+struct Measured<'j, 'g> {
+    surface: Named<'j, 'g>,
+    from: Named<'j, 'g>,
+    sample: &'j Sample<'g>,
+    points: Vec<SurfacePoint>,
+    /// About z, radians, until both meet in the middle of the grid.
+    turn: Option<f64>,
+    /// Whether it was turned.
+    is_turned: bool,
+    /// um
+    deviations: Vec<Option<f64>>,
+}
+
+pub(crate) fn run(arguments: &Deviation) -> Ending {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
+        Ok(found) => found,
+        Err(ending) => return ending,
+    };
+    let told = |reason: String| {
+        anstream::eprintln!("error: {reason}");
+        Ending::Wrong
+    };
+    let both = find(&jobs, &arguments.surface).and_then(|surface| Ok([surface, find(&jobs, &arguments.from)?]));
+    let measured = match both.and_then(|both| measure(both, arguments.as_it_lies)) {
+        Ok(measured) => measured,
+        Err(reason) => return told(reason),
+    };
+    let written = match measured.write(arguments, &spec::hash(&compilation)) {
+        Ok(written) => written,
+        Err(reason) => return told(reason),
+    };
+    print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
+    anstream::eprintln!("{} points in {:.0} ms", measured.points.len(), start.elapsed().as_secs_f64() * 1e3);
+    let missing = measured.missing();
+    anstream::eprint!("{missing}");
+    if missing.is_empty() { Ending::Done } else { Ending::Unsolved }
+}
+
+/// A surface by its name, with that of its job where several have it.
+fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 'g>, String> {
+    let all = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| Named { job, surface }));
+    let found: Vec<Named<'j, 'g>> = all().filter(|of| of.surface.name == name || of.whole_name() == name).collect();
+    match found[..] {
+        [one] => Ok(one),
+        [] => {
+            let known: Vec<String> = all().map(|of| format!("`{}`", of.whole_name())).collect();
+            Err(format!("there is no surface `{name}`; there is: {}", known.join(", ")))
+        }
+        _ => {
+            let known: Vec<String> = found.iter().map(|of| format!("`{}`", of.whole_name())).collect();
+            Err(format!("several jobs have a surface `{name}`; say which: {}", known.join(", ")))
+        }
+    }
+}
+
+fn measure<'j, 'g>([surface, from]: [Named<'j, 'g>; 2], as_it_lies: bool) -> Result<Measured<'j, 'g>, String> {
+    let of = &from.surface.name;
+    let sample = from.surface.sample.as_ref().ok_or(format!(
+        "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
+    ))?;
+    let same = |k: usize| {
+        let name = &sample.coordinates[k].name;
+        surface.surface.coordinate(name).map(|coordinate| coordinate.value).ok_or(format!(
+            "`{of}` is sampled by `{name}`, which is no coordinate of `{}`; sample it by z and rho, or between the corners \
+             of the blank",
+            surface.surface.name
+        ))
+    };
+    let near = problem(surface.job, surface.surface, [same(0)?, same(1)?]);
+    let (near, _) = near.solve(&sample.targets, sample.counts);
+    let points = problem(from.job, from.surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
+    let (points, _) = points.solve(&sample.targets, sample.counts);
+    let held = &surface.surface.surface;
+    let deviation = flank_solver::Deviation::new(held, ranges(surface.surface), &surface.job.bindings())
+        .expect("a job without errors leaves nothing unbound");
+    let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
+    let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
+    let turn = both.and_then(|(point, near)| deviation.turn_to(point.position, near));
+    let deviations = match if as_it_lies { Some(0.0) } else { turn } {
+        Some(turn) => deviation.map(&points, &near, turn).into_iter().map(|off| Some(1e3 * off?)).collect(),
+        None => vec![None; points.len()],
+    };
+    Ok(Measured { surface, from, sample, points, turn, is_turned: !as_it_lies, deviations })
+}
+
+fn is_solved(point: &SurfacePoint) -> bool {
+    point.outcome == Outcome::Solved
+}
+
+impl Measured<'_, '_> {
+    /// Distance of the middle of the grid from the z axis, mm.
+    fn middle_radius(&self) -> f64 {
+        let middle = (self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2;
+        self.points.get(middle).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1]))
+    }
+
+    /// The middle of the grid, um.
+    fn in_the_middle(&self) -> Option<f64> {
+        *self.deviations.get((self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2)?
+    }
+
+    fn known(&self) -> impl Iterator<Item = f64> {
+        self.deviations.iter().flatten().copied()
+    }
+
+    fn ease_off(&self) -> Option<EaseOff> {
+        EaseOff::of(&self.deviations, self.sample.counts)
+    }
+
+    /// Way from the first to the last point of the middle column, and of the middle row, mm.
+    fn lengths(&self) -> [Option<f64>; 2] {
+        let [rows, columns] = self.sample.counts;
+        let apart = |a: usize, b: usize| {
+            let ends = [self.points.get(a)?, self.points.get(b)?];
+            let [one, other] = ends.map(|point| is_solved(point).then_some(point.position));
+            let squares = one?.into_iter().zip(other?).map(|(a, b)| (a - b) * (a - b));
+            Some(squares.sum::<f64>().sqrt())
+        };
+        [
+            apart(columns / 2, (rows - 1) * columns + columns / 2),
+            apart(rows / 2 * columns, rows / 2 * columns + columns - 1),
+        ]
+    }
+
+    fn name(&self) -> String {
+        format!("{}.deviation", self.surface.whole_name())
+    }
+
+    fn text(&self, written: &[String]) -> String {
+        let (surface, from) = (self.surface.surface, self.from.surface);
+        let known = self.known().count();
+        let mut out = format!(
+            "deviation of {} ({}) from {} ({}), um along the normal of the latter, plus is material\n\n",
+            self.surface.whole_name(),
+            surface.frame,
+            self.from.whole_name(),
+            from.frame
+        );
+        let _ = writeln!(out, "  points       {known} of {}", self.points.len());
+        if let Some(turn) = self.turn {
+            let (radius, done) = (self.middle_radius(), if self.is_turned { "" } else { " (not done)" });
+            let _ = writeln!(
+                out,
+                "  turn about z {:.6} deg, {:.6} mm on the circle through the middle{done}",
+                turn.to_degrees(),
+                radius * turn
+            );
+        }
+        if let Some(middle) = self.in_the_middle() {
+            let (low, high) = self.known().fold((middle, middle), |(low, high), x| (low.min(x), high.max(x)));
+            let rms = (self.known().map(|x| x * x).sum::<f64>() / known as f64).sqrt();
+            let _ = writeln!(out, "  range        {low:.3} .. {high:.3} um, rms {rms:.3}, in the middle {middle:.3}");
+        }
+        if let Some(ease_off) = self.ease_off() {
+            for (k, label) in self.sample.labels.iter().enumerate() {
+                let rise = ease_off.slopes[k];
+                let angle = self.lengths()[k].map(|length| arcmin(rise, length));
+                let angle = angle.map_or(String::new(), |angle| format!(" ({angle:.3} arcmin)"));
+                let _ =
+                    writeln!(out, "  {label:12} slope {rise:.3} um{angle}, crowning {:.3} um", ease_off.crownings[k]);
+            }
+            let _ = writeln!(out, "  bias         {:.3} um", ease_off.bias);
+        }
+        let _ = writeln!(out, "\nwrote {}", written.join(", "));
+        out
+    }
+
+    fn json(&self, written: &[String]) -> String {
+        let ease_off = self.ease_off();
+        let direction = |k: usize| {
+            ease_off.map(|of| {
+                let angle = self.lengths()[k].map(|length| arcmin(of.slopes[k], length));
+                json!({ "direction": self.sample.labels[k], "slope_um": of.slopes[k], "slope_arcmin": angle,
+                    "crowning_um": of.crownings[k] })
+            })
+        };
+        let value: Value = json!({
+            "surface": self.surface.surface.name, "frame": self.surface.surface.frame,
+            "from": self.from.surface.name, "from_frame": self.from.surface.frame,
+            "asked": self.points.len(), "known": self.known().count(),
+            "turn_deg": self.turn.map(f64::to_degrees), "turned": self.is_turned,
+            "turn_mm": self.turn.map(|turn| self.middle_radius() * turn),
+            "lowest_um": self.known().reduce(f64::min), "highest_um": self.known().reduce(f64::max),
+            "middle_um": self.in_the_middle(),
+            "directions": [direction(0), direction(1)], "bias_um": ease_off.map(|of| of.bias),
+            "written": written,
+        });
+        format!("{value:#}\n")
+    }
+
+    /// Why numbers are missing, if some are.
+    fn missing(&self) -> String {
+        let (all, known) = (self.points.len(), self.known().count());
+        let [surface, from] = [&self.surface.surface.name, &self.from.surface.name];
+        if self.turn.is_none() && self.is_turned {
+            return format!(
+                "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` \
+                 is turned about z\n"
+            );
+        }
+        let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
+        let mut out = String::new();
+        if unsolved > 0 {
+            let _ = writeln!(out, "not solved: {unsolved} of {all} points of {from}");
+        }
+        if known + unsolved < all {
+            let _ = writeln!(
+                out,
+                "no deviation at {} of {all} points: the normal of {from} does not meet {surface} within its ranges",
+                all - known - unsolved
+            );
+        }
+        out
+    }
+
+    fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
+        let axis = |k: usize| Axis { label: self.sample.labels[k].clone(), count: self.sample.counts[k] };
+        let patch = patch(self.from.job, &self.from.surface.name, self.from.surface, [axis(0), axis(1)], &self.points);
+        let field = Field {
+            name: format!("deviation of {}", self.surface.surface.name),
+            unit: "um".to_string(),
+            meaning: NOTE.to_string(),
+            values: Values::Scalars(self.deviations.clone()),
+        };
+        let mut header = header(&self.from.job.name, &arguments.which, hash);
+        let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
+        header.conventions.push(format!("{} turned about z by {turn:?} deg", self.surface.surface.name));
+        let dataset = Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] };
+        let mut folder = Folder::at(&arguments.out)?;
+        folder.data(&self.name(), &dataset, &arguments.format)?;
+        if !arguments.no_picture {
+            let title = format!("{} from {}", self.surface.whole_name(), self.from.whole_name());
+            let map = field_maps(&dataset, &title, &[(0, 0)], NOTE, &PictureOptions::default());
+            folder.picture(&self.name(), &map)?;
+        }
+        Ok(folder.written)
+    }
+}
+
+/// The angle of a rise in um over a length in mm.
+fn arcmin(rise: f64, length: f64) -> f64 {
+    (1e-3 * rise).atan2(length).to_degrees() * 60.0
+}
