@@ -229,6 +229,8 @@ fn the_stages_of_the_paper_are_products_and_differences_of_its_matrices() {
             assert_near(all(&found, "f")[0], all(&found, "meshing")[k], 1e-6, "the equation that is solved");
         }
     }
+}
+
 /// The parameter of a straight blade that the equation of meshing gives in closed form is that of the solved points.
 #[test]
 fn the_printed_closed_form_is_the_solved_parameter() {
@@ -243,6 +245,8 @@ fn the_printed_closed_form_is_the_solved_parameter() {
         let mut values: HashMap<String, f64> = job.parameters.iter().map(|p| (p.name.clone(), p.value)).collect();
         values.extend([("theta".to_string(), theta), ("roll".to_string(), roll), ("m.roll".to_string(), roll)]);
         values.extend([("s".to_string(), 1.0), ("m.bed".to_string(), 0.0), ("m.work".to_string(), 0.0)]);
+        values.extend(["P_x", "P_y", "P_z"].map(|name| (name.to_string(), 0.0)));
+        values.extend(["roll", "bed", "work"].map(|axis| (format!("m.{axis}_rate"), 1.0)));
         let found = stages(&page, "\nsurface concave", "\nsurface convex", &values);
         let printed = all(&found, "s")[0][0];
         assert!((printed - s).abs() < 1e-10, "{printed} {s}");
