@@ -148,6 +148,23 @@ pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [
     problem.expect("nothing is unbound")
 }
 
+/// The points that a surface's sample asks for, as `flank solve` finds them.
+///
+/// # Panics
+/// If there is no such surface, or nothing is asked of it.
+pub fn sampled(job: &Job<'_>, surface: &str) -> Vec<SurfacePoint> {
+    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let sample = surface.sample.as_ref().expect("points are asked for");
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    problem(job, surface, coordinates).solve(&sample.targets, sample.counts).0
+}
+
+/// A vector turned about z.
+pub fn turned(v: [f64; 3], angle: f64) -> [f64; 3] {
+    let (sin, cos) = angle.sin_cos();
+    [v[0] * cos - v[1] * sin, v[0] * sin + v[1] * cos, v[2]]
+}
+
 /// A surface at values of its unknowns that another source says solve its equations.
 #[derive(Clone, Debug)]
 pub struct Evaluated {

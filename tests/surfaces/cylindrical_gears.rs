@@ -1,0 +1,95 @@
+//! Cylindrical gears of the library against closed forms, and against each other where two processes make one gear.
+
+use flank_expr::Graph;
+use flank_solver::{Outcome, SurfacePoint};
+use flank_tests::{assert_point, job, job_named, points, sampled, turned};
+
+const FLANKS: [&str; 2] = ["lower_flank", "upper_flank"];
+
+fn polar(point: &SurfacePoint) -> f64 {
+    point.position[1].atan2(point.position[0])
+}
+
+/// Hobs of both hands cut gears of both hands: the flanks of the left-hand hob are those of the right-hand one, turned, and the
+/// two flanks by angles that differ by whole pitches, so that the teeth are as thick.
+#[test]
+fn hobs_of_both_hands_cut_the_same_gear() {
+    for helix in ["22 deg", "-22 deg"] {
+        let of_hand = |hand: &str| {
+            let set = [("left_hand_hob", hand), ("helix_angle", helix)];
+            let graph = Graph::new();
+            let job = job(&graph, "specs/hobbing/helical_gear.chain", &set);
+            FLANKS.map(|name| sampled(&job, name))
+        };
+        let (right, left) = (of_hand("0"), of_hand("1"));
+        let turns = [0, 1].map(|k| {
+            let (name, a, b) = (FLANKS[k], &right[k], &left[k]);
+            let turn = polar(&a[0]) - polar(&b[0]);
+            for (p, q) in a.iter().zip(b) {
+                assert_point(p, turned(q.position, turn), turned(q.normal, turn), &format!("{name}, {helix}"));
+            }
+            turn
+        });
+        let pitches = (turns[0] - turns[1]) / (std::f64::consts::TAU / 31.0);
+        assert!((pitches - pitches.round()).abs() < 1e-11, "{helix}: {pitches}");
+    }
+}
+
+/// Diagonal feed is compensated by the table: the same gear, whatever the ratio.
+#[test]
+fn the_diagonal_ratio_does_not_change_the_gear() {
+    let of_ratio = |ratio: &str| {
+        let graph = Graph::new();
+        let job = job(&graph, "specs/hobbing/diagonal_gear.chain", &[("diagonal_ratio", ratio)]);
+        FLANKS.map(|name| sampled(&job, name))
+    };
+    let axial = of_ratio("0");
+    for ratio in ["0.4", "-0.7"] {
+        for ((a, b), name) in axial.iter().zip(&of_ratio(ratio)).zip(FLANKS) {
+            for (p, q) in a.iter().zip(b) {
+                assert_eq!(q.outcome, Outcome::Solved);
+                assert_point(p, q.position, q.normal, &format!("{name}, ratio {ratio}"));
+            }
+        }
+    }
+}
+
+/// The internal gear of a shaper's edges at the standard distance: the involute whose space has the cutter's tooth.
+#[test]
+fn the_shaped_internal_gear_is_an_involute() {
+    let graph = Graph::new();
+    let job = job_named(&graph, "specs/hobbing/shaped_gear.chain", "shaped_internal_gear", &[]);
+    let alpha = 20f64.to_radians();
+    let (teeth, reference) = (73.0, 109.5);
+    let base = reference * alpha.cos();
+    let inv = |angle: f64| angle.tan() - angle;
+    let targets: Vec<[f64; 2]> = (0..20).map(|k| [107.6 + 0.23 * f64::from(k), -9.0 + f64::from(k)]).collect();
+    for (name, side) in [("flank_plus", 1.0), ("flank_minus", -1.0)] {
+        for (target, point) in targets.iter().zip(points(&job, name, ["rho", "z"], &targets)) {
+            let [rho, z] = *target;
+            let at = (base / rho).acos();
+            let angle = side * (std::f64::consts::FRAC_PI_2 / teeth + inv(alpha) - inv(at));
+            // the normal touches the base circle; it points out of the ring's steel, into the space
+            let tangent = angle - side * at;
+            let normal = [side * tangent.sin(), -side * tangent.cos(), 0.0];
+            assert_point(&point, [rho * angle.cos(), rho * angle.sin(), z], normal, name);
+        }
+    }
+}
+
+/// Each straight piece of a rack cuts an involute of its own base circle: the flank and the chamfer over it.
+#[test]
+fn the_chamfer_is_an_involute_of_its_own() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/hobbing/semi_topped_gear.chain", &[]);
+    for (piece, angle) in
+        [("plus.flank", 20f64), ("minus.flank", 20.0), ("plus.chamfer", 45.0), ("minus.chamfer", 45.0)]
+    {
+        for point in sampled(&job, piece) {
+            assert_eq!(point.outcome, Outcome::Solved);
+            let ([x, y, _], [nx, ny, _]) = (point.position, point.normal);
+            let base = (x * ny - y * nx).abs();
+            assert!((base - 36.0 * angle.to_radians().cos()).abs() < 1e-9, "{piece}: {base}");
+        }
+    }
+}
