@@ -525,3 +525,26 @@ fn errors_end_with_where_to_read_more() {
     let right = text(&flank(&["check", "specs/machines/cradle.chain"]).stderr);
     assert!(!right.contains("flank explain"), "{right}");
 }
+
+/// What a user gets wrong at a hobbing machine, and what is told.
+#[test]
+fn wrong_settings_of_hobbing_machines_are_told() {
+    let out = folder("wrong_settings");
+    let out = out.to_str().expect("a plain path");
+    for (spec, set, code, told) in [
+        ("worm_wheel", "h.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
+        ("crowned_gear", "m.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
+        ("beveloid", "m.swivel=40 deg", 1, "with this swivel the hob's thread lies across the teeth and mills them away"),
+        ("beveloid", "m.swivel=50 deg", 1, "`swivel` is 50 deg, outside its range -45 deg .. 45 deg"),
+        ("crowned_gear", "h.starts=12", 1, "each thread of a hob cuts with several teeth: more gashes than starts"),
+        ("crowned_gear", "h.addendum=9 mm", 1, "the hob's teeth are pointed below their tip"),
+        ("worm_wheel_tangential", "face_width=40 mm", 3, "infeed outside its range, by up to 11.9"),
+        ("beveloid", "teeth=250", 3, "beyond its travel: axis m.X runs from 413.4"),
+    ] {
+        let file = format!("specs/hobbing/{spec}.chain");
+        let run = flank(&["solve", &file, "--set", set, "--no-picture", "--out", out]);
+        let said = text(&run.stderr) + &text(&run.stdout);
+        assert_eq!(run.status.code(), Some(code), "{spec}, {set}: {said}");
+        assert!(said.contains(told), "{spec}, {set}: {said}");
+    }
+}
