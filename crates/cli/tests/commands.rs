@@ -534,7 +534,12 @@ fn wrong_settings_of_hobbing_machines_are_told() {
     for (spec, set, code, told) in [
         ("worm_wheel", "h.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
         ("crowned_gear", "m.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
-        ("beveloid", "m.swivel=40 deg", 1, "with this swivel the hob's thread lies across the teeth and mills them away"),
+        (
+            "beveloid",
+            "m.swivel=40 deg",
+            1,
+            "with this swivel the hob's thread lies across the teeth and mills them away",
+        ),
         ("beveloid", "m.swivel=50 deg", 1, "`swivel` is 50 deg, outside its range -45 deg .. 45 deg"),
         ("crowned_gear", "h.starts=12", 1, "each thread of a hob cuts with several teeth: more gashes than starts"),
         ("crowned_gear", "h.addendum=9 mm", 1, "the hob's teeth are pointed below their tip"),
