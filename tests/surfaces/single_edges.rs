@@ -178,7 +178,7 @@ fn a_point_alone_has_the_same_left() {
 #[test]
 fn edges_sampled_densely_are_as_high() {
     for (starts, gashes, run_out) in [("2", "14", "0 mm"), ("2", "9", "0.03 mm"), ("1", "12", "0.01 mm")] {
-        let set = [("hob_starts", starts), ("gashes", gashes), ("run_out", run_out), ("points", "5"), ("turns", "6")];
+        let set = [("hob_starts", starts), ("gashes", gashes), ("run_out", run_out), ("points", "4"), ("turns", "6")];
         let set = [&set[..], &[("gashes_used", "16"), ("face_width", "8 mm"), ("run_out_at", "50 deg")]].concat();
         let graph = Graph::new();
         let job = job(&graph, REAL_HOB, &set);

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
 use flank_solver::{CuttingEdges, Left, SurfacePoint};
+use serde_json::{Value, json};
 
 use crate::solve::ranges;
 use crate::table::Solved;
@@ -59,18 +60,45 @@ impl Cut {
     }
 }
 
+/// How many of the solved points there are, and of them where no edge passes, and where it is not certain which is the
+/// lowest.
+struct Tally {
+    asked: usize,
+    unreached: usize,
+    undecided: usize,
+}
+
+impl Cut {
+    fn tally(&self) -> Tally {
+        let count = |what: Left| self.left.iter().flatten().filter(|left| **left == what).count();
+        Tally {
+            asked: self.left.iter().flatten().count(),
+            unreached: count(Left::Unreached),
+            undecided: count(Left::Undecided),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let Tally { asked, unreached, undecided } = self.tally();
+        json!({ "by": self.by, "known": asked - unreached - undecided, "unreached": unreached, "undecided": undecided })
+    }
+}
+
+/// The same for a summary in JSON; `null` if the job does not ask for it.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    solved.cut.as_ref().map_or(Value::Null, Cut::json)
+}
+
 /// At how many points it is not known what is left, and why; empty if there are none.
 pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
     for solved in solved {
         let Some(cut) = &solved.cut else { continue };
-        let count = |what: Left| cut.left.iter().flatten().filter(|left| **left == what).count();
-        let (unreached, undecided) = (count(Left::Unreached), count(Left::Undecided));
-        if unreached + undecided == 0 {
+        let Tally { asked, unreached, undecided } = cut.tally();
+        let (missing, name) = (unreached + undecided, &solved.surface.name);
+        if missing == 0 {
             continue;
         }
-        let asked = cut.left.iter().flatten().count();
-        let (missing, name) = (unreached + undecided, &solved.surface.name);
         let _ = writeln!(out, "not known what is left: {missing} of {asked} points of {name}");
         if unreached > 0 {
             let _ = writeln!(out, "  {unreached}: no edge of {} passes there within its ranges", cut.by);

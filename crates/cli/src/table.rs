@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::cut::Cut;
 use crate::limits::Line;
 use crate::sensitivity::{self, Sensitivity};
-use crate::{branches, certify, fields, reasons, units};
+use crate::{branches, certify, cut, fields, reasons, units};
 
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
@@ -219,6 +219,7 @@ fn surface_json(solved: &Solved<'_, '_>) -> Value {
     let mut entries = solved.row().json();
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
     entries.insert("fields".to_string(), fields::json(solved));
+    entries.insert("cut".to_string(), cut::json(solved));
     entries.insert("sensitivity".to_string(), sensitivity::json(solved));
     entries.insert("branches".to_string(), branches::json(solved));
     Value::Object(entries)

@@ -187,6 +187,36 @@ fn what_is_cut_away_is_counted() {
     assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus,") && row.contains(",cut away,")).count(), 98);
 }
 
+/// `cut`: what is left goes out with the points, as a map, and as a summary; where no edge passes, that is said.
+#[test]
+fn what_single_edges_leave_is_listed_written_and_drawn() {
+    let out = folder("cut");
+    let spec = std::fs::read_to_string(top().join("tests/machines/planed.chain")).expect("the test's machine");
+    let spec = written(&out, "planed.chain", &spec);
+    let solve = |set: &str| flank(&["solve", &spec, "--json", "--set", set, "--out", out.to_str().unwrap()]);
+    let run = solve("feed=0.5 mm");
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let plane = &table["surfaces"][0];
+    assert_eq!(plane["cut"], serde_json::json!({ "by": "strokes", "known": 255, "unreached": 0, "undecided": 0 }));
+    let left = &plane["fields"][0];
+    assert_eq!((left["name"].as_str(), left["unit"].as_str()), (Some("left"), Some("um")));
+    // half a feed beside a stroke: 8 - sqrt(8^2 - 0.25^2) mm
+    assert!((left["high"].as_f64().unwrap() - 3.907204).abs() < 1e-6, "{left}");
+    let csv = std::fs::read_to_string(out.join("planed.csv")).unwrap();
+    let titles = csv.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert!(titles.ends_with("left [um],left_by_stroke [1]"), "{titles}");
+    assert!(csv.contains("of `strokes` leave over the surface, along its normal; plus is material"));
+    for extension in ["png", "svg"] {
+        assert!(out.join(format!("planed.plane.left.{extension}")).exists());
+    }
+    let run = solve("reach=1 deg");
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stderr);
+    assert!(told.contains("not known what is left: 115 of 255 points of plane"), "{told}");
+    assert!(told.contains("115: no edge of strokes passes there within its ranges"), "{told}");
+}
+
 #[test]
 fn the_same_input_gives_the_same_bytes() {
     let [a, b] = ["bytes-a", "bytes-b"].map(folder);

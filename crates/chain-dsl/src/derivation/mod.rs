@@ -19,7 +19,7 @@ pub fn derivation(job: &Job<'_>, style: Style) -> String {
     job.doc.iter().for_each(|line| page.text(line));
     page.parameters(job);
     job.machines.iter().for_each(|machine| page.machine(machine));
-    job.surfaces.iter().for_each(|surface| page.surface(surface, &job.machines));
+    job.surfaces.iter().for_each(|surface| page.surface(surface, job));
     page.finish()
 }
 
@@ -137,12 +137,12 @@ impl Page {
         }
     }
 
-    fn surface(&mut self, surface: &GeneratedSurface<'_>, machines: &[Machine<'_>]) {
+    fn surface(&mut self, surface: &GeneratedSurface<'_>, job: &Job<'_>) {
         self.heading(&format!("surface {} in {}", surface.name, surface.frame));
         surface.doc.iter().for_each(|line| self.text(line));
         self.chain(&surface.generation, &surface.frame);
         self.tool(&surface.generation);
-        self.fixed_frame(surface, machines);
+        self.fixed_frame(surface, &job.machines);
         self.motions(surface);
         self.text(&format!("position in {}, mm:", surface.frame));
         self.vector("r", surface.surface.position);
@@ -153,9 +153,21 @@ impl Page {
             let name = unknown.variable.graph().listing(&[unknown.variable], self.style, "u").values[0].clone();
             let [low, high] = [unknown.low, unknown.high].map(|end| self.amount(end, unknown.dimension));
             match self.style {
-                Style::Text => self.line(&format!("  {name} in {low} .. {high}")),
-                Style::Latex => self.line(&format!("\\[ {low} \\le {name} \\le {high} \\]")),
+                Style::Text => {
+                    let counted = if unknown.is_count { ", counted" } else { "" };
+                    self.line(&format!("  {name} in {low} .. {high}{counted}"));
+                }
+                Style::Latex => {
+                    let counted = if unknown.is_count { "\\text{, counted}" } else { "" };
+                    self.line(&format!("\\[ {low} \\le {name} \\le {high}{counted} \\]"));
+                }
             }
+        }
+        if let Some(by) = surface.cut_by {
+            self.text(&format!(
+                "cut by {}: left is the least h for which r + h n lies on the sweep of one of its edges, each with whole counts",
+                job.surfaces[by].name
+            ));
         }
         self.counts(surface);
     }
