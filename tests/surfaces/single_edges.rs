@@ -115,19 +115,57 @@ fn where_no_edge_passes_is_said() {
     assert!(walls > 50 && cuts > 50);
 }
 
-/// Edges without a gap generate what the whole thread of the hob does: the gear that is checked in `helical_gear.rs`.
+/// Edges without a gap generate what the whole thread of the hob does, wherever its rake faces lie: the gear that is checked
+/// in `helical_gear.rs`.
 #[test]
 fn the_ideal_flank_is_that_of_the_whole_hob() {
-    let graph = [Graph::new(), Graph::new()];
-    let whole = job(&graph[0], "specs/hobbing/helical_gear.chain", &[("hob_shift", "0 mm")]);
-    let edges = job(&graph[1], REAL_HOB, &[]);
     let targets: Vec<[f64; 2]> =
         (0..24).map(|k| [-9.0 + 3.5 * f64::from(k % 6), 48.5 + 1.6 * f64::from(k / 6)]).collect();
-    for name in ["lower_flank", "upper_flank"] {
-        let [expected, found] = [&whole, &edges].map(|job| points_at(job, name, &targets));
-        for ((found, expected), target) in found.iter().zip(&expected).zip(&targets) {
-            assert_eq!(expected.outcome, Outcome::Solved);
-            assert_point(found, expected.position, expected.normal, &format!("{name} at {target:?}"));
+    for (rake_offset, gash_twist) in [("0 mm", "0 deg/mm"), ("5 mm", "0 deg/mm"), ("-2 mm", "-0.12 deg/mm")] {
+        let graph = [Graph::new(), Graph::new()];
+        let whole = job(&graph[0], "specs/hobbing/helical_gear.chain", &[("hob_shift", "0 mm")]);
+        let rake = [("h.rake_offset", rake_offset), ("h.gash_twist", gash_twist)];
+        let edges = job(&graph[1], REAL_HOB, &rake);
+        for name in ["lower_flank", "upper_flank"] {
+            let [expected, found] = [&whole, &edges].map(|job| points_at(job, name, &targets));
+            for ((found, expected), target) in found.iter().zip(&expected).zip(&targets) {
+                assert_eq!(expected.outcome, Outcome::Solved);
+                assert_point(found, expected.position, expected.normal, &format!("{name} at {target:?}, {rake:?}"));
+            }
+        }
+    }
+}
+
+/// The teeth of all turns belong to one hob, and the table has turned by whole turns: in the hob's frame each lies in a gash and on a
+/// thread of it.
+#[test]
+fn the_teeth_of_all_turns_are_those_of_one_hob() {
+    for (teeth, starts, gashes, by) in [(31.0, 2.0, 9.0, 0.0), (44.0, 3.0, 10.0, -0.002), (17.0, 1.0, 12.0, 0.001)] {
+        let graph = Graph::new();
+        let set = [("teeth", teeth), ("hob_starts", starts), ("gashes", gashes)];
+        let set = set.map(|(name, value)| (name, value.to_string()));
+        let twist = ["h.gash_twist", "e.gash_twist"].map(|name| (name, format!("{by} rad/mm")));
+        let job = with(&graph, REAL_HOB, &[&set[..], &twist[..]].concat());
+        let machine = &job.machines[1];
+        let law = |name: &str| machine.axes.iter().find(|axis| axis.name == name).expect("an axis").law;
+        let laws = graph.substitute(&["B", "C", "Z", "tooth_turn", "tooth_shift"].map(law), &job.bindings());
+        let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
+        let tape = Tape::new(&laws, &motions).expect("all bound");
+        let helix = 22f64.to_radians();
+        let lead_angle = f64::asin(starts * 3.0 / (2.0 * 38.0));
+        let reduced_lead = 38.0 * lead_angle.tan();
+        let is_whole = |x: f64, what: &str| assert!((x - x.round()).abs() < 1e-9, "{what} {x}");
+        for (spindle, gash, turn) in [(2.0, 0.0, 0.0), (3.0, 5.0, 1.0), (3.5, -7.0, 4.0), (4.0, 11.0, -9.0)] {
+            let mut out = [0.0; 5];
+            ScalarEvaluator::new(&tape).run(&[spindle, gash, turn], &mut out);
+            let [b, c, z, tooth_turn, tooth_shift] = out;
+            let hob = spindle + 2.0 * PI * teeth / starts * turn;
+            is_whole((b - hob) / (2.0 * PI), "turns of the hob");
+            let table = -starts / teeth * hob - 2.0 * helix.sin() / (3.0 * teeth) * z;
+            is_whole((c - table) / (2.0 * PI), "turns of the table");
+            let in_gash = tooth_turn - by * tooth_shift;
+            is_whole(in_gash * gashes / (2.0 * PI), "gash");
+            is_whole((tooth_turn - tooth_shift / reduced_lead) * starts / (2.0 * PI), "thread");
         }
     }
 }
@@ -177,9 +215,12 @@ fn a_point_alone_has_the_same_left() {
 /// is at that height. No equation is solved.
 #[test]
 fn edges_sampled_densely_are_as_high() {
-    for (starts, gashes, run_out) in [("2", "14", "0 mm"), ("2", "9", "0.03 mm"), ("1", "12", "0.01 mm")] {
+    let hobs =
+        [("2", "14", "0 mm", "0 deg/mm"), ("2", "9", "0.03 mm", "0 deg/mm"), ("1", "12", "0.01 mm", "-0.06 deg/mm")];
+    for (starts, gashes, run_out, twist) in hobs {
         let set = [("hob_starts", starts), ("gashes", gashes), ("run_out", run_out), ("points", "4"), ("turns", "6")];
         let set = [&set[..], &[("gashes_used", "16"), ("face_width", "8 mm"), ("run_out_at", "50 deg")]].concat();
+        let set = [&set[..], &[("h.gash_twist", twist), ("e.gash_twist", twist)]].concat();
         let graph = Graph::new();
         let job = job(&graph, REAL_HOB, &set);
         let points = sampled(&job, "lower_flank");
@@ -209,7 +250,11 @@ fn lowest_triangles(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<f
         evaluator.run(&[between(edge, j, ALONG), between(motion, k, steps), gash, turn], &mut out);
         out
     };
-    let is_near = |place: &[f64; 3], by: f64| points.iter().any(|point| difference(place, &point.position) < by);
+    let ends = |pick: fn(f64, f64) -> f64| -> [f64; 3] {
+        std::array::from_fn(|k| points.iter().map(|point| point.position[k]).reduce(pick).expect("there are points"))
+    };
+    let (low, high) = (ends(f64::min), ends(f64::max));
+    let is_near = |at: &[f64; 3], by: f64| (0..3).all(|k| low[k] - by < at[k] && at[k] < high[k] + by);
     let mut lowest = vec![f64::INFINITY; points.len()];
     for counts in
         (gash.0 as i32..=gash.1 as i32).flat_map(|gash| (turn.0 as i32..=turn.1 as i32).map(move |turn| [gash, turn]))
@@ -220,7 +265,7 @@ fn lowest_triangles(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<f
             let row: Option<Vec<[f64; 3]>> =
                 is_near(&place(ALONG / 2, k, counts), 8.0).then(|| (0..=ALONG).map(|j| place(j, k, counts)).collect());
             if let (Some(before), Some(row)) = (&before, &row) {
-                for (pair, next) in before.windows(2).zip(row.windows(2)) {
+                for (pair, next) in before.windows(2).zip(row.windows(2)).filter(|(pair, _)| is_near(&pair[0], 1.0)) {
                     for (point, lowest) in points.iter().zip(&mut lowest) {
                         // no triangle here is larger than a millimetre
                         if difference(&pair[0], &point.position) < 1.0 {

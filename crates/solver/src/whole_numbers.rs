@@ -10,7 +10,20 @@ pub(crate) struct WholeNumbers {
     root: Vec<Vec<f64>>,
 }
 
-/// A place of the lattice and its q.
+/// Steps of a walk for each place that it may find.
+const STEPS: usize = 16;
+
+/// Numbers that are chosen one after the other.
+struct Walk<'r> {
+    level: f64,
+    ranges: &'r [Range],
+    most: usize,
+    at: Vec<f64>,
+    found: Vec<Place>,
+    steps: usize,
+}
+
+/// A place and its q.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) at: Vec<f64>,
@@ -55,35 +68,28 @@ impl WholeNumbers {
         (0..self.middle.len()).map(|i| self.share(i, 1.0)).sum()
     }
 
-    /// All places with a q of at most `level`, in a settled order; `None` if they are more than `most`.
+    /// All places with a q of at most `level`, in a settled order; `None` if they are more than `most`, or far more have to
+    /// be looked at.
     pub(crate) fn within(&self, level: f64, ranges: &[Range], most: usize) -> Option<Vec<Place>> {
-        let mut found = Vec::new();
-        let mut at = vec![0.0; self.middle.len()];
-        self.descend(self.middle.len(), 0.0, level, ranges, most, &mut at, &mut found).then_some(found)
+        let count = self.middle.len();
+        let mut walk = Walk { level, ranges, most, at: vec![0.0; count], found: Vec::new(), steps: 0 };
+        self.descend(count, 0.0, &mut walk).then_some(walk.found)
     }
 
-    #[allow(clippy::too_many_arguments)] // a recursion over the numbers that are not chosen yet
-    fn descend(
-        &self,
-        open: usize,
-        q: f64,
-        level: f64,
-        ranges: &[Range],
-        most: usize,
-        at: &mut Vec<f64>,
-        found: &mut Vec<Place>,
-    ) -> bool {
+    /// Chooses the numbers before `open`; whether there is still room.
+    fn descend(&self, open: usize, q: f64, walk: &mut Walk<'_>) -> bool {
         let Some(i) = open.checked_sub(1) else {
-            found.push(Place { at: at.clone(), q });
-            return found.len() <= most;
+            walk.found.push(Place { at: walk.at.clone(), q });
+            return walk.found.len() <= walk.most;
         };
-        let best = self.best(i, at);
-        let reach = (2.0 * (level - q).max(0.0)).sqrt() / self.root[i][i];
-        let mut next = (best - reach).max(ranges[i].low).ceil();
-        let last = (best + reach).min(ranges[i].high).floor();
+        let best = self.best(i, &walk.at);
+        let reach = (2.0 * (walk.level - q).max(0.0)).sqrt() / self.root[i][i];
+        let mut next = (best - reach).max(walk.ranges[i].low).ceil();
+        let last = (best + reach).min(walk.ranges[i].high).floor();
         while next <= last {
-            at[i] = next;
-            if !self.descend(i, q + self.share(i, next - best), level, ranges, most, at, found) {
+            walk.at[i] = next;
+            walk.steps += 1;
+            if walk.steps > STEPS * walk.most || !self.descend(i, q + self.share(i, next - best), walk) {
                 return false;
             }
             next += 1.0;
@@ -109,7 +115,7 @@ mod tests {
 
     #[test]
     fn every_place_below_a_level_is_found_once() {
-        // skewed: the axes of the ellipse lie nowhere near those of the lattice
+        // skewed: the axes of the ellipse lie nowhere near those of the numbers
         let hessian = [vec![2.0, 10.3], vec![10.3, 53.6]];
         let middle = vec![0.3, -1.2];
         let numbers = WholeNumbers::new(middle.clone(), &hessian).expect("positive definite");
@@ -128,6 +134,10 @@ mod tests {
         let near = numbers.near(&ranges);
         assert!(numbers.within(near.q, &ranges, 10_000).expect("few").contains(&near));
         assert_eq!(numbers.within(20.0, &ranges, 3), None);
+        // so far out that a step of one is none
+        let far = WholeNumbers::new(vec![1e17, 0.0], &hessian).expect("positive definite");
+        let endless = [Range { low: f64::MIN, high: f64::MAX }; 2];
+        assert_eq!(far.within(1e6, &endless, 100), None);
     }
 
     #[test]
