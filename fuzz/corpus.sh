@@ -13,7 +13,7 @@ for target in parser layout meaning; do
         crates/chain-dsl/tests/*/mistakes/*.txt
     awk -v folder="fuzz/corpus/$target" '/^```chain/{n++; on=1; next} /^```/{on=0} on{print > sprintf("%s/page-%02d", folder, n)}' \
         docs/language.md
-    cat specs/machines/cradle.chain specs/tools/face_mill.chain specs/bevel/pinion_19x62.chain |
+    cat specs/functions/bevel.chain specs/machines/cradle.chain specs/tools/face_mill.chain specs/bevel/pinion_19x62.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-pinion"
     cat specs/machines/hobbing_6axis.chain specs/machines/rack_generating.chain specs/tools/rack.chain specs/hobbing/spur_gear.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-spur-gear"

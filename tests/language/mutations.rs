@@ -84,5 +84,9 @@ fn helical_gear() {
 
 #[test]
 fn pinion() {
-    storm(&["machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"], 300, 3);
+    storm(
+        &["functions/bevel.chain", "machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"],
+        300,
+        3,
+    );
 }

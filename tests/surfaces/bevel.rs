@@ -1,10 +1,10 @@
 //! Bevel gear machines and tools of the library against each other, closed forms, and chains of dense matrices.
 
-use flank_chain_dsl::Job;
+use flank_chain_dsl::{Job, compile_file, render};
 use flank_expr::Graph;
 use flank_solver::{Outcome, SurfacePoint};
 use flank_tests::{
-    assert_point, difference, job, job_of_text, library, number, points, reference_json, reversed, vector,
+    assert_point, difference, job, job_of_text, library, number, points, reference_json, repository, reversed, vector,
 };
 use nalgebra::{Matrix4, Vector3, Vector4};
 
@@ -68,7 +68,7 @@ fn the_machine_of_the_thesis_leaves_the_same_surface() {
 /// The right-hand machine shows the left-hand job in the mirror.
 #[test]
 fn the_mirrored_generator_cuts_the_other_hand() {
-    let parts = ["machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"];
+    let parts = ["functions/bevel.chain", "machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"];
     let [left, right] = [Graph::new(), Graph::new()];
     let left = job_of_text(&left, &library(&parts));
     let other = library(&parts).replace("machine m = cradle_generator(", "machine m = cradle_generator_mirrored(");
@@ -333,5 +333,51 @@ fn relieved_blades_have_their_angles() {
             let (sine, cosine) = angle.to_radians().sin_cos();
             assert_point(&point, [radius, 0.0, -height], [side * cosine, 0.0, sine], &name);
         }
+    }
+}
+
+/// Settings of the 19 x 62 pair as its machine sheets print them, from the blank alone.
+#[test]
+fn settings_follow_from_the_blank() {
+    let graph = Graph::new();
+    let pair = job(&graph, "specs/bevel/pair_from_blank.chain", &[]);
+    let value = |name: &str| pair.parameters.iter().find(|p| p.name == name).expect("a setting").value;
+    for (name, printed) in [
+        ("p.radial_distance", 97.95940290780507),
+        ("p.cradle_angle", -52.79674678267486f64.to_radians()),
+        ("p.machine_root_angle", 15.64096727073747f64.to_radians()),
+        ("p.ratio_of_roll", 3.339685914944047),
+        ("g.radial_distance", 97.95367814746567),
+        ("g.cradle_angle", 52.801158062429394f64.to_radians()),
+        ("g.machine_root_angle", 75.6638280957449f64.to_radians()),
+        ("g.ratio_of_roll", 1.023367028989512),
+    ] {
+        assert!((value(name) - printed).abs() < 1e-12 * printed.abs(), "{name}: {} {printed}", value(name));
+    }
+    for flank in ["pinion_concave", "pinion_convex", "gear_concave", "gear_convex"] {
+        sampled(&pair, flank);
+    }
+}
+
+/// What a wrong setting is told, in the words of the trade.
+#[test]
+fn wrong_settings_are_told_in_the_words_of_the_trade() {
+    for (spec, name, value, wanted) in [
+        ("pinion_19x62", "c.theta_from", "-170 deg", "the opposite flank"),
+        ("pinion_19x62", "c.blade_angle", "-20 deg", "positive for inside and outside blades"),
+        ("pinion_19x62", "m.machine_root_angle", "13 deg", "cut through"),
+        ("gear_19x62", "m.machine_root_angle", "74 deg", "cut through"),
+        ("formate_gear", "m.ratio_of_roll", "1.02", "is not generated"),
+        ("pair_from_blank", "face_width", "80 mm", "the teeth vanish at the toe"),
+        ("pair_from_blank", "dedendum_factor", "2.3", "meet before its tips"),
+    ] {
+        let mut set = vec![(name.to_string(), value.to_string())];
+        if name == "c.theta_from" {
+            set.push(("c.theta_to".to_string(), "-80 deg".to_string()));
+        }
+        let graph = Graph::new();
+        let compilation = compile_file(&graph, &repository(&format!("specs/bevel/{spec}.chain")), &set);
+        let told = render(&compilation.diagnostics, &compilation.sources, false);
+        assert!(compilation.has_errors() && told.contains(wanted), "{spec} with {name}: {told}");
     }
 }

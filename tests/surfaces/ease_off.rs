@@ -70,7 +70,7 @@ fn the_ease_off_ends_on_the_flank() {
 /// and the way along the normal is shorter than the arc.
 #[test]
 fn the_width_of_a_tooth_space() {
-    let text = library(&[MACHINES[0], MACHINES[1], "bevel/gear_19x62.chain"]);
+    let text = library(&["functions/bevel.chain", MACHINES[0], MACHINES[1], "bevel/gear_19x62.chain"]);
     let graph = Graph::new();
     let gear = job_of_text(&graph, &text);
     let target = [26.0, 111.0];

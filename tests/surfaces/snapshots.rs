@@ -116,3 +116,13 @@ fn hourglass_worm_wheel() {
 fn thread_wheel() {
     insta::assert_snapshot!(described("specs/grinding/thread_wheel.chain"));
 }
+
+#[test]
+fn thesis_gear() {
+    insta::assert_snapshot!(described("specs/bevel/thesis_gear.chain"));
+}
+
+#[test]
+fn pair_from_blank() {
+    insta::assert_snapshot!(described("specs/bevel/pair_from_blank.chain"));
+}

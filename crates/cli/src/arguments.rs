@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Deviation(Deviation),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
+    /// Make a job of a bevel gear's machine summary in a REXS file
+    Import(Import),
     /// Lay out specs as all of them are laid out; comments stay
     Fmt(Fmt),
 }
@@ -192,6 +194,56 @@ pub(crate) struct Explain {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The job goes to stdout. REXS says neither in which frames its signs are nor what its coefficients multiply, so both must be said;
+they are written at the head of the job. Signs:
+  frames            as they are in the file, taken for those of the frames of cradle_generator
+  left-hand-pinion  of machine summaries: tilt, swivel and cradle angle of a left-hand pinion are reversed
+  right-hand-gear   of machine summaries: tilt and work offset of its right-hand gear are reversed
+
+Examples:
+  flank import pinion.rexs --signs left-hand-pinion --outside 21 --inside 22 > pinion.chain
+  flank import pinion.rexs --signs frames --coefficients taylor --settings 12 --outside 21 > pinion.chain")]
+pub(crate) struct Import {
+    /// The REXS file
+    pub(crate) file: PathBuf,
+    /// In which frames the file's signs are
+    #[arg(long, value_enum)]
+    pub(crate) signs: Signs,
+    /// What the coefficients of motions are: of powers of the roll (polynomial), or to be divided by the factorials (taylor)
+    #[arg(long, value_enum)]
+    pub(crate) coefficients: Option<Coefficients>,
+    /// The bevel_gear_manufacturing_settings, where the file holds several
+    #[arg(long, value_name = "ID")]
+    pub(crate) settings: Option<String>,
+    /// The bevel_gear_tool with the outside blades
+    #[arg(long, value_name = "ID")]
+    pub(crate) outside: Option<String>,
+    /// The bevel_gear_tool with the inside blades
+    #[arg(long, value_name = "ID")]
+    pub(crate) inside: Option<String>,
+    /// The name of the job
+    #[arg(long, default_value = "imported")]
+    pub(crate) name: String,
+    /// Where the library lies, seen from the job's file
+    #[arg(long, value_name = "DIR", default_value = "specs")]
+    pub(crate) library: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Signs {
+    Frames,
+    LeftHandPinion,
+    RightHandGear,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Coefficients {
+    Taylor,
+    Polynomial,
 }
 
 #[derive(Args, Debug)]

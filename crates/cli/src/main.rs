@@ -13,6 +13,7 @@ mod fields;
 mod files;
 mod fmt;
 mod geometry;
+mod import;
 mod limits;
 mod reasons;
 mod sensitivity;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Deviation(arguments) => deviation::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
     };
     ExitCode::from(match ending {

@@ -16,12 +16,14 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         }
     };
     for (k, unknown) in solved.surface.unknowns.iter().enumerate() {
-        let excess = solved.points.iter().filter_map(|point| match point.outcome {
-            Outcome::Outside { unknown, by } if unknown == k => Some(by),
+        let excess = solved.points.iter().enumerate().filter_map(|(at, point)| match point.outcome {
+            Outcome::Outside { unknown, by } if unknown == k => Some((at, by)),
             _ => None,
         });
-        let (count, most) = excess.fold((0, 0.0), |(count, most), by| (count + 1, f64::max(most, by)));
-        tell(count, format!("{} outside its range, by up to {}", unknown.name, amount(unknown, most)));
+        let (places, amounts): (Vec<usize>, Vec<f64>) = excess.unzip();
+        let most = amounts.into_iter().fold(0.0, f64::max);
+        let place = whereabouts(solved, &places);
+        tell(places.len(), format!("{} outside its range, by up to {}{place}", unknown.name, amount(unknown, most)));
     }
     let cutters = (0..solved.surface.trimmed_by.len()).map(CutBy::Other);
     for cutter in [CutBy::ItsTool].into_iter().chain(cutters) {
@@ -38,6 +40,28 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
     tell(count, format!("not converged{near}: no point of this branch was found there"));
     reasons
+}
+
+/// At which ends of the grid points lie, if all of them lie in the third of it next to an end with a name: `, at the toe`.
+fn whereabouts(solved: &Solved<'_, '_>, places: &[usize]) -> String {
+    let columns = solved.sample.counts[1];
+    let end = |k: usize| {
+        let count = solved.sample.counts[k];
+        let (first, last) = solved.sample.labels[k].split_once(" -> ")?;
+        let index = |at: &usize| if k == 0 { at / columns } else { at % columns };
+        let all = |is_there: &dyn Fn(usize) -> bool| places.iter().map(index).all(is_there);
+        match count / 3 {
+            0 => None,
+            third if all(&|i| i < third) => Some(first),
+            third if all(&|i| i >= count - third) => Some(last),
+            _ => None,
+        }
+    };
+    match (end(1), end(0)) {
+        (None, None) => String::new(),
+        (Some(one), None) | (None, Some(one)) => format!(", at the {one}"),
+        (Some(one), Some(other)) => format!(", at the {one}'s {other}"),
+    }
 }
 
 /// What an outcome's word does not tell of one point; may be empty.

@@ -1,0 +1,293 @@
+//! `flank import`: a machine summary of another program becomes a job.
+
+use std::fmt::Write;
+
+use roxmltree::{Document, Node};
+
+use crate::arguments::{Coefficients, Import, Signs};
+use crate::{Ending, print, spec};
+
+const SETTINGS: &str = "bevel_gear_manufacturing_settings";
+const TOOL: &str = "bevel_gear_tool";
+
+/// Settings with one value: attribute, setting of `cradle_generator`, unit, and whether the file may leave it out as zero.
+const VALUES: [(&str, &str, &str, bool); 9] = [
+    ("radial_distance", "radial_distance", "mm", false),
+    ("center_roll_position", "cradle_angle", "deg", false),
+    ("cutter_tilt", "cutter_tilt", "deg", true),
+    ("cutter_swivel", "cutter_swivel", "deg", true),
+    ("work_offset", "work_offset", "mm", true),
+    ("sliding_base", "sliding_base", "mm", true),
+    ("machine_root_angle", "machine_root_angle", "deg", false),
+    ("machine_center_to_crossing_point", "machine_center_to_crossing_point", "mm", true),
+    ("ratio_of_roll", "ratio_of_roll", "", false),
+];
+/// Coefficients of motions: attribute, the settings from the lowest order on, that order, unit.
+const MOTIONS: [(&str, &[&str], u32, &str); 6] = [
+    ("radial_motion_coefficients", &orders::RADIAL, 1, "mm"),
+    ("tilt_motion_coefficients", &orders::TILT, 1, "rad"),
+    ("swivel_motion_coefficients", &orders::SWIVEL, 1, "rad"),
+    ("vertical_motion_coefficients", &orders::VERTICAL, 1, "mm"),
+    ("helical_motion_coefficients", &orders::HELICAL, 1, "mm"),
+    ("modified_roll_coefficients", &orders::ROLL, 2, ""),
+];
+/// Attributes of motions that the generator of the library does not have.
+const NOT_THERE: [&str; 3] = ["horizontal_distance", "horizontal_motion_coefficients", "angular_motion_coefficients"];
+
+/// Names of the settings, by the order of their coefficient.
+mod orders {
+    macro_rules! six {
+        ($name:ident, $motion:literal) => {
+            pub(super) const $name: [&str; 6] = [
+                concat!($motion, "_1"),
+                concat!($motion, "_2"),
+                concat!($motion, "_3"),
+                concat!($motion, "_4"),
+                concat!($motion, "_5"),
+                concat!($motion, "_6"),
+            ];
+        };
+    }
+    six!(RADIAL, "radial_motion");
+    six!(TILT, "tilt_motion");
+    six!(SWIVEL, "swivel_motion");
+    six!(VERTICAL, "vertical_motion");
+    six!(HELICAL, "helical_motion");
+    pub(super) const ROLL: [&str; 6] = [
+        "modified_roll_2c",
+        "modified_roll_6d",
+        "modified_roll_24e",
+        "modified_roll_120f",
+        "modified_roll_720g",
+        "modified_roll_5040h",
+    ];
+}
+
+pub(crate) fn run(arguments: &Import) -> Ending {
+    let file = spec::shown(&arguments.file);
+    let imported = std::fs::read_to_string(&arguments.file)
+        .map_err(|error| format!("cannot read {file}: {error}"))
+        .and_then(|text| job(&text, &file, arguments));
+    match imported {
+        Ok(job) => {
+            print(&job);
+            Ending::Done
+        }
+        Err(reason) => {
+            anstream::eprintln!("error: {reason}");
+            Ending::Wrong
+        }
+    }
+}
+
+/// The job that a REXS file describes, as text.
+fn job(text: &str, file: &str, arguments: &Import) -> Result<String, String> {
+    let document = Document::parse(text).map_err(|error| format!("{file} is not XML: {error}"))?;
+    let model = document.root_element();
+    if model.tag_name().name() != "model" {
+        return Err(format!("{file} is no REXS file: it begins with `{}`, not with `model`", model.tag_name().name()));
+    }
+    let settings = Component::one(model, SETTINGS, arguments.settings.as_deref(), "--settings")?;
+    let tools = [("outside", &arguments.outside, "concave"), ("inside", &arguments.inside, "convex")];
+    if tools.iter().all(|(_, id, _)| id.is_none()) {
+        let known = Component::all(model, TOOL).map(|tool| tool.described()).collect::<Vec<_>>().join(", ");
+        let known = if known.is_empty() { format!("{file} has no {TOOL}") } else { format!("there is: {known}") };
+        return Err(format!(
+            "say which tool has which blades: `--outside ID` for the concave flank, `--inside ID` for the convex one; {known}"
+        ));
+    }
+    let version = model.attribute("version").unwrap_or("without a version");
+    let mut out = format!("//! From {file}, REXS {version}, {}.\n", settings.described());
+    let _ = writeln!(out, "//! Signs: {}.", said(arguments.signs));
+    let machine = machine(&settings, arguments, &mut out)?;
+    let _ = write!(
+        out,
+        "\nuse \"{0}/machines/cradle.chain\"\nuse \"{0}/tools/face_mill.chain\"\n\njob {1} {{\n{machine}",
+        arguments.library, arguments.name
+    );
+    let mut surfaces = String::new();
+    for (blades, id, flank) in tools {
+        let Some(id) = id else { continue };
+        let tool = Component::one(model, TOOL, Some(id), &format!("--{blades}"))?;
+        let _ = write!(out, "\n    // {}\n    tool {blades}_blades = {}", tool.described(), cutter(&tool)?);
+        let _ = writeln!(out, "    mount {blades}_blades on m.cutter");
+        let _ = writeln!(surfaces, "    surface {flank} in m.work = envelope({blades}_blades.{blades}, over: roll)");
+    }
+    let _ = write!(out, "\n    motion roll : angle in -30 deg .. 30 deg\n    drive m.roll = roll\n\n{surfaces}}}\n");
+    Ok(out)
+}
+
+fn said(signs: Signs) -> &'static str {
+    match signs {
+        Signs::Frames => "as they are in the file, taken for those of the frames of cradle_generator",
+        Signs::LeftHandPinion => "left-hand-pinion: cutter_tilt, cutter_swivel and center_roll_position times -1",
+        Signs::RightHandGear => "right-hand-gear: cutter_tilt and work_offset times -1",
+    }
+}
+
+fn is_reversed(signs: Signs, attribute: &str) -> bool {
+    match signs {
+        Signs::Frames => false,
+        Signs::LeftHandPinion => ["cutter_tilt", "cutter_swivel", "center_roll_position"].contains(&attribute),
+        Signs::RightHandGear => ["cutter_tilt", "work_offset"].contains(&attribute),
+    }
+}
+
+/// The machine with its settings; how coefficients are scaled goes to the head of the file.
+fn machine(settings: &Component<'_, '_>, arguments: &Import, head: &mut String) -> Result<String, String> {
+    for attribute in NOT_THERE {
+        if settings.coefficients(attribute)?.iter().any(|value| *value != 0.0) {
+            return Err(format!(
+                "{}: `{attribute}` is not zero, and cradle_generator has no such motion",
+                settings.described()
+            ));
+        }
+    }
+    let mut lines = Vec::new();
+    for (attribute, setting, unit, may_miss) in VALUES {
+        match settings.number(attribute, unit)? {
+            Some(value) => {
+                let value = if is_reversed(arguments.signs, attribute) && value != 0.0 { -value } else { value };
+                lines.push(format!("        {setting}: {value:?}{}", spaced(unit)));
+            }
+            None if may_miss => {}
+            None => return Err(format!("{} has no `{attribute}`", settings.described())),
+        }
+    }
+    for (attribute, names, lowest, unit) in MOTIONS {
+        let values = settings.coefficients(attribute)?;
+        if values.iter().all(|value| *value == 0.0) {
+            continue;
+        }
+        let Some(meaning) = arguments.coefficients else {
+            return Err(format!(
+                "{}: `{attribute}` is not zero; say what its numbers are, for REXS does not: `--coefficients taylor` or \
+                 `--coefficients polynomial`",
+                settings.described()
+            ));
+        };
+        if let Some(beyond) = values.iter().skip(names.len()).position(|value| *value != 0.0) {
+            let order = lowest as usize + names.len() + beyond;
+            return Err(format!(
+                "{}: `{attribute}` goes up to order {order}, cradle_generator does not",
+                settings.described()
+            ));
+        }
+        for ((value, name), order) in values.iter().zip(names).zip(lowest..) {
+            let scale = match meaning {
+                Coefficients::Taylor => 1.0,
+                Coefficients::Polynomial => (1..=order).map(f64::from).product(),
+            };
+            let _ = writeln!(head, "//! {attribute}, order {order}: {value:?} times {scale} is {name}.");
+            lines.push(format!("        {name}: {:?}{}", value * scale, spaced(unit)));
+        }
+    }
+    Ok(format!("    machine m = cradle_generator(\n{}\n    )\n", lines.join(",\n")))
+}
+
+fn cutter(tool: &Component<'_, '_>) -> Result<String, String> {
+    let needed = |attribute: &str, unit| {
+        tool.number(attribute, unit)?.ok_or(format!("{} has no `{attribute}`", tool.described()))
+    };
+    let radius = needed("blade_point_radius", "mm")?;
+    let angle = needed("blade_pressure_angle", "deg")?;
+    let edge = needed("tool_edge_radius_bevel_gear_tool", "mm")?;
+    if angle < 0.0 {
+        return Err(format!(
+            "{}: blade_pressure_angle is {angle} deg; a blade angle counts from the cutter's axis and is positive for inside and \
+             outside blades",
+            tool.described()
+        ));
+    }
+    let mut lines = vec![
+        format!("outside_point_radius: {radius:?} mm"),
+        format!("inside_point_radius: {radius:?} mm"),
+        format!("blade_angle: {angle:?} deg"),
+        format!("edge_radius: {edge:?} mm"),
+    ];
+    let curved = tool.number("blade_spheric_radius", "mm")?.filter(|radius| *radius > 0.0);
+    if let Some(sphere) = curved {
+        lines.push(format!("blade_radius: {sphere:?} mm"));
+    }
+    let height = if curved.is_some() { "blade_length" } else { "blade_height" };
+    if let Some(profile) = tool.number("blade_profile_height", "mm")? {
+        lines.push(format!("{height}: {profile:?} mm"));
+    }
+    let kind = if curved.is_some() { "face_mill" } else { "face_mill_straight" };
+    Ok(format!("{kind}(\n        {}\n    )\n", lines.join(",\n        ")))
+}
+
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// A component of a REXS model.
+#[derive(Clone, Copy)]
+struct Component<'a, 'i>(Node<'a, 'i>);
+
+impl<'a, 'i> Component<'a, 'i> {
+    fn all(model: Node<'a, 'i>, kind: &str) -> impl Iterator<Item = Component<'a, 'i>> {
+        let is_one = move |node: &Node<'_, '_>| node.has_tag_name("component") && node.attribute("type") == Some(kind);
+        model.descendants().filter(is_one).map(Component)
+    }
+
+    /// The one that is named, or the only one of its kind.
+    fn one(model: Node<'a, 'i>, kind: &str, id: Option<&str>, option: &str) -> Result<Component<'a, 'i>, String> {
+        let all: Vec<Component<'a, 'i>> = Component::all(model, kind).collect();
+        let known = || all.iter().map(Component::described).collect::<Vec<_>>().join(", ");
+        match (id, all.as_slice()) {
+            (_, []) => Err(format!("there is no component `{kind}` in the file")),
+            (None, [only]) => Ok(*only),
+            (None, _) => {
+                Err(format!("there are several components `{kind}`; say which with `{option} ID`: {}", known()))
+            }
+            (Some(id), _) => all
+                .iter()
+                .find(|component| component.0.attribute("id") == Some(id))
+                .copied()
+                .ok_or_else(|| format!("there is no `{kind}` with the id {id}; there is: {}", known())),
+        }
+    }
+
+    fn described(&self) -> String {
+        let kind = self.0.attribute("type").unwrap_or("component");
+        let name = self.0.attribute("name").map(|name| format!(" ({})", name.replace(['\n', '\r'], " ")));
+        format!("{kind} {}{}", self.0.attribute("id").unwrap_or("?"), name.unwrap_or_default())
+    }
+
+    fn attribute(&self, name: &str) -> Option<Node<'a, 'i>> {
+        self.0.children().find(|node| node.has_tag_name("attribute") && node.attribute("id") == Some(name))
+    }
+
+    /// A number in the unit that is wanted; other units are refused.
+    fn number(&self, name: &str, unit: &str) -> Result<Option<f64>, String> {
+        let Some(node) = self.attribute(name) else { return Ok(None) };
+        let given = match node.attribute("unit").unwrap_or("none") {
+            "°" => "deg",
+            "none" => "",
+            other => other,
+        };
+        if given != unit {
+            let wanted = if unit.is_empty() { "none" } else { unit };
+            return Err(format!("{}: `{name}` is given in {given}, REXS has it in {wanted}", self.described()));
+        }
+        self.parsed(name, node.text().unwrap_or_default()).map(Some)
+    }
+
+    /// The numbers of an array, or a single one; none if it is not there.
+    fn coefficients(&self, name: &str) -> Result<Vec<f64>, String> {
+        let Some(node) = self.attribute(name) else { return Ok(Vec::new()) };
+        let cells: Vec<&str> = node
+            .descendants()
+            .filter(|cell| cell.has_tag_name("c"))
+            .map(|cell| cell.text().unwrap_or_default())
+            .collect();
+        let texts = if cells.is_empty() { vec![node.text().unwrap_or_default()] } else { cells };
+        texts.into_iter().filter(|text| !text.trim().is_empty()).map(|text| self.parsed(name, text)).collect()
+    }
+
+    fn parsed(&self, name: &str, text: &str) -> Result<f64, String> {
+        let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        number.ok_or_else(|| format!("{}: `{name}` is `{}`, which is no number", self.described(), text.trim()))
+    }
+}
