@@ -102,9 +102,10 @@ impl<'g> GeneratedSurface<'g> {
         of_position.into_iter().chain(unknowns).map(coordinate).collect()
     }
 
-    /// One of [`GeneratedSurface::coordinates`] by its name.
+    /// One of [`GeneratedSurface::coordinates`] by its name, or one that the surface's own sample defines.
     pub fn coordinate(&self, name: &str) -> Option<Coordinate<'g>> {
-        self.coordinates().into_iter().find(|coordinate| coordinate.name == name)
+        let sampled = self.sample.iter().flat_map(|sample| sample.coordinates.iter().cloned());
+        self.coordinates().into_iter().chain(sampled).find(|coordinate| coordinate.name == name)
     }
 }
 

@@ -95,8 +95,8 @@ fn measure<'j, 'g>([surface, from]: [Named<'j, 'g>; 2], as_it_lies: bool) -> Res
     let same = |k: usize| {
         let name = &sample.coordinates[k].name;
         surface.surface.coordinate(name).map(|coordinate| coordinate.value).ok_or(format!(
-            "`{of}` is sampled by `{name}`, which is no coordinate of `{}`; sample it by z and rho, or between the corners \
-             of the blank",
+            "`{of}` is sampled by `{name}`, which is no coordinate of `{}`; sample both by it, or by z and rho, or between \
+             the corners of the blank",
             surface.surface.name
         ))
     };

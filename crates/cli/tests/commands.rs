@@ -664,3 +664,15 @@ fn wrong_settings_of_hobbing_machines_are_told() {
         assert!(said.contains(told), "{spec}, {set}: {said}");
     }
 }
+
+/// Two surfaces that are both sampled by a coordinate of the spec's own are held against each other by it.
+#[test]
+fn a_worm_wheel_lies_off_the_conjugate_one() {
+    let out = folder("worm_wheel");
+    let surfaces = ["specs/hobbing/worm_wheel.chain", "upper.flank", "--from", "conjugate_upper.flank"];
+    let rest = ["--no-picture", "--out", out.to_str().expect("a plain path")];
+    let run = flank(&[&["deviation"], &surfaces[..], &rest].concat());
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(0), "{told}");
+    assert!(told.contains("points       315 of 315") && told.contains("range        -36.448 .. 0.223 um"), "{told}");
+}
