@@ -1,6 +1,6 @@
 //! Cylindrical gears of the library against closed forms, and against each other where two processes make one gear.
 
-use flank_expr::Graph;
+use flank_expr::{Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, SurfacePoint};
 use flank_tests::{assert_point, job, job_named, points, sampled, turned};
 
@@ -93,5 +93,46 @@ fn the_chamfer_is_an_involute_of_its_own() {
             let base = (x * ny - y * nx).abs();
             assert!((base - 36.0 * angle.to_radians().cos()).abs() < 1e-9, "{piece}: {base}");
         }
+    }
+}
+
+/// The arc length that the table of an elliptical gear follows: by Gauss's rule on a hundred pieces, and the perimeter is as long
+/// as the pitches of all teeth.
+#[test]
+fn the_arc_of_the_ellipse_is_its_integral() {
+    for ratio in [0.8, 0.9, 0.94, 1.0] {
+        let graph = Graph::new();
+        let set = [("axis_ratio", ratio.to_string()), ("pivot", "0".to_owned())];
+        let set = set.each_ref().map(|(name, value)| (*name, value.as_str()));
+        let job = job(&graph, "specs/hobbing/elliptical_gear.chain", &set);
+        let axis = |name: &str| job.machines[0].axes.iter().find(|axis| axis.name == name).expect("an axis").law;
+        let laws = graph.substitute(&[axis("X"), axis("Y")], &job.bindings());
+        let tape = Tape::new(&laws, &[job.motions[0].variable]).expect("bound");
+        let mut evaluator = ScalarEvaluator::new(&tape);
+        let mut at = |t: f64| {
+            let mut out = [0.0; 2];
+            evaluator.run(&[t], &mut out);
+            out
+        };
+        // the tangent through the end of the larger half axis lies at its distance, that of the smaller one at the other
+        let (a, b) = (at(0.0)[0], at(std::f64::consts::FRAC_PI_2)[0]);
+        assert!((b - ratio * a).abs() < 1e-12 * a);
+        let arc = |to: f64| {
+            let node = 0.6f64.sqrt();
+            let h = to / 100.0;
+            let speed = |t: f64| (a * t.sin()).hypot(b * t.cos());
+            let piece = |k: u32| {
+                let middle = h * (f64::from(k) + 0.5);
+                h / 18.0
+                    * (5.0 * (speed(middle - node * h / 2.0) + speed(middle + node * h / 2.0)) + 8.0 * speed(middle))
+            };
+            (0..100).map(piece).sum::<f64>()
+        };
+        for t in [0.3, 1.1, 2.0, 3.5, 5.9, std::f64::consts::TAU] {
+            let normal = t + ((a - b) * t.sin() * t.cos() / (b * t.cos().powi(2) + a * t.sin().powi(2))).atan();
+            let along = -a * t.cos() * normal.sin() + b * t.sin() * normal.cos();
+            assert!((along - at(t)[1] - arc(t)).abs() < 1e-9, "{ratio} at {t}: {}", along - at(t)[1] - arc(t));
+        }
+        assert!((arc(std::f64::consts::TAU) - 36.0 * 3.0 * std::f64::consts::PI).abs() < 1e-9, "{ratio}");
     }
 }
