@@ -33,6 +33,7 @@ mod op;
 mod print;
 mod rules;
 mod tape;
+mod taylor;
 mod terms;
 
 pub use cost::Cost;
@@ -45,3 +46,4 @@ pub use lanes::{InstructionSet, LANES, LaneEvaluator, LaneTape};
 pub use op::{Binary, Unary};
 pub use print::{Definition, Listing, Style};
 pub use tape::{Instruction, Operation, Tape, TapeError};
+pub use taylor::{Coefficient, TaylorEvaluator};

@@ -6,6 +6,7 @@ mod support;
 
 use flank_expr::{
     Graph, InstructionSet, Interval, IntervalEvaluator, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape,
+    TaylorEvaluator,
 };
 use suite::Subject;
 
@@ -59,6 +60,33 @@ impl Subject for Points {
 }
 
 evaluator_suite!(intervals, Points);
+
+/// Power series, of which the suite sees the constant terms.
+struct Series;
+
+impl Subject for Series {
+    type Value = f64;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        const ORDER: usize = 3;
+        let mut evaluator = TaylorEvaluator::new(tape, ORDER);
+        points
+            .iter()
+            .map(|point| {
+                let inputs: Vec<f64> = point.iter().flat_map(|&x| [x, 1.0, -0.5, 0.25]).collect();
+                let mut outputs = vec![f64::NAN; (ORDER + 1) * tape.output_count()];
+                evaluator.run(&inputs, &mut outputs);
+                outputs.into_iter().step_by(ORDER + 1).collect()
+            })
+            .collect()
+    }
+
+    fn agrees(expected: f64, found: &f64) -> bool {
+        Scalar::agrees(expected, found)
+    }
+}
+
+evaluator_suite!(power_series, Series);
 
 /// Blocks of lanes, on every set of instructions that the machine has.
 struct Lanes;
