@@ -33,6 +33,9 @@ pub struct Compilation<'g> {
     pub diagnostics: Vec<Diagnostic>,
     /// The jobs of the file itself (not those of the files it uses); none if there is an error.
     pub jobs: Vec<Job<'g>>,
+    /// The machine of [`compile_with_machine`] as a job without surfaces, which its axes drive themselves; none if there is an
+    /// error.
+    pub machine: Option<Job<'g>>,
     main: Option<FileId>,
 }
 
@@ -80,7 +83,18 @@ impl<'g> Compilation<'g> {
 ///
 /// `overrides` are pairs of a name (`ratio`, `m.swivel`) and a value as text (`2 mm`) that win over what the text says.
 pub fn compile_file<'g>(graph: &'g Graph, path: &Path, overrides: &[(String, String)]) -> Compilation<'g> {
-    compile(graph, load::load(path), overrides)
+    compile(graph, load::load(path, None), overrides)
+}
+
+/// The same beside the last machine of another file, which stands by itself: with the values that its settings have by default,
+/// or by `overrides` such as `free_form.root=10 deg`, and free axes.
+pub fn compile_with_machine<'g>(
+    graph: &'g Graph,
+    path: &Path,
+    machine: &Path,
+    overrides: &[(String, String)],
+) -> Compilation<'g> {
+    compile(graph, load::load(path, Some(machine)), overrides)
 }
 
 /// The same for a text in memory, which can use no other file.
@@ -89,7 +103,7 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 }
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
-    let Loaded { mut sources, files, diagnostics, root } = loaded;
+    let Loaded { mut sources, files, diagnostics, root, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(root, &sources));
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
@@ -111,7 +125,9 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
             jobs.push(job);
         }
     }
-    check_overrides(&mut context, &overrides, &jobs);
+    let beside = files.iter().find(|(id, _)| Some(*id) == beside);
+    let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
+    check_overrides(&mut context, &overrides, jobs.iter().chain(&machine));
     // a wrong text is not finished: what it does not use yet is no finding
     if let Some((_, file)) = files.last().filter(|_| !context.has_errors()) {
         let all: Vec<&Item> = files.iter().flat_map(|(_, file)| &file.items).collect();
@@ -121,7 +137,34 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
-    Compilation { sources, diagnostics, jobs: if failed { Vec::new() } else { jobs }, main }
+    let (jobs, machine) = if failed { (Vec::new(), None) } else { (jobs, machine) };
+    Compilation { sources, diagnostics, jobs, machine, main }
+}
+
+/// The last machine of a file by itself.
+fn standing<'g>(
+    context: &mut Context<'g>,
+    file: &ast::File,
+    id: FileId,
+    definitions: &Definitions<'_>,
+    sources: &Sources,
+) -> Option<Job<'g>> {
+    let machines = file.items.iter().filter_map(|item| match item {
+        Item::Machine(machine) => Some(machine),
+        _ => None,
+    });
+    context.begin_item();
+    let path = &sources.file(id).path;
+    match machines.last() {
+        Some(machine) => Some(job::standing(context, machine, definitions, path)),
+        None => {
+            let span = Span { file: id, start: 0, end: 0 };
+            let message = format!("there is no machine in {}", path.display().to_string().replace('\\', "/"));
+            let help = "name a file that defines the machine itself, as `machine free_form { … }`";
+            context.report(Diagnostic::new(Code::UnknownName, span, message).help(help));
+            None
+        }
+    }
 }
 
 /// The items of all files by name.
@@ -239,10 +282,14 @@ fn read_overrides(context: &mut Context<'_>, sources: &mut Sources, given: &[(St
     outer
 }
 
-fn check_overrides(context: &mut Context<'_>, outer: &OuterValues, jobs: &[Job<'_>]) {
+fn check_overrides<'j, 'g: 'j>(
+    context: &mut Context<'_>,
+    outer: &OuterValues,
+    jobs: impl Iterator<Item = &'j Job<'g>> + Clone,
+) {
     for name in &outer.names {
         let known: Vec<&str> =
-            jobs.iter().flat_map(|job| &job.parameters).map(|parameter| parameter.name.as_str()).collect();
+            jobs.clone().flat_map(|job| &job.parameters).map(|parameter| parameter.name.as_str()).collect();
         if !known.contains(&name.node.as_str()) && !context.has_errors() {
             context.unknown(name, "parameter", known.into_iter());
         }

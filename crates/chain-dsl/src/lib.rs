@@ -61,7 +61,7 @@ mod transforms;
 mod unused;
 
 pub use codes::Code;
-pub use compile::{Compilation, compile_file, compile_text};
+pub use compile::{Compilation, compile_file, compile_text, compile_with_machine};
 pub use derivation::derivation;
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;

@@ -17,6 +17,8 @@ pub(crate) struct Loaded {
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// The project folder; `None` for a text that is not a file.
     pub(crate) root: Option<PathBuf>,
+    /// The file that was asked for beside the main one.
+    pub(crate) beside: Option<FileId>,
 }
 
 struct Loader {
@@ -29,23 +31,36 @@ struct Loader {
     open: Vec<FileId>,
 }
 
-/// Reads `path` and everything it uses.
+/// Reads `path` and everything it uses, after a file `beside` it and what that uses.
 ///
 /// Files that are used must lie in the project folder: the nearest folder above `path` that holds a `.git` or a
 /// `flank.toml`; else the current folder, if `path` lies in it; else the folder above that of `path`.
-pub(crate) fn load(path: &Path) -> Loaded {
+pub(crate) fn load(path: &Path, beside: Option<&Path>) -> Loaded {
     let mut loader = Loader {
-        loaded: Loaded { sources: Sources::default(), files: Vec::new(), diagnostics: Vec::new(), root: None },
+        loaded: Loaded {
+            sources: Sources::default(),
+            files: Vec::new(),
+            diagnostics: Vec::new(),
+            root: None,
+            beside: None,
+        },
         root: project_folder(path),
         known: HashMap::new(),
         bytes: 0,
         open: Vec::new(),
     };
-    match std::fs::canonicalize(path) {
-        Ok(found) => {
-            loader.read(path, &found, None);
+    for asked in beside.into_iter().chain([path]) {
+        match std::fs::canonicalize(asked) {
+            Ok(found) => {
+                if !loader.known.contains_key(&found) {
+                    loader.read(asked, &found, None);
+                }
+                if Some(asked) == beside {
+                    loader.loaded.beside = loader.known.get(&found).copied();
+                }
+            }
+            Err(error) => loader.unreadable(asked, &ReadError::Io(error), None),
         }
-        Err(error) => loader.unreadable(path, &ReadError::Io(error), None),
     }
     loader.loaded.root = Some(loader.root);
     loader.loaded
@@ -76,7 +91,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
             ));
         }
     }
-    Loaded { sources, files: vec![(id, file)], diagnostics, root: None }
+    Loaded { sources, files: vec![(id, file)], diagnostics, root: None, beside: None }
 }
 
 fn project_folder(path: &Path) -> PathBuf {

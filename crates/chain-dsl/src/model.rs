@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Edge, Step, Surface, Vector3};
+use flank_expr::{Expr, Graph};
 
 use crate::dimension::Dimension;
+use crate::machine;
 
 /// One job, ready to be solved: its parameters are variables with values beside them.
 #[derive(Clone, Debug)]
@@ -99,6 +100,8 @@ pub enum LawSource {
     Fixed,
     /// `couple` in the machine.
     Coupled,
+    /// Nowhere: it stands where it is put ([`compile_with_machine`](crate::compile_with_machine)); its law is its own variable.
+    Free,
 }
 
 /// A frame in its machine.
@@ -199,6 +202,15 @@ pub struct Coordinate<'g> {
     pub value: Expr<'g>,
     /// Its dimension.
     pub dimension: Dimension,
+}
+
+impl<'g> Machine<'g> {
+    /// The pose of frame `to` in frame `from`, in axis variables; `None` if the machine has no such frame.
+    pub fn chain(&self, graph: &'g Graph, from: &str, to: &str) -> Option<Chain<'g>> {
+        let place = |name: &str| self.frames.iter().position(|frame| frame.name == name);
+        let hops = machine::path(&self.frames, place(from)?, place(to)?);
+        Some(Chain::new(graph, hops.into_iter().flat_map(|(_, steps)| steps).collect()))
+    }
 }
 
 impl<'g> Generation<'g> {

@@ -52,7 +52,7 @@ pub struct Tape {
 }
 
 /// Why a tape cannot be made.
-#[derive(Debug, Error, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum TapeError {
     /// An output depends on a variable that is not among the inputs.
     #[error("`{0}` has no value: it is not among the inputs of the tape")]

@@ -25,6 +25,11 @@ impl Range {
         0.5 * (self.low + self.high)
     }
 
+    /// The value at a share of the way from its lower end to its upper one.
+    pub(crate) fn at(self, share: f64) -> f64 {
+        self.low + share * self.width()
+    }
+
     /// What both have in common; where that is nothing, the end of this one that is nearest.
     pub(crate) fn common(self, other: Range) -> Range {
         Range { low: other.low.clamp(self.low, self.high), high: other.high.clamp(self.low, self.high) }
@@ -37,7 +42,7 @@ impl Range {
     }
 
     /// By how much a value is outside; zero inside.
-    fn excess(self, value: f64) -> f64 {
+    pub(crate) fn excess(self, value: f64) -> f64 {
         (self.low - value).max(value - self.high).max(0.0)
     }
 

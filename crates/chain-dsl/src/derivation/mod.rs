@@ -108,6 +108,7 @@ impl Page {
                 LawSource::Driven => "driven",
                 LawSource::Fixed => "fixed",
                 LawSource::Coupled => "coupled",
+                LawSource::Free => "free",
             };
             let listing = axis.law.graph().listing(&[axis.variable, axis.law], self.style, "a");
             let comment =

@@ -64,6 +64,7 @@ impl<'g> Builder<'_, 'g> {
                     (Some((law, LawKind::Fix, _)), _) => (*law, LawSource::Fixed),
                     (Some((law, LawKind::Couple, _)), _) => (*law, LawSource::Coupled),
                     (None, Some((law, _))) => (*law, LawSource::Driven),
+                    (None, None) if self.stands_alone => (Some(axis.variable), LawSource::Free),
                     (None, None) => {
                         idle.push(axis.name.node.as_str());
                         (None, LawSource::Driven)

@@ -16,7 +16,7 @@ use crate::diagnostic::Diagnostic;
 use crate::instance::{Binder, Overrides, Source};
 use crate::limits;
 use crate::machine::{self, Built, Machines};
-use crate::model::{Bounded, GeneratedSurface, Job};
+use crate::model::{Bounded, GeneratedSurface, Job, Machine, Parameter};
 use crate::requirement;
 use crate::source::{Name, Span};
 use crate::syntax::ast::{self, JobStatement};
@@ -49,6 +49,43 @@ struct Builder<'a, 'g> {
     /// Machines with an axis that has no law (which has been reported).
     unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
+    /// Whether axes without a law are free.
+    stands_alone: bool,
+}
+
+impl<'a, 'g> Builder<'a, 'g> {
+    fn new(definitions: &'a Definitions<'a>, stands_alone: bool) -> Builder<'a, 'g> {
+        Builder {
+            definitions,
+            scope: Scope::new(),
+            names: HashMap::new(),
+            machines: Vec::new(),
+            tools: Vec::new(),
+            motions: Vec::new(),
+            mounts: HashMap::new(),
+            lost_mounts: 0,
+            drives: HashMap::new(),
+            lost_laws: HashMap::new(),
+            laws: Vec::new(),
+            unsettled: HashSet::new(),
+            surfaces: Vec::new(),
+            stands_alone,
+        }
+    }
+}
+
+/// A machine by itself, under its own name, with free axes.
+pub(crate) fn standing<'g>(
+    context: &mut Context<'g>,
+    machine: &ast::Machine,
+    definitions: &Definitions<'_>,
+    file: &Path,
+) -> Job<'g> {
+    let mut builder = Builder::new(definitions, true);
+    let (name, definition) = (machine.name.clone(), machine.name.clone());
+    builder.machine(context, &ast::Instance { name, definition, settings: Vec::new() });
+    let machines = builder.settle_axes(context);
+    builder.into_job(machine.name.node.clone(), machine.doc.clone(), Vec::new(), machines, file)
 }
 
 /// A job with all its names resolved; what is wrong in it is reported and left out.
@@ -58,26 +95,12 @@ pub(crate) fn build<'g>(
     definitions: &Definitions<'_>,
     file: &Path,
 ) -> Job<'g> {
-    let mut builder = Builder {
-        definitions,
-        scope: Scope::new(),
-        names: HashMap::new(),
-        machines: Vec::new(),
-        tools: Vec::new(),
-        motions: Vec::new(),
-        mounts: HashMap::new(),
-        lost_mounts: 0,
-        drives: HashMap::new(),
-        lost_laws: HashMap::new(),
-        laws: Vec::new(),
-        unsettled: HashSet::new(),
-        surfaces: Vec::new(),
-    };
+    let mut builder = Builder::new(definitions, false);
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
     }
-    let mut parameters = binder.finish(context, &[]);
+    let parameters = binder.finish(context, &[]);
     for statement in &job.statements {
         match statement {
             JobStatement::Mount { tool, frame } => builder.mount(context, tool, frame, job),
@@ -104,26 +127,30 @@ pub(crate) fn build<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
-    for (_, _, built) in builder.machines {
-        parameters.extend(built.parameters);
-    }
-    for (_, built) in builder.tools {
-        parameters.extend(built.parameters);
-    }
-    // a setting comes after the job parameters that it is made of, and those were made first
-    parameters.sort_by_key(|parameter| parameter.variable.as_variable());
-    Job {
-        name: job.name.node.clone(),
-        doc: job.doc.clone(),
-        file: file.to_path_buf(),
-        parameters,
-        motions: builder.motions,
-        machines,
-        surfaces: builder.surfaces.into_iter().map(|(surface, _)| surface).collect(),
-    }
+    builder.into_job(job.name.node.clone(), job.doc.clone(), parameters, machines, file)
 }
 
 impl<'g> Builder<'_, 'g> {
+    fn into_job(
+        self,
+        name: String,
+        doc: Vec<String>,
+        mut parameters: Vec<Parameter<'g>>,
+        machines: Vec<Machine<'g>>,
+        file: &Path,
+    ) -> Job<'g> {
+        for (_, _, built) in self.machines {
+            parameters.extend(built.parameters);
+        }
+        for (_, built) in self.tools {
+            parameters.extend(built.parameters);
+        }
+        // a setting comes after the job parameters that it is made of, and those were made first
+        parameters.sort_by_key(|parameter| parameter.variable.as_variable());
+        let surfaces = self.surfaces.into_iter().map(|(surface, _)| surface).collect();
+        Job { name, doc, file: file.to_path_buf(), parameters, motions: self.motions, machines, surfaces }
+    }
+
     fn define(&mut self, context: &mut Context<'g>, name: &Name) {
         if let Some(first) = self.names.insert(name.node.clone(), name.span) {
             context.duplicate(name, first);

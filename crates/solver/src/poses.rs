@@ -1,0 +1,325 @@
+//! The same relative pose on another machine: axis values for which tool and work stand to each other as they do on the first.
+
+use faer::Mat;
+use faer::linalg::solvers::{ColPivQr, PartialPivLu, Solve};
+use flank_expr::geometry::{Chain, Pose, Twist};
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
+use thiserror::Error;
+
+use crate::newton::{Linearized, TOLERANCE, solve_with};
+use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
+use crate::start::{Scan, scan};
+use crate::symmetry::Screw;
+use crate::system::System;
+
+/// Wide enough to meet every posture of common machines: elbows are few and far apart.
+const SCAN: Scan = Scan { probes: 256, starts: 32 };
+/// Halvings of a step along the motion until the axes follow.
+const MOST_HALVINGS: u32 = 12;
+/// Of its range, or of a turn, no axis moves farther in one step beyond where it was expected.
+const ASTRAY: f64 = 0.02;
+/// Where it has no travel, a rotary axis turns as far as it must; this is how far it may (rad).
+const FREE_TURNS: f64 = 1e4;
+
+/// Where the axes of the target machine have to stand while the source's motions run.
+#[derive(Clone, Debug)]
+pub struct PoseProblem {
+    /// Unknowns: axes, then amounts of the tool's own symmetries; parameters: the source's motions.
+    system: System,
+    /// What of the pose the axes cannot reach: components of the deviation that must come out as zero.
+    rest: Tape,
+    components: Vec<usize>,
+    axes: usize,
+    travels: Vec<Range>,
+    search: Vec<Range>,
+}
+
+/// An axis of the target machine.
+#[derive(Clone, Copy, Debug)]
+pub struct TargetAxis<'g> {
+    /// Its variable in the chain.
+    pub variable: Expr<'g>,
+    /// Whether it turns.
+    pub is_rotary: bool,
+    /// Its travel, mm or radians, if it ends.
+    pub travel: Option<Range>,
+}
+
+/// Why no posture can be asked for.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PoseError {
+    /// There are more free axes than a pose needs, and more than one way to stand.
+    #[error("{0} axes more than the pose needs: it does not tell where they stand")]
+    Redundant(usize),
+    /// Something depends on a variable that is not given.
+    #[error(transparent)]
+    Unbound(#[from] TapeError),
+}
+
+/// The axes at one value of the motions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posture {
+    /// The verdict; [`Outcome::Outside`] names the axis that is beyond its travel. The values are those of the pose all the same.
+    pub outcome: Outcome,
+    /// Axis values, mm or radians, rotary axes continuous from posture to posture.
+    pub axes: Vec<f64>,
+    /// What of the pose is not reached, if anything.
+    pub missing: Option<Missing>,
+    unknowns: Vec<f64>,
+}
+
+/// The part of a pose that a machine has no axis for, seen in the tool's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Missing {
+    /// 0 to 2: displacement along x, y, z; 3 to 5: turn about them.
+    pub direction: usize,
+    /// How much is missing, mm or radians.
+    pub by: f64,
+}
+
+impl PoseProblem {
+    /// `target` and `source` lead from work to tool on the two machines; `symmetries` are what the tool does not see of its own
+    /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go;
+    /// `bindings` replace parameters by numbers.
+    ///
+    /// Where an axis of the target only turns or shifts the tool along itself, and the pose does not need that, the axis takes
+    /// over what the source does there, so that the poses are the same to the last.
+    ///
+    /// # Errors
+    /// If more axes are free than a pose needs, or something depends on a variable that is not given.
+    pub fn new<'g>(
+        target: &Chain<'g>,
+        axes: &[TargetAxis<'g>],
+        source: &Chain<'g>,
+        motions: &[Expr<'g>],
+        symmetries: &[Screw],
+        reach: f64,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<PoseProblem, PoseError> {
+        let graph = motions[0].graph();
+        let [target, source] = [target, source].map(|chain| chain.substituted(bindings));
+        let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
+        let mut slips = symmetries.to_vec();
+        while variables.len() + slips.len() > 6 {
+            let Some(slip) = doubled(&target, &variables, &slips)? else {
+                return Err(PoseError::Redundant(variables.len() + slips.len() - 6));
+            };
+            slips.remove(slip);
+        }
+        let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip {k}"))).collect();
+        let slipped: Vec<_> = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
+        let off = source.inverse().then(&target).then(&Chain::new(graph, slipped)).merged().pose();
+        let unknowns: Vec<Expr<'g>> = variables.iter().chain(&amounts).copied().collect();
+        let travel = |axis: &TargetAxis<'_>| {
+            let free = if axis.is_rotary { FREE_TURNS } else { reach };
+            axis.travel.unwrap_or(Range { low: -free, high: free })
+        };
+        let turn = Range { low: -std::f64::consts::PI, high: std::f64::consts::PI };
+        let travels: Vec<Range> = axes.iter().map(travel).collect();
+        let within =
+            |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { range.common(turn) } else { *range };
+        let slip_range =
+            |slip: &Screw| if slip.angular == [0.0; 3] { Range { low: -reach, high: reach } } else { turn };
+        let search: Vec<Range> = axes.iter().zip(&travels).map(within).chain(slips.iter().map(slip_range)).collect();
+        let deviation = deviation(&off);
+        let components = independent(&deviation, &unknowns, motions, &search)?;
+        let residuals: Vec<Expr<'g>> = components.iter().map(|&k| deviation[k]).collect();
+        let inputs: Vec<Expr<'g>> = unknowns.iter().chain(motions).copied().collect();
+        // the antisymmetric part of a rotation vanishes at half a turn as well
+        let upright = off.rotation.0.iter().enumerate().fold(graph.constant(-1.0), |sum, (k, row)| sum + row.0[k]);
+        Ok(PoseProblem {
+            system: System::new(&residuals, &unknowns, motions)?.with_conditions(&[upright], &unknowns, motions)?,
+            rest: Tape::new(&deviation, &inputs)?,
+            components,
+            axes: axes.len(),
+            travels,
+            search,
+        })
+    }
+
+    /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; where
+    /// there is none, what came nearest to one.
+    pub fn postures(&self, motions: &[f64]) -> Vec<Posture> {
+        let (mut found, _) = scan(&mut self.system.evaluation(motions), &self.search, SCAN);
+        let turned = |solution: &Solution| -> f64 {
+            solution.unknowns.iter().zip(&self.search).map(|(x, range)| (x / range.width()).powi(2)).sum()
+        };
+        found.sort_by(|a, b| turned(a).total_cmp(&turned(b)));
+        found.into_iter().map(|solution| self.posture(motions, solution)).collect()
+    }
+
+    /// Postures at values of the motions, each continuous with the one before it, from one of [`PoseProblem::postures`] at the
+    /// first. Where no posture follows, the rest has no root: the last one tells why.
+    pub fn follow(&self, first: &Posture, motions: &[Vec<f64>]) -> Vec<Posture> {
+        let mut line: Vec<Posture> = Vec::with_capacity(motions.len());
+        let mut trail =
+            Trail { at: motions.first().cloned().unwrap_or_default(), here: first.unknowns.clone(), slope: None };
+        for wanted in motions {
+            let posture = self.advance(&mut trail, wanted);
+            line.push(posture);
+        }
+        line
+    }
+
+    /// Goes on to a value of the motions, in steps that are halved until the axes follow.
+    fn advance(&self, trail: &mut Trail, wanted: &[f64]) -> Posture {
+        let mut share = 1.0;
+        let mut smallest = 0;
+        loop {
+            let step: Vec<f64> = trail.at.iter().zip(wanted).map(|(a, b)| a + share * (b - a)).collect();
+            let expected = trail.expected(&step);
+            let solution = solve_with(&mut self.system.evaluation(&step), &self.wide(), &expected);
+            let moved = distance(&solution.unknowns, &expected, &self.search);
+            let follows = solution.is_solved() && moved <= ASTRAY;
+            if follows {
+                trail.take(step, &solution.unknowns);
+                if share == 1.0 {
+                    return self.posture(wanted, solution);
+                }
+                share = 1.0;
+            } else if smallest == MOST_HALVINGS {
+                return self.posture(wanted, Solution { outcome: lost(&solution), ..solution });
+            } else {
+                smallest += 1;
+                share *= 0.5;
+            }
+        }
+    }
+
+    /// Series of each axis in powers of the change of one of the motions, about a posture: coefficients up to an order, constant
+    /// first; `None` where the posture is singular.
+    ///
+    /// Order by order, `J q_k = −F_k` with F_k the coefficient of the pose's deviation along the series so far: exact but for
+    /// rounding, no differences.
+    pub fn series(&self, posture: &Posture, motions: &[f64], along: usize, order: usize) -> Option<Vec<Vec<f64>>> {
+        let (size, terms) = (self.system.size(), order + 1);
+        let mut evaluation = self.system.evaluation(motions);
+        evaluation.at(&posture.unknowns);
+        let jacobian = Mat::from_fn(size, size, |i, j| evaluation.jacobian(i, j));
+        let inverse = PartialPivLu::new(jacobian.as_ref());
+        let mut inputs = vec![0.0; terms * (size + motions.len())];
+        posture.unknowns.iter().chain(motions).enumerate().for_each(|(k, x)| inputs[terms * k] = *x);
+        if order > 0 {
+            inputs[terms * (size + along) + 1] = 1.0;
+        }
+        let mut outputs = vec![0.0; terms * size];
+        let mut evaluator = TaylorEvaluator::new(self.system.residual_tape(), order);
+        for k in 1..terms {
+            evaluator.run(&inputs, &mut outputs);
+            let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[terms * i + k]));
+            (0..size).for_each(|i| inputs[terms * i + k] = by[(i, 0)]);
+        }
+        let axes: Vec<Vec<f64>> = inputs.chunks(terms).take(self.axes).map(<[f64]>::to_vec).collect();
+        axes.iter().flatten().all(|c| c.is_finite()).then_some(axes)
+    }
+
+    fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
+        let mut deviation = [0.0; 6];
+        ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
+        let rest = (0..6).filter(|k| !self.components.contains(k)).map(|k| Missing { direction: k, by: deviation[k] });
+        let missing = rest.max_by(|a, b| a.by.abs().total_cmp(&b.by.abs())).filter(|most| most.by.abs() > TOLERANCE);
+        let axes = solution.unknowns[..self.axes].to_vec();
+        let beyond =
+            axes.iter().zip(&self.travels).enumerate().map(|(k, (x, travel))| (k, travel.excess(*x), travel.width()));
+        let farthest =
+            beyond.filter(|(_, by, width)| *by > ROUNDING * width).max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
+        let outcome = match (solution.outcome, farthest) {
+            (Outcome::Solved, Some((unknown, by, _))) => Outcome::Outside { unknown, by },
+            (outcome, _) => outcome,
+        };
+        Posture { outcome, axes, missing, unknowns: solution.unknowns }
+    }
+
+    /// Ranges in which Newton may go anywhere: what lies beyond an axis's travel is told, not prevented.
+    fn wide(&self) -> Vec<Range> {
+        let wide = |range: &Range| range.wider_by(FREE_TURNS);
+        self.search.iter().map(wide).collect()
+    }
+}
+
+/// Where a line of postures has got to.
+struct Trail {
+    at: Vec<f64>,
+    here: Vec<f64>,
+    /// The last step of the motions and of the unknowns.
+    slope: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Trail {
+    /// Straight on.
+    fn expected(&self, step: &[f64]) -> Vec<f64> {
+        let Some((by, moved)) = &self.slope else { return self.here.clone() };
+        let length: f64 = by.iter().map(|x| x * x).sum();
+        let along: f64 = by.iter().zip(step.iter().zip(&self.at)).map(|(by, (to, from))| by * (to - from)).sum();
+        let share = if length > 0.0 { along / length } else { 0.0 };
+        self.here.iter().zip(moved).map(|(x, by)| x + share * by).collect()
+    }
+
+    fn take(&mut self, step: Vec<f64>, unknowns: &[f64]) {
+        let by: Vec<f64> = step.iter().zip(&self.at).map(|(to, from)| to - from).collect();
+        if by.iter().any(|x| *x != 0.0) {
+            self.slope = Some((by, unknowns.iter().zip(&self.here).map(|(to, from)| to - from).collect()));
+        }
+        (self.at, self.here) = (step, unknowns.to_vec());
+    }
+}
+
+/// Why a step was not taken: a root elsewhere is none.
+fn lost(solution: &Solution) -> Outcome {
+    match solution.outcome {
+        Outcome::Singular => Outcome::Singular,
+        _ => Outcome::NotConverged { iterations: solution.iterations },
+    }
+}
+
+/// Displacement (mm) and turn (the sines of small angles) of what should be the identity.
+fn deviation<'g>(off: &Pose<'g>) -> Vec<Expr<'g>> {
+    let e = |i: usize, j: usize| off.rotation.0[i].0[j];
+    let turn = [e(2, 1) - e(1, 2), e(0, 2) - e(2, 0), e(1, 0) - e(0, 1)].map(|twice| 0.5 * twice);
+    off.translation.0.into_iter().chain(turn).collect()
+}
+
+/// A symmetry that an axis of the target does by itself, wherever the others stand.
+fn doubled<'g>(target: &Chain<'g>, axes: &[Expr<'g>], slips: &[Screw]) -> Result<Option<usize>, TapeError> {
+    let basis = Mat::from_fn(6, slips.len(), |i, j| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] });
+    let numbers: Vec<f64> = (0..axes.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
+    for axis in axes {
+        let Twist { angular, linear } = target.twist(*axis);
+        let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
+        let mut out = [0.0; 6];
+        ScalarEvaluator::new(&Tape::new(&twist, axes)?).run(&numbers, &mut out);
+        let of = Mat::from_fn(6, 1, |i, _| out[i]);
+        let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
+        let left = &of - &basis * &shares;
+        if of.norm_l2() > 0.0 && left.norm_l2() <= 1e-9 * of.norm_l2() {
+            return Ok((0..slips.len()).max_by(|&a, &b| shares[(a, 0)].abs().total_cmp(&shares[(b, 0)].abs())));
+        }
+    }
+    Ok(None)
+}
+
+/// As many components of the deviation as there are unknowns: those that they change most independently.
+fn independent(
+    deviation: &[Expr<'_>],
+    unknowns: &[Expr<'_>],
+    motions: &[Expr<'_>],
+    ranges: &[Range],
+) -> Result<Vec<usize>, TapeError> {
+    if unknowns.len() == deviation.len() {
+        return Ok((0..deviation.len()).collect());
+    }
+    let slopes: Vec<Expr<'_>> = unknowns.iter().flat_map(|x| deviation.iter().map(|f| f.derivative(*x))).collect();
+    let inputs: Vec<Expr<'_>> = unknowns.iter().chain(motions).copied().collect();
+    let tape = Tape::new(&slopes, &inputs)?;
+    let somewhere = ranges.iter().map(|range| range.at(0.37)).chain(motions.iter().map(|_| 0.1));
+    let mut out = vec![0.0; slopes.len()];
+    ScalarEvaluator::new(&tape).run(&somewhere.collect::<Vec<f64>>(), &mut out);
+    // rows: unknowns by their range; columns: components, displacements by the largest
+    let of = |i: usize, j: usize| out[i * deviation.len() + j] * ranges[i].width();
+    let size = |j: usize| (0..unknowns.len()).map(|i| of(i, j).abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let qr = ColPivQr::new(Mat::from_fn(unknowns.len(), deviation.len(), |i, j| of(i, j) / size(j)).as_ref());
+    let (order, _) = qr.P().arrays();
+    let mut chosen: Vec<usize> = order[..unknowns.len()].to_vec();
+    chosen.sort_unstable();
+    Ok(chosen)
+}

@@ -1,0 +1,119 @@
+//! Rigid motions that a tool's surface does not see: it slides along itself.
+
+use faer::Mat;
+use faer::linalg::solvers::Svd;
+use flank_expr::geometry::{Axis, Step, Surface, Vector3};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape, TapeError};
+use nalgebra::Vector3 as Vector;
+
+use crate::solution::Range;
+
+/// Points of each surface in each direction at which its normal is looked at.
+const POINTS: usize = 9;
+/// A motion whose speed along all normals is below this share of the largest possible is none that the surface sees.
+const UNSEEN: f64 = 1e-9;
+/// What is left of a component by rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// A one-parameter rigid motion, by its velocity at the start: `ω × r + v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Screw {
+    /// ω: of length one, or zero for a translation.
+    pub angular: [f64; 3],
+    /// v, the velocity of the frame's origin, mm per radian; of length one (mm) for a translation.
+    pub linear: [f64; 3],
+}
+
+impl Screw {
+    /// The motion by an amount (radians, or mm of a translation) as steps from the frame before it to the one after it.
+    pub fn steps<'g>(&self, graph: &'g Graph, amount: Expr<'g>) -> Vec<Step<'g>> {
+        let vector = |components| Vector3::constant(graph, components);
+        if self.angular == [0.0; 3] {
+            return vec![Step::Translate(vector(self.linear).scaled(amount))];
+        }
+        // about the line through the point ω × v, rising by ω · v
+        let (angular, linear) = (Vector::from(self.angular), Vector::from(self.linear));
+        let (through, rise) = (angular.cross(&linear).into(), angular.dot(&linear));
+        vec![
+            Step::Translate(vector(through)),
+            Step::Rotate(Axis::Along(vector(self.angular)), amount),
+            Step::Translate(vector(self.angular).scaled(rise * amount) - vector(through)),
+        ]
+    }
+}
+
+/// All rigid motions along which every one of the surfaces slides along itself, as a basis: a surface of revolution has one, a
+/// cylinder two, a sphere or a plane three, most have none.
+///
+/// They are the null space of `n · (ω × r + v)` over points of the surfaces, so nothing has to be declared.
+///
+/// # Errors
+/// If a surface depends on a variable that is not among its unknowns.
+///
+/// # Panics
+/// If a surface is not one of two free unknowns with a range each.
+pub fn symmetries(surfaces: &[(&Surface<'_>, Vec<Range>)]) -> Result<Vec<Screw>, TapeError> {
+    let mut rows: Vec<[f64; 6]> = Vec::new();
+    for (surface, ranges) in surfaces {
+        assert_eq!((surface.unknowns.len(), ranges.len()), (2, 2), "two free unknowns");
+        let outputs: Vec<Expr<'_>> = surface.position.0.into_iter().chain(surface.normal.0).collect();
+        let tape = Tape::new(&outputs, &surface.unknowns)?;
+        let mut evaluator = ScalarEvaluator::new(&tape);
+        let mut out = [0.0; 6];
+        for k in 0..POINTS * POINTS {
+            let at = [k / POINTS, k % POINTS].map(|k| (k as f64 + 0.5) / POINTS as f64);
+            evaluator.run(&[ranges[0].at(at[0]), ranges[1].at(at[1])], &mut out);
+            let (r, n) = (Vector::new(out[0], out[1], out[2]), Vector::new(out[3], out[4], out[5]));
+            if out.iter().all(|x| x.is_finite()) {
+                let moment = r.cross(&n);
+                rows.push([moment.x, moment.y, moment.z, n.x, n.y, n.z]);
+            }
+        }
+    }
+    Ok(unseen(&rows))
+}
+
+/// Basis of the motions that no row sees, reduced so that rotations come first and each has as few components as can be.
+fn unseen(rows: &[[f64; 6]]) -> Vec<Screw> {
+    // angular speeds count by the size of the surface, so that both kinds of motion are of one order
+    let size = rows.iter().flat_map(|row| &row[..3]).fold(0.0, |size: f64, x| size.max(x.abs())).max(f64::MIN_POSITIVE);
+    let scaled = Mat::from_fn(rows.len().max(6), 6, |i, j| {
+        rows.get(i).map_or(0.0, |row| if j < 3 { row[j] / size } else { row[j] })
+    });
+    let Ok(svd) = Svd::new(scaled.as_ref()) else { return Vec::new() };
+    let (values, vectors) = (svd.S(), svd.V());
+    let mut basis: Vec<[f64; 6]> =
+        (0..6).filter(|&k| values[k] <= UNSEEN * values[0]).map(|k| std::array::from_fn(|j| vectors[(j, k)])).collect();
+    reduce(&mut basis);
+    basis.into_iter().map(|motion| screw(motion, size)).collect()
+}
+
+/// Gauss and Jordan, pivots among the rotations first.
+fn reduce(basis: &mut [[f64; 6]]) {
+    let mut row = 0;
+    for column in [2, 1, 0, 5, 4, 3] {
+        let size = |k: usize, basis: &[[f64; 6]]| basis[k][column].abs();
+        let Some(pivot) = (row..basis.len()).max_by(|&a, &b| size(a, basis).total_cmp(&size(b, basis))) else { return };
+        if size(pivot, basis) <= ROUNDING {
+            continue;
+        }
+        basis.swap(row, pivot);
+        let scale = basis[row][column];
+        basis[row].iter_mut().for_each(|x| *x /= scale);
+        let leading = basis[row];
+        for (_, other) in basis.iter_mut().enumerate().filter(|(k, _)| *k != row) {
+            let factor = other[column];
+            other.iter_mut().zip(leading).for_each(|(x, by)| *x -= factor * by);
+        }
+        row += 1;
+    }
+}
+
+/// A motion whose angular speeds count by `size`, without what rounding left in it.
+fn screw(motion: [f64; 6], size: f64) -> Screw {
+    let motion = motion.map(|x| if x.abs() <= ROUNDING { 0.0 } else { x });
+    let angular = Vector::new(motion[0], motion[1], motion[2]) / size;
+    let linear = Vector::new(motion[3], motion[4], motion[5]);
+    let speed = if angular.norm() > 0.0 { angular.norm() } else { linear.norm() };
+    Screw { angular: (angular / speed).into(), linear: (linear / speed).into() }
+}
