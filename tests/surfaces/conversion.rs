@@ -2,15 +2,15 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use flank_chain_dsl::{Compilation, Job, compile_with_machine};
+use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
 use flank_expr::geometry::Chain;
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, symmetries};
 use flank_tests::{reference_json, repository};
 use serde_json::Value;
 
-struct Conversion {
-    problem: PoseProblem,
+struct Conversion<'g> {
+    problem: PoseProblem<'g>,
     axes: Vec<String>,
 }
 
@@ -23,24 +23,25 @@ fn compiled<'g>(graph: &'g Graph, [job, machine]: [&str; 2]) -> (Job<'g>, Job<'g
 
 fn tool_symmetries(job: &Job<'_>, surface: usize) -> Vec<Screw> {
     let surface = &job.surfaces[surface];
-    let flank_chain_dsl::ToolShape::Surface(tool) = &surface.generation.tool else { return Vec::new() };
+    let ToolShape::Surface(tool) = &surface.generation.tool else { return Vec::new() };
     let ranges = surface.unknowns[..2].iter().map(|u| Range { low: u.low, high: u.high }).collect();
     symmetries(&[(&tool.bound(&job.bindings()), ranges)]).expect("all bound")
 }
 
-fn conversion<'g>(graph: &'g Graph, job: &Job<'g>, target: &Job<'g>) -> Conversion {
+fn target_axes<'g>(target: &Job<'g>) -> Vec<TargetAxis<'g>> {
+    let axis = |axis: &Axis<'g>| TargetAxis {
+        variable: axis.variable,
+        is_rotary: axis.dimension == Dimension::ANGLE,
+        travel: axis.travel.map(|(low, high)| Range { low, high }),
+    };
+    target.machines[0].axes.iter().map(axis).collect()
+}
+
+fn conversion<'g>(graph: &'g Graph, job: &Job<'g>, target: &Job<'g>, frames: [&str; 2]) -> Conversion<'g> {
     let generation = &job.surfaces[0].generation;
     let machine = &target.machines[0];
-    let chain: Chain<'g> = machine.chain(graph, "work", "cutter").expect("both frames");
-    let axes: Vec<TargetAxis<'g>> = machine
-        .axes
-        .iter()
-        .map(|axis| TargetAxis {
-            variable: axis.variable,
-            is_rotary: axis.dimension == flank_chain_dsl::Dimension::ANGLE,
-            travel: axis.travel.map(|(low, high)| Range { low, high }),
-        })
-        .collect();
+    let chain: Chain<'g> = machine.chain(graph, frames[0], frames[1]).expect("both frames");
+    let axes = target_axes(target);
     let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
     let problem = PoseProblem::new(
         &chain,
@@ -80,7 +81,7 @@ const TABLES: [&str; 2] = ["specs/bevel/tilted_pinion.chain", "specs/machines/fr
 fn axes_meet_the_table() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target);
+    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
     let reference = reference_json("freeform.json");
     let rows = reference["axes"].as_array().expect("rows");
     let motions: Vec<Vec<f64>> = rows.iter().map(|row| vec![-row["psi"].as_f64().expect("a number")]).collect();
@@ -99,7 +100,7 @@ fn axes_meet_the_table() {
 fn taylor_coefficients_meet_the_table() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target);
+    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
     let reference = reference_json("freeform.json");
     let first = conversion.problem.postures(&[0.0]);
     let series = conversion.problem.series(&first[0], &[0.0], 0, 6).expect("no singular pose");
@@ -110,4 +111,54 @@ fn taylor_coefficients_meet_the_table() {
             assert!((found[k] - c).abs() < 1e-9 * c.abs(), "{name}, order {k}: {:e} instead of {c:e}", found[k]);
         }
     }
+}
+
+/// A job carried over to its own machine stands as it stood: two motions, a hob that is a screw, a spindle of more than a turn.
+#[test]
+fn a_hobbing_job_on_its_own_machine_is_itself() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, ["specs/hobbing/helical_gear.chain", "specs/machines/hobbing_6axis.chain"]);
+    let generation = &job.surfaces[0].generation;
+    let screws = tool_symmetries(&job, 0);
+    let [Screw { angular, linear }] = screws[..] else { panic!("one screw: {screws:?}") };
+    // the lead of the thread, divided by a turn
+    let rise = 38.0 * f64::tan(f64::asin(2.0 * 3.0 / 76.0));
+    assert_eq!((angular, linear[0], linear[1]), ([0.0, 0.0, 1.0], 0.0, 0.0));
+    assert!((linear[2] - rise).abs() < 1e-9, "{linear:?}");
+    let conversion = conversion(&graph, &job, &target, ["table", "hob"]);
+    let positions: Vec<Vec<f64>> =
+        (0..40).map(|k| vec![1.0 + 0.25 * f64::from(k), -13.0 + 0.6 * f64::from(k)]).collect();
+    let first = conversion.problem.postures(&positions[0]);
+    let laws: Vec<Expr<'_>> = job.machines[0].axes.iter().map(|axis| axis.law).collect();
+    let bound = graph.substitute(&laws, &job.bindings());
+    let tape = Tape::new(&bound, &generation.motions).expect("all bound");
+    for (posture, at) in conversion.problem.follow(&first[0], &positions).iter().zip(&positions) {
+        assert_eq!((posture.outcome, posture.missing), (Outcome::Solved, None), "{at:?}");
+        let mut expected = vec![0.0; laws.len()];
+        ScalarEvaluator::new(&tape).run(at, &mut expected);
+        for ((name, found), expected) in conversion.axes.iter().zip(&posture.axes).zip(expected) {
+            assert!((found - expected).abs() < 1e-10, "{name}: {found} instead of {expected} at {at:?}");
+        }
+    }
+}
+
+/// The tool of a table that turns only about one axis: what is missing is told.
+#[test]
+fn what_a_machine_has_no_axis_for_is_told() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, ["specs/bevel/tilted_pinion.chain", "specs/machines/free_form.chain"]);
+    let machine = &target.machines[0];
+    // without B: four axes and the turn that the cutter does not see
+    let still = machine.axes.iter().find(|axis| axis.name == "B").expect("B").variable;
+    let chain = machine.chain(&graph, "work", "cutter").expect("both frames");
+    let chain = chain.substituted(&[(still, graph.constant(0.2))]);
+    let axes: Vec<TargetAxis<'_>> = target_axes(&target).into_iter().filter(|axis| axis.variable != still).collect();
+    let generation = &job.surfaces[0].generation;
+    let screws = tool_symmetries(&job, 0);
+    let bindings = job.bindings();
+    let problem = PoseProblem::new(&chain, &axes, &generation.driven, &generation.motions, &screws, 1000.0, &bindings)
+        .expect("few");
+    let posture = &problem.postures(&[0.1])[0];
+    let missing = posture.missing.expect("the cutter's axis cannot be met");
+    assert!(missing.direction >= 3 && missing.by.abs() > 1e-3, "{missing:?}");
 }

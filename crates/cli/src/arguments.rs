@@ -15,6 +15,7 @@ Examples:
   flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
   flank check specs/machines/*.chain                    is it right, and if not, where and why
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank fmt specs/tools/*.chain                         the settled layout
 
 Exit codes: 0 done; 1 the spec is wrong, or a file cannot be read or written; 2 usage; 3 done, but something asked for
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     Solve(Solve),
     /// Parse, resolve and check dimensions
     Check(Check),
+    /// Carry a job over to another machine: axis positions and polynomials that do the same
+    Convert(Convert),
     /// Print what was built: matrices, vector parts, twists, the equation of meshing
     Derive(Derive),
     /// How far one surface lies off another one of the same body: ease-off, tooth-space width
@@ -110,6 +113,56 @@ pub(crate) enum Format {
     Csv,
     Json,
     Stl,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The tool stands to the work on the target machine as it does on the job's own, up to what the tool does not see: a cutter of
+revolution may turn about its axis.
+
+Examples:
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --tolerance 0.1um
+  flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json")]
+pub(crate) struct Convert {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// The file of the target machine; of several in it the last one
+    #[arg(long, value_name = "FILE")]
+    pub(crate) to: PathBuf,
+    /// The surface whose tool is carried over, where the job has several tools
+    #[arg(long, value_name = "NAME")]
+    pub(crate) surface: Option<String>,
+    /// The target's frame that the tool stands in, if it has another name there
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tool_frame: Option<String>,
+    /// The target's frame that the work stands in, if it has another name there
+    #[arg(long, value_name = "NAME")]
+    pub(crate) work_frame: Option<String>,
+    /// How many positions, over the motion as far as the sampled points need it
+    #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) positions: u32,
+    /// The order of the polynomials
+    #[arg(long, value_name = "ORDER", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=30), conflicts_with = "tolerance")]
+    pub(crate) order: u32,
+    /// Take the smallest order that keeps the flank this near, for example 0.1um or 0.002mm
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Print everything as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A length in mm.
+fn length(text: &str) -> Result<f64, String> {
+    let number = |digits: &str, unit: f64| digits.trim().parse::<f64>().ok().map(|x| x * unit);
+    let text = text.trim();
+    let found = match (text.strip_suffix("um").or(text.strip_suffix("µm")), text.strip_suffix("mm")) {
+        (Some(digits), _) => number(digits, 1e-3),
+        (None, Some(digits)) => number(digits, 1.0),
+        (None, None) => None,
+    };
+    found.filter(|x| x.is_finite() && *x > 0.0).ok_or("write a length with its unit, for example 0.1um".to_string())
 }
 
 #[derive(Args, Debug)]

@@ -4,6 +4,7 @@ mod arguments;
 mod branches;
 mod certify;
 mod check;
+mod convert;
 mod cost;
 mod cut;
 mod derive;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
     let ending = match Arguments::parse().command {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Deviation(arguments) => deviation::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

@@ -2,6 +2,10 @@
 
 use flank_chain_dsl::Dimension;
 
+pub(crate) fn is_angle(dimension: Dimension) -> bool {
+    dimension == Dimension::ANGLE
+}
+
 /// The unit's symbol; empty for a number.
 pub(crate) fn symbol(dimension: Dimension) -> &'static str {
     match dimension {
@@ -13,7 +17,7 @@ pub(crate) fn symbol(dimension: Dimension) -> &'static str {
 
 /// A value in that unit.
 pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
-    if dimension == Dimension::ANGLE { value.to_degrees() } else { value }
+    if is_angle(dimension) { value.to_degrees() } else { value }
 }
 
 /// A value with its unit, with some decimals.

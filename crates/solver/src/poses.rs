@@ -8,12 +8,10 @@ use thiserror::Error;
 
 use crate::newton::{Linearized, TOLERANCE, solve_with};
 use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
-use crate::start::{Scan, scan};
+use crate::start::{WIDELY, scan};
 use crate::symmetry::Screw;
 use crate::system::System;
 
-/// Wide enough to meet every posture of common machines: elbows are few and far apart.
-const SCAN: Scan = Scan { probes: 256, starts: 32 };
 /// Halvings of a step along the motion until the axes follow.
 const MOST_HALVINGS: u32 = 12;
 /// Of its range, or of a turn, no axis moves farther in one step beyond where it was expected.
@@ -23,15 +21,20 @@ const FREE_TURNS: f64 = 1e4;
 
 /// Where the axes of the target machine have to stand while the source's motions run.
 #[derive(Clone, Debug)]
-pub struct PoseProblem {
-    /// Unknowns: axes, then amounts of the tool's own symmetries; parameters: the source's motions.
+pub struct PoseProblem<'g> {
+    /// From work to tool on the target machine, with what the tool does not see of its own motion.
+    chain: Chain<'g>,
+    /// Axes, then amounts of the tool's own symmetries.
+    unknowns: Vec<Expr<'g>>,
+    /// Parameters: the source's motions.
     system: System,
     /// What of the pose the axes cannot reach: components of the deviation that must come out as zero.
     rest: Tape,
     components: Vec<usize>,
     axes: usize,
     travels: Vec<Range>,
-    search: Vec<Range>,
+    /// Where postures are looked for: within travel and one turn of each rotary axis, and wherever else they may be.
+    search: [Vec<Range>; 2],
 }
 
 /// An axis of the target machine.
@@ -65,6 +68,7 @@ pub struct Posture {
     pub axes: Vec<f64>,
     /// What of the pose is not reached, if anything.
     pub missing: Option<Missing>,
+    /// The axes, and by how much the tool slides along itself.
     unknowns: Vec<f64>,
 }
 
@@ -77,17 +81,17 @@ pub struct Missing {
     pub by: f64,
 }
 
-impl PoseProblem {
+impl<'g> PoseProblem<'g> {
     /// `target` and `source` lead from work to tool on the two machines; `symmetries` are what the tool does not see of its own
     /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go;
     /// `bindings` replace parameters by numbers.
     ///
-    /// Where an axis of the target only turns or shifts the tool along itself, and the pose does not need that, the axis takes
-    /// over what the source does there, so that the poses are the same to the last.
+    /// An axis of the target that only turns or shifts the tool along itself takes over what the source does there; where there are
+    /// axes enough without it, the tool stands exactly as on the source.
     ///
     /// # Errors
     /// If more axes are free than a pose needs, or something depends on a variable that is not given.
-    pub fn new<'g>(
+    pub fn new(
         target: &Chain<'g>,
         axes: &[TargetAxis<'g>],
         source: &Chain<'g>,
@@ -95,20 +99,23 @@ impl PoseProblem {
         symmetries: &[Screw],
         reach: f64,
         bindings: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<PoseProblem, PoseError> {
+    ) -> Result<PoseProblem<'g>, PoseError> {
         let graph = motions[0].graph();
         let [target, source] = [target, source].map(|chain| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
         let mut slips = symmetries.to_vec();
-        while variables.len() + slips.len() > 6 {
-            let Some(slip) = doubled(&target, &variables, &slips)? else {
-                return Err(PoseError::Redundant(variables.len() + slips.len() - 6));
-            };
+        while let Some(slip) = doubled(&target, &variables, &slips)? {
             slips.remove(slip);
+        }
+        // with axes enough the tool may as well stand exactly as it does on the source
+        slips.truncate(6usize.saturating_sub(variables.len()));
+        if variables.len() > 6 {
+            return Err(PoseError::Redundant(variables.len() - 6));
         }
         let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip {k}"))).collect();
         let slipped: Vec<_> = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
-        let off = source.inverse().then(&target).then(&Chain::new(graph, slipped)).merged().pose();
+        let chain = target.then(&Chain::new(graph, slipped));
+        let off = source.inverse().then(&chain).merged().pose();
         let unknowns: Vec<Expr<'g>> = variables.iter().chain(&amounts).copied().collect();
         let travel = |axis: &TargetAxis<'_>| {
             let free = if axis.is_rotary { FREE_TURNS } else { reach };
@@ -118,17 +125,28 @@ impl PoseProblem {
         let travels: Vec<Range> = axes.iter().map(travel).collect();
         let within =
             |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { range.common(turn) } else { *range };
+        let around = |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { turn } else { range.wider_by(1.0) };
         let slip_range =
             |slip: &Screw| if slip.angular == [0.0; 3] { Range { low: -reach, high: reach } } else { turn };
-        let search: Vec<Range> = axes.iter().zip(&travels).map(within).chain(slips.iter().map(slip_range)).collect();
+        let slid: Vec<Range> = slips.iter().map(slip_range).collect();
+        let near: Vec<Range> = axes.iter().zip(&travels).map(within).chain(slid.clone()).collect();
+        let far: Vec<Range> = axes.iter().zip(&travels).map(around).chain(slid).collect();
+        let search = [near, far];
         let deviation = deviation(&off);
-        let components = independent(&deviation, &unknowns, motions, &search)?;
+        let components = independent(&deviation, &unknowns, motions, &search[1])?;
         let residuals: Vec<Expr<'g>> = components.iter().map(|&k| deviation[k]).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(motions).copied().collect();
         // the antisymmetric part of a rotation vanishes at half a turn as well
         let upright = off.rotation.0.iter().enumerate().fold(graph.constant(-1.0), |sum, (k, row)| sum + row.0[k]);
         Ok(PoseProblem {
-            system: System::new(&residuals, &unknowns, motions)?.with_conditions(&[upright], &unknowns, motions)?,
+            chain,
+            unknowns: unknowns.clone(),
+            system: System::new(&residuals, &unknowns, motions)?.with_conditions(
+                &residuals,
+                &[upright],
+                &[],
+                &inputs,
+            )?,
             rest: Tape::new(&deviation, &inputs)?,
             components,
             axes: axes.len(),
@@ -137,12 +155,26 @@ impl PoseProblem {
         })
     }
 
-    /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; where
-    /// there is none, what came nearest to one.
+    /// From work to tool on the target machine, in its axes and in the amounts by which the tool slides along itself.
+    pub fn chain(&self) -> &Chain<'g> {
+        &self.chain
+    }
+
+    /// What the chain and [`PoseProblem::series`] are in: the axes, then those amounts.
+    pub fn unknowns(&self) -> &[Expr<'g>] {
+        &self.unknowns
+    }
+
+    /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; if there
+    /// is none, those beyond the travels; if there is none either, what came nearest to one.
     pub fn postures(&self, motions: &[f64]) -> Vec<Posture> {
-        let (mut found, _) = scan(&mut self.system.evaluation(motions), &self.search, SCAN);
+        let look = |ranges: &[Range]| scan(&mut self.system.evaluation(motions), ranges, WIDELY).0;
+        let mut found = look(&self.search[0]);
+        if !found.iter().any(Solution::is_solved) {
+            found = look(&self.search[1]);
+        }
         let turned = |solution: &Solution| -> f64 {
-            solution.unknowns.iter().zip(&self.search).map(|(x, range)| (x / range.width()).powi(2)).sum()
+            solution.unknowns.iter().zip(&self.search[1]).map(|(x, range)| (x / range.width()).powi(2)).sum()
         };
         found.sort_by(|a, b| turned(a).total_cmp(&turned(b)));
         found.into_iter().map(|solution| self.posture(motions, solution)).collect()
@@ -169,7 +201,7 @@ impl PoseProblem {
             let step: Vec<f64> = trail.at.iter().zip(wanted).map(|(a, b)| a + share * (b - a)).collect();
             let expected = trail.expected(&step);
             let solution = solve_with(&mut self.system.evaluation(&step), &self.wide(), &expected);
-            let moved = distance(&solution.unknowns, &expected, &self.search);
+            let moved = distance(&solution.unknowns, &expected, &self.search[1]);
             let follows = solution.is_solved() && moved <= ASTRAY;
             if follows {
                 trail.take(step, &solution.unknowns);
@@ -186,7 +218,7 @@ impl PoseProblem {
         }
     }
 
-    /// Series of each axis in powers of the change of one of the motions, about a posture: coefficients up to an order, constant
+    /// Series of each unknown, axes first, in powers of the change of one of the motions, about a posture: coefficients up to an order, constant
     /// first; `None` where the posture is singular.
     ///
     /// Order by order, `J q_k = −F_k` with F_k the coefficient of the pose's deviation along the series so far: exact but for
@@ -209,8 +241,8 @@ impl PoseProblem {
             let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[terms * i + k]));
             (0..size).for_each(|i| inputs[terms * i + k] = by[(i, 0)]);
         }
-        let axes: Vec<Vec<f64>> = inputs.chunks(terms).take(self.axes).map(<[f64]>::to_vec).collect();
-        axes.iter().flatten().all(|c| c.is_finite()).then_some(axes)
+        inputs.truncate(terms * size);
+        inputs.iter().all(|c| c.is_finite()).then(|| inputs.chunks(terms).map(<[f64]>::to_vec).collect())
     }
 
     fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
@@ -233,7 +265,7 @@ impl PoseProblem {
     /// Ranges in which Newton may go anywhere: what lies beyond an axis's travel is told, not prevented.
     fn wide(&self) -> Vec<Range> {
         let wide = |range: &Range| range.wider_by(FREE_TURNS);
-        self.search.iter().map(wide).collect()
+        self.search[1].iter().map(wide).collect()
     }
 }
 

@@ -1,0 +1,105 @@
+//! The axes as polynomials of the motion, and what cutting them off leaves on the flank.
+
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, PoseProblem, Posture};
+
+use super::source::{Flank, Source};
+use crate::arguments::Convert;
+
+/// The highest order that is tried.
+pub(crate) const HIGHEST: usize = 30;
+
+/// Power series of the axes about the middle position.
+pub(crate) struct Series {
+    /// The motion's value that it is about.
+    pub(crate) about: f64,
+    /// The order that was asked for, or the smallest one that meets the tolerance.
+    pub(crate) order: usize,
+    /// Of each axis the coefficients up to the order, mm or rad per rad (or mm) of the motion to the power.
+    pub(crate) axes: Vec<Vec<f64>>,
+    /// The largest normal distance between the flank and what polynomials of each order leave of it, from order 0 to the last
+    /// that was tried, mm; none where no points are sampled.
+    pub(crate) deviations: Vec<f64>,
+    /// Whether the tolerance is met.
+    pub(crate) meets: bool,
+}
+
+impl Series {
+    pub(crate) fn of(
+        problem: &PoseProblem<'_>,
+        source: &Source<'_, '_>,
+        positions: &[Vec<f64>],
+        line: &[Posture],
+        arguments: &Convert,
+    ) -> Option<Series> {
+        let middle = positions.len() / 2;
+        let about = positions[middle][0];
+        let highest = if arguments.tolerance.is_some() { HIGHEST } else { arguments.order as usize };
+        let all = problem.series(&line[middle], &positions[middle], 0, highest)?;
+        let mut flanks: Vec<Moved<'_, '_, '_>> = source
+            .flanks
+            .iter()
+            .filter(|flank| !flank.points.is_empty())
+            .map(|flank| Moved::new(problem, source, flank))
+            .collect();
+        let mut deviations = Vec::new();
+        let mut order = arguments.order as usize;
+        let mut meets = true;
+        if !flanks.is_empty() {
+            for tried in 0..=highest {
+                let most = flanks.iter_mut().map(|flank| flank.deviation(&all, tried, about)).fold(0.0, f64::max);
+                deviations.push(most);
+                meets = arguments.tolerance.is_none_or(|tolerance| most <= tolerance);
+                if arguments.tolerance.is_some() {
+                    order = tried;
+                    if meets {
+                        break;
+                    }
+                }
+            }
+        }
+        let axes = all[..line[middle].axes.len()].iter().map(|series| series[..=order].to_vec()).collect();
+        Some(Series { about, order, axes, deviations, meets })
+    }
+}
+
+/// The solved points of a surface, and where the target's axes bring the points of the tool that made them.
+struct Moved<'s, 'j, 'g> {
+    flank: &'s Flank<'j, 'g>,
+    /// Of the tool's unknowns and the target's: a point of the tool in the work.
+    tape: Tape,
+    tool_unknowns: usize,
+    /// Index of the motion among the surface's unknowns.
+    motion: usize,
+}
+
+impl<'s, 'j, 'g> Moved<'s, 'j, 'g> {
+    fn new(problem: &PoseProblem<'g>, source: &Source<'_, 'g>, flank: &'s Flank<'j, 'g>) -> Moved<'s, 'j, 'g> {
+        let inputs: Vec<Expr<'g>> = flank.tool.unknowns.iter().chain(problem.unknowns()).copied().collect();
+        let position = problem.chain().point(flank.tool.position);
+        let variable = source.motions[0].variable;
+        let motion = flank.surface.unknowns.iter().position(|unknown| unknown.variable == variable);
+        Moved {
+            flank,
+            tape: Tape::new(&position.0, &inputs).expect("a job without errors leaves nothing unbound"),
+            tool_unknowns: flank.tool.unknowns.len(),
+            motion: motion.expect("the surface is an envelope over the motion"),
+        }
+    }
+
+    /// The largest normal distance that polynomials of an order leave. An envelope moves along its normal as the points of the tool
+    /// do that touch it; what they do along the surface, and squares of the distance, do not count.
+    fn deviation(&mut self, series: &[Vec<f64>], order: usize, about: f64) -> f64 {
+        let mut evaluator = ScalarEvaluator::new(&self.tape);
+        let mut moved = [0.0; 3];
+        let solved = self.flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
+        let of = |point: &flank_solver::SurfacePoint| {
+            let h = point.unknowns[self.motion] - about;
+            let axes = series.iter().map(|c| c[..=order].iter().rev().fold(0.0, |sum, c| sum * h + c));
+            let inputs: Vec<f64> = point.unknowns[..self.tool_unknowns].iter().copied().chain(axes).collect();
+            evaluator.run(&inputs, &mut moved);
+            (0..3).map(|k| point.normal[k] * (moved[k] - point.position[k])).sum::<f64>().abs()
+        };
+        solved.map(of).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,185 @@
+//! What `flank convert` tells.
+
+use std::fmt::Write;
+
+use flank_chain_dsl::{Axis, Dimension, Job, Machine};
+use flank_solver::{Posture, Screw};
+use serde_json::{Value, json};
+
+use super::series::Series;
+use super::source::Source;
+use crate::arguments::Convert;
+use crate::table::aligned;
+use crate::{spec, units};
+
+/// A column: the name of a motion or an axis.
+struct Named {
+    name: String,
+    dimension: Dimension,
+    travel: Option<(f64, f64)>,
+}
+
+pub(crate) struct Table {
+    title: String,
+    job: String,
+    machine: String,
+    motions: Vec<Named>,
+    axes: Vec<Named>,
+    positions: Vec<Vec<f64>>,
+    line: Vec<Posture>,
+    symmetries: Vec<Screw>,
+    series: Option<Series>,
+    tolerance: Option<f64>,
+}
+
+impl Table {
+    pub(crate) fn new(
+        (job, machine): (&Job<'_>, &Machine<'_>),
+        source: &Source<'_, '_>,
+        free: &[&Axis<'_>],
+        (positions, line): (Vec<Vec<f64>>, Vec<Posture>),
+        series: Option<Series>,
+        arguments: &Convert,
+    ) -> Table {
+        let axis = |axis: &&Axis<'_>| Named { name: axis.name.clone(), dimension: axis.dimension, travel: axis.travel };
+        let motions = source.motions.iter();
+        let motions =
+            motions.map(|motion| Named { name: motion.name.clone(), dimension: motion.dimension, travel: None });
+        let [file, to] = [&arguments.which.file, &arguments.to].map(|path| spec::shown(path));
+        Table {
+            title: format!(
+                "job {} ({file}) on {} ({to}): {} against {}",
+                job.name, machine.name, source.tool, source.work
+            ),
+            job: job.name.clone(),
+            machine: machine.name.clone(),
+            motions: motions.collect(),
+            axes: free.iter().map(axis).collect(),
+            positions,
+            line,
+            symmetries: source.symmetries.clone(),
+            series,
+            tolerance: arguments.tolerance,
+        }
+    }
+
+    pub(crate) fn text(&self) -> String {
+        let mut out = format!("{}\n\n", self.title);
+        let over: Vec<String> = self.motions.iter().enumerate().map(|(k, motion)| self.span(k, motion)).collect();
+        let _ = writeln!(out, "{} positions over {}", self.positions.len(), over.join(" and "));
+        for screw in &self.symmetries {
+            let _ = writeln!(out, "the tool does not see {}", unseen(screw));
+        }
+        let mut rows = vec![["axis", "from", "to", "travel"].map(String::from)];
+        rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {
+            let (low, high) = self.ends(k);
+            let travel = axis.travel.map(|(low, high)| {
+                format!("{} .. {}", units::text(axis.dimension, low, 0), units::text(axis.dimension, high, 0))
+            });
+            let [low, high] = [low, high].map(|x| units::text(axis.dimension, x, 6));
+            [axis.name.clone(), low, high, travel.unwrap_or_default()]
+        }));
+        let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
+        if let Some(series) = &self.series {
+            self.series_text(series, &mut out);
+        }
+        out
+    }
+
+    fn series_text(&self, series: &Series, out: &mut String) {
+        let motion = &self.motions[0];
+        let about = units::text(motion.dimension, series.about, 6);
+        let _ = writeln!(out, "\npolynomials in h = {} - {about}, mm and rad; order {}", motion.name, series.order);
+        let power = |k: usize| if k == 0 { "1".to_string() } else { format!("h^{k}") };
+        let mut rows = vec![["axis", "coefficient"].map(String::from)];
+        for (axis, coefficients) in self.axes.iter().zip(&series.axes) {
+            // what does not show in the last place anywhere on the way is rounding
+            let reach = self.positions.iter().map(|position| (position[0] - series.about).abs()).fold(0.0, f64::max);
+            let size = coefficients.iter().enumerate().map(|(k, c)| c.abs() * reach.powi(k as i32)).fold(1.0, f64::max);
+            let shows = |(k, c): &(usize, &f64)| *k == 0 || c.abs() * reach.powi(*k as i32) > 4.0 * f64::EPSILON * size;
+            for (k, c) in coefficients.iter().enumerate().filter(shows) {
+                rows.push([format!("{} {}", axis.name, power(k)), format!("{c:.15e}")]);
+            }
+        }
+        out.push_str(&aligned(&rows, "<>"));
+        if let Some(most) = series.deviations.get(series.order) {
+            let _ = writeln!(out, "\nthe flank is then off by up to {:.6} um", most * 1e3);
+            if let (Some(tolerance), false) = (self.tolerance, series.meets) {
+                let _ = writeln!(out, "no order up to {} keeps it under {} um", series.order, tolerance * 1e3);
+            }
+        }
+    }
+
+    /// `roll from … to …`
+    fn span(&self, k: usize, motion: &Named) -> String {
+        let values = self.positions.iter().map(|position| position[k]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let [low, high] = [low, high].map(|x| units::text(motion.dimension, x, 6));
+        format!("{} from {low} to {high}", motion.name)
+    }
+
+    fn ends(&self, k: usize) -> (f64, f64) {
+        let values = self.line.iter().map(|posture| posture.axes[k]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    }
+
+    pub(crate) fn json(&self) -> String {
+        let named = |named: &Named| json!({ "name": named.name, "unit": units::symbol(named.dimension) });
+        let axes = self.axes.iter().enumerate().map(|(k, axis)| {
+            let (low, high) = self.ends(k);
+            let shown = |x: f64| units::shown(axis.dimension, x);
+            let travel = axis.travel.map(|(low, high)| json!({ "low": shown(low), "high": shown(high) }));
+            json!({
+                "name": axis.name, "unit": units::symbol(axis.dimension),
+                "low": shown(low), "high": shown(high), "travel": travel,
+            })
+        });
+        let positions = self.positions.iter().zip(&self.line).map(|(position, posture)| {
+            let shown = |values: &[f64], of: &[Named]| {
+                of.iter().zip(values).map(|(named, x)| units::shown(named.dimension, *x)).collect::<Vec<f64>>()
+            };
+            json!({
+                "motions": shown(position, &self.motions),
+                "axes": shown(&posture.axes, &self.axes),
+                "status": posture.outcome.word(),
+                "missing": posture.missing.map(|missing| json!({ "direction": missing.direction, "by": missing.by })),
+            })
+        });
+        let symmetries = self.symmetries.iter();
+        let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
+        let series = self.series.as_ref().map(|series| {
+            json!({
+                "about": series.about,
+                "order": series.order,
+                "units": "mm and rad per rad (mm) of the motion to the power",
+                "coefficients": self.axes.iter().zip(&series.axes)
+                    .map(|(axis, c)| (axis.name.clone(), json!(c))).collect::<serde_json::Map<String, Value>>(),
+                "deviation_mm_by_order": series.deviations,
+            })
+        });
+        let table = json!({
+            "schema": "flank.convert/1",
+            "job": self.job,
+            "machine": self.machine,
+            "motions": self.motions.iter().map(named).collect::<Vec<Value>>(),
+            "axes": axes.collect::<Vec<Value>>(),
+            "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
+            "positions": positions.collect::<Vec<Value>>(),
+            "polynomials": series,
+        });
+        format!("{table:#}\n")
+    }
+}
+
+fn unseen(screw: &Screw) -> String {
+    let shown = |v: [f64; 3]| format!("[{:.6}, {:.6}, {:.6}]", v[0], v[1], v[2]);
+    if screw.angular == [0.0; 3] {
+        return format!("a shift along {}", shown(screw.linear));
+    }
+    let turn = format!("a turn about {}", shown(screw.angular));
+    if screw.linear == [0.0; 3] {
+        turn
+    } else {
+        format!("{turn} with the velocity {} mm/rad of its origin", shown(screw.linear))
+    }
+}
