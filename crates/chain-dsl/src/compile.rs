@@ -149,13 +149,13 @@ fn standing<'g>(
     definitions: &Definitions<'_>,
     sources: &Sources,
 ) -> Option<Job<'g>> {
-    let machines = file.items.iter().filter_map(|item| match item {
+    let mut machines = file.items.iter().filter_map(|item| match item {
         Item::Machine(machine) => Some(machine),
         _ => None,
     });
     context.begin_item();
     let path = &sources.file(id).path;
-    match machines.last() {
+    match machines.next_back() {
         Some(machine) => Some(job::standing(context, machine, definitions, path)),
         None => {
             let span = Span { file: id, start: 0, end: 0 };
