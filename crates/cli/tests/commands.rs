@@ -558,6 +558,50 @@ fn branches_are_listed_as_json() {
     }
 }
 
+/// A pinion on the free-form machine: what is printed, and the same as JSON.
+#[test]
+fn convert_carries_a_job_over() {
+    let arguments = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
+    let run = flank(&[&arguments[..], &["--tolerance", "0.1um"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told = text(&run.stdout);
+    assert!(told.contains("the tool does not see a turn about [0.000000, 0.000000, 1.000000]"), "{told}");
+    let run = flank(&[&arguments[..], &["--order", "9", "--positions", "21", "--json"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
+    assert_eq!(table["schema"], "flank.convert/1");
+    assert_eq!(table["positions"].as_array().unwrap().len(), 21);
+    let series = &table["polynomials"];
+    let h = table["positions"][20]["motions"][0].as_f64().unwrap().to_radians() - series["about"].as_f64().unwrap();
+    // the last position by the polynomials: what is left is of order ten
+    for (k, axis) in table["axes"].as_array().unwrap().iter().enumerate() {
+        let coefficients = series["coefficients"][axis["name"].as_str().unwrap()].as_array().unwrap();
+        let value = coefficients.iter().rev().fold(0.0, |sum, c| sum * h + c.as_f64().unwrap());
+        let value = if axis["unit"] == "deg" { value.to_degrees() } else { value };
+        let found = table["positions"][20]["axes"][k].as_f64().unwrap();
+        assert!((value - found).abs() < 1e-8, "{}: {value} instead of {found}", axis["name"]);
+    }
+    let deviations: Vec<f64> =
+        series["deviation_mm_by_order"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    assert!(deviations.len() == 10 && deviations[9] < 1e-8 && deviations[2] > 1e-3, "{deviations:?}");
+}
+
+#[test]
+fn convert_tells_what_the_other_machine_cannot_do() {
+    let told = |arguments: &[&str], code: i32| {
+        let run = flank(&[&["convert", "specs/bevel/pinion_19x62.chain", "--to"], arguments].concat());
+        assert_eq!(run.status.code(), Some(code), "{}", text(&run.stderr));
+        text(&run.stderr)
+    };
+    let six = "specs/machines/hobbing_6axis.chain";
+    assert!(told(&[six], 1).contains("hobbing_6axis has no frame `work` that stands for m.work"));
+    let beyond = told(&[six, "--tool-frame", "hob", "--work-frame", "table"], 3);
+    assert!(beyond.contains("101 of 101 positions: axis hobbing_6axis.X has to stand at -"), "{beyond}");
+    assert!(told(&["specs/tools/rack.chain"], 1).contains("there is no machine in specs/tools/rack.chain"));
+    let run = flank(&["convert", "specs/bevel/tilted_pinion.chain", "--to", "specs/machines/free_form.chain"]);
+    assert!(text(&run.stderr).contains("has several tools"), "{}", text(&run.stderr));
+}
+
 /// A gear too large for the machine: the radial axis would have to stand at 430 mm.
 #[test]
 fn an_axis_beyond_its_travel_is_told() {
