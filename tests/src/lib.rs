@@ -1,5 +1,6 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
+pub mod compiled;
 mod dice;
 pub mod layout;
 pub mod targets;

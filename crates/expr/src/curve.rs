@@ -107,6 +107,10 @@ impl Curve {
         self.knots.partition_point(|knot| *knot <= x).clamp(1, self.pieces.len()) - 1
     }
 
+    pub(crate) fn piece_count(&self) -> usize {
+        self.pieces.len()
+    }
+
     /// Left knot of a piece, and the coefficients of its cubic in the distance from there, constant first.
     pub(crate) fn piece(&self, index: usize) -> (f64, [f64; 4]) {
         (self.knots[index], self.pieces[index])

@@ -21,6 +21,7 @@
 mod cost;
 mod curve;
 mod derivative;
+mod emit;
 mod evaluate;
 pub mod geometry;
 mod graph;
@@ -39,6 +40,7 @@ mod terms;
 pub use cost::Cost;
 pub use curve::{Curve, CurveError};
 pub use derivative::Linear;
+pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials};
 pub use evaluate::ScalarEvaluator;
 pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use interval::{Interval, IntervalEvaluator};

@@ -160,26 +160,29 @@ impl Binary {
     }
 }
 
+/// Angles up to which the involute function comes from its series.
+pub(crate) const INVOLUTE_SERIES_BELOW: f64 = 0.2;
+
+/// Coefficients of a³, a⁵, … in tan a − a: those of the tangent.
+pub(crate) const INVOLUTE_SERIES: [f64; 9] = [
+    1.0 / 3.0,
+    2.0 / 15.0,
+    17.0 / 315.0,
+    62.0 / 2835.0,
+    1382.0 / 155_925.0,
+    21_844.0 / 6_081_075.0,
+    929_569.0 / 638_512_875.0,
+    6_404_582.0 / 10_854_718_875.0,
+    443_861_162.0 / 1_856_156_927_625.0,
+];
+
 /// tan a − a; by its series where the difference would cancel.
 fn involute(a: f64) -> f64 {
-    const SERIES_BELOW: f64 = 0.2;
-    if a.abs() > SERIES_BELOW {
+    if a.abs() > INVOLUTE_SERIES_BELOW {
         return a.tan() - a;
     }
-    // coefficients of a³, a⁵, …: those of the tangent
-    const TANGENT: [f64; 9] = [
-        1.0 / 3.0,
-        2.0 / 15.0,
-        17.0 / 315.0,
-        62.0 / 2835.0,
-        1382.0 / 155_925.0,
-        21_844.0 / 6_081_075.0,
-        929_569.0 / 638_512_875.0,
-        6_404_582.0 / 10_854_718_875.0,
-        443_861_162.0 / 1_856_156_927_625.0,
-    ];
     let square = a * a;
-    a * square * TANGENT.iter().rev().fold(0.0, |sum, c| sum * square + c)
+    a * square * INVOLUTE_SERIES.iter().rev().fold(0.0, |sum, c| sum * square + c)
 }
 
 /// The angle in (−π/2, π/2) with tan a − a = x, by Newton from above, where the involute function is convex; good to a few

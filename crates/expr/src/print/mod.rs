@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 use crate::graph::{Expr, Graph, Node, NodeId};
+pub(crate) use name::GREEK;
 use write::Writer;
 
 /// How expressions are written.

@@ -143,7 +143,7 @@ fn upright(word: &str) -> String {
 }
 
 /// The letters that LaTeX has commands for.
-const GREEK: [(&str, char); 34] = [
+pub(crate) const GREEK: [(&str, char); 34] = [
     ("alpha", 'α'),
     ("beta", 'β'),
     ("gamma", 'γ'),

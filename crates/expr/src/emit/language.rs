@@ -1,0 +1,150 @@
+//! How each language writes what all functions have: comment, head, numbers, tables, loops.
+
+use std::fmt::Write;
+
+use super::Language;
+use super::names::Scope;
+
+/// A function without its body.
+pub(super) struct Frame<'a> {
+    pub(super) language: Language,
+    pub(super) scope: &'a Scope,
+    pub(super) comment: &'a [String],
+}
+
+impl Frame<'_> {
+    /// The text with the body's statements, for outputs of the given titles.
+    pub(super) fn function(&self, titles: &[&str], statements: &[String]) -> String {
+        let mut text = self.comment_text(titles);
+        text += &self.head(titles.len());
+        for line in statements.iter().flat_map(|statement| statement.lines()) {
+            let _ = writeln!(text, "    {line}");
+        }
+        text + "}\n"
+    }
+
+    fn comment_text(&self, titles: &[&str]) -> String {
+        let mut text = String::from("/**\n");
+        let outputs = format!("values: {}", titles.join(", "));
+        let slopes = match self.scope.arguments() {
+            [only] => format!("derivatives: of these by {only}, in the same order"),
+            several => format!("derivatives: of these, each by {}", several.join(", ")),
+        };
+        for line in self.comment.iter().map(String::as_str).chain([&*outputs, &*slopes]) {
+            let _ = writeln!(text, "{}", format!(" * {}", inert(line)).trim_end());
+        }
+        text + " */\n"
+    }
+
+    fn head(&self, outputs: usize) -> String {
+        let (name, arguments) = (self.scope.function(), self.scope.arguments());
+        let slopes = outputs * arguments.len();
+        match self.language {
+            Language::C => {
+                let inputs: String = arguments.iter().map(|argument| format!("double {argument}, ")).collect();
+                format!("void {name}({inputs}double values[{outputs}], double derivatives[{slopes}])\n{{\n")
+            }
+            Language::Rust => {
+                let inputs: String = arguments.iter().map(|argument| format!("{argument}: f64, ")).collect();
+                let arrays = format!("values: &mut [f64; {outputs}], derivatives: &mut [f64; {slopes}]");
+                format!("#[allow(non_snake_case)]\npub fn {name}({inputs}{arrays}) {{\n")
+            }
+        }
+    }
+}
+
+/// Text that cannot end a comment, begin one in it, or leave its line.
+fn inert(text: &str) -> String {
+    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    line.replace("*/", "* /").replace("/*", "/ *")
+}
+
+impl Language {
+    /// A number that reads back as the same bits.
+    pub(super) fn number(self, value: f64) -> String {
+        match (self, value) {
+            (Language::C, value) if value.is_nan() => "NAN".to_string(),
+            (Language::C, f64::INFINITY) => "INFINITY".to_string(),
+            (Language::C, f64::NEG_INFINITY) => "-INFINITY".to_string(),
+            (Language::Rust, value) if value.is_nan() => "f64::NAN".to_string(),
+            (Language::Rust, f64::INFINITY) => "f64::INFINITY".to_string(),
+            (Language::Rust, f64::NEG_INFINITY) => "f64::NEG_INFINITY".to_string(),
+            (_, value) => format!("{value:?}"),
+        }
+    }
+
+    /// A constant of the body.
+    pub(super) fn definition(self, name: &str, value: &str) -> String {
+        match self {
+            Language::C => format!("const double {name} = {value};"),
+            Language::Rust => format!("let {name} = {value};"),
+        }
+    }
+
+    /// A statement that uses a name for nothing.
+    pub(super) fn unused(self, name: &str) -> String {
+        match self {
+            Language::C => format!("(void){name};"),
+            Language::Rust => format!("let _ = {name};"),
+        }
+    }
+
+    /// A table of numbers, one row a line; all rows have the same length.
+    pub(super) fn table(self, name: &str, rows: &[Vec<f64>]) -> String {
+        let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
+        let [open, close] = match self {
+            Language::C => ["{", "}"],
+            Language::Rust => ["[", "]"],
+        };
+        let mut text = match self {
+            Language::C => format!("static const double {name}[{height}][{width}] = {open}\n"),
+            Language::Rust => format!("let {name}: &'static [[f64; {width}]; {height}] = &{open}\n"),
+        };
+        for row in rows {
+            let numbers: Vec<String> = row.iter().map(|value| self.number(*value)).collect();
+            let _ = writeln!(text, "    {open} {} {close},", numbers.join(", "));
+        }
+        text + close + ";"
+    }
+
+    /// Value and slope of the polynomials whose `coefficients` are a table, highest power first.
+    pub(super) fn horner(self, argument: &str, reference: f64, powers: usize, outputs: usize) -> String {
+        let template = match self {
+            Language::C => C_HORNER,
+            Language::Rust => RUST_HORNER,
+        };
+        template
+            .replace("REFERENCE", &self.number(reference))
+            .replace("POWERS", &powers.to_string())
+            .replace("OUTPUTS", &outputs.to_string())
+            .replace("ARGUMENT", argument)
+    }
+}
+
+const C_HORNER: &str = "\
+const double distance = ARGUMENT - REFERENCE;
+double value[OUTPUTS] = { 0.0 };
+double slope[OUTPUTS] = { 0.0 };
+for (int power = 0; power < POWERS; ++power) {
+    for (int output = 0; output < OUTPUTS; ++output) {
+        slope[output] = slope[output] * distance + value[output];
+        value[output] = value[output] * distance + coefficients[power][output];
+    }
+}
+for (int output = 0; output < OUTPUTS; ++output) {
+    values[output] = value[output];
+    derivatives[output] = slope[output];
+}";
+
+const RUST_HORNER: &str = "\
+let distance = ARGUMENT - REFERENCE;
+let mut value = [0.0; OUTPUTS];
+let mut slope = [0.0; OUTPUTS];
+for power in coefficients {
+    for output in 0..OUTPUTS {
+        slope[output] = slope[output] * distance + value[output];
+        value[output] = value[output] * distance + power[output];
+    }
+}
+*values = value;
+*derivatives = slope;";
