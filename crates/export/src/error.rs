@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::motion::NcError;
+
 /// A dataset that contradicts itself; the fault is in the program that filled it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Malformed {
@@ -44,6 +46,33 @@ pub enum Malformed {
         /// Points the patch has.
         points: usize,
     },
+    /// A row of a motion table has not one position for each axis.
+    #[error("row {row} of the motion table has {given} positions for {named} axes")]
+    AxisCount {
+        /// Row, from 0.
+        row: usize,
+        /// Positions it has.
+        given: usize,
+        /// Axes the table names.
+        named: usize,
+    },
+    /// The series of a motion table has not one polynomial for each axis.
+    #[error("the series of the motion table has {given} polynomials for {named} axes")]
+    SeriesCount {
+        /// Polynomials it has.
+        given: usize,
+        /// Axes the table names.
+        named: usize,
+    },
+    /// A row of a motion table has an infinity or a NaN somewhere.
+    #[error("row {row} of the motion table: not all of its numbers are finite")]
+    MotionNumber {
+        /// Row, from 0.
+        row: usize,
+    },
+    /// A series or a travel of a motion table has an infinity or a NaN somewhere.
+    #[error("the motion table's series and travels are not all finite")]
+    AxisNumber,
     /// A solved point has an infinity or a NaN somewhere.
     #[error("surface `{surface}`, point ({i}, {j}) is said to be solved, but not all of its numbers are finite")]
     NotANumber {
@@ -68,6 +97,9 @@ pub enum WriteError {
         /// How many there are.
         triangles: usize,
     },
+    /// A motion table makes no NC program.
+    #[error(transparent)]
+    Nc(#[from] NcError),
     /// The picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] PictureError),

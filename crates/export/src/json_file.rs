@@ -1,13 +1,13 @@
 //! Points as JSON, by the schema `schema/surfaces-2.schema.json`.
 
-use std::io::{self, Write};
+use std::io::Write;
 
 use serde::Serialize;
-use serde_json::ser::Formatter;
 
 use crate::conventions::sentences;
 use crate::dataset::{Axis, Dataset, Field, Patch, Point, Values};
 use crate::error::WriteError;
+use crate::json_layout::{UNITS, Units, write_document};
 use crate::number::plain;
 use crate::tally::Tally;
 
@@ -22,6 +22,8 @@ pub const SCHEMA: &str = "flank.surfaces/2";
 /// # Errors
 /// When the dataset is malformed, or the stream refuses.
 pub fn write_json(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
+    /// Document, list of surfaces, surface, list of points.
+    const BROKEN: usize = 4;
     dataset.check()?;
     let header = &dataset.header;
     let document = Document {
@@ -31,14 +33,11 @@ pub fn write_json(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErr
         spec_hash: &header.spec_hash,
         job: &header.job,
         conventions: sentences(dataset),
-        units: Units { length: "mm", angle: "deg" },
+        units: UNITS,
         tally: TallyOut::of(&Tally::of(&dataset.patches)),
         surfaces: dataset.patches.iter().map(surface).collect(),
     };
-    let mut serializer = serde_json::Serializer::with_formatter(&mut *out, PointPerLine::default());
-    document.serialize(&mut serializer).map_err(io::Error::from)?;
-    writeln!(out)?;
-    Ok(())
+    write_document(&document, BROKEN, out)
 }
 
 #[derive(Serialize)]
@@ -53,12 +52,6 @@ struct Document<'a> {
     #[serde(flatten)]
     tally: TallyOut,
     surfaces: Vec<SurfaceOut<'a>>,
-}
-
-#[derive(Serialize)]
-struct Units {
-    length: &'static str,
-    angle: &'static str,
 }
 
 #[derive(Serialize)]
@@ -169,77 +162,5 @@ fn point_out<'a>(patch: &Patch, i: usize, j: usize, point: &'a Point) -> PointOu
         residual: point.known_residual().map(plain),
         reason: Some(&*point.reason).filter(|reason| !reason.is_empty()),
         fields: solved.then(fields),
-    }
-}
-
-/// Breaks lines down to the points of a surface and keeps each point on one line: people and `diff` read such a file.
-#[derive(Default)]
-struct PointPerLine {
-    depth: usize,
-}
-
-impl PointPerLine {
-    /// Document, list of surfaces, surface, list of points: four levels.
-    const BROKEN: usize = 4;
-
-    fn open<W: ?Sized + Write>(&mut self, out: &mut W, bracket: &[u8]) -> io::Result<()> {
-        self.depth += 1;
-        out.write_all(bracket)
-    }
-
-    fn close<W: ?Sized + Write>(&mut self, out: &mut W, bracket: &[u8]) -> io::Result<()> {
-        self.depth -= 1;
-        if self.depth < Self::BROKEN {
-            self.new_line(out)?;
-        }
-        out.write_all(bracket)
-    }
-
-    fn next<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
-        if !first {
-            out.write_all(b",")?;
-        }
-        if self.depth <= Self::BROKEN {
-            self.new_line(out)
-        } else if first {
-            Ok(())
-        } else {
-            out.write_all(b" ")
-        }
-    }
-
-    fn new_line<W: ?Sized + Write>(&self, out: &mut W) -> io::Result<()> {
-        out.write_all(b"\n")?;
-        (0..self.depth).try_for_each(|_| out.write_all(b"  "))
-    }
-}
-
-impl Formatter for PointPerLine {
-    fn begin_array<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
-        self.open(out, b"[")
-    }
-
-    fn end_array<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
-        self.close(out, b"]")
-    }
-
-    fn begin_array_value<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
-        self.next(out, first)
-    }
-
-    fn begin_object<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
-        self.open(out, b"{")
-    }
-
-    fn end_object<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
-        self.close(out, b"}")
-    }
-
-    fn begin_object_key<W: ?Sized + Write>(&mut self, out: &mut W, first: bool) -> io::Result<()> {
-        self.next(out, first)
-    }
-
-    fn begin_object_value<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
-        out.write_all(b": ")
     }
 }

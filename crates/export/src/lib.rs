@@ -1,4 +1,4 @@
-//! Solved tooth surfaces as files: CSV, JSON, STL, SVG and PNG.
+//! Solved tooth surfaces as files: CSV, JSON, STL, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
 //!
 //! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
 //! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
@@ -51,6 +51,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A [`MotionTable`] holds the positions of a machine's axes; `write_motion_csv`, `write_motion_json` and [`write_nc`] write it.
+//!
 //! The same dataset gives the same bytes, in every format.
 
 mod atomic_file;
@@ -59,6 +61,8 @@ mod csv_file;
 mod dataset;
 mod error;
 mod json_file;
+mod json_layout;
+mod motion;
 mod number;
 mod picture;
 mod stl_file;
@@ -70,6 +74,10 @@ pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
+pub use motion::{
+    AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Series, write_motion_csv,
+    write_motion_json, write_nc,
+};
 pub use picture::{Picture, PictureOptions, field_maps, picture};
 pub use stl_file::write_stl;
 pub use tally::Tally;

@@ -1,0 +1,152 @@
+//! In what the controls differ.
+
+use std::ops::RangeInclusive;
+
+/// Whose words an NC program uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialect {
+    /// Fanuc and what follows it.
+    Fanuc,
+    /// Siemens Sinumerik 840D.
+    Siemens840D,
+    /// LinuxCNC.
+    LinuxCnc,
+}
+
+impl Dialect {
+    /// All of them.
+    pub const ALL: [Dialect; 3] = [Dialect::Fanuc, Dialect::Siemens840D, Dialect::LinuxCnc];
+
+    /// Its name for people.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Dialect::Fanuc => "Fanuc",
+            Dialect::Siemens840D => "Siemens 840D",
+            Dialect::LinuxCnc => "LinuxCNC",
+        }
+    }
+
+    /// A remark on lines of its own.
+    pub(super) fn remark(self, text: &str) -> Vec<String> {
+        let wrap = |line: String| match self {
+            Dialect::Siemens840D => format!("; {line}"),
+            Dialect::Fanuc => format!("({})", line.to_ascii_uppercase()),
+            Dialect::LinuxCnc => format!("({line})"),
+        };
+        lines(&remarkable(text)).into_iter().map(wrap).collect()
+    }
+
+    /// What stands before all blocks.
+    pub(super) fn opening(self) -> &'static [&'static str] {
+        match self {
+            Dialect::Fanuc => &["%", "O0001"],
+            Dialect::Siemens840D => &[],
+            Dialect::LinuxCnc => &["%"],
+        }
+    }
+
+    /// What stands behind them.
+    pub(super) fn closing(self) -> &'static [&'static str] {
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => &["%"],
+            Dialect::Siemens840D => &[],
+        }
+    }
+
+    /// The block that settles how words are meant: metric, absolute, no compensation, no cycle.
+    pub(super) fn settling(self, least_increment: &str) -> String {
+        match self {
+            Dialect::Fanuc => "G21 G17 G90 G40 G49 G80 G94".to_owned(),
+            Dialect::Siemens840D => "G710 G17 G90 G40 G94 G64".to_owned(),
+            // along the path as close as positions are written, without leaving out positions
+            Dialect::LinuxCnc => format!("G21 G17 G90 G40 G49 G80 G94 G64 P{least_increment} Q0"),
+        }
+    }
+
+    /// The words that turn inverse-time feed on.
+    pub(super) fn inverse_time(self) -> &'static str {
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => "G93",
+            // a constant feed in each block, whatever profile was set before
+            Dialect::Siemens840D => "G93 FNORM",
+        }
+    }
+
+    /// An axis word.
+    pub(super) fn word(self, address: &str, position: &str) -> String {
+        let is_extended = address.len() > 1;
+        if is_extended { format!("{address}={position}") } else { format!("{address}{position}") }
+    }
+
+    /// Whether it has axes of this address.
+    pub(super) fn has_axis(self, address: &str) -> bool {
+        let letters = match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => "ABCUVWXYZ",
+            Dialect::Siemens840D => "ABCQUVWXYZ",
+        };
+        let mut characters = address.chars();
+        let is_led = characters.next().is_some_and(|first| letters.contains(first));
+        let rest = characters.as_str();
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => is_led && rest.is_empty(),
+            Dialect::Siemens840D => is_led && rest.len() <= 2 && rest.bytes().all(|c| c.is_ascii_digit()),
+        }
+    }
+
+    /// Decimals of an inverse-time feed.
+    pub(super) fn feed_decimals(self) -> usize {
+        match self {
+            Dialect::Fanuc | Dialect::Siemens840D => 3,
+            Dialect::LinuxCnc => 6,
+        }
+    }
+
+    /// Inverse-time feeds that it takes, 1/min.
+    pub(super) fn feeds(self) -> RangeInclusive<f64> {
+        match self {
+            Dialect::Fanuc => 0.001..=9_999.999,
+            Dialect::Siemens840D => 0.001..=999_999.999,
+            Dialect::LinuxCnc => 0.000_001..=f64::MAX,
+        }
+    }
+
+    /// The step of block numbers of so many blocks; none where they are not customary or would grow too long.
+    pub(super) fn numbering(self, blocks: usize) -> Option<usize> {
+        const LARGEST: usize = 99_999;
+        match self {
+            Dialect::LinuxCnc => None,
+            Dialect::Fanuc | Dialect::Siemens840D => [10, 1].into_iter().find(|step| blocks * step <= LARGEST),
+        }
+    }
+}
+
+/// Text that every control takes in a remark: printable ASCII without what ends a remark, a block or a program.
+fn remarkable(text: &str) -> String {
+    let settled = |c: char| match c {
+        '(' => '[',
+        ')' => ']',
+        ';' => ',',
+        '%' => '/',
+        ' '..='~' => c,
+        c if c.is_control() => ' ',
+        _ => '?',
+    };
+    text.chars().map(settled).collect()
+}
+
+/// Broken between words into lines that every control takes.
+fn lines(text: &str) -> Vec<String> {
+    const WIDTH: usize = 72;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_ascii_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.len() <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

@@ -1,0 +1,116 @@
+//! A motion table as JSON, by the schema `schema/motion-1.schema.json`.
+
+use std::io::Write;
+
+use serde::Serialize;
+
+use super::table::{MachineAxis, MotionRow, MotionTable};
+use crate::error::WriteError;
+use crate::json_layout::{UNITS, Units, write_document};
+use crate::number::plain;
+
+/// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
+pub const MOTION_SCHEMA: &str = "flank.motion/1";
+
+/// Writes a motion table as JSON, one row a line, keys in a fixed order. Lengths are mm, angles degrees.
+///
+/// # Errors
+/// When the table is malformed, or the stream refuses.
+pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(), WriteError> {
+    /// Document, list of rows.
+    const BROKEN: usize = 2;
+    table.check()?;
+    let header = &table.header;
+    let document = Document {
+        schema: MOTION_SCHEMA,
+        program: &header.program,
+        spec: &header.spec,
+        spec_hash: &header.spec_hash,
+        job: &header.job,
+        conventions: table.sentences(),
+        units: UNITS,
+        motion: MotionOut { name: &table.motion.name, unit: table.motion.unit.symbol() },
+        axes: (0..table.axes.len()).map(|index| axis_out(table, index)).collect(),
+        series: series_out(table),
+        rows: table.rows.iter().map(|row| row_out(table, row)).collect(),
+    };
+    write_document(&document, BROKEN, out)
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'a str,
+    program: &'a str,
+    spec: &'a str,
+    spec_hash: &'a str,
+    job: &'a str,
+    conventions: Vec<String>,
+    units: Units,
+    motion: MotionOut<'a>,
+    axes: Vec<AxisOut<'a>>,
+    series: Option<SeriesOut>,
+    rows: Vec<RowOut>,
+}
+
+#[derive(Serialize)]
+struct MotionOut<'a> {
+    name: &'a str,
+    unit: &'a str,
+}
+
+#[derive(Serialize)]
+struct AxisOut<'a> {
+    name: &'a str,
+    address: &'a str,
+    unit: &'a str,
+    decimals: u8,
+    travel: Option<[f64; 2]>,
+    extent: Option<[f64; 2]>,
+}
+
+#[derive(Serialize)]
+struct SeriesOut {
+    reference: f64,
+    axes: Vec<AxisSeriesOut>,
+}
+
+#[derive(Serialize)]
+struct AxisSeriesOut {
+    coefficients: Vec<f64>,
+    remainder: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct RowOut {
+    motion: f64,
+    axes: Vec<f64>,
+}
+
+fn axis_out(table: &MotionTable, index: usize) -> AxisOut<'_> {
+    let axis = &table.axes[index];
+    AxisOut {
+        name: &axis.name,
+        address: &axis.address,
+        unit: axis.unit().symbol(),
+        decimals: axis.decimals,
+        travel: axis.travel.map(|ends| axis.written(ends)),
+        extent: table.extent(index).map(|ends| axis.written(ends)),
+    }
+}
+
+fn series_out(table: &MotionTable) -> Option<SeriesOut> {
+    let series = table.written_series()?;
+    let axes = series.axes.into_iter().map(|axis| AxisSeriesOut {
+        coefficients: axis.coefficients.into_iter().map(plain).collect(),
+        remainder: axis.remainder.map(plain),
+    });
+    Some(SeriesOut { reference: plain(series.reference), axes: axes.collect() })
+}
+
+fn row_out(table: &MotionTable, row: &MotionRow) -> RowOut {
+    let position = |(axis, position): (&MachineAxis, &f64)| plain(axis.unit().written(*position));
+    RowOut {
+        motion: plain(table.motion.unit.written(row.motion)),
+        axes: table.axes.iter().zip(&row.axes).map(position).collect(),
+    }
+}

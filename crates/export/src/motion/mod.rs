@@ -1,0 +1,13 @@
+//! What the axes of a machine do over a motion: as tables and as NC programs.
+
+mod csv;
+mod dialect;
+mod json;
+mod nc;
+mod table;
+
+pub use self::csv::write_motion_csv;
+pub use dialect::Dialect;
+pub use json::{MOTION_SCHEMA, write_motion_json};
+pub use nc::{NcError, write_nc};
+pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Series};

@@ -1,0 +1,288 @@
+//! A motion table as an NC program (ISO 6983).
+
+use std::io::Write;
+
+use super::dialect::Dialect;
+use super::table::{MachineAxis, MotionTable};
+use crate::error::WriteError;
+use crate::number::{plain, shortest};
+
+/// Why a motion table makes no NC program.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NcError {
+    /// A program moves from a position to others.
+    #[error("an NC program needs at least two positions, the table has {rows}")]
+    TooFewRows {
+        /// Positions it has.
+        rows: usize,
+    },
+    /// A position that the axis cannot take.
+    #[error("axis `{axis}` would have to go to {position} at {motion}, its travel is {travel}")]
+    BeyondTravel {
+        /// Name of the axis.
+        axis: String,
+        /// The position as it would be written, with its unit.
+        position: String,
+        /// Name, value and unit of the motion there.
+        motion: String,
+        /// Its ends with their unit.
+        travel: String,
+    },
+    /// The control has no such axis.
+    #[error("{dialect} has no axis address `{address}`, which axis `{axis}` has: {known}")]
+    Address {
+        /// Name of the axis.
+        axis: String,
+        /// Its address.
+        address: String,
+        /// Name of the control.
+        dialect: &'static str,
+        /// What it knows.
+        known: &'static str,
+    },
+    /// One word cannot move two axes.
+    #[error("axes `{first}` and `{second}` have the same address `{address}`")]
+    SameAddress {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+        /// Their address.
+        address: String,
+    },
+    /// The times of blocks follow from the motion, which therefore must go on.
+    #[error("the motion stands still or turns back at {motion}: the cutting time cannot be shared out")]
+    TurnsBack {
+        /// Name, value and unit of the motion there.
+        motion: String,
+    },
+    /// No time to cut in.
+    #[error("a cutting time of {seconds} s is not a time to cut in")]
+    Time {
+        /// Seconds asked for.
+        seconds: f64,
+    },
+    /// A block is too short or too long for the control.
+    #[error(
+        "the block to {motion} would take {seconds:.3e} s, an inverse-time feed of {feed:.3e}; {dialect} takes {low} .. {high}: \
+         change the cutting time or the number of positions"
+    )]
+    Feed {
+        /// Name, value and unit of the motion at its end.
+        motion: String,
+        /// Its time.
+        seconds: f64,
+        /// Its feed in 1/min.
+        feed: f64,
+        /// Name of the control.
+        dialect: &'static str,
+        /// Least feed that it takes.
+        low: f64,
+        /// Largest feed that it takes.
+        high: f64,
+    },
+}
+
+/// Writes an NC program that passes the rows in order, in straight lines of all axes at once with inverse-time feed (`G93`).
+///
+/// The approach to the first row is a rapid. `cutting_time` in seconds is shared out over the blocks as the motion goes on in
+/// them. The head states conventions, spec and hash, and a table of the axes; positions have the decimals of their axis, in mm
+/// and degrees, absolute, and angles go on beyond a turn.
+///
+/// ```
+/// # use flank_export::{Dialect, Header, MachineAxis, MotionRow, MotionTable, Unit, Unknown, write_nc};
+/// # let header = Header {
+/// #     program: "flank 0.1.0".into(),
+/// #     spec: "table.chain".into(),
+/// #     spec_hash: "5e1f".into(),
+/// #     job: "swing".into(),
+/// #     conventions: Vec::new(),
+/// # };
+/// let slide = MachineAxis {
+///     name: "slide".into(),
+///     address: "X".into(),
+///     is_rotary: false,
+///     decimals: 3,
+///     travel: Some([-50.0, 50.0]),
+/// };
+/// let row = |motion, x| MotionRow { motion, axes: vec![x] };
+/// let table = MotionTable {
+///     header,
+///     motion: Unknown { name: "roll".into(), unit: Unit::Degree },
+///     axes: vec![slide],
+///     rows: vec![row(0.0, 12.5), row(0.1, -12.0), row(0.4, 7.0)],
+///     series: None,
+/// };
+/// let mut file = Vec::new();
+/// write_nc(&table, Dialect::Fanuc, 6.0, &mut file)?;
+/// let text = String::from_utf8(file)?;
+/// assert!(text.contains("N20 G00 X12.500\nN30 G93\nN40 G01 X-12.000 F40.000\nN50 X7.000 F13.333\n"), "{text}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the table is malformed or makes no program ([`NcError`]: a position beyond its axis's travel names axis and motion), or
+/// the stream refuses.
+pub fn write_nc(
+    table: &MotionTable,
+    dialect: Dialect,
+    cutting_time: f64,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    table.check()?;
+    check_axes(table, dialect)?;
+    let blocks = blocks(table, dialect, cutting_time)?;
+    let step = dialect.numbering(blocks.len());
+    for line in dialect.opening() {
+        writeln!(out, "{line}")?;
+    }
+    for line in head(table, dialect, cutting_time).iter().flat_map(|remark| dialect.remark(remark)) {
+        writeln!(out, "{line}")?;
+    }
+    for (index, block) in blocks.iter().enumerate() {
+        match step {
+            Some(step) => writeln!(out, "N{} {block}", (index + 1) * step)?,
+            None => writeln!(out, "{block}")?,
+        }
+    }
+    for line in dialect.closing() {
+        writeln!(out, "{line}")?;
+    }
+    Ok(())
+}
+
+fn check_axes(table: &MotionTable, dialect: Dialect) -> Result<(), NcError> {
+    for (index, axis) in table.axes.iter().enumerate() {
+        if !dialect.has_axis(&axis.address) {
+            return Err(NcError::Address {
+                axis: axis.name.clone(),
+                address: axis.address.clone(),
+                dialect: dialect.name(),
+                known: match dialect {
+                    Dialect::Siemens840D => "it has A B C Q U V W X Y Z, alone or with a number behind",
+                    Dialect::Fanuc | Dialect::LinuxCnc => "it has A B C U V W X Y Z",
+                },
+            });
+        }
+        if let Some(other) = table.axes[..index].iter().find(|other| other.address == axis.address) {
+            return Err(NcError::SameAddress {
+                first: other.name.clone(),
+                second: axis.name.clone(),
+                address: axis.address.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// What the program says of itself.
+fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String> {
+    let header = &table.header;
+    let mut head = vec![
+        format!("job {}, for {}", header.job, dialect.name()),
+        format!("by {}, spec {}, hash {}", header.program, header.spec, header.spec_hash),
+    ];
+    head.extend(table.sentences().into_iter().map(|sentence| format!("- {sentence}")));
+    head.push("- no rotary axis may roll over, positions are absolute".to_owned());
+    head.push("- the first block is a rapid of all axes to the first position".to_owned());
+    head.push(format!("- cutting time {} s, inverse-time feed in 1/min", shortest(cutting_time)));
+    let ends = [table.rows.first(), table.rows.last()].map(|row| row.map_or(0.0, |row| row.motion));
+    let [first, last] = ends.map(|value| motion_text(table, value));
+    head.push(format!("motion from {first} to {last}, {} positions", table.rows.len()));
+    head.extend(table.axes.iter().enumerate().map(|(index, axis)| axis_line(table, index, axis)));
+    head
+}
+
+fn axis_line(table: &MotionTable, index: usize, axis: &MachineAxis) -> String {
+    let unit = axis.unit().symbol();
+    let [low, high] = table.extent(index).unwrap_or_default().map(|position| axis.printed(position));
+    let travel = match axis.travel.map(|ends| axis.written(ends).map(shortest)) {
+        Some([low, high]) => format!("travel {low} .. {high} {unit}"),
+        None => "travel not limited".to_owned(),
+    };
+    format!("axis {}: {}, from {low} to {high} {unit}, {travel}", axis.address, axis.name)
+}
+
+/// All blocks between the opening and the closing, without numbers.
+fn blocks(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Vec<String>, NcError> {
+    let feeds = feeds(table, dialect, cutting_time)?;
+    let decimals = table.axes.iter().filter(|axis| !axis.is_rotary).map(|axis| axis.decimals).max().unwrap_or(3);
+    let least_increment = format!("{:.*}", usize::from(decimals), 10f64.powi(-i32::from(decimals)));
+    let mut blocks = vec![dialect.settling(&least_increment)];
+    for (index, feed) in [None].into_iter().chain(feeds.into_iter().map(Some)).enumerate() {
+        let mut words = positions(table, dialect, index)?;
+        match feed {
+            None => words.insert(0, "G00".to_owned()),
+            Some(feed) => words.push(format!("F{feed:.*}", dialect.feed_decimals())),
+        }
+        if index == 1 {
+            blocks.push(dialect.inverse_time().to_owned());
+            words.insert(0, "G01".to_owned());
+        }
+        blocks.push(words.join(" "));
+    }
+    blocks.extend(["G94", "M30"].map(str::to_owned));
+    Ok(blocks)
+}
+
+/// The axis words of a row.
+fn positions(table: &MotionTable, dialect: Dialect, row: usize) -> Result<Vec<String>, NcError> {
+    /// What conversion to degrees may add to an end of the travel.
+    const ROUNDING: f64 = 1e-9;
+    let row = &table.rows[row];
+    let word = |(axis, position): (&MachineAxis, &f64)| {
+        let (printed, unit) = (axis.printed(*position), axis.unit().symbol());
+        let [low, high] = axis.written(axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]));
+        let is_within = |value: f64| value >= low - ROUNDING && value <= high + ROUNDING;
+        if !printed.parse().is_ok_and(is_within) {
+            return Err(NcError::BeyondTravel {
+                axis: axis.name.clone(),
+                position: format!("{printed} {unit}"),
+                motion: motion_text(table, row.motion),
+                travel: format!("{} .. {} {unit}", shortest(low), shortest(high)),
+            });
+        }
+        Ok(dialect.word(&axis.address, &printed))
+    };
+    table.axes.iter().zip(&row.axes).map(word).collect()
+}
+
+/// The inverse-time feed of each block but the first, 1/min.
+fn feeds(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Vec<f64>, NcError> {
+    let (Some(first), Some(last)) = (table.rows.first(), table.rows.last().filter(|_| table.rows.len() > 1)) else {
+        return Err(NcError::TooFewRows { rows: table.rows.len() });
+    };
+    if !(cutting_time > 0.0 && cutting_time.is_finite()) {
+        return Err(NcError::Time { seconds: cutting_time });
+    }
+    let whole = last.motion - first.motion;
+    let feed = |pair: &[super::MotionRow]| {
+        let share = (pair[1].motion - pair[0].motion) / whole;
+        if !(share > 0.0 && share.is_finite()) {
+            return Err(NcError::TurnsBack { motion: motion_text(table, pair[1].motion) });
+        }
+        let seconds = share * cutting_time;
+        let feed = 60.0 / seconds;
+        let range = dialect.feeds();
+        if !range.contains(&feed) {
+            return Err(NcError::Feed {
+                motion: motion_text(table, pair[1].motion),
+                seconds,
+                feed,
+                dialect: dialect.name(),
+                low: *range.start(),
+                high: *range.end(),
+            });
+        }
+        Ok(feed)
+    };
+    table.rows.windows(2).map(feed).collect()
+}
+
+/// A value of the motion for people: to a millionth, without trailing zeros.
+fn motion_text(table: &MotionTable, value: f64) -> String {
+    let unit = table.motion.unit;
+    let rounded = (unit.written(value) * 1e6).round() / 1e6;
+    let behind = if unit == crate::dataset::Unit::One { "" } else { unit.symbol() };
+    format!("{} = {} {behind}", table.motion.name, shortest(plain(rounded))).trim_end().to_owned()
+}

@@ -1,0 +1,157 @@
+//! The positions of a machine's axes over a motion.
+
+use std::f64::consts::TAU;
+
+use crate::conventions::one_line;
+use crate::dataset::{Header, Unit, Unknown};
+use crate::error::Malformed;
+use crate::number::plain;
+
+/// What each axis of a machine does while a motion runs. Inside all angles are radians; files have degrees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionTable {
+    /// Where it comes from.
+    pub header: Header,
+    /// What runs, such as the angle of a cradle.
+    pub motion: Unknown,
+    /// The axes, in the order of columns and words.
+    pub axes: Vec<MachineAxis>,
+    /// The positions, in the order in which they are passed.
+    pub rows: Vec<MotionRow>,
+    /// The axes as polynomials of the motion, where these are known.
+    pub series: Option<Series>,
+}
+
+/// An axis of a machine as its spec describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MachineAxis {
+    /// Its name in the spec.
+    pub name: String,
+    /// How NC programs call it, such as `X` or `B1`.
+    pub address: String,
+    /// Whether its positions are angles, else lengths.
+    pub is_rotary: bool,
+    /// Decimals of its positions in NC programs, in mm or degrees.
+    pub decimals: u8,
+    /// Lowest and highest position that it can take, mm or radians.
+    pub travel: Option<[f64; 2]>,
+}
+
+/// One position of all axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionRow {
+    /// The value of the motion: mm, radians or a plain number.
+    pub motion: f64,
+    /// The position of each axis, mm or radians; angles go on beyond a turn.
+    pub axes: Vec<f64>,
+}
+
+/// The axes as power series about a reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// The value of the motion about which they are.
+    pub reference: f64,
+    /// One for each axis, in the order of the axes.
+    pub axes: Vec<AxisSeries>,
+}
+
+/// The polynomial of one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisSeries {
+    /// Factors of the powers of the distance from the reference, constant first: mm or radians by the unit of the motion.
+    pub coefficients: Vec<f64>,
+    /// A bound of what the polynomial leaves over the rows' range, mm or radians, where one is proven.
+    pub remainder: Option<f64>,
+}
+
+impl MachineAxis {
+    /// What its positions are written in.
+    #[must_use]
+    pub fn unit(&self) -> Unit {
+        if self.is_rotary { Unit::Degree } else { Unit::Millimetre }
+    }
+
+    /// Two positions as files of data have them.
+    pub(crate) fn written(&self, ends: [f64; 2]) -> [f64; 2] {
+        ends.map(|end| plain(self.unit().written(end)))
+    }
+
+    /// A position as NC programs write it: with its decimals, without a negative zero.
+    pub(crate) fn printed(&self, position: f64) -> String {
+        let text = format!("{:.*}", usize::from(self.decimals), self.unit().written(position));
+        match text.strip_prefix('-') {
+            Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
+            _ => text,
+        }
+    }
+}
+
+impl MotionTable {
+    /// Takes whole turns out of what rotary axes jump by from row to row: for positions that were reduced to one turn. No axis
+    /// may turn by half a turn or more between two rows.
+    pub fn unwind(&mut self) {
+        for index in (0..self.axes.len()).filter(|&index| self.axes[index].is_rotary) {
+            let mut before = None;
+            for position in self.rows.iter_mut().filter_map(|row| row.axes.get_mut(index)) {
+                let turns = ((before.unwrap_or(*position) - *position) / TAU).round();
+                *position += turns * TAU;
+                before = Some(*position);
+            }
+        }
+    }
+
+    /// Whether every row and the series have one finite number for each axis. The writers refuse what fails.
+    ///
+    /// # Errors
+    /// The first fault, by row.
+    pub fn check(&self) -> Result<(), Malformed> {
+        let named = self.axes.len();
+        let mut counts = self.rows.iter().map(|row| row.axes.len()).enumerate();
+        if let Some((row, given)) = counts.find(|(_, given)| *given != named) {
+            return Err(Malformed::AxisCount { row, given, named });
+        }
+        if let Some(given) = self.series.as_ref().map(|series| series.axes.len()).filter(|given| *given != named) {
+            return Err(Malformed::SeriesCount { given, named });
+        }
+        let is_finite = |row: &MotionRow| row.axes.iter().chain([&row.motion]).all(|number| number.is_finite());
+        if let Some(row) = self.rows.iter().position(|row| !is_finite(row)) {
+            return Err(Malformed::MotionNumber { row });
+        }
+        let of_series = self.series.iter().flat_map(|series| {
+            let of_axes = series.axes.iter().flat_map(|axis| axis.coefficients.iter().chain(&axis.remainder));
+            of_axes.chain([&series.reference])
+        });
+        let travels = self.axes.iter().flat_map(|axis| axis.travel.iter().flatten());
+        if of_series.chain(travels).all(|number| number.is_finite()) { Ok(()) } else { Err(Malformed::AxisNumber) }
+    }
+
+    /// The lowest and the highest position of an axis, mm or radians; nothing without rows.
+    pub(crate) fn extent(&self, axis: usize) -> Option<[f64; 2]> {
+        let positions = self.rows.iter().map(|row| row.axes[axis]);
+        Some([positions.clone().reduce(f64::min)?, positions.reduce(f64::max)?])
+    }
+
+    /// The polynomials in the units of files: powers of the distance as it is written give positions as they are written.
+    pub(crate) fn written_series(&self) -> Option<Series> {
+        let series = self.series.as_ref()?;
+        let step = self.motion.unit.written(1.0);
+        let axis = |(axis, own): (&MachineAxis, &AxisSeries)| AxisSeries {
+            coefficients: (0..).zip(&own.coefficients).map(|(k, c)| axis.unit().written(*c) / step.powi(k)).collect(),
+            remainder: own.remainder.map(|bound| axis.unit().written(bound)),
+        };
+        Some(Series {
+            reference: self.motion.unit.written(series.reference),
+            axes: self.axes.iter().zip(&series.axes).map(axis).collect(),
+        })
+    }
+
+    /// What a reader must know to use the numbers, then the caller's own sentences.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        let fixed = [
+            "lengths in mm, angles in degrees, not reduced to one turn",
+            "axes are named, signed and counted as in the machine's spec",
+        ];
+        let own = self.header.conventions.iter().map(|sentence| one_line(sentence));
+        fixed.iter().map(|&sentence| sentence.to_owned()).chain(own).collect()
+    }
+}
