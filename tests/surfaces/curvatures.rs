@@ -138,6 +138,12 @@ fn generated_spiral_bevel_flanks_and_fillets() {
     cradle_meets("tilted_pinion", &reference_json("cradle_flank.json"), &tables);
 }
 
+/// The flank that the free-form machine cuts as well.
+#[test]
+fn a_flank_of_the_free_form_machine() {
+    cradle_meets("tilted_pinion", &reference_json("freeform.json"), &[("surface_rows", "concave")]);
+}
+
 #[test]
 fn formate_flanks_and_fillets() {
     let tables = ["concave", "concave_fillet", "convex", "convex_fillet"].map(|name| (name, name));
