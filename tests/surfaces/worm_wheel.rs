@@ -46,6 +46,30 @@ fn wheels_of_any_starts_and_both_hands() {
     }
 }
 
+/// The hob plunges without cutting into the finished flank as long as the flank faces the way it came: its normal, out of the
+/// wheel, has a part towards the hob. On a hob of form A that part is `(ρ tan α cos δ ± p sin δ) / √(ρ² (1 + tan² α) + p²)` at the
+/// angle δ from the wheel; the spec demands that it does not vanish within the face.
+#[test]
+fn the_face_is_no_wider_than_a_plunging_hob_allows() {
+    let (starts, tip, reduced_lead, slope) = (4.0, 25.0 - 0.8 * 4.0, 8.0, 20f64.to_radians().tan());
+    let limit = tip * (tip * slope / reduced_lead).atan().sin();
+    let graph = Graph::new();
+    let width = format!("{} mm", 2.0 * 0.9999 * limit);
+    let job = job(&graph, SPEC, &[("starts", "4"), ("oversize", "0 mm"), ("face_width", &width)]);
+    for (name, side) in [("lower.flank", -1.0), ("upper.flank", 1.0)] {
+        for point in sampled(&job, name) {
+            assert_eq!(point.outcome, Outcome::Solved);
+            let table = -starts / 40.0 * point.unknowns[2];
+            let ([x, _, z], [nx, ..]) = (turned(point.position, table), turned(point.normal, table));
+            let rho = (105.0 - x).hypot(z);
+            let size = (rho * rho * (1.0 + slope * slope) + reduced_lead * reduced_lead).sqrt();
+            let towards_hob = (slope * (105.0 - x) + side * reduced_lead * z / rho) / size;
+            assert!((nx - towards_hob).abs() < 1e-9, "{name}: {nx} is not {towards_hob}");
+            assert!(nx > 0.0, "{name}: {nx} at {z} mm");
+        }
+    }
+}
+
 /// By what turn of the wheel each point of a flank stands out beyond the conjugate one, as micrometres at the reference
 /// radius, with its height on the face.
 fn ease_off(set: &[(&str, &str)], side: &str) -> Vec<(f64, f64)> {

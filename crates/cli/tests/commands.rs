@@ -695,6 +695,7 @@ fn wrong_settings_of_hobbing_machines_are_told() {
             1,
             "with this swivel the hob's thread lies across the teeth and mills them away",
         ),
+        ("worm_wheel", "starts=6", 1, "plunged radially, a hob of so many starts cuts the ends of the flanks away"),
         ("beveloid", "m.swivel=50 deg", 1, "`swivel` is 50 deg, outside its range -45 deg .. 45 deg"),
         ("crowned_gear", "h.starts=12", 1, "each thread of a hob cuts with several teeth: more gashes than starts"),
         ("crowned_gear", "h.addendum=9 mm", 1, "the hob's teeth are pointed below their tip"),
