@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::Code;
+use flank_export::Dialect;
+use flank_expr::Language;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -123,6 +125,7 @@ revolution may turn about its axis.
 Examples:
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --tolerance 0.1um
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --nc linuxcnc --time 20 --emit c
   flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json")]
 pub(crate) struct Convert {
     #[command(flatten)]
@@ -148,9 +151,77 @@ pub(crate) struct Convert {
     /// Take the smallest order that keeps the flank this near, for example 0.1um or 0.002mm
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) tolerance: Option<f64>,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Files with positions and polynomials: csv, json, or both with a comma
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<MotionFormat>,
+    /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
+    #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
+    pub(crate) nc: Vec<NcDialect>,
+    /// Seconds that the NC program takes
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) time: Option<f64>,
+    /// Write the polynomials as a function: c, rust
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) emit: Vec<EmitLanguage>,
     /// Print everything as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MotionFormat {
+    Csv,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NcDialect {
+    Fanuc,
+    Siemens,
+    #[value(name = "linuxcnc")]
+    LinuxCnc,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EmitLanguage {
+    C,
+    Rust,
+}
+
+impl From<NcDialect> for Dialect {
+    fn from(dialect: NcDialect) -> Dialect {
+        match dialect {
+            NcDialect::Fanuc => Dialect::Fanuc,
+            NcDialect::Siemens => Dialect::Siemens840D,
+            NcDialect::LinuxCnc => Dialect::LinuxCnc,
+        }
+    }
+}
+
+impl From<EmitLanguage> for Language {
+    fn from(language: EmitLanguage) -> Language {
+        match language {
+            EmitLanguage::C => Language::C,
+            EmitLanguage::Rust => Language::Rust,
+        }
+    }
+}
+
+impl EmitLanguage {
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            EmitLanguage::C => "c",
+            EmitLanguage::Rust => "rs",
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let found = text.trim().trim_end_matches('s').trim().parse::<f64>().ok();
+    found.filter(|x| x.is_finite() && *x > 0.0).ok_or("write a number of seconds, for example 30".to_string())
 }
 
 /// A length in mm.

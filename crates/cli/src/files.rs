@@ -3,7 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
-use flank_export::{Dataset, Picture, WriteError, write_atomically, write_csv, write_json, write_stl};
+use flank_export::{
+    Dataset, Dialect, MotionTable, Picture, WriteError, write_atomically, write_csv, write_json, write_motion_csv,
+    write_motion_json, write_nc, write_stl,
+};
 
 use crate::arguments::Format;
 use crate::spec;
@@ -39,6 +42,31 @@ impl<'a> Folder<'a> {
         self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))?;
         let svg = drawn.svg();
         self.write(&format!("{name}.svg"), |out| Ok(out.write_all(svg.as_bytes())?))
+    }
+
+    /// Axis positions over a motion.
+    pub(crate) fn motion_csv(&mut self, name: &str, motion: &MotionTable) -> Result<(), String> {
+        self.write(&format!("{name}.csv"), |out| write_motion_csv(motion, out))
+    }
+
+    /// The same with its series as JSON.
+    pub(crate) fn motion_json(&mut self, name: &str, motion: &MotionTable) -> Result<(), String> {
+        self.write(&format!("{name}.json"), |out| write_motion_json(motion, out))
+    }
+
+    /// A program that runs the motion in a number of seconds.
+    pub(crate) fn nc(&mut self, name: &str, motion: &MotionTable, to: Dialect, seconds: f64) -> Result<(), String> {
+        let extension = match to {
+            Dialect::Fanuc => "nc",
+            Dialect::Siemens840D => "mpf",
+            Dialect::LinuxCnc => "ngc",
+        };
+        self.write(&format!("{name}.{extension}"), |out| write_nc(motion, to, seconds, out))
+    }
+
+    /// Any text.
+    pub(crate) fn text(&mut self, name: &str, text: &str) -> Result<(), String> {
+        self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
     fn write(&mut self, name: &str, content: impl Fn(&mut dyn Write) -> Result<(), WriteError>) -> Result<(), String> {

@@ -561,10 +561,17 @@ fn branches_are_listed_as_json() {
 /// A pinion on the free-form machine: what is printed, and the same as JSON.
 #[test]
 fn convert_carries_a_job_over() {
-    let arguments = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
-    let run = flank(&[&arguments[..], &["--tolerance", "0.1um"]].concat());
+    let out = folder("convert");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
+    let arguments = [&spec[..], &["--out", out.to_str().unwrap()]].concat();
+    let files = ["--nc", "fanuc,siemens,linuxcnc", "--time", "20", "--emit", "c,rust", "--format", "csv,json"];
+    let run = flank(&[&arguments[..], &["--tolerance", "0.1um"], &files].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let told = text(&run.stdout);
+    for extension in ["csv", "json", "nc", "mpf", "ngc", "c", "rs"] {
+        let name = format!("pinion_19x62_on_free_form.{extension}");
+        assert!(out.join(&name).is_file() && told.contains(&name), "{name}: {told}");
+    }
     assert!(told.contains("the tool does not see a turn about [0.000000, 0.000000, 1.000000]"), "{told}");
     let run = flank(&[&arguments[..], &["--order", "9", "--positions", "21", "--json"]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -588,8 +595,10 @@ fn convert_carries_a_job_over() {
 
 #[test]
 fn convert_tells_what_the_other_machine_cannot_do() {
+    let out = folder("convert-not");
     let told = |arguments: &[&str], code: i32| {
-        let run = flank(&[&["convert", "specs/bevel/pinion_19x62.chain", "--to"], arguments].concat());
+        let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--out", out.to_str().unwrap(), "--to"];
+        let run = flank(&[&spec, arguments].concat());
         assert_eq!(run.status.code(), Some(code), "{}", text(&run.stderr));
         text(&run.stderr)
     };
@@ -597,6 +606,7 @@ fn convert_tells_what_the_other_machine_cannot_do() {
     assert!(told(&[six], 1).contains("hobbing_6axis has no frame `work` that stands for m.work"));
     let beyond = told(&[six, "--tool-frame", "hob", "--work-frame", "table"], 3);
     assert!(beyond.contains("101 of 101 positions: axis hobbing_6axis.X has to stand at -"), "{beyond}");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "what cannot be reached is no program");
     assert!(told(&["specs/tools/rack.chain"], 1).contains("there is no machine in specs/tools/rack.chain"));
     let run = flank(&["convert", "specs/bevel/tilted_pinion.chain", "--to", "specs/machines/free_form.chain"]);
     assert!(text(&run.stderr).contains("has several tools"), "{}", text(&run.stderr));

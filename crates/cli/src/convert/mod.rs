@@ -1,5 +1,6 @@
 //! `flank convert`: a job carried over to another machine.
 
+mod files;
 mod series;
 mod source;
 mod table;
@@ -34,7 +35,15 @@ pub(crate) fn run(arguments: &Convert) -> Ending {
         }
     };
     let target = target.expect("a compilation without errors has the machine");
-    let carried = one(&jobs).and_then(|job| carry(&graph, job, &target, arguments));
+    let hash = spec::hash(&compilation);
+    let carried = one(&jobs).and_then(|job| {
+        let (mut table, told) = carry(&graph, job, &target, arguments)?;
+        // a table of one motion; what the target cannot do is no program
+        if table.motions.len() == 1 && told.is_empty() {
+            table.written = files::write(&table, crate::solve::header(&job.name, which, &hash), arguments)?;
+        }
+        Ok((table, told))
+    });
     match carried {
         Ok((table, told)) => {
             print(&if arguments.json { table.json() } else { table.text() });

@@ -13,22 +13,24 @@ use crate::table::aligned;
 use crate::{spec, units};
 
 /// A column: the name of a motion or an axis.
-struct Named {
-    name: String,
-    dimension: Dimension,
-    travel: Option<(f64, f64)>,
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) dimension: Dimension,
+    pub(super) travel: Option<(f64, f64)>,
 }
 
 pub(crate) struct Table {
-    title: String,
-    job: String,
-    machine: String,
-    motions: Vec<Named>,
-    axes: Vec<Named>,
-    positions: Vec<Vec<f64>>,
-    line: Vec<Posture>,
+    pub(super) title: String,
+    pub(super) job: String,
+    pub(super) machine: String,
+    pub(super) motions: Vec<Named>,
+    pub(super) axes: Vec<Named>,
+    pub(super) positions: Vec<Vec<f64>>,
+    pub(super) line: Vec<Posture>,
     symmetries: Vec<Screw>,
-    series: Option<Series>,
+    pub(super) series: Option<Series>,
+    /// Files that were written.
+    pub(super) written: Vec<String>,
     tolerance: Option<f64>,
 }
 
@@ -59,14 +61,14 @@ impl Table {
             line,
             symmetries: source.symmetries.clone(),
             series,
+            written: Vec::new(),
             tolerance: arguments.tolerance,
         }
     }
 
     pub(crate) fn text(&self) -> String {
         let mut out = format!("{}\n\n", self.title);
-        let over: Vec<String> = self.motions.iter().enumerate().map(|(k, motion)| self.span(k, motion)).collect();
-        let _ = writeln!(out, "{} positions over {}", self.positions.len(), over.join(" and "));
+        let _ = writeln!(out, "{} positions over {}", self.positions.len(), self.over());
         for screw in &self.symmetries {
             let _ = writeln!(out, "the tool does not see {}", unseen(screw));
         }
@@ -82,6 +84,9 @@ impl Table {
         let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
         if let Some(series) = &self.series {
             self.series_text(series, &mut out);
+        }
+        if !self.written.is_empty() {
+            let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
         }
         out
     }
@@ -108,6 +113,11 @@ impl Table {
                 let _ = writeln!(out, "no order up to {} keeps it under {} um", series.order, tolerance * 1e3);
             }
         }
+    }
+
+    pub(super) fn over(&self) -> String {
+        let each: Vec<String> = self.motions.iter().enumerate().map(|(k, motion)| self.span(k, motion)).collect();
+        each.join(" and ")
     }
 
     /// `roll from … to …`
@@ -166,6 +176,7 @@ impl Table {
             "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
             "positions": positions.collect::<Vec<Value>>(),
             "polynomials": series,
+            "files": self.written,
         });
         format!("{table:#}\n")
     }

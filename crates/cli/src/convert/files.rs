@@ -1,0 +1,85 @@
+//! What `flank convert` leaves in its folder: motion tables, NC programs, functions.
+
+use flank_chain_dsl::Dimension;
+use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown};
+use flank_expr::{Polynomial, Signature, emit_polynomials};
+
+use super::table::Table;
+use crate::arguments::{Convert, MotionFormat};
+use crate::files::Folder;
+
+/// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
+const DECIMALS: [u8; 2] = [4, 5];
+
+/// Writes what is asked for and names it.
+///
+/// # Errors
+/// In words, if a file cannot be written or a program not be made.
+pub(super) fn write(table: &Table, header: Header, arguments: &Convert) -> Result<Vec<String>, String> {
+    let name = format!("{}_on_{}", table.job, table.machine);
+    let mut folder = Folder::at(&arguments.out)?;
+    let motion = motion_table(table, header);
+    for format in &arguments.format {
+        match format {
+            MotionFormat::Csv => folder.motion_csv(&name, &motion)?,
+            MotionFormat::Json => folder.motion_json(&name, &motion)?,
+        }
+    }
+    for dialect in &arguments.nc {
+        let seconds = arguments.time.expect("an NC program is asked for with its cutting time");
+        folder.nc(&name, &motion, (*dialect).into(), seconds)?;
+    }
+    for language in &arguments.emit {
+        let text =
+            function(table, &name, (*language).into()).ok_or("there are no polynomials to write as a function")?;
+        folder.text(&format!("{name}.{}", language.extension()), &text)?;
+    }
+    Ok(folder.written)
+}
+
+fn motion_table(table: &Table, header: Header) -> MotionTable {
+    let motion = &table.motions[0];
+    let axis = |axis: &super::table::Named| {
+        let is_rotary = axis.dimension == Dimension::ANGLE;
+        MachineAxis {
+            name: axis.name.clone(),
+            address: axis.name.clone(),
+            is_rotary,
+            decimals: DECIMALS[usize::from(is_rotary)],
+            travel: axis.travel.map(|(low, high)| [low, high]),
+        }
+    };
+    let rows = table.positions.iter().zip(&table.line);
+    let unit = match motion.dimension {
+        Dimension::ANGLE => Unit::Degree,
+        Dimension::LENGTH => Unit::Millimetre,
+        _ => Unit::One,
+    };
+    MotionTable {
+        header,
+        motion: Unknown { name: motion.name.clone(), unit },
+        axes: table.axes.iter().map(axis).collect(),
+        rows: rows.map(|(at, posture)| MotionRow { motion: at[0], axes: posture.axes.clone() }).collect(),
+        series: table.series.as_ref().map(|series| Series {
+            reference: series.about,
+            axes: series.axes.iter().map(|c| AxisSeries { coefficients: c.clone(), remainder: None }).collect(),
+        }),
+    }
+}
+
+/// The axes and their first derivatives from the motion, as source text.
+fn function(table: &Table, name: &str, language: flank_expr::Language) -> Option<String> {
+    let series = table.series.as_ref()?;
+    let polynomials: Vec<Polynomial<'_>> = table
+        .axes
+        .iter()
+        .zip(&series.axes)
+        .map(|(axis, coefficients)| Polynomial { name: &axis.name, coefficients })
+        .collect();
+    let mut comment = vec![table.title.clone(), "mm and rad; derivatives per rad (mm) of the motion".to_string()];
+    comment.extend(series.deviations.get(series.order).map(|most| {
+        format!("the flank is off by up to {:.6} um where points were sampled; {}", most * 1e3, table.over())
+    }));
+    let signature = Signature { name, comment: &comment };
+    Some(emit_polynomials(language, signature, (&table.motions[0].name, series.about), &polynomials))
+}
