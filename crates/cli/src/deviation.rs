@@ -130,7 +130,10 @@ impl Measured<'_, '_> {
 
     /// The middle of the grid, um.
     fn in_the_middle(&self) -> Option<f64> {
-        *self.deviations.get((self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2)?
+        let middle =
+            *self.deviations.get((self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2)?;
+        // rounding of a point that was turned onto the other one
+        middle.map(|off| if off.abs() < 1e-6 { 0.0 } else { off })
     }
 
     fn known(&self) -> impl Iterator<Item = f64> {
