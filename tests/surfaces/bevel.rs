@@ -256,6 +256,15 @@ fn a_duplex_helical_pinion_meets_dense_matrices() {
     meets_matrices(spec, "convex", &dense, &cone(-1.0, 94.55));
 }
 
+/// A cutter with a toprem and a flankrem, as a statement of a job.
+const RELIEVED: &str = "
+    tool r = face_mill_relieved(
+        outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, toprem_angle: 15 deg,
+        toprem_height: 1.5 mm, flankrem_angle: 26 deg, flankrem_height: 6 mm, edge_radius: 0.4 mm
+    )
+    mount r on m.cutter
+";
+
 /// Neighbouring segments of a blade's profile share their point; edge and blade touch without a kink, also for a parabola.
 #[test]
 fn roundings_touch_the_blades() {
@@ -263,15 +272,11 @@ fn roundings_touch_the_blades() {
         + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
         job show {
             machine m = stand
-            tool r = face_mill_relieved(
-                outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, toprem_angle: 15 deg,
-                toprem_height: 1.5 mm, flankrem_angle: 26 deg, flankrem_height: 6 mm, edge_radius: 0.4 mm
-            )
+            RELIEVED
             tool p = face_mill_parabolic(
                 outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, vertex_height: 4 mm,
                 parabola: 0.003 / 1 mm, edge_radius: 0.7 mm
             )
-            mount r on m.cutter
             mount p on m.cutter
             surface outside in m.bed = move(r.outside)
             surface inside in m.bed = move(r.inside)
@@ -281,7 +286,7 @@ fn roundings_touch_the_blades() {
             surface edge_inside in m.bed = move(p.inside_edge)
         }";
     let graph = Graph::new();
-    let job = job_of_text(&graph, &text);
+    let job = job_of_text(&graph, &text.replace("RELIEVED", RELIEVED));
     let end = |surface: &str, high: bool| {
         let unknowns = &job.surfaces.iter().find(|s| s.name == surface).expect("a surface").unknowns;
         let at = if high { unknowns[0].high } else { unknowns[0].low };
@@ -302,21 +307,15 @@ fn roundings_touch_the_blades() {
 #[test]
 fn relieved_blades_have_their_angles() {
     let graph = Graph::new();
-    let job = job_of_text(
-        &graph,
-        &(library(&["tools/face_mill.chain", "tools/face_mill_profiles.chain"])
-            + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
+    let text = library(&["tools/face_mill.chain", "tools/face_mill_profiles.chain"])
+        + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
             job show {
                 machine m = stand
-                tool r = face_mill_relieved(
-                    outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 20 deg, toprem_angle: 15 deg,
-                    toprem_height: 1.5 mm, flankrem_angle: 26 deg, flankrem_height: 6 mm, edge_radius: 0.4 mm
-                )
-                mount r on m.cutter
+            RELIEVED
                 surface outside in m.bed = move(r.outside)
                 surface inside in m.bed = move(r.inside)
-            }"),
-    );
+            }";
+    let job = job_of_text(&graph, &text.replace("RELIEVED", RELIEVED));
     for (surface, side, point_radius) in [("outside", 1.0, 76.0), ("inside", -1.0, 74.0)] {
         let tangents = [("toprem", 15f64, 1.0), ("blade", 20.0, 3.0), ("flankrem", 26.0, 8.0)];
         for (piece, angle, height) in tangents {
