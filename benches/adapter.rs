@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Outcome, Range, SurfaceGeometry, SurfaceProblem};
+use flank_solver::{Outcome, Range, SurfaceProblem};
 
 /// Where the common job starts: s, theta, phi.
 const START: [f64; 3] = [5.4, -2.45, -0.26];
@@ -72,11 +72,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let sample = surface.sample.as_ref().ok_or("the job asks for no points")?;
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings())
-        .map_err(|error| error.to_string())?;
-    let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
-    let geometry = SurfaceGeometry::new(&surface.surface, &motions, coordinates, &job.bindings())
-        .map_err(|error| error.to_string())?;
+    let is_curved = arguments.job == "grid";
+    let new = if is_curved { SurfaceProblem::with_curvatures } else { SurfaceProblem::new };
+    let problem = new(&surface.surface, coordinates, ranges, &job.bindings()).map_err(|error| error.to_string())?;
     let setup = start.elapsed().as_secs_f64();
 
     let (mut times, mut evaluations, mut memory) = (Vec::new(), 0, None);
@@ -96,10 +94,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         let mut file = BufWriter::new(File::create(&arguments.out).map_err(failed)?);
         for k in 0..points.len() {
             let (mut row, placed) = (points.unknowns(k), points.placed(k));
-            if arguments.job == "grid" {
-                let principal = geometry.at(&row).curvature.ok_or("a point has no curvature")?.principal();
+            if is_curved {
                 row.truncate(1);
-                row.extend(placed.iter().chain(&[principal.k1, principal.k2]));
+                row.extend(placed.iter().chain(&points.principal_curvatures(k).ok_or("a point has no curvature")?));
             } else {
                 row.extend(placed);
             }

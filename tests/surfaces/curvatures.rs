@@ -6,7 +6,7 @@
 
 use flank_chain_dsl::Job;
 use flank_expr::Graph;
-use flank_solver::{Outcome, SurfacePoint};
+use flank_solver::{Outcome, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem};
 use flank_tests::{
     Evaluated, difference, evaluated, grid, job, job_named, number, points, reference_json, reversed, vector,
 };
@@ -293,4 +293,36 @@ fn envelopes_of_envelopes() {
     }
     let hourglass = rows(&reference, "hourglass_rows", None);
     meets("double_envelope/hourglass_worm_wheel", "hourglass_worm_wheel", "wheel", &hourglass, &keys);
+}
+
+/// Curvatures in lanes, by the adjugate of the equations, against those of each point alone, by the constraints' null space.
+#[test]
+fn many_points_at_once_bend_as_one_by_one() {
+    for spec in ["specs/bevel/pinion_19x62.chain", "specs/hobbing/helical_gear.chain", "specs/hobbing/spur_gear.chain"]
+    {
+        let graph = Graph::new();
+        let job = job(&graph, spec, &[]);
+        for surface in job.surfaces.iter().filter(|surface| surface.sample.is_some()) {
+            let sample = surface.sample.as_ref().expect("it has one");
+            let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+            let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
+            let problem = SurfaceProblem::with_curvatures(&surface.surface, coordinates, ranges, &job.bindings());
+            let problem = problem.expect("nothing is unbound");
+            let (points, _) = problem.solve_points(&sample.targets, sample.counts, None, None);
+            let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
+            let motions: Vec<_> = motions.into_iter().filter(|m| surface.surface.unknowns.contains(m)).collect();
+            let geometry = SurfaceGeometry::new(&surface.surface, &motions, coordinates, &job.bindings());
+            let geometry = geometry.expect("nothing is unbound");
+            for k in (0..points.len()).filter(|k| points.outcome(*k) == Outcome::Solved) {
+                let careful = geometry.at(&points.unknowns(k)).curvature.expect("a regular point").principal();
+                let found = points.principal_curvatures(k).expect("the coordinates fix the point");
+                let off = difference(&found, &[careful.k1, careful.k2]);
+                assert!(
+                    off < OF_CURVATURE * (1.0 + careful.k1.abs()),
+                    "{spec}, {}, {k}: {found:?} {careful:?}",
+                    surface.name
+                );
+            }
+        }
+    }
 }

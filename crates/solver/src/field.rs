@@ -8,7 +8,7 @@
 
 use flank_expr::LANES;
 
-use crate::lanes::{LaneNewton, Lanes};
+use crate::lanes::{LaneNewton, Lanes, VITAL};
 use crate::line::Midpoint;
 use crate::solution::{CutBy, Outcome, Range, Solution, distance, verdict};
 
@@ -189,9 +189,14 @@ impl Field {
         if self.mark(point) == Mark::Unknown { f64::NAN } else { self.value(point, self.shape.size + 1) }
     }
 
-    /// What else is wanted of a point.
+    /// What else is wanted of a point; NaN where there is none.
     pub(crate) fn extra(&self, point: usize, k: usize) -> f64 {
-        if self.mark(point) == Mark::Unknown { f64::NAN } else { self.value(point, self.shape.size + 2 + k) }
+        let plane = self.shape.size + 2 + k;
+        if self.mark(point) == Mark::Unknown || plane >= self.shape.planes {
+            f64::NAN
+        } else {
+            self.value(point, plane)
+        }
     }
 
     pub(crate) fn is_root(&self, point: usize) -> bool {
@@ -272,7 +277,8 @@ impl Field {
                     self.set(*point, self.shape.size + 2 + k, value);
                     let (block, lane) = self.shape.place(*point);
                     let mark = &mut self.marks[block][lane];
-                    *mark = if *mark == Mark::Solved && !value.is_finite() { Mark::Singular } else { *mark };
+                    *mark =
+                        if *mark == Mark::Solved && k < VITAL && !value.is_finite() { Mark::Singular } else { *mark };
                 }
             }
         }

@@ -19,6 +19,8 @@ const POLISHED: f64 = 0.1;
 /// With a smaller pivot (scaled as in `newton_step`) a lane is left to the careful path, which says what is singular.
 const CLEAR_PIVOT: f64 = 1e-6;
 
+/// Of what else is wanted at a root (position, normal, …), as much must be finite.
+pub(crate) const VITAL: usize = 6;
 /// Lanes whose linear systems are solved side by side.
 const GROUP: usize = 8;
 
@@ -179,6 +181,7 @@ impl<'s> LaneNewton<'s> {
     /// Whether all of the first lanes have come to a root that is nothing special: near their starts, inside the ranges, with all
     /// conditions met and numbers for what else is wanted.
     pub(crate) fn all_plain(&mut self, count: usize, near: f64) -> bool {
+        let vital = self.vital_outputs().end;
         let LaneNewton { ranges, instructions, checked, condition_count, moved, ends, .. } = self;
         if !ends[..count].iter().all(|end| *end == End::Root) {
             return false;
@@ -197,7 +200,7 @@ impl<'s> LaneNewton<'s> {
                         is_plain[lane] &= (range.low <= values[lane]) & (values[lane] <= range.high);
                     }
                 }
-                for k in n..checked.output_count() {
+                for k in n..vital {
                     let least = if k < n + *condition_count { 0.0 } else { f64::NEG_INFINITY };
                     let values = checked.output(k);
                     for lane in 0..LANES {
@@ -229,11 +232,17 @@ impl<'s> LaneNewton<'s> {
         self.checked.run_first(count);
     }
 
+    /// Numbers of the outputs that must be finite.
+    fn vital_outputs(&self) -> std::ops::Range<usize> {
+        let first = self.ranges.len() + self.condition_count;
+        first..self.checked.output_count().min(first + VITAL)
+    }
+
     /// What the root of a lane is; singular also where what else is wanted is no number.
     pub(crate) fn outcome(&mut self, lane: usize) -> Outcome {
         let unknowns: Vec<f64> = (0..self.ranges.len()).map(|k| self.checked.input(k)[lane]).collect();
         let first = self.ranges.len();
-        let extras = first + self.condition_count..self.checked.output_count();
+        let extras = self.vital_outputs();
         match verdict(&unknowns, self.ranges, true, false) {
             Outcome::Solved if extras.into_iter().any(|k| !self.checked.output(k)[lane].is_finite()) => {
                 Outcome::Singular

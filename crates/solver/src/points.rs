@@ -42,6 +42,14 @@ impl SurfacePoints {
         std::array::from_fn(|k| self.field.extra(point, k))
     }
 
+    /// The principal curvatures, the larger one first, 1/mm, positive where the body that owns the surface is convex. `None` if
+    /// the problem was not made with them, if the surface has more than four unknowns, and where the coordinates do not fix
+    /// a point: then [`SurfaceGeometry`](crate::SurfaceGeometry) may tell.
+    pub fn principal_curvatures(&self, point: usize) -> Option<[f64; 2]> {
+        let found = [6, 7].map(|k| self.field.extra(point, k));
+        found.iter().all(|curvature| curvature.is_finite()).then_some(found)
+    }
+
     /// The largest residual, mm or mm per radian.
     pub fn residual(&self, point: usize) -> f64 {
         self.field.residual(point)

@@ -57,7 +57,26 @@ impl SurfaceProblem {
     ) -> Result<SurfaceProblem, TapeError> {
         let bound = surface.bound(bindings);
         let conditions = bound.clearance_minors();
-        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions, Several::Refuse)
+        SurfaceProblem::of(&bound, (coordinates, false), ranges, bindings, &conditions, Several::Refuse)
+    }
+
+    /// The same, with the principal curvatures at each point of a grid
+    /// ([`SurfacePoints::principal_curvatures`](crate::SurfacePoints::principal_curvatures)).
+    ///
+    /// # Errors
+    /// As for [`SurfaceProblem::new`].
+    ///
+    /// # Panics
+    /// As for [`SurfaceProblem::new`].
+    pub fn with_curvatures<'g>(
+        surface: &Surface<'g>,
+        coordinates: [Expr<'g>; 2],
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SurfaceProblem, TapeError> {
+        let bound = surface.bound(bindings);
+        let conditions = bound.clearance_minors();
+        SurfaceProblem::of(&bound, (coordinates, true), ranges, bindings, &conditions, Several::Refuse)
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
@@ -80,12 +99,19 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::of(&surface.bound(bindings), [quantity, along], ranges, bindings, &[], Several::TakeWidest)
+        SurfaceProblem::of(
+            &surface.bound(bindings),
+            ([quantity, along], false),
+            ranges,
+            bindings,
+            &[],
+            Several::TakeWidest,
+        )
     }
 
     fn of<'g>(
         bound: &Surface<'g>,
-        coordinates: [Expr<'g>; 2],
+        (coordinates, is_curved): ([Expr<'g>; 2], bool),
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
         conditions: &[Expr<'g>],
@@ -95,14 +121,17 @@ impl SurfaceProblem {
         let graph = coordinates[0].graph();
         let targets = [graph.variable("target 1"), graph.variable("target 2")];
         let coordinates = graph.substitute(&coordinates, bindings);
+        let coordinates = [coordinates[0], coordinates[1]];
         let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
         let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(on_target).collect();
         let point: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
+        let curvatures = if is_curved { bound.principal_curvatures(coordinates) } else { None };
+        let extras: Vec<Expr<'g>> = point.iter().copied().chain(curvatures.into_iter().flatten()).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain(targets).collect();
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         Ok(SurfaceProblem {
             search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
-            system: system.with_conditions(&residuals, conditions, &point, &inputs)?,
+            system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
             point: Tape::new(&point, &bound.unknowns)?,
             kept_ranges: ranges.clone(),
             ranges,
