@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flank beside hand-written C++ on the common job, run in turns: `benches/compare.sh [repetitions]`. Needs g++.
-# Prints nanoseconds a point (the fastest repetition) and flank's share of the hand-written program's time.
+# flank beside hand-written C++ and CasADi on the common job, run in turns: `benches/compare.sh [repetitions]`. Needs g++, and for
+# CasADi python3 with venv and pip. Prints nanoseconds a point (the fastest repetition) and shares of the hand-written program's time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 repetitions=${1:-15}
@@ -11,6 +11,13 @@ g++ -std=c++17 -O3 -march=native -ffp-contract=fast -fno-math-errno benches/peer
 cargo build --quiet --release -p flank-benches --example adapter
 flank=target/release/examples/adapter
 
+casadi=
+if python3 -m venv "$work/venv" && "$work/venv/bin/pip" install --quiet casadi numpy; then
+    casadi="$work/venv/bin/python benches/peers/spiral_bevel_casadi.py"
+else
+    echo "without CasADi: it cannot be installed" >&2
+fi
+
 # the fastest of the times that a run prints, in nanoseconds a point
 fastest() { # points command…
     local points=$1
@@ -18,7 +25,7 @@ fastest() { # points command…
     "$@" | sed 's/.*"solve_s":\[\([^]]*\)\].*/\1/' | tr ',' '\n' | sort -g | head -n 1 | awk -v n="$points" '{ printf "%.2f", $1 * 1e9 / n }'
 }
 
-printf '%-10s %8s %10s %10s %8s\n' grid threads peer flank share
+printf '%-10s %8s %10s %10s %8s %10s %8s\n' grid threads peer flank share casadi share
 for size in "31 61" "501 501"; do
     read -r rows columns <<<"$size"
     for threads in 1 2; do
@@ -27,7 +34,11 @@ for size in "31 61" "501 501"; do
         before=$(fastest $points "$work/peer" "${arguments[@]}" --out "$work/peer.bin")
         ours=$(fastest $points "$flank" "${arguments[@]}" --threads $threads --out "$work/flank.bin")
         after=$(fastest $points "$work/peer" "${arguments[@]}")
-        awk -v a="$before" -v b="$after" -v f="$ours" -v g="${rows}x$columns" -v t="$threads" \
-            'BEGIN { p = (a + b) / 2; printf "%-10s %8d %10.1f %10.1f %8.2f\n", g, t, p, f, f / p }'
+        theirs=0
+        if [ -n "$casadi" ] && [ $threads = 1 ]; then
+            theirs=$(fastest $points $casadi --job flank --n1 "$rows" --n2 "$columns" --reps 3)
+        fi
+        awk -v a="$before" -v b="$after" -v f="$ours" -v c="$theirs" -v g="${rows}x$columns" -v t="$threads" \
+            'BEGIN { p = (a + b) / 2; printf "%-10s %8d %10.1f %10.1f %8.2f %10.1f %8.2f\n", g, t, p, f, f / p, c, c / p }'
     done
 done

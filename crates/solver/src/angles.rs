@@ -56,8 +56,12 @@ impl SearchSystem {
         let angles: Vec<Expr<'g>> = replaced.iter().map(|(angle, _)| *angle).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).copied().collect();
         let searched: Vec<Expr<'g>> = all.iter().chain(parameters).copied().collect();
-        let system =
-            System::new(&equations, &all, parameters)?.with_conditions(&equations, conditions, &[], &searched)?;
+        let system = System::one_by_one(&equations, &all, parameters)?.with_conditions(
+            &equations,
+            conditions,
+            &[],
+            &searched,
+        )?;
         Ok(Some(SearchSystem { system, angles: Tape::new(&angles, &inputs)?, turns }))
     }
 

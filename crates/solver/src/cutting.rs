@@ -1,10 +1,9 @@
 //! What single cutting edges leave over the surface that edges without end would generate.
 
 use flank_expr::geometry::{Surface, Vector3};
-use flank_expr::{Expr, InstructionSet, LANES, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, LANES, ScalarEvaluator, Tape, TapeError};
 use rayon::prelude::*;
 
-use crate::elimination::eliminate;
 use crate::lanes::LaneNewton;
 use crate::newton::solve_with;
 use crate::solution::{Outcome, ROUNDING, Range};
@@ -209,9 +208,9 @@ impl Guide {
         let (along_edge, along_motion) = (slope(0), slope(1));
         let follow = |k: usize| {
             let by = slope(k + 2);
-            let rows = [0, 1, 2].map(|row| [along_edge[row], along_motion[row], -normal[row]].map(|entry| [entry]));
-            let [[edge], [motion], _] = eliminate(rows, by.map(|x| [-x])).solution;
-            [edge, motion]
+            let ways = [along_edge, along_motion, normal.map(|x| -x)].map(nalgebra::Vector3::from);
+            let followed = nalgebra::Matrix3::from_columns(&ways).lu().solve(&-nalgebra::Vector3::from(by));
+            followed.map_or([f64::NAN; 2], |by| [by[0], by[1]])
         };
         let follows: Vec<[f64; 2]> = (0..count).map(follow).collect();
         let bends = &out[3 * (count + 3)..];
@@ -293,7 +292,7 @@ impl<'e> Passing<'e> {
         let parameters = edges.system.tape().input_count() - wide.len();
         Passing {
             edges,
-            newton: LaneNewton::new(&edges.system, wide, InstructionSet::widest()),
+            newton: LaneNewton::new(&edges.system, wide),
             evaluation: edges.system.evaluation(&vec![0.0; parameters]),
             wide,
         }

@@ -48,7 +48,7 @@ impl Deviation {
         let system = |apart: Vector3<'g>, unknown: Expr<'g>, parameters: &[Expr<'g>]| {
             let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(apart.0).collect();
             let unknowns: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain([unknown]).collect();
-            System::new(&residuals, &unknowns, parameters)
+            System::one_by_one(&residuals, &unknowns, parameters)
         };
         let reached = point + normal.map(|part| part * distance);
         let parameters: Vec<Expr<'g>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();

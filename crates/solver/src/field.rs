@@ -365,11 +365,11 @@ impl Strip<'_> {
         targets: &[[f64; 2]],
     ) -> u64 {
         let (mut evaluations, mut rough) = (0, true);
+        let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
+        let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for midpoint in levels.iter().flatten() {
             self.set_targets(midpoint.at, newton, targets);
-            let all_known = midpoint.known.iter().all(|(line, _)| self.is_line_of_roots(*line));
-            let none_known = self.marks[midpoint.at][..self.width].iter().all(|mark| *mark == Mark::Unknown);
-            if all_known && none_known {
+            if empty[midpoint.at] && midpoint.known.iter().all(|(line, _)| full[*line]) {
                 self.interpolate_line(midpoint, newton);
                 evaluations += newton.run(&[true; LANES][..self.width], rough);
             } else {
@@ -382,7 +382,8 @@ impl Strip<'_> {
                 evaluations += newton.run(&active[..self.width], rough);
             }
             rough = newton.were_rough();
-            self.take_line(midpoint, newton);
+            full[midpoint.at] = self.take_line(midpoint, newton);
+            empty[midpoint.at] = false;
         }
         evaluations
     }
@@ -400,6 +401,10 @@ impl Strip<'_> {
 
     fn is_line_of_roots(&self, line: usize) -> bool {
         self.marks[line][..self.width].iter().all(|mark| mark.is_root())
+    }
+
+    fn is_untouched(&self, line: usize) -> bool {
+        self.marks[line][..self.width].iter().all(|mark| *mark == Mark::Unknown)
     }
 
     fn plane(&self, line: usize, plane: usize) -> &Lanes {
@@ -452,7 +457,8 @@ impl Strip<'_> {
         is_next
     }
 
-    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) {
+    /// Takes what the lanes have come to; whether all of them are roots now.
+    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
         let line = midpoint.at;
         let (shape, width) = (self.shape, self.width);
         if newton.all_plain(width, NEAR) {
@@ -461,7 +467,7 @@ impl Strip<'_> {
                 *values = *number(shape, newton, k);
             }
             self.marks[line][..width].fill(Mark::Solved);
-            return;
+            return true;
         }
         for lane in 0..width {
             let [before, behind] = midpoint.beside;
@@ -476,6 +482,7 @@ impl Strip<'_> {
                 take(shape, values, &mut self.marks[line], lane, newton, lane);
             }
         }
+        self.is_line_of_roots(line)
     }
 }
 

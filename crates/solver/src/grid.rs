@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use flank_expr::{InstructionSet, LANES};
+use flank_expr::LANES;
 use rayon::prelude::*;
 
 use crate::Outcome;
@@ -114,7 +114,7 @@ pub(crate) fn solve_field(
     }
     let order = grid.middle_first();
     let mut failures = grid.field();
-    let mut newton = LaneNewton::new(system, ranges, InstructionSet::fastest());
+    let mut newton = LaneNewton::new(system, ranges);
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
         if !grid.look_for(anchor, choice.roots, choice.keeps) {
             failures.put(anchor, &grid.failure(anchor));
@@ -221,7 +221,7 @@ impl Grid<'_> {
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
-        let mut newton = LaneNewton::new(self.system, self.ranges, InstructionSet::fastest());
+        let mut newton = LaneNewton::new(self.system, self.ranges);
         self.settle(&mut field, &mut newton, &[anchor]);
         let by_hand = self.spread_in_lanes(&mut field, &mut newton, anchor, [rows.as_slice(), &columns]);
         if !by_hand.is_empty() {
@@ -289,7 +289,7 @@ impl Grid<'_> {
         self.effort.evaluations += if targets.len() < SHARED || rayon::current_num_threads() == 1 {
             strips.iter_mut().map(|strip| strip.refine(newton, levels, targets)).sum::<u64>()
         } else {
-            let another = || LaneNewton::new(system, ranges, InstructionSet::fastest());
+            let another = || LaneNewton::new(system, ranges);
             let strips = strips.into_par_iter();
             strips.map_init(another, |newton, mut strip| strip.refine(newton, levels, targets)).sum::<u64>()
         };

@@ -90,7 +90,7 @@ impl Intersection {
         let probe: Vec<Expr<'g>> = vectors.chain([along]).chain(slopes).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(&line).copied().collect();
         Ok(Intersection {
-            system: System::new(&residuals, &unknowns, &line)?.with_conditions(
+            system: System::one_by_one(&residuals, &unknowns, &line)?.with_conditions(
                 &residuals,
                 &conditions,
                 &[],

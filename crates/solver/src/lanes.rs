@@ -4,7 +4,6 @@
 
 use flank_expr::{InstructionSet, LANES, LaneEvaluator};
 
-use crate::elimination::{Side, each, eliminate};
 use crate::newton::{LARGEST_TOLERANCE, Linearized, OF_SIZE, TOLERANCE, newton_step};
 use crate::solution::{Outcome, Range, verdict};
 use crate::system::{System, side_of};
@@ -16,14 +15,12 @@ const MOST_STEPS: usize = 5;
 const PREDICTED: f64 = 0.25;
 /// Newton stops below this share of the tolerance, or at the tolerance when a step no longer pays.
 const POLISHED: f64 = 0.1;
-/// With a smaller pivot (scaled as in `newton_step`) a lane is left to the careful path, which says what is singular.
-const CLEAR_PIVOT: f64 = 1e-6;
+/// With a smaller determinant (unknowns scaled by their ranges, equations by their largest entry) a lane is left to the careful
+/// path, which says what is singular.
+const CLEAR: f64 = 1e-6;
 
 /// Of what else is wanted at a root (position, normal, …), as much must be finite.
 pub(crate) const VITAL: usize = 6;
-/// Lanes whose linear systems are solved side by side.
-const GROUP: usize = 8;
-
 pub(crate) type Lanes = [f64; LANES];
 
 /// Solves up to [`LANES`] points of a system at once.
@@ -33,6 +30,7 @@ pub(crate) struct LaneNewton<'s> {
     /// Residuals, conditions and what else is wanted at a root.
     checked: LaneEvaluator<'s>,
     linearized: LaneEvaluator<'s>,
+    is_written_out: bool,
     condition_count: usize,
     /// Unknowns and parameters.
     input_count: usize,
@@ -44,11 +42,14 @@ pub(crate) struct LaneNewton<'s> {
     residual: Lanes,
     worst: Lanes,
     determinant: Lanes,
-    least_pivot: Lanes,
+    /// Whether the Jacobian of the last step had an inverse, and not one that is only rounding.
+    is_clear: [bool; LANES],
     /// How far each lane has come from its start, as a share of the ranges.
     moved: Lanes,
     ends: [End; LANES],
     were_rough: bool,
+    /// Room for the unknowns of a lane.
+    unknowns: Vec<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -61,23 +62,32 @@ enum End {
 }
 
 impl<'s> LaneNewton<'s> {
-    pub(crate) fn new(system: &'s System, ranges: &'s [Range], instructions: InstructionSet) -> LaneNewton<'s> {
+    pub(crate) fn new(system: &'s System, ranges: &'s [Range]) -> LaneNewton<'s> {
+        let instructions = system.instructions();
+        let mut linearized = LaneEvaluator::new(&system.lanes.linearized, instructions);
+        let input_count = system.tape().input_count();
+        let is_written_out = system.lanes.is_written_out;
+        for (k, range) in ranges.iter().enumerate().filter(|_| is_written_out) {
+            linearized.set_uniform(input_count + k, range.width());
+        }
         LaneNewton {
             ranges,
             instructions,
             checked: LaneEvaluator::new(&system.lanes.checked, instructions),
-            linearized: LaneEvaluator::new(&system.lanes.linearized, instructions),
+            linearized,
+            is_written_out,
             condition_count: system.condition_count(),
-            input_count: system.tape().input_count(),
+            input_count,
             steps: vec![[0.0; LANES]; ranges.len()],
             sharpness: vec![[0.0; LANES]; ranges.len()],
             residual: [0.0; LANES],
             worst: [0.0; LANES],
             determinant: [f64::NAN; LANES],
-            least_pivot: [0.0; LANES],
+            is_clear: [false; LANES],
             moved: [0.0; LANES],
             ends: [End::Idle; LANES],
             were_rough: true,
+            unknowns: Vec::new(),
         }
     }
 
@@ -110,19 +120,30 @@ impl<'s> LaneNewton<'s> {
         self.sharpness.fill([1.0 / TOLERANCE; LANES]);
         self.moved = [0.0; LANES];
         self.ends = [End::Idle; LANES];
-        let known = if rough { [false; LANES] } else { self.determinant.map(|determinant| !determinant.is_nan()) };
         let mut evaluations = 0;
-        if !rough {
+        let mut open = active.iter().filter(|active| **active).count() as u64;
+        if rough {
+            self.ends[..count].fill(End::Open);
+        } else {
             self.measure(count);
-            evaluations += active.iter().filter(|active| **active).count() as u64;
+            evaluations += open;
+            let LaneNewton { worst, determinant, .. } = self;
+            // a determinant that is not known is no number
+            let is_root = self.instructions.dispatch(
+                #[inline(always)]
+                || each_lane(|lane| (worst[lane] <= PREDICTED) & !determinant[lane].is_nan()),
+            );
+            self.ends = is_root.map(|is_root| if is_root { End::Root } else { End::Open });
+            self.ends[count..].fill(End::Idle);
         }
-        for lane in (0..count).filter(|lane| active[*lane]) {
-            let is_root = known[lane] && self.worst[lane] <= PREDICTED;
-            self.ends[lane] = if is_root { End::Root } else { End::Open };
+        for lane in (0..count).filter(|lane| !active[*lane]) {
+            self.ends[lane] = End::Idle;
         }
-        self.were_rough = !rough && self.ends.contains(&End::Open);
         for round in 0..MOST_STEPS {
-            let open = self.ends.iter().filter(|end| **end == End::Open).count() as u64;
+            open = if rough && round == 0 { open } else { self.open_lanes() };
+            if round == 0 {
+                self.were_rough = open > 0;
+            }
             if open == 0 {
                 break;
             }
@@ -135,9 +156,7 @@ impl<'s> LaneNewton<'s> {
             self.advance();
             self.measure(count);
             evaluations += 2 * open;
-            for lane in 0..count {
-                self.judge(lane, before[lane]);
-            }
+            self.judge(&before, count);
         }
         for lane in 0..count {
             if self.ends[lane] == End::Open {
@@ -147,6 +166,10 @@ impl<'s> LaneNewton<'s> {
         evaluations
     }
 
+    fn open_lanes(&self) -> u64 {
+        self.ends.iter().filter(|end| **end == End::Open).count() as u64
+    }
+
     /// Whether a start of the last run was no root: the next ones are likely to need a step, too.
     pub(crate) fn were_rough(&self) -> bool {
         self.were_rough
@@ -154,11 +177,15 @@ impl<'s> LaneNewton<'s> {
 
     /// The largest residual where the last step began, as a share of the tolerance.
     fn worst_before_step(&self) -> Lanes {
-        let worst = |lane: usize| {
-            let residuals = (0..self.ranges.len()).map(|row| self.linearized.output(row)[lane].abs());
-            residuals.fold(0.0, f64::max) / TOLERANCE
-        };
-        std::array::from_fn(worst)
+        let mut worst = [0.0; LANES];
+        for row in 0..self.ranges.len() {
+            let residuals = self.linearized.output(row);
+            for lane in 0..LANES {
+                let share = residuals[lane].abs() * (1.0 / TOLERANCE);
+                worst[lane] = if share > worst[lane] { share } else { worst[lane] };
+            }
+        }
+        worst
     }
 
     /// For the first lanes: by how much the tangent at the inputs leads away from them, as shares of the ranges. Not finite, or
@@ -166,7 +193,7 @@ impl<'s> LaneNewton<'s> {
     pub(crate) fn tangents(&mut self, count: usize) -> &[Lanes] {
         self.step(count);
         for lane in 0..count {
-            if !self.is_clear(lane) {
+            if !self.is_clear[lane] {
                 self.steps.iter_mut().for_each(|steps| steps[lane] = f64::NAN);
             }
         }
@@ -240,10 +267,18 @@ impl<'s> LaneNewton<'s> {
 
     /// What the root of a lane is; singular also where what else is wanted is no number.
     pub(crate) fn outcome(&mut self, lane: usize) -> Outcome {
-        let unknowns: Vec<f64> = (0..self.ranges.len()).map(|k| self.checked.input(k)[lane]).collect();
+        let mut unknowns = std::mem::take(&mut self.unknowns);
+        unknowns.clear();
+        unknowns.extend((0..self.ranges.len()).map(|k| self.checked.input(k)[lane]));
+        let outcome = self.outcome_at(&unknowns, lane);
+        self.unknowns = unknowns;
+        outcome
+    }
+
+    fn outcome_at(&self, unknowns: &[f64], lane: usize) -> Outcome {
         let first = self.ranges.len();
         let extras = self.vital_outputs();
-        match verdict(&unknowns, self.ranges, true, false) {
+        match verdict(unknowns, self.ranges, true, false) {
             Outcome::Solved if extras.into_iter().any(|k| !self.checked.output(k)[lane].is_finite()) => {
                 Outcome::Singular
             }
@@ -275,28 +310,39 @@ impl<'s> LaneNewton<'s> {
         );
     }
 
-    /// What has become of an open lane after a step.
-    fn judge(&mut self, lane: usize, before: f64) {
-        if self.ends[lane] != End::Open {
-            return;
-        }
-        let worst = self.worst[lane];
-        if worst <= POLISHED || (worst <= 1.0 && worst >= 0.5 * before) {
-            self.ends[lane] = End::Root;
-        }
-        let inside = (0..self.ranges.len()).all(|k| {
-            let value = self.checked.input(k)[lane];
-            self.ranges[k].widened(value) == value
-        });
-        if !(inside && self.is_clear(lane)) {
-            self.ends[lane] = End::Lost;
+    /// What has become of the open lanes after a step.
+    fn judge(&mut self, before: &Lanes, count: usize) {
+        let LaneNewton { instructions, ranges, checked, worst, ends, is_clear, .. } = self;
+        let (is_done, is_lost) = instructions.dispatch(
+            #[inline(always)]
+            || {
+                let is_done = each_lane(|lane| {
+                    (worst[lane] <= POLISHED) | (worst[lane] <= 1.0) & (worst[lane] >= 0.5 * before[lane])
+                });
+                let mut is_lost = is_clear.map(|is_clear| !is_clear);
+                for (k, range) in ranges.iter().enumerate() {
+                    let (values, wider) = (checked.input(k), range.wide());
+                    for lane in 0..LANES {
+                        is_lost[lane] |= !((wider.low <= values[lane]) & (values[lane] <= wider.high));
+                    }
+                }
+                (is_done, is_lost)
+            },
+        );
+        for lane in 0..count {
+            if ends[lane] == End::Open {
+                ends[lane] = match (is_lost[lane], is_done[lane]) {
+                    (true, _) => End::Lost,
+                    (false, true) => End::Root,
+                    (false, false) => End::Open,
+                };
+            }
         }
     }
 
     /// Whether the Jacobian of the last step had an inverse, and not one that is only rounding.
     pub(crate) fn is_clear(&self, lane: usize) -> bool {
-        // a comparison that fails for NaN, too
-        self.least_pivot[lane] >= CLEAR_PIVOT
+        self.is_clear[lane]
     }
 
     /// The step of Newton at the inputs, as shares of the ranges.
@@ -305,81 +351,44 @@ impl<'s> LaneNewton<'s> {
             *self.linearized.input(k) = *self.checked.input(k);
         }
         self.linearized.run_first(count);
-        match self.ranges.len() {
-            1 => self.eliminate::<1>(count),
-            2 => self.eliminate::<2>(count),
-            3 => self.eliminate::<3>(count),
-            4 => self.eliminate::<4>(count),
-            5 => self.eliminate::<5>(count),
-            _ => self.eliminate_one_by_one(count),
+        if !self.is_written_out {
+            return self.eliminate_one_by_one(count);
         }
+        let n = self.ranges.len();
+        for k in 0..n {
+            self.steps[k] = *self.linearized.output(n + k);
+            self.sharpness[k] = *self.linearized.output(2 * n + k);
+        }
+        self.determinant = *self.linearized.output(3 * n);
+        // not where it is no number
+        self.is_clear = self.determinant.map(|determinant| determinant.abs() >= CLEAR);
     }
 
     /// Takes the step in the open lanes.
     fn advance(&mut self) {
-        let mut longest = [0.0; LANES];
-        for (k, steps) in self.steps.iter().enumerate() {
-            let (unknowns, width) = (self.checked.input(k), self.ranges[k].width());
-            for lane in 0..LANES {
-                if self.ends[lane] == End::Open {
-                    unknowns[lane] += steps[lane] * width;
-                    longest[lane] = steps[lane].abs().max(longest[lane]);
-                }
-            }
-        }
-        for lane in 0..LANES {
-            self.moved[lane] += longest[lane];
-        }
-    }
-
-    /// The steps by elimination of N unknowns, scaled as in `newton_step`.
-    fn eliminate<const N: usize>(&mut self, count: usize) {
-        let LaneNewton {
-            instructions, linearized, checked, ranges, steps, sharpness, determinant, least_pivot, ..
-        } = self;
-        let right: [&Lanes; N] = std::array::from_fn(|row| linearized.output(row));
-        let jacobian: [[&Lanes; N]; N] =
-            std::array::from_fn(|row| std::array::from_fn(|column| linearized.output(N * (1 + row) + column)));
-        let unknowns: [Lanes; N] = std::array::from_fn(|k| *checked.input(k));
+        let LaneNewton { instructions, ranges, checked, steps, moved, ends, .. } = self;
+        let takes = ends.map(|end| if end == End::Open { 1.0 } else { 0.0 });
         instructions.dispatch(
             #[inline(always)]
             || {
-                for first in (0..count).step_by(GROUP) {
-                    let group = |lanes: &Lanes| -> Side<GROUP> { std::array::from_fn(|side| lanes[first + side]) };
-                    let (mut j, mut b) = ([[[0.0; GROUP]; N]; N], [[0.0; GROUP]; N]);
-                    let sizes = unknowns.each_ref().map(|lanes| group(lanes).map(|p| p.abs().max(1.0)));
-                    for row in 0..N {
-                        let (mut largest, mut size) = ([0.0; GROUP], [0.0; GROUP]);
-                        for column in 0..N {
-                            let entries = group(jacobian[row][column]);
-                            let width = ranges[column].width();
-                            j[row][column] = entries.map(|entry| entry * width);
-                            largest = each(j[row][column], largest, |a, b| if a.abs() > b { a.abs() } else { b });
-                            size = each(size, each(entries, sizes[column], |a, b| a.abs() * b), |a, b| a + b);
-                        }
-                        let weight = largest.map(|largest| 1.0 / largest);
-                        for column in 0..N {
-                            j[row][column] = each(j[row][column], weight, |a, b| a * b);
-                        }
-                        b[row] = each(group(right[row]), weight, |a, b| -a * b);
-                        sharpness[row][first..][..GROUP].copy_from_slice(&size.map(|size| {
-                            let allowed = OF_SIZE * size;
-                            let allowed = if allowed > TOLERANCE { allowed } else { TOLERANCE };
-                            1.0 / if allowed < LARGEST_TOLERANCE { allowed } else { LARGEST_TOLERANCE }
-                        }));
+                let mut longest = [0.0; LANES];
+                for (k, (steps, range)) in steps.iter().zip(ranges.iter()).enumerate() {
+                    let (unknowns, width) = (checked.input(k), range.width());
+                    for lane in 0..LANES {
+                        let moved = unknowns[lane] + steps[lane] * width;
+                        unknowns[lane] = if takes[lane] > 0.0 { moved } else { unknowns[lane] };
+                        let size = if takes[lane] > 0.0 { steps[lane].abs() } else { 0.0 };
+                        longest[lane] = if size > longest[lane] { size } else { longest[lane] };
                     }
-                    let solved = eliminate(j, b);
-                    for k in 0..N {
-                        steps[k][first..][..GROUP].copy_from_slice(&solved.solution[k]);
-                    }
-                    determinant[first..][..GROUP].copy_from_slice(&solved.determinant);
-                    least_pivot[first..][..GROUP].copy_from_slice(&solved.least_pivot);
+                }
+                for lane in 0..LANES {
+                    moved[lane] += longest[lane];
                 }
             },
         );
     }
 
-    /// The same by the general path, for systems of any size. Determinants stay unknown.
+    /// The step by the general path, for systems of any size. Determinants stay unknown.
     fn eliminate_one_by_one(&mut self, count: usize) {
         let n = self.ranges.len();
         self.determinant = [f64::NAN; LANES];
@@ -392,9 +401,18 @@ impl<'s> LaneNewton<'s> {
                 let size: f64 = unknowns.enumerate().map(|(c, p)| at.jacobian(k, c).abs() * p.abs().max(1.0)).sum();
                 self.sharpness[k][lane] = 1.0 / (OF_SIZE * size).clamp(TOLERANCE, LARGEST_TOLERANCE);
             }
-            self.least_pivot[lane] = if step.singular { 0.0 } else { 1.0 };
+            self.is_clear[lane] = !step.singular;
         }
     }
+}
+
+#[inline(always)]
+fn each_lane(is_so: impl Fn(usize) -> bool) -> [bool; LANES] {
+    let mut result = [false; LANES];
+    for lane in 0..LANES {
+        result[lane] = is_so(lane);
+    }
+    result
 }
 
 /// One lane of an evaluated system.

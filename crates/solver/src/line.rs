@@ -1,7 +1,7 @@
 //! Points between solved points: each halving of the gaps starts from a polynomial through what is solved.
 
 /// Solved points that a start is interpolated from; the error goes with this power of the gap.
-const STENCIL: usize = 6;
+const STENCIL: usize = 8;
 /// Gaps that the widest lattice leaves on a line.
 const COARSEST: usize = 4;
 

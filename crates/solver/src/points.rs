@@ -24,6 +24,11 @@ impl SurfacePoints {
         self.len() == 0
     }
 
+    /// How many are solved.
+    pub fn solved(&self) -> usize {
+        self.field.solved()
+    }
+
     /// The verdict; the rest describes a point of the surface only if it is [`Outcome::Solved`].
     ///
     /// # Panics

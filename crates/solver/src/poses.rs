@@ -141,7 +141,7 @@ impl<'g> PoseProblem<'g> {
         Ok(PoseProblem {
             chain,
             unknowns: unknowns.clone(),
-            system: System::new(&residuals, &unknowns, motions)?.with_conditions(
+            system: System::one_by_one(&residuals, &unknowns, motions)?.with_conditions(
                 &residuals,
                 &[upright],
                 &[],

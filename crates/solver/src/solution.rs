@@ -48,8 +48,14 @@ impl Range {
 
     #[inline]
     pub(crate) fn widened(self, value: f64) -> f64 {
-        let wider = self.wider_by(MARGIN);
+        let wider = self.wide();
         value.clamp(wider.low, wider.high)
+    }
+
+    /// Where an unknown may wander on its way.
+    #[inline]
+    pub(crate) fn wide(self) -> Range {
+        self.wider_by(MARGIN)
     }
 }
 

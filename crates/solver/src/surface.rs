@@ -1,7 +1,7 @@
 //! Points of one surface at given values of two coordinates.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::angles::SearchSystem;
 use crate::grid::{Choice, Effort, Several, solve_field};
@@ -138,6 +138,11 @@ impl SurfaceProblem {
             several,
             keep: (Tape::new(&[], &bound.unknowns)?, Vec::new()),
         })
+    }
+
+    /// The same problem, for whose grids only these instructions are used; see [`System::on`].
+    pub fn on(self, instructions: InstructionSet) -> SurfaceProblem {
+        SurfaceProblem { system: self.system.on(instructions), ..self }
     }
 
     /// The system that is solved for each point.

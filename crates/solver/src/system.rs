@@ -1,9 +1,10 @@
 //! Square systems with their exact Jacobian, as one tape.
 
-use flank_expr::{Expr, LaneTape, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
 use crate::newton::Linearized;
 use crate::solution::{CutBy, Outcome};
+use crate::step::{MOST_EQUATIONS, written_out};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -14,6 +15,7 @@ pub struct System {
     /// What must be positive at a root for it to be one of the thing that is looked for.
     conditions: Tape,
     pub(crate) lanes: LaneTapes,
+    instructions: InstructionSet,
 }
 
 /// The same for many points at once; all take unknowns, then parameters.
@@ -21,8 +23,9 @@ pub struct System {
 pub(crate) struct LaneTapes {
     /// Residuals, conditions, and what else is wanted at a root, with what these have in common.
     pub(crate) checked: LaneTape,
-    /// Residuals, then the Jacobian row by row.
+    /// The step of Newton, see [`written_out`]; residuals, then the Jacobian row by row where it is not written out.
     pub(crate) linearized: LaneTape,
+    pub(crate) is_written_out: bool,
 }
 
 impl System {
@@ -33,15 +36,41 @@ impl System {
     ///
     /// # Panics
     /// If there are not as many residuals as unknowns.
-    pub fn new(residuals: &[Expr<'_>], unknowns: &[Expr<'_>], parameters: &[Expr<'_>]) -> Result<System, TapeError> {
+    pub fn new<'g>(
+        residuals: &[Expr<'g>],
+        unknowns: &[Expr<'g>],
+        parameters: &[Expr<'g>],
+    ) -> Result<System, TapeError> {
+        let system = System::one_by_one(residuals, unknowns, parameters)?;
+        if unknowns.len() > MOST_EQUATIONS || unknowns.is_empty() {
+            return Ok(system);
+        }
+        let linearized = written_out(residuals, unknowns, parameters)?;
+        let lanes = LaneTapes { linearized, is_written_out: true, ..system.lanes };
+        Ok(System { lanes, ..system })
+    }
+
+    /// The same without what makes many points at once fast.
+    ///
+    /// # Errors
+    /// As for [`System::new`].
+    ///
+    /// # Panics
+    /// As for [`System::new`].
+    pub(crate) fn one_by_one(
+        residuals: &[Expr<'_>],
+        unknowns: &[Expr<'_>],
+        parameters: &[Expr<'_>],
+    ) -> Result<System, TapeError> {
         assert_eq!(residuals.len(), unknowns.len(), "a system is square");
         let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
         let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
         let residuals = Tape::new(residuals, &inputs)?;
-        let lanes = LaneTapes { checked: LaneTape::new(&residuals), linearized: LaneTape::new(&tape) };
-        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes })
+        let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
+        let lanes = LaneTapes { checked, linearized, is_written_out: false };
+        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, instructions: InstructionSet::fastest() })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
@@ -61,6 +90,16 @@ impl System {
         let conditions = Tape::new(conditions, inputs)?;
         let lanes = LaneTapes { checked: LaneTape::new(&checked), ..self.lanes };
         Ok(System { conditions, lanes, ..self })
+    }
+
+    /// The same system, for whose grids only these instructions are used: without machine code of its own, say. The results are
+    /// the same, bit for bit.
+    pub fn on(self, instructions: InstructionSet) -> System {
+        System { instructions, ..self }
+    }
+
+    pub(crate) fn instructions(&self) -> InstructionSet {
+        self.instructions
     }
 
     pub(crate) fn condition_count(&self) -> usize {

@@ -1,6 +1,6 @@
 //! Points solved many at a time have the answers of the careful path, whatever happens beside them, on any number of threads.
 
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, InstructionSet};
 use flank_solver::{Outcome, Range, Solution, System, solve, solve_grid};
 
 fn range(low: f64, high: f64) -> Range {
@@ -71,6 +71,22 @@ fn one_thread_and_sixty_four_give_the_same_bits() {
     };
     let alone = on(1);
     assert!(alone == on(2) && alone == on(64));
+}
+
+/// The plain loops, vectors, and machine code of its own.
+#[test]
+fn all_instructions_give_the_same_bits() {
+    let graph = Graph::new();
+    let counts = [61, 45];
+    let targets = targets([(-0.2, 1.5), (-0.4, 0.5)], counts);
+    let on = |instructions| {
+        let system = half_solvable(&graph).on(instructions);
+        let (points, effort) = solve_grid(&system, &HALF_RANGES, &targets, counts);
+        let bits = |point: &Solution| -> Vec<u64> { point.unknowns.iter().map(|value| value.to_bits()).collect() };
+        (points.iter().map(|point| (point.outcome, bits(point))).collect::<Vec<_>>(), effort)
+    };
+    let plain = on(InstructionSet::available()[0]);
+    assert!(InstructionSet::available().into_iter().skip(1).all(|instructions| on(instructions) == plain));
 }
 
 /// One point is solved as a point of a larger grid is.

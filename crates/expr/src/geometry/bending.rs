@@ -1,6 +1,6 @@
 //! Principal curvatures as functions of the unknowns.
 
-use crate::geometry::clearance::determinant;
+use crate::geometry::minors::cofactors;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Vector3;
 use crate::graph::Expr;
@@ -27,16 +27,7 @@ impl<'g> Surface<'g> {
         let graph = coordinates[0].graph();
         let slopes = |f: &Expr<'g>| self.unknowns.iter().map(|&p| f.derivative(p)).collect::<Vec<_>>();
         let rows: Vec<Vec<Expr<'g>>> = self.constraints.iter().chain(&coordinates).map(slopes).collect();
-        let way = |k: usize| -> Vec<Expr<'g>> {
-            let row = self.constraints.len() + k;
-            let others: Vec<Vec<Expr<'g>>> = (0..count).filter(|i| *i != row).map(|i| rows[i].clone()).collect();
-            let entry = |column: usize| {
-                let columns: Vec<usize> = (0..count).filter(|j| *j != column).collect();
-                let minor = determinant(graph, &others, &columns);
-                if (row + column).is_multiple_of(2) { minor } else { -minor }
-            };
-            (0..count).map(entry).collect()
-        };
+        let way = |k: usize| cofactors(graph, &rows, self.constraints.len() + k);
         let along = |vector: Vector3<'g>, way: &[Expr<'g>]| {
             let terms = self.unknowns.iter().zip(way).map(|(&p, &by)| vector.derivative(p).scaled(by));
             terms.fold(Vector3::zero(graph), |sum, term| sum + term)

@@ -1,5 +1,6 @@
 //! Whether a tool leaves the points that it generates: second order contact of tool and work.
 
+use crate::geometry::minors::determinant;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Vector3;
 use crate::graph::{Expr, Graph};
@@ -57,16 +58,4 @@ impl<'g> Surface<'g> {
         }
         sum
     }
-}
-
-/// Of the columns of `rows` that are named.
-pub(super) fn determinant<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>], columns: &[usize]) -> Expr<'g> {
-    let Some((first, rest)) = rows.split_first() else { return graph.constant(1.0) };
-    let mut sum = graph.constant(0.0);
-    for (k, &column) in columns.iter().enumerate() {
-        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
-        let term = first[column] * determinant(graph, rest, &others);
-        sum = if k % 2 == 0 { sum + term } else { sum - term };
-    }
-    sum
 }
