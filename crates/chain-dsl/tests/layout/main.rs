@@ -41,6 +41,8 @@ fn shipped_specs_are_laid_out() {
     for (path, text) in specs {
         assert_eq!(format(&text, FILE).as_ref(), Ok(&text), "run `flank fmt {}`", path.display());
         let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        // a message is one text: it stands on a line of its own, however long it is
+        let code = code.filter(|line| !line.trim_start().starts_with('"'));
         assert_eq!(code.filter(|line| line.chars().count() > 110).count(), 0, "{}", path.display());
     }
 }
