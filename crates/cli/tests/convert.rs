@@ -1,0 +1,87 @@
+//! `flank convert` as a user runs it.
+
+mod support;
+
+use support::{flank, folder, text};
+
+/// A pinion on the free-form machine: what is printed, and the same as JSON.
+#[test]
+fn convert_carries_a_job_over() {
+    let out = folder("convert");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
+    let arguments = [&spec[..], &["--out", out.to_str().unwrap()]].concat();
+    let files = ["--nc", "fanuc,siemens,linuxcnc", "--time", "20", "--emit", "c,rust", "--format", "csv,json"];
+    let run = flank(&[&arguments[..], &["--tolerance", "0.1um"], &files].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told = text(&run.stdout);
+    for extension in ["csv", "json", "nc", "mpf", "ngc", "c", "rs"] {
+        let name = format!("pinion_19x62_on_free_form.{extension}");
+        assert!(out.join(&name).is_file() && told.contains(&name), "{name}: {told}");
+    }
+    assert!(told.contains("the tool does not see a turn about [0.000000, 0.000000, 1.000000]"), "{told}");
+    let run = flank(&[&arguments[..], &["--order", "9", "--positions", "21", "--json"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
+    assert_eq!(table["schema"], "flank.convert/1");
+    assert_eq!(table["positions"].as_array().unwrap().len(), 21);
+    let series = &table["polynomials"];
+    let h = table["positions"][20]["motions"][0].as_f64().unwrap().to_radians() - series["about"].as_f64().unwrap();
+    // the last position by the polynomials: what is left is of order ten
+    for (k, axis) in table["axes"].as_array().unwrap().iter().enumerate() {
+        let coefficients = series["coefficients"][axis["name"].as_str().unwrap()].as_array().unwrap();
+        let value = coefficients.iter().rev().fold(0.0, |sum, c| sum * h + c.as_f64().unwrap());
+        let value = if axis["unit"] == "deg" { value.to_degrees() } else { value };
+        let found = table["positions"][20]["axes"][k].as_f64().unwrap();
+        assert!((value - found).abs() < 1e-8, "{}: {value} instead of {found}", axis["name"]);
+    }
+    let deviations: Vec<f64> =
+        series["deviation_mm_by_order"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    assert!(deviations.len() == 10 && deviations[9] < 1e-8 && deviations[2] > 1e-3, "{deviations:?}");
+}
+
+#[test]
+fn convert_tells_what_the_other_machine_cannot_do() {
+    let out = folder("convert-not");
+    let told = |arguments: &[&str], code: i32| {
+        let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--out", out.to_str().unwrap(), "--to"];
+        let run = flank(&[&spec, arguments].concat());
+        assert_eq!(run.status.code(), Some(code), "{}", text(&run.stderr));
+        text(&run.stderr)
+    };
+    let six = "specs/machines/hobbing_6axis.chain";
+    assert!(told(&[six], 1).contains("hobbing_6axis has no frame `work` that stands for m.work"));
+    let beyond = told(&[six, "--tool-frame", "hob", "--work-frame", "table"], 3);
+    assert!(beyond.contains("101 of 101 positions: axis hobbing_6axis.X has to stand at -"), "{beyond}");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "what cannot be reached is no program");
+    assert!(told(&["specs/tools/rack.chain"], 1).contains("there is no machine in specs/tools/rack.chain"));
+    let run = flank(&["convert", "specs/bevel/tilted_pinion.chain", "--to", "specs/machines/free_form.chain"]);
+    assert!(text(&run.stderr).contains("has several tools"), "{}", text(&run.stderr));
+}
+
+/// The numbers of the printed table, from what this pinion's machine sheet says: without tilt the root angle and the distance of cutter
+/// and cradle stay, the work turns by the ratio of roll, the cutter back by the roll.
+#[test]
+fn printed_axes_are_those_of_the_machine_sheet() {
+    let out = folder("convert-table");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
+    let run = flank(&[&spec[..], &["--out", out.to_str().unwrap()]].concat());
+    let told = text(&run.stdout);
+    let numbers = |start: &str| -> Vec<f64> {
+        let line = told.lines().find(|line| line.trim_start().starts_with(start)).expect("it is printed");
+        line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    };
+    let ends = |axis: &str| [numbers(axis)[0], numbers(axis)[1]];
+    let over = told.lines().find(|line| line.contains("positions over roll")).expect("it is printed");
+    let over: Vec<f64> = over.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let roll = over[2] - over[1];
+    // printed to 1e-6
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 4e-6, "{found} instead of {expected}: {told}");
+    ends("B ").into_iter().for_each(|root| near(root, 15.64096727073747));
+    near(ends("A ")[1] - ends("A ")[0], 3.3396859 * roll);
+    near(ends("C ")[1] - ends("C ")[0], roll);
+    assert_eq!(over[0], 101.0);
+    // both run one way, so that the ends belong together: the smallest X with the largest Y
+    let distance = [ends("X ")[0].hypot(ends("Y ")[1]), ends("X ")[1].hypot(ends("Y ")[0])];
+    distance.into_iter().for_each(|distance| near(distance, 97.95940290780507));
+}

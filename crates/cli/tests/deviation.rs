@@ -1,0 +1,40 @@
+//! `flank deviation` as a user runs it.
+
+mod support;
+
+use support::{flank, folder, text};
+
+#[test]
+fn deviation_of_two_flanks_is_told_and_drawn() {
+    let out = folder("deviation");
+    let spec = "specs/bevel/ease_off_19x62.chain";
+    let into = out.to_str().unwrap();
+    let of = ["deviation", spec, "pinion.concave", "--from", "conjugate.concave", "--out", into];
+    let run = flank(&[&of[..], &["--json"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_str(&text(&run.stdout)).unwrap();
+    assert_eq!((told["asked"].as_u64(), told["known"].as_u64()), (Some(1125), Some(1125)));
+    assert!(told["middle_um"].as_f64().unwrap().abs() < 1e-6);
+    for extension in ["csv", "png", "svg"] {
+        assert!(out.join(format!("pinion.concave.deviation.{extension}")).exists(), "{extension}");
+    }
+    let run = flank(&["deviation", spec, "concave", "--from", "conjugate.concave", "--out", into]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("several jobs have a surface `concave`"), "{}", text(&run.stderr));
+    let run = flank(&["deviation", spec, "pinion.convex", "--from", "conjugate.concave", "--out", into]);
+    assert!(text(&run.stderr).contains("there is no surface `pinion.convex`"), "{}", text(&run.stderr));
+    let run = flank(&["deviation", spec, "conjugate.concave", "--from", "pinion.concave", "--out", into]);
+    assert!(text(&run.stderr).contains("`concave` is not sampled"), "{}", text(&run.stderr));
+}
+
+/// Two surfaces that are both sampled by a coordinate of the spec's own are held against each other by it.
+#[test]
+fn a_worm_wheel_lies_off_the_conjugate_one() {
+    let out = folder("worm_wheel");
+    let surfaces = ["specs/hobbing/worm_wheel.chain", "upper.flank", "--from", "conjugate_upper.flank"];
+    let rest = ["--no-picture", "--out", out.to_str().expect("a plain path")];
+    let run = flank(&[&["deviation"], &surfaces[..], &rest].concat());
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(0), "{told}");
+    assert!(told.contains("points       315 of 315") && told.contains("range        -36.448 .. 0.223 um"), "{told}");
+}

@@ -1,0 +1,378 @@
+//! `flank solve` as a user runs it: output, files, exit codes.
+
+mod support;
+
+use std::path::Path;
+use std::process::Output;
+
+use support::{flank, folder, self_contained, text, top, written};
+
+#[test]
+fn solve_writes_points_and_pictures() {
+    let out = folder("solve");
+    let run = flank(&[
+        "solve",
+        "specs/hobbing/helical_gear.chain",
+        "--out",
+        out.to_str().unwrap(),
+        "--format",
+        "csv,json,stl",
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in ["lower_flank", "upper_flank", "651", "worst residual", "spindle"] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    assert!(text(&run.stderr).contains("1302 points in"), "{}", text(&run.stderr));
+    for extension in ["csv", "json", "stl", "png", "svg"] {
+        let path = out.join(format!("helical_gear.{extension}"));
+        assert!(std::fs::metadata(&path).is_ok_and(|file| file.len() > 1000), "{}", path.display());
+    }
+    let csv = std::fs::read_to_string(out.join("helical_gear.csv")).unwrap();
+    let head = csv.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert_eq!(head, "surface,i,j,x,y,z,nx,ny,nz,xi,tau,spindle,feed,residual,status");
+    assert_eq!(csv.lines().filter(|line| line.ends_with(",solved")).count(), 1302);
+}
+
+/// Ten teeth are cut under: the singular line is on the base circle, at u = r sin²α / cos α.
+#[test]
+fn limits_are_listed_and_written() {
+    let out = folder("limits");
+    let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--set", "teeth=10", "--set", "module=5 mm", "--limits"];
+    let more = ["--set", "profile_shift=0", "--set", "r.tip_height=6.25 mm", "--set", "r.tip_radius=1.9 mm", "--json"];
+    let run = flank(&[&arguments[..], &more[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let lines = table["lines"].as_array().expect("lines");
+    let line = |name: &str| lines.iter().find(|line| line["name"] == name).expect("the line is listed");
+    assert_eq!(line("flank_plus.singular_line")["solved"], 25);
+    assert_eq!(line("fillet_plus.singular_line")["solved"], 0);
+    assert_eq!(line("flank_plus.contact_limit")["solved"], 0);
+    let u = line("flank_plus.singular_line")["ranges_reached"][2]["low"].as_f64().unwrap();
+    let alpha = 20f64.to_radians();
+    assert!((u - 25.0 * alpha.sin().powi(2) / alpha.cos()).abs() < 1e-9, "{u}");
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus.singular_line,")).count(), 25);
+    assert!(!csv.contains("contact_limit,"));
+}
+
+/// The flank of a spur gear bends as 1/√(R² − r_b²), and the whole tooth along its length not at all.
+#[test]
+fn geometry_is_listed_and_written() {
+    let out = folder("geometry");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--geometry", "--no-picture", "--out", out.to_str().unwrap()];
+    let run = flank(&base);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in ["flank_plus", "k1", "1/mm", "sliding_angle", "90.000000  deg", "induced_k1", "metric_e"] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    assert!(!table.contains("-0.000000 ") && !table.contains("NaN"), "{table}");
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    let rows: Vec<Vec<&str>> =
+        csv.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|title| *title == name).expect("a column");
+    let number = |row: &[&str], name: &str| -> f64 { row[column(name)].parse().expect("a number") };
+    let base_radius = 36.0 * 20f64.to_radians().cos();
+    let points: Vec<&Vec<&str>> = rows.iter().filter(|row| row[0] == "flank_plus").collect();
+    assert_eq!(points.len(), 275);
+    for row in points {
+        let involute = 1.0 / (number(row, "x").hypot(number(row, "y")).powi(2) - base_radius.powi(2)).sqrt();
+        assert!((number(row, "k1") / involute - 1.0).abs() < 1e-9 && number(row, "k2").abs() < 1e-12);
+        assert!((number(row, "d2_z").abs() - 1.0).abs() < 1e-9 && (number(row, "contact_line_z") - 1.0).abs() < 1e-9);
+    }
+    let json = flank(&[&base[..], &["--json"]].concat());
+    let table: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    let field = &table["surfaces"][0]["fields"][0];
+    assert_eq!(
+        (field["name"].as_str(), field["unit"].as_str(), field["undefined"].as_u64()),
+        (Some("k1"), Some("1/mm"), Some(0))
+    );
+}
+
+/// A rack that stands off by 1 mm leaves sin α more material all over its flanks; the face width leaves them where they are.
+#[test]
+fn sensitivity_is_ranked_written_and_drawn() {
+    let out = folder("sensitivity");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--sensitivity", "--out", out.to_str().unwrap()];
+    let run = flank(&base);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    for part in [
+        "flank_plus moves, over 275 points, with",
+        "profile_shift",
+        "um/0.001",
+        "no influence, ",
+        "face_width",
+        "by little: teeth",
+    ] {
+        assert!(table.contains(part), "{part} in\n{table}");
+    }
+    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
+    let rows: Vec<Vec<&str>> =
+        csv.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|title| *title == name).expect("a column");
+    let [shift, width] = ["d_normal/d_profile_shift", "d_normal/d_face_width"].map(column);
+    for row in rows.iter().filter(|row| row[0].starts_with("flank_")) {
+        // module 3 mm, told for 0.001
+        let moved: f64 = row[shift].parse().expect("a number");
+        assert!((moved - 3.0 * 20f64.to_radians().sin()).abs() < 1e-12, "{moved}");
+        assert_eq!(row[width], "0");
+    }
+    for surface in ["flank_plus", "fillet_minus"] {
+        for extension in ["png", "svg"] {
+            let path = out.join(format!("spur_gear.{surface}.sensitivity.{extension}"));
+            assert!(std::fs::metadata(&path).is_ok_and(|file| file.len() > 1000), "{}", path.display());
+        }
+    }
+    let summary = flank(&[&base[..], &["--json", "--no-picture"]].concat());
+    let table: serde_json::Value = serde_json::from_slice(&summary.stdout).expect("JSON");
+    let sensitivity = &table["surfaces"][0]["sensitivity"];
+    let rms = |k: usize| sensitivity["parameters"][k]["rms"].as_f64().expect("a number");
+    assert!(rms(0) >= rms(1) && rms(1) > 0.0);
+    assert_eq!(sensitivity["counts"], serde_json::json!(["teeth"]));
+}
+
+/// Points that the job's own `trim`s and the tool itself take away are counted by what takes them, and asked for in vain.
+#[test]
+fn what_is_cut_away_is_counted() {
+    let out = folder("cut-away");
+    let run = flank(&[
+        "solve",
+        "specs/hobbing/undercut_gear.chain",
+        "--json",
+        "--no-picture",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(run.status.code(), Some(3));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let outcomes = &table["surfaces"][0]["outcomes"];
+    assert_eq!((&outcomes["solved"], &outcomes["cut away"]), (&189.into(), &98.into()), "{outcomes}");
+    assert_eq!(table["lines"][0]["name"], "flank_plus.trimmed_by_fillet_plus");
+    assert_eq!(table["lines"][0]["solved"], 7);
+    let told = text(&run.stderr);
+    assert!(told.contains("70: cut away by the tool itself"), "{told}");
+    assert!(told.contains("28: cut away by what makes fillet_plus, as `trim` asks for"), "{told}");
+    let csv = std::fs::read_to_string(out.join("undercut_gear.csv")).unwrap();
+    assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus,") && row.contains(",cut away,")).count(), 98);
+}
+
+/// `cut`: what is left goes out with the points, as a map, and as a summary; where no edge passes, that is said.
+#[test]
+fn what_single_edges_leave_is_listed_written_and_drawn() {
+    let out = folder("cut");
+    let spec = std::fs::read_to_string(top().join("tests/machines/planed.chain")).expect("the test's machine");
+    let spec = written(&out, "planed.chain", &spec);
+    let solve = |set: &str| flank(&["solve", &spec, "--json", "--set", set, "--out", out.to_str().unwrap()]);
+    let run = solve("feed=0.5 mm");
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let plane = &table["surfaces"][0];
+    assert_eq!(plane["cut"], serde_json::json!({ "by": "strokes", "known": 255, "unreached": 0, "undecided": 0 }));
+    let left = &plane["fields"][0];
+    assert_eq!((left["name"].as_str(), left["unit"].as_str()), (Some("left"), Some("um")));
+    // half a feed beside a stroke: 8 - sqrt(8^2 - 0.25^2) mm
+    assert!((left["high"].as_f64().unwrap() - 3.907204).abs() < 1e-6, "{left}");
+    let csv = std::fs::read_to_string(out.join("planed.csv")).unwrap();
+    let titles = csv.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert!(titles.ends_with("left,left_by_stroke"), "{titles}");
+    assert!(csv.contains("of `strokes` leave over the surface, along its normal; plus is material"));
+    for extension in ["png", "svg"] {
+        assert!(out.join(format!("planed.plane.left.{extension}")).exists());
+    }
+    let run = solve("reach=1 deg");
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stderr);
+    assert!(told.contains("not known what is left: 130 of 255 points of plane"), "{told}");
+    assert!(told.contains("130: no edge of strokes passes there within its ranges"), "{told}");
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let [a, b] = ["bytes-a", "bytes-b"].map(folder);
+    for out in [&a, &b] {
+        let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--format", "csv,json,stl", "--out"];
+        let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+        assert_eq!(run.status.code(), Some(0));
+    }
+    for extension in ["csv", "json", "stl", "png", "svg"] {
+        let read = |folder: &Path| std::fs::read(folder.join(format!("spur_gear.{extension}"))).unwrap();
+        assert_eq!(read(&a), read(&b), "{extension}");
+    }
+}
+
+#[test]
+fn stdout_is_the_same_each_time() {
+    let out = folder("same");
+    for further in [&[][..], &["--json"]] {
+        let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--no-picture", "--out", out.to_str().unwrap()];
+        let [a, b] = [(); 2].map(|()| flank(&[&arguments[..], further].concat()));
+        assert_eq!(text(&a.stdout), text(&b.stdout));
+        assert!(text(&a.stderr).contains("points in"), "{}", text(&a.stderr));
+    }
+}
+
+#[test]
+fn jobs_without_a_sample_are_passed_over() {
+    let folder = folder("idle");
+    std::fs::write(folder.join("flank.toml"), "").expect("the test's file");
+    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).unwrap();
+    let idle: String = gear.lines().filter(|line| !line.contains("sample")).map(|line| format!("{line}\n")).collect();
+    let idle_job = idle[idle.find("job first_gear").unwrap()..idle.find("/// The tool sits").unwrap()].to_string();
+    let both = written(&folder, "both.chain", &format!("{gear}{}", idle_job.replace("first_gear", "idle_gear")));
+    let none = written(&folder, "none.chain", &idle);
+    let solve =
+        |further: &[&str]| flank(&[&["solve", "--no-picture", "--out", folder.to_str().unwrap()], further].concat());
+
+    let run = solve(&[&both]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("job first_gear") && text(&run.stdout).contains("job first_helical_gear"));
+    assert!(text(&run.stderr).contains("note: job `idle_gear` asks for no points"), "{}", text(&run.stderr));
+    for wrong in [&[both.as_str(), "--job", "idle_gear"][..], &[&none]] {
+        let run = solve(wrong);
+        assert_eq!(run.status.code(), Some(1), "{}", text(&run.stdout));
+        assert!(text(&run.stderr).contains("error: job `"), "{}", text(&run.stderr));
+        assert!(run.stdout.is_empty());
+    }
+}
+
+#[test]
+fn set_changes_a_parameter_and_a_setting() {
+    let out = folder("set");
+    let base = ["solve", "specs/hobbing/spur_gear.chain", "--json", "--no-picture", "--out", out.to_str().unwrap()];
+    let plain = flank(&base);
+    let changed = flank(&[&base[..], &["--set", "profile_shift=0.25", "--set", "r.tip_radius=1 mm"]].concat());
+    assert_eq!(changed.status.code(), Some(0), "{}", text(&changed.stderr));
+    let low = |run: &Output| -> f64 {
+        let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        table["surfaces"][1]["ranges_reached"][0]["low"].as_f64().expect("a number")
+    };
+    // the root circle moves with the profile shift
+    assert!((low(&changed) - low(&plain) - 0.05 * 3.0).abs() < 1e-3, "{} {}", low(&plain), low(&changed));
+}
+
+/// A cutter whose centre is set so far out that it never reaches the blank.
+#[test]
+fn a_job_without_solution_exits_3_and_writes_statuses() {
+    let out = folder("unsolved");
+    let arguments = ["solve", "specs/bevel/pinion_19x62.chain", "--set", "m.radial_distance=400 mm", "--out"];
+    let run = flank(&[&arguments[..], &[out.to_str().unwrap(), "--geometry", "--sensitivity"]].concat());
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    let table = text(&run.stdout);
+    assert!(table.contains("concave: no point is solved, so it cannot be said what moves it"), "{table}");
+    assert!(!table.contains("no influence"), "{table}");
+    assert!(text(&run.stderr).contains("not solved: 465 of 465 points of concave\n"), "{}", text(&run.stderr));
+    let csv = std::fs::read_to_string(out.join("pinion_19x62.csv")).unwrap();
+    let flank_rows: Vec<&str> = csv.lines().filter(|line| line.starts_with("concave,")).collect();
+    assert_eq!(flank_rows.len(), 465);
+    for row in flank_rows {
+        // nor are curvatures or sensitivities
+        let row = row.trim_end_matches(',');
+        let told = [" iterations", ",not converged,no start leads there", ",singular"];
+        assert!(
+            told.iter().any(|end| row.ends_with(end)) || row.contains(",outside,") && row.ends_with(" mm"),
+            "{row}"
+        );
+        assert!(row.contains(",,,,,,"), "no position is invented: {row}");
+    }
+}
+
+/// What a status leaves open is told of each point: which unknown by how much, and what cuts away.
+#[test]
+fn statuses_have_reasons() {
+    let out = folder("reasons");
+    let solve = |arguments: &[&str]| {
+        let run = flank(&[&["solve", "--no-picture", "--out", out.to_str().unwrap()], arguments].concat());
+        assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    };
+    let told = |name: &str, reason: &str| {
+        let csv = std::fs::read_to_string(out.join(name)).unwrap();
+        let mut rows = csv.lines().filter(|line| !line.starts_with('#'));
+        let titles: Vec<&str> = rows.next().unwrap().split(',').collect();
+        assert_eq!(titles[titles.len() - 2..], ["status", "reason"]);
+        assert!(rows.any(|row| row.contains(reason)), "no row has {reason}: {csv}");
+    };
+    solve(&["specs/hobbing/undercut_gear.chain"]);
+    told("undercut_gear.csv", "cut away,\"by the tool itself, beyond the singular line of the envelope (undercut)\"");
+    told("undercut_gear.csv", "cut away,\"by what makes fillet_plus, as `trim` asks for\"");
+    let spec = self_contained(&["tutorial/first_gear"]);
+    let narrow = spec.replace("motion roll : angle in -40 deg .. 40 deg", "motion roll : angle in -5 deg .. 5 deg");
+    assert_ne!(spec, narrow);
+    solve(&[&written(&out, "narrow.chain", &narrow)]);
+    told("first_gear.csv", "outside,roll by ");
+}
+
+/// The hob's thread comes by again after a turn: the JSON lists the teeth with what keeps each of them.
+#[test]
+fn branches_are_listed_as_json() {
+    let out = folder("branches");
+    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
+    let spec = written(&out, "unsaid.chain", &(unsaid.join("\n") + "\n"));
+    let run = flank(&["solve", &spec, "--json", "--no-picture", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
+    assert_eq!(table["schema"], "flank.solve/2");
+    let found = table["surfaces"][0]["branches"]["found"].as_array().unwrap();
+    assert!(found.len() > 1, "{found:?}");
+    for branch in found {
+        let keep = &branch["keep"];
+        let unknowns = branch["unknowns"].as_array().unwrap();
+        let of = unknowns.iter().find(|unknown| unknown["name"] == keep["name"]).expect("keep names an unknown");
+        let [low, at, high] = [&keep["low"], &of["value"], &keep["high"]].map(|x| x.as_f64().unwrap());
+        assert!(low < at && at < high, "{branch}");
+        let line =
+            format!("ranges of {} hold {} branches", table["surfaces"][0]["name"].as_str().unwrap(), found.len());
+        assert!(text(&run.stderr).contains(&line), "{}", text(&run.stderr));
+    }
+}
+
+/// A gear too large for the machine: the radial axis would have to stand at 430 mm.
+#[test]
+fn an_axis_beyond_its_travel_is_told() {
+    let out = folder("travel");
+    let arguments = ["solve", "specs/hobbing/helical_gear.chain", "--no-picture", "--set", "teeth=241", "--out"];
+    let run = flank(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stderr);
+    assert!(told.contains("beyond its travel: axis m.X runs from 428.6"), "{told}");
+}
+
+#[test]
+fn files_that_cannot_be_written_are_told() {
+    let folder = folder("unwritable");
+    let blocked = written(&folder, "blocked", "a file, not a folder");
+    let run = flank(&["solve", "specs/hobbing/spur_gear.chain", "--out", &blocked]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("blocked"), "{}", text(&run.stderr));
+}
+
+/// What a user gets wrong at a hobbing machine, and what is told.
+#[test]
+fn wrong_settings_of_hobbing_machines_are_told() {
+    let out = folder("wrong_settings");
+    let out = out.to_str().expect("a plain path");
+    for (spec, set, code, told) in [
+        ("worm_wheel", "h.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
+        ("crowned_gear", "m.left_hand=1", 1, "the hob is of the other hand than the one that the machine turns for"),
+        (
+            "beveloid",
+            "m.swivel=40 deg",
+            1,
+            "with this swivel the hob's thread lies across the teeth and mills them away",
+        ),
+        ("worm_wheel", "starts=6", 1, "plunged radially, a hob of so many starts cuts the ends of the flanks away"),
+        ("beveloid", "m.swivel=50 deg", 1, "`swivel` is 50 deg, outside its range -45 deg .. 45 deg"),
+        ("crowned_gear", "h.starts=12", 1, "each thread of a hob cuts with several teeth: more gashes than starts"),
+        ("crowned_gear", "h.addendum=9 mm", 1, "the hob's teeth are pointed below their tip"),
+        ("worm_wheel_tangential", "face_width=40 mm", 3, "infeed outside its range, by up to 11.9"),
+        ("beveloid", "teeth=250", 3, "beyond its travel: axis m.X runs from 413.4"),
+    ] {
+        let file = format!("specs/hobbing/{spec}.chain");
+        let run = flank(&["solve", &file, "--set", set, "--no-picture", "--out", out]);
+        let said = text(&run.stderr) + &text(&run.stdout);
+        assert_eq!(run.status.code(), Some(code), "{spec}, {set}: {said}");
+        assert!(said.contains(told), "{spec}, {set}: {said}");
+    }
+}
