@@ -81,7 +81,11 @@ fn printed_axes_are_those_of_the_machine_sheet() {
     near(ends("A ")[1] - ends("A ")[0], 3.3396859 * roll);
     near(ends("C ")[1] - ends("C ")[0], roll);
     assert_eq!(over[0], 101.0);
-    // both run one way, so that the ends belong together: the smallest X with the largest Y
-    let distance = [ends("X ")[0].hypot(ends("Y ")[1]), ends("X ")[1].hypot(ends("Y ")[0])];
-    distance.into_iter().for_each(|distance| near(distance, 97.95940290780507));
+    // the cradle stands in the machine's centre, the slides in the crossing point of the gear's axes: by so much along the work's axis
+    let off = 0.001306176586991889;
+    let root = 15.64096727073747_f64.to_radians();
+    ends("Z ").into_iter().for_each(|z| near(z, -off * root.sin()));
+    // X and Y run one way, so that the ends belong together: the smallest X with the largest Y
+    let [x, y] = [ends("X ").map(|x| x - off * root.cos()), ends("Y ")];
+    [x[0].hypot(y[1]), x[1].hypot(y[0])].into_iter().for_each(|distance| near(distance, 97.95940290780507));
 }
