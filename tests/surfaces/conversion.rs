@@ -3,9 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
-use flank_expr::geometry::Chain;
+use flank_expr::geometry::{Axis as Line, Chain, Step};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, symmetries};
+use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, Unproven, symmetries};
 use flank_tests::{points, reference_json, repository};
 use serde_json::Value;
 
@@ -199,4 +199,110 @@ fn what_a_machine_has_no_axis_for_is_told() {
     let posture = &problem.postures(&[0.1])[0];
     let missing = posture.missing.expect("the cutter's axis cannot be met");
     assert!(missing.direction >= 3 && missing.by.abs() > 1e-3, "{missing:?}");
+}
+
+/// The largest distance of the axes from polynomials at postures over a range, and the bound of a tube.
+fn sampled_and_proven(conversion: &Conversion<'_>, range: Range, series: &[Vec<f64>], about: f64) -> [Vec<f64>; 2] {
+    let first = conversion.problem.postures(&[about]).swap_remove(0);
+    let tube = conversion.problem.tube(&first, about, range).expect("no singular pose");
+    let mut sampled = vec![0.0f64; first.axes.len()];
+    for end in [range.low, range.high] {
+        let motions: Vec<Vec<f64>> = (0..=100).map(|k| vec![about + (end - about) * f64::from(k) / 100.0]).collect();
+        for (posture, motion) in conversion.problem.follow(&first, &motions).iter().zip(&motions) {
+            let h = motion[0] - about;
+            for ((most, axis), c) in sampled.iter_mut().zip(&posture.axes).zip(series) {
+                *most = most.max((axis - c.iter().rev().fold(0.0, |sum, c| sum * h + c)).abs());
+            }
+        }
+    }
+    [sampled, tube.distances(about, series)]
+}
+
+/// What is proven of each axis's remainder is never below what is seen at 201 positions, and hardly above it: where the order of
+/// the series decides, not rounding (a length of 100 mm after some hundred operations), by less than a hundredth.
+#[test]
+fn remainders_are_bounded() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, TABLES);
+    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let reference = reference_json("freeform.json");
+    let range = Range { low: -0.3, high: 0.2 };
+    let first = conversion.problem.postures(&[0.0]).swap_remove(0);
+    for order in 2..=8 {
+        let series = conversion.problem.series(&first, &[0.0], 0, order).expect("no singular pose");
+        let [sampled, proven] = sampled_and_proven(&conversion, range, &series, 0.0);
+        for (k, name) in conversion.axes.iter().enumerate() {
+            let [seen, bound] = [sampled[k], proven[k]];
+            assert!(bound >= seen && bound <= 1.01 * seen + 2e-12, "{name}, order {order}: {bound:e}, {seen:e} seen");
+            let table = &reference["max_dev"][format!("order{order}")][if name == "C" { "Cc" } else { name }];
+            if let Some(table) = table.as_f64() {
+                assert!(bound >= table && bound <= 1.01 * table + 2e-12, "{name}: {bound:e}, {table:e} in the table");
+            }
+        }
+    }
+}
+
+/// A polynomial that is wrong is as far off as it is.
+#[test]
+fn remainders_of_wrong_polynomials_show() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, TABLES);
+    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let first = conversion.problem.postures(&[0.0]).swap_remove(0);
+    let mut series = conversion.problem.series(&first, &[0.0], 0, 6).expect("no singular pose");
+    series[0][1] += 0.5;
+    series[3][0] += 0.1;
+    let [sampled, proven] = sampled_and_proven(&conversion, Range { low: -0.3, high: 0.2 }, &series, 0.0);
+    assert!((proven[0] - 0.15).abs() < 1e-3 && proven[3] >= 0.1, "{proven:?}");
+    assert!(sampled.iter().zip(&proven).all(|(seen, bound)| bound >= seen), "{sampled:?} {proven:?}");
+}
+
+/// A hob's spindle turns by more than a turn; the axes are polynomials of the third order themselves.
+#[test]
+fn remainders_over_more_than_a_turn() {
+    let graph = Graph::new();
+    let (_, target) = compiled(&graph, ["specs/hobbing/helical_gear.chain", "specs/machines/hobbing_6axis.chain"]);
+    let machine = &target.machines[0];
+    let turn = graph.variable("turn");
+    let chain = machine.chain(&graph, "table", "hob").expect("both frames");
+    let law = |name: &str| match name {
+        "X" => 90.0 + 0.01 * turn.powi(3),
+        "Y" => 0.1 * turn.powi(2),
+        "Z" => 0.5 * turn,
+        "A" => graph.constant(0.3),
+        "B" => turn,
+        _ => 0.05 * turn,
+    };
+    let laws: Vec<_> = machine.axes.iter().map(|axis| (axis.variable, law(&axis.name))).collect();
+    let axes = target_axes(&target);
+    let source = chain.substituted(&laws);
+    let problem = PoseProblem::new(&chain, &axes, &source, &[turn], &[], 1000.0, &[]).expect("six axes");
+    let conversion = Conversion { problem, axes: Vec::new() };
+    let first = conversion.problem.postures(&[0.0]).swap_remove(0);
+    let series = conversion.problem.series(&first, &[0.0], 0, 3).expect("no singular pose");
+    let [sampled, proven] = sampled_and_proven(&conversion, Range { low: -4.0, high: 5.0 }, &series, 0.0);
+    assert!(sampled.iter().zip(&proven).all(|(seen, bound)| seen <= bound && *bound < 1e-11), "{sampled:?} {proven:?}");
+}
+
+/// The free-form machine holds its tool parallel to the work's axis in the middle of a tool's swing, or nearly.
+#[test]
+fn in_a_singular_pose_nothing_is_claimed() {
+    let graph = Graph::new();
+    let (_, target) = compiled(&graph, TABLES);
+    let swing = graph.variable("swing");
+    let machine = &target.machines[0];
+    let chain = machine.chain(&graph, "work", "cutter").expect("both frames");
+    let tube = |beside: f64| {
+        let turned = [(Line::X, swing), (Line::Y, graph.constant(beside))].map(|(line, by)| Step::Rotate(line, by));
+        let source = Chain::new(&graph, turned.to_vec());
+        let problem = PoseProblem::new(&chain, &target_axes(&target), &source, &[swing], &[], 1000.0, &[]);
+        let problem = problem.expect("six axes");
+        let first = problem.postures(&[-0.5]).swap_remove(0);
+        assert!(problem.follow(&first, &[vec![-0.5]])[0].missing.is_none());
+        problem.tube(&first, -0.5, Range { low: -0.5, high: 0.5 }).map(|_| ())
+    };
+    let Err(Unproven { at }) = tube(0.0) else { panic!("nothing is proven through a singular pose") };
+    assert!(at > -0.01 && at <= 0.0, "{at}");
+    // A and C turn by half a turn within some hundredths of a radian
+    assert_eq!(tube(0.02), Ok(()));
 }

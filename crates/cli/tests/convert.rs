@@ -18,6 +18,9 @@ fn convert_carries_a_job_over() {
         let name = format!("pinion_19x62_on_free_form.{extension}");
         assert!(out.join(&name).is_file() && told.contains(&name), "{name}: {told}");
     }
+    assert!(told.contains("proven, nowhere more than"), "{told}");
+    let head = std::fs::read_to_string(out.join("pinion_19x62_on_free_form.c")).unwrap();
+    assert!(head.contains("* proven, over roll from -10.367281 deg to 11.380923 deg: off by at most X 4.0"), "{head}");
     assert!(told.contains("the tool does not see a turn about [0.000000, 0.000000, 1.000000]"), "{told}");
     let run = flank(&[&arguments[..], &["--order", "9", "--positions", "21", "--json"]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -33,6 +36,11 @@ fn convert_carries_a_job_over() {
         let value = if axis["unit"] == "deg" { value.to_degrees() } else { value };
         let found = table["positions"][20]["axes"][k].as_f64().unwrap();
         assert!((value - found).abs() < 1e-8, "{}: {value} instead of {found}", axis["name"]);
+    }
+    let remainders = &series["remainders"];
+    for axis in ["X", "Y", "Z", "A", "B", "C"] {
+        let [seen, proven] = ["seen", "proven"].map(|key| remainders[key][axis].as_f64().unwrap());
+        assert!(seen <= proven && proven < 1.01 * seen + 1e-12, "{axis}: {remainders}");
     }
     let deviations: Vec<f64> =
         series["deviation_mm_by_order"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();

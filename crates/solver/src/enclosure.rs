@@ -222,7 +222,7 @@ fn narrow(left: &mut [Interval], middle: &[f64], value: Interval, slopes: &[Inte
 
 /// Gauss and Jordan with the largest pivot of the column; whether all pivots were numbers other than zero. Its rounding
 /// errors do no harm: any matrix may precondition.
-fn invert(matrix: &mut [f64], inverse: &mut [f64], n: usize) -> bool {
+pub(crate) fn invert(matrix: &mut [f64], inverse: &mut [f64], n: usize) -> bool {
     for column in 0..n {
         let size = |row: usize| matrix[row * n + column].abs();
         let Some(pivot) = (column..n).max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return false };

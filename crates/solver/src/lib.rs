@@ -39,6 +39,7 @@ mod surface;
 mod symmetry;
 mod system;
 mod trim;
+mod tube;
 mod whole_numbers;
 
 pub use certify::Certifier;
@@ -58,3 +59,4 @@ pub use surface::{SurfacePoint, SurfaceProblem};
 pub use symmetry::{Screw, symmetries};
 pub use system::System;
 pub use trim::trim;
+pub use tube::{Tube, Unproven};

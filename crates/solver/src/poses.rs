@@ -81,6 +81,13 @@ pub struct Missing {
     pub by: f64,
 }
 
+impl Posture {
+    /// The tool stands as it should, within travel or beyond it.
+    pub(crate) fn is_root(&self) -> bool {
+        self.outcome.is_root()
+    }
+}
+
 impl<'g> PoseProblem<'g> {
     /// `target` and `source` lead from work to tool on the two machines; `symmetries` are what the tool does not see of its own
     /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go;
@@ -163,6 +170,10 @@ impl<'g> PoseProblem<'g> {
     /// What the chain and [`PoseProblem::series`] are in: the axes, then those amounts.
     pub fn unknowns(&self) -> &[Expr<'g>] {
         &self.unknowns
+    }
+
+    pub(crate) fn system(&self) -> &System {
+        &self.system
     }
 
     /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; if there

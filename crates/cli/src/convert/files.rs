@@ -62,9 +62,14 @@ fn motion_table(table: &Table, header: Header) -> MotionTable {
         rows: rows.map(|(at, posture)| MotionRow { motion: at[0], axes: posture.axes.clone() }).collect(),
         series: table.series.as_ref().map(|series| Series {
             reference: series.about,
-            axes: series.axes.iter().map(|c| AxisSeries { coefficients: c.clone(), remainder: None }).collect(),
+            axes: (0..).zip(&series.axes).map(|(k, c)| axis_series(k, c, series)).collect(),
         }),
     }
+}
+
+fn axis_series(index: usize, coefficients: &[f64], series: &super::series::Series) -> AxisSeries {
+    let remainder = series.remainders.as_ref().ok().map(|bounds| bounds[index]);
+    AxisSeries { coefficients: coefficients.to_vec(), remainder }
 }
 
 /// The axes and their first derivatives from the motion, as source text.
@@ -80,6 +85,7 @@ fn function(table: &Table, name: &str, language: flank_expr::Language) -> Option
     comment.extend(series.deviations.get(series.order).map(|most| {
         format!("the flank is off by up to {:.6} um where points were sampled; {}", most * 1e3, table.over())
     }));
+    comment.push(table.remainders(series));
     let signature = Signature { name, comment: &comment };
     Some(emit_polynomials(language, signature, (&table.motions[0].name, series.about), &polynomials))
 }

@@ -1,7 +1,7 @@
 //! The axes as polynomials of the motion, and what cutting them off leaves on the flank.
 
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Posture};
+use flank_solver::{Outcome, PoseProblem, Posture, Unproven};
 
 use super::source::{Flank, Source};
 use crate::arguments::Convert;
@@ -22,6 +22,10 @@ pub(crate) struct Series {
     pub(crate) deviations: Vec<f64>,
     /// Whether the tolerance is met.
     pub(crate) meets: bool,
+    /// What the polynomials leave of each axis at the positions, at most, mm or rad.
+    pub(crate) seen: Vec<f64>,
+    /// What they leave of it anywhere on the way, at most.
+    pub(crate) remainders: Result<Vec<f64>, Unproven>,
 }
 
 impl Series {
@@ -58,9 +62,22 @@ impl Series {
                 }
             }
         }
-        let axes = all[..line[middle].axes.len()].iter().map(|series| series[..=order].to_vec()).collect();
-        Some(Series { about, order, axes, deviations, meets })
+        let axes: Vec<Vec<f64>> =
+            all[..line[middle].axes.len()].iter().map(|series| series[..=order].to_vec()).collect();
+        let off = |axis: usize| {
+            let each = positions.iter().zip(line);
+            each.map(|(at, posture)| (posture.axes[axis] - value(&axes[axis], at[0] - about)).abs()).fold(0.0, f64::max)
+        };
+        let seen = (0..axes.len()).map(off).collect();
+        let tube = problem.tube(&line[middle], about, source.ranges[0]);
+        let remainders = tube.map(|tube| tube.distances(about, &axes));
+        Some(Series { about, order, axes, deviations, meets, seen, remainders })
     }
+}
+
+/// A polynomial at a distance from what it is about.
+fn value(coefficients: &[f64], h: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * h + c)
 }
 
 /// The solved points of a surface, and where the target's axes bring the points of the tool that made them.
@@ -95,7 +112,7 @@ impl<'s, 'j, 'g> Moved<'s, 'j, 'g> {
         let solved = self.flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
         let of = |point: &flank_solver::SurfacePoint| {
             let h = point.unknowns[self.motion] - about;
-            let axes = series.iter().map(|c| c[..=order].iter().rev().fold(0.0, |sum, c| sum * h + c));
+            let axes = series.iter().map(|c| value(&c[..=order], h));
             let inputs: Vec<f64> = point.unknowns[..self.tool_unknowns].iter().copied().chain(axes).collect();
             evaluator.run(&inputs, &mut moved);
             (0..3).map(|k| point.normal[k] * (moved[k] - point.position[k])).sum::<f64>().abs()

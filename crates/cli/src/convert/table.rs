@@ -107,10 +107,46 @@ impl Table {
             }
         }
         out.push_str(&aligned(&rows, "<>"));
+        self.remainders_text(series, out);
         if let Some(most) = series.deviations.get(series.order) {
             let _ = writeln!(out, "\nthe flank is then off by up to {:.6} um", most * 1e3);
             if let (Some(tolerance), false) = (self.tolerance, series.meets) {
                 let _ = writeln!(out, "no order up to {} keeps it under {} um", series.order, tolerance * 1e3);
+            }
+        }
+    }
+
+    /// What the polynomials leave of each axis: seen at the positions, proven over the whole way.
+    fn remainders_text(&self, series: &Series, out: &mut String) {
+        let bounds = match &series.remainders {
+            Ok(bounds) => bounds,
+            Err(unproven) => {
+                let at = units::text(self.motions[0].dimension, unproven.at, 6);
+                let _ =
+                    writeln!(out, "\nwhat the polynomials leave is not bounded: {}", unbounded(&self.motions[0], &at));
+                return;
+            }
+        };
+        let seen = format!("seen at {} positions", self.positions.len());
+        let mut rows = vec![["axis off by", &seen, "proven, nowhere more than"].map(String::from)];
+        for ((axis, seen), bound) in self.axes.iter().zip(&series.seen).zip(bounds) {
+            rows.push([axis.name.clone(), small(axis.dimension, *seen), at_most(axis.dimension, *bound)]);
+        }
+        let _ = write!(out, "\n{}", aligned(&rows, "<>>"));
+    }
+
+    /// The same in a sentence.
+    pub(super) fn remainders(&self, series: &Series) -> String {
+        match &series.remainders {
+            Ok(bounds) => {
+                let each = self.axes.iter().zip(bounds);
+                let each: Vec<String> =
+                    each.map(|(axis, bound)| format!("{} {}", axis.name, at_most(axis.dimension, *bound))).collect();
+                format!("proven, over {}: off by at most {}", self.over(), each.join(", "))
+            }
+            Err(unproven) => {
+                let at = units::text(self.motions[0].dimension, unproven.at, 6);
+                format!("no error bound is proven: {}", unbounded(&self.motions[0], &at))
             }
         }
     }
@@ -131,6 +167,10 @@ impl Table {
     fn ends(&self, k: usize) -> (f64, f64) {
         let values = self.line.iter().map(|posture| posture.axes[k]);
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    }
+
+    fn by_axis(&self, values: &[f64]) -> Value {
+        self.axes.iter().zip(values).map(|(axis, x)| (axis.name.clone(), json!(x))).collect()
     }
 
     pub(crate) fn json(&self) -> String {
@@ -158,6 +198,7 @@ impl Table {
         let symmetries = self.symmetries.iter();
         let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
         let series = self.series.as_ref().map(|series| {
+            let bounds = series.remainders.as_ref().ok();
             json!({
                 "about": series.about,
                 "order": series.order,
@@ -165,6 +206,13 @@ impl Table {
                 "coefficients": self.axes.iter().zip(&series.axes)
                     .map(|(axis, c)| (axis.name.clone(), json!(c))).collect::<serde_json::Map<String, Value>>(),
                 "deviation_mm_by_order": series.deviations,
+                "remainders": {
+                    "units": "mm and rad",
+                    "seen": self.by_axis(&series.seen),
+                    "proven": bounds.map(|bounds| self.by_axis(bounds)),
+                    "not_proven_at": series.remainders.as_ref().err()
+                        .map(|unproven| units::shown(self.motions[0].dimension, unproven.at)),
+                },
             })
         });
         let table = json!({
@@ -180,6 +228,22 @@ impl Table {
         });
         format!("{table:#}\n")
     }
+}
+
+/// Why there is no bound.
+fn unbounded(motion: &Named, at: &str) -> String {
+    format!("the axes stand in or near a singular pose, or are not smooth, at {} = {at}", motion.name)
+}
+
+/// A small amount with its unit.
+fn small(dimension: Dimension, amount: f64) -> String {
+    format!("{:.3e} {}", units::shown(dimension, amount), units::symbol(dimension))
+}
+
+/// The same, rounded up.
+fn at_most(dimension: Dimension, bound: f64) -> String {
+    const HALF_OF_THE_LAST_DIGIT: f64 = 0.0005;
+    small(dimension, bound * (1.0 + HALF_OF_THE_LAST_DIGIT))
 }
 
 fn unseen(screw: &Screw) -> String {
