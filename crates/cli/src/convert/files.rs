@@ -68,7 +68,8 @@ fn motion_table(table: &Table, header: Header) -> MotionTable {
 }
 
 fn axis_series(index: usize, coefficients: &[f64], series: &super::series::Series) -> AxisSeries {
-    let remainder = series.remainders.as_ref().ok().map(|bounds| bounds[index]);
+    // a bound still, after the two roundings of degrees
+    let remainder = series.remainders.as_ref().ok().map(|bounds| bounds[index].next_up().next_up());
     AxisSeries { coefficients: coefficients.to_vec(), remainder }
 }
 

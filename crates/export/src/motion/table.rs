@@ -137,8 +137,7 @@ impl MotionTable {
         let step = self.motion.unit.written(1.0);
         let axis = |(axis, own): (&MachineAxis, &AxisSeries)| AxisSeries {
             coefficients: (0..).zip(&own.coefficients).map(|(k, c)| axis.unit().written(*c) / step.powi(k)).collect(),
-            // a bound still, after the two roundings of another unit
-            remainder: own.remainder.map(|bound| axis.unit().written(bound).next_up().next_up()),
+            remainder: own.remainder.map(|bound| axis.unit().written(bound)),
         };
         Some(Series {
             reference: self.motion.unit.written(series.reference),
