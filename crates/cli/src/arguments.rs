@@ -85,9 +85,13 @@ pub(crate) struct Solve {
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build")]
     pub(crate) out: PathBuf,
-    /// Files with the points: csv, json, stl, or several with commas
+    /// Files with the points, several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<Format>,
+    /// Also write the surfaces as smooth faces into a STEP file, through as many points as keep them within a distance of the exact
+    /// surface (0.1um unless it says another)
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
+    pub(crate) step: Option<f64>,
     /// Also find where each surface turns back (the singular line of undercut) and where the tool's contact ends
     #[arg(long)]
     pub(crate) limits: bool,
@@ -112,9 +116,19 @@ pub(crate) struct Solve {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
+    /// All points with all that is known of them
     Csv,
+    /// The same, with a schema
     Json,
+    /// Triangles, single precision
     Stl,
+    /// Triangles with normals
+    Obj,
+    /// Triangles with their unit, packed
+    #[value(name = "3mf")]
+    ThreeMf,
+    /// Triangles with all that is known of their points, for ParaView
+    Vtp,
 }
 
 #[derive(Args, Debug)]
@@ -295,7 +309,7 @@ pub(crate) struct Deviation {
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build")]
     pub(crate) out: PathBuf,
-    /// Files with the points: csv, json, stl, or several with commas
+    /// Files with the points, several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<Format>,
     /// Write no picture (otherwise a PNG and an SVG)

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Dataset, Dialect, MotionTable, Picture, WriteError, write_atomically, write_csv, write_json, write_motion_csv,
-    write_motion_json, write_nc, write_stl,
+    Dataset, Dialect, Face, Header, MotionTable, Picture, WriteError, write_3mf, write_atomically, write_csv,
+    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_step, write_stl, write_vtp,
 };
 
 use crate::arguments::Format;
@@ -31,9 +31,17 @@ impl<'a> Folder<'a> {
                 Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv(dataset, out))?,
                 Format::Json => self.write(&format!("{name}.json"), |out| write_json(dataset, out))?,
                 Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(dataset, out))?,
+                Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(dataset, out))?,
+                Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(dataset, out))?,
+                Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(dataset, out))?,
             }
         }
         Ok(())
+    }
+
+    /// Smooth faces.
+    pub(crate) fn step(&mut self, name: &str, header: &Header, faces: &[&Face]) -> Result<(), String> {
+        self.write(&format!("{name}.step"), |out| write_step(header, faces, out))
     }
 
     /// A picture as PNG and SVG.

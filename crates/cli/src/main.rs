@@ -20,6 +20,7 @@ mod reasons;
 mod sensitivity;
 mod solve;
 mod spec;
+mod step;
 mod table;
 mod travel;
 mod trims;

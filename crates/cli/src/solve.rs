@@ -2,16 +2,17 @@
 
 use std::time::Instant;
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
-use flank_export::{Axis, Dataset, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture};
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
+use flank_export::{Axis, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture};
 use flank_expr::{Expr, Graph};
-use flank_solver::{Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{Effort, Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Solve, Which};
 use crate::cut::Cut;
 use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
+use crate::step::{self, Smooth};
 use crate::table::{Solved, Table};
 use crate::{Ending, cut, print, spec, travel, trims};
 use crate::{branches, certify, geometry, reasons};
@@ -41,7 +42,12 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let limits: Vec<Line<'_, '_>> = limits.collect();
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(solved.iter().flat_map(|solved| &solved.trims)).collect();
         let dataset = dataset(job, &solved, &lines, &hash, arguments);
-        let written = match write_files(&dataset, &solved, &job.name, arguments) {
+        let faces: Vec<Smooth> = arguments
+            .step
+            .iter()
+            .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance)))
+            .collect();
+        let written = match write_files(&dataset, &solved, &faces, &job.name, arguments) {
             Ok(written) => written,
             Err(reason) => {
                 anstream::eprintln!("error: {reason}");
@@ -52,12 +58,13 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
         print(&if arguments.json { table.json() } else { table.text() });
         anstream::eprintln!("{}", table.time());
-        anstream::eprint!("{}{}", branches::undecided(&solved), limits::untold(&lines));
+        anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
         let told = branches::ambiguous(&solved)
             + &table.unsolved()
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
-            + &travel::beyond(job, &solved);
+            + &travel::beyond(job, &solved)
+            + &step::missed(&faces, arguments.step.unwrap_or_default());
         if !told.is_empty() {
             anstream::eprint!("{told}");
             ending = Ending::Unsolved;
@@ -73,12 +80,8 @@ fn solve_surface<'j, 'g>(
     arguments: &Solve,
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
-    let problem = problem(job, surface, [sample.coordinates[0].value, sample.coordinates[1].value]);
-    let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
+    let Found { problem, points, effort, trims } = points(job, surface, sample);
     let branches = problem.points(&effort.branches);
-    let trims = surface.trimmed_by.iter().enumerate();
-    let trims = trims.map(|(number, &by)| trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, number));
-    let trims = trims.collect();
     let radii = arguments.certify.then(|| certify::radii(&problem, &sample.targets, &points));
     let mut fields = Vec::new();
     if arguments.geometry {
@@ -89,6 +92,28 @@ fn solve_surface<'j, 'g>(
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
     Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims, cut })
+}
+
+/// The points of a sample, with what it took to find them.
+pub(crate) struct Found<'j, 'g> {
+    problem: SurfaceProblem,
+    pub(crate) points: Vec<SurfacePoint>,
+    effort: Effort,
+    trims: Vec<Line<'j, 'g>>,
+}
+
+/// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away.
+pub(crate) fn points<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+) -> Found<'j, 'g> {
+    let problem = problem(job, surface, [sample.coordinates[0].value, sample.coordinates[1].value]);
+    let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
+    let trims = surface.trimmed_by.iter().enumerate();
+    let trims = trims.map(|(number, &by)| trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, number));
+    let trims = trims.collect();
+    Found { problem, points, effort, trims }
 }
 
 /// Points of a surface at values of two coordinates, on the branch that its sample keeps.
@@ -186,11 +211,16 @@ fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -
 fn write_files(
     dataset: &Dataset,
     solved: &[Solved<'_, '_>],
+    faces: &[Smooth],
     name: &str,
     arguments: &Solve,
 ) -> Result<Vec<String>, String> {
     let mut folder = Folder::at(&arguments.out)?;
     folder.data(name, dataset, &arguments.format)?;
+    let faces: Vec<&Face> = faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
+    if !faces.is_empty() {
+        folder.step(name, &dataset.header, &faces)?;
+    }
     if !arguments.no_picture {
         folder.picture(name, &picture(dataset, &PictureOptions::default()))?;
         for (surface, drawn) in sensitivity::pictures(solved, dataset) {

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use crate::columns::{union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
 use crate::dataset::{Dataset, Field, Patch, Point, Unit, Unknown};
 use crate::error::WriteError;
@@ -73,41 +74,10 @@ fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
             one_line(&patch.rows.label),
             patch.columns.count,
             one_line(&patch.columns.label),
-            verdict(&Tally::of([patch])),
+            Tally::of([patch]).verdict(),
         )?;
     }
-    writeln!(out, "# all surfaces: {}", verdict(&Tally::of(&dataset.patches)))
-}
-
-fn verdict(tally: &Tally) -> String {
-    let mut text = format!("solved {} of {} asked", tally.solved, tally.asked);
-    if !tally.unsolved.is_empty() {
-        text += &format!(" ({})", one_line(&tally.reasons()));
-    }
-    match tally.worst_residual {
-        Some(worst) => text + ", worst residual " + &shortest(worst),
-        None => text,
-    }
-}
-
-fn union_of_unknowns(patches: &[Patch]) -> Vec<&Unknown> {
-    let mut union: Vec<&Unknown> = Vec::new();
-    for unknown in patches.iter().flat_map(|patch| &patch.unknowns) {
-        if !union.contains(&unknown) {
-            union.push(unknown);
-        }
-    }
-    union
-}
-
-fn union_of_fields(patches: &[Patch]) -> Vec<&Field> {
-    let mut union: Vec<&Field> = Vec::new();
-    for field in patches.iter().flat_map(|patch| &patch.fields) {
-        if !union.iter().any(|known| known.shares_columns(field)) {
-            union.push(field);
-        }
-    }
-    union
+    writeln!(out, "# all surfaces: {}", Tally::of(&dataset.patches).verdict())
 }
 
 /// The titles of all columns; those of unknowns and fields that are not unique have the unit behind them.

@@ -1,4 +1,4 @@
-//! Solved tooth surfaces as files: CSV, JSON, STL, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
+//! Solved tooth surfaces as files: CSV, JSON, STL, OBJ, 3MF, VTK, STEP, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
 //!
 //! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
 //! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
@@ -56,18 +56,25 @@
 //! The same dataset gives the same bytes, in every format.
 
 mod atomic_file;
+mod columns;
 mod conventions;
 mod csv_file;
 mod dataset;
 mod error;
+mod facets;
 mod json_file;
 mod json_layout;
 mod motion;
 mod number;
+mod obj_file;
 mod picture;
+mod step;
 mod stl_file;
 mod tally;
+mod threemf_file;
 mod vector;
+mod vtp_file;
+mod xml;
 
 pub use atomic_file::write_atomically;
 pub use csv_file::write_csv;
@@ -78,6 +85,10 @@ pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Series, write_motion_csv,
     write_motion_json, write_nc,
 };
+pub use obj_file::write_obj;
 pub use picture::{Picture, PictureOptions, field_maps, picture};
+pub use step::{Deviation, Face, write_step};
 pub use stl_file::write_stl;
 pub use tally::Tally;
+pub use threemf_file::write_3mf;
+pub use vtp_file::write_vtp;

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::conventions::one_line;
 use crate::dataset::{Outcome, Patch};
+use crate::number::shortest;
 
 /// Counts over some points, and the largest residual among those solved.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,5 +42,17 @@ impl Tally {
     pub fn reasons(&self) -> String {
         let words: Vec<String> = self.unsolved.iter().map(|(word, count)| format!("{word} {count}")).collect();
         words.join(", ")
+    }
+
+    /// How many were solved of how many, why the others were not, and the worst residual; one line.
+    pub(crate) fn verdict(&self) -> String {
+        let mut text = format!("solved {} of {} asked", self.solved, self.asked);
+        if !self.unsolved.is_empty() {
+            text += &format!(" ({})", one_line(&self.reasons()));
+        }
+        match self.worst_residual {
+            Some(worst) => text + ", worst residual " + &shortest(worst),
+            None => text,
+        }
     }
 }

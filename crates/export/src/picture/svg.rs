@@ -8,6 +8,7 @@ use ttf_parser::GlyphId;
 use super::Picture;
 use super::font;
 use super::paint::{Colour, Item, Place};
+use crate::xml::escaped;
 
 /// The picture as an SVG document. Letters are outlines, so it looks the same everywhere; their text is kept in labels.
 pub(super) fn document(picture: &Picture) -> String {
@@ -95,21 +96,4 @@ fn hex(colour: Colour) -> String {
 fn number(value: f64) -> f64 {
     let rounded = (100.0 * value).round() / 100.0;
     if rounded == 0.0 { 0.0 } else { rounded }
-}
-
-/// Text as XML allows it: its special letters escaped, those it forbids left out.
-fn escaped(text: &str) -> String {
-    let mut safe = String::new();
-    for letter in text.chars() {
-        match letter {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\u{fffe}' | '\u{ffff}' => {}
-            letter if letter.is_control() => safe.push(' '),
-            letter => safe.push(letter),
-        }
-    }
-    safe
 }

@@ -1,0 +1,94 @@
+//! Surfaces as smooth faces of a STEP file, through as many points as it takes.
+
+use std::fmt::Write;
+
+use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_export::{Axis, Face, Patch};
+
+use crate::solve;
+use crate::table::Solved;
+
+/// A finer grid than this is not solved to make a face better.
+const MOST_POINTS: usize = 250_000;
+
+/// A surface's face, if it has one.
+pub(crate) struct Smooth {
+    pub(crate) face: Option<Face>,
+    name: String,
+    is_exact_enough: bool,
+}
+
+/// The face of a surface, through its sampled points or, where that leaves it off by more than `tolerance` (mm), through grids with twice
+/// the rows and columns.
+pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64) -> Smooth {
+    let surface = solved.surface;
+    let mut coarse = patch(job, surface, solved.sample, &solved.points);
+    let mut sample = solved.sample.clone();
+    let mut best = Smooth { face: None, name: surface.name.clone(), is_exact_enough: false };
+    while let Some(face) = Face::through(&coarse) {
+        let Some(finer) = finer(&sample) else { break };
+        sample = finer;
+        let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample).points);
+        let face = face.measured(&fine);
+        let off = |face: &Face| {
+            face.deviation.map_or(f64::INFINITY, |off| if off.missing == 0 { off.largest } else { f64::INFINITY })
+        };
+        let is_exact_enough = off(&face) <= tolerance;
+        // a smooth surface's face comes nearer by sixteen; at a kink, and where only rounding is left, more points do not help
+        let is_of_no_use = best.face.as_ref().is_some_and(|before| off(&face) > 0.5 * off(before));
+        coarse = fine;
+        best = Smooth { face: Some(face), is_exact_enough, ..best };
+        if is_exact_enough || is_of_no_use {
+            break;
+        }
+    }
+    best
+}
+
+fn patch<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+    points: &[flank_solver::SurfacePoint],
+) -> Patch {
+    let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: sample.counts[k] });
+    solve::patch(job, &surface.name, surface, axes, points)
+}
+
+/// The sample with one more row between any two and one more column between any two, half-way; `None` if it would be too large.
+fn finer<'g>(sample: &Sample<'g>) -> Option<Sample<'g>> {
+    let [rows, columns] = sample.counts.map(|count| 2 * count - 1);
+    if rows.checked_mul(columns)? > MOST_POINTS {
+        return None;
+    }
+    let target = |i: usize, j: usize| sample.targets[i * sample.counts[1] + j];
+    let between = |at: usize| {
+        let (i, j) = (at / columns, at % columns);
+        let corners = [(i / 2, j / 2), (i.div_ceil(2), j / 2), (i / 2, j.div_ceil(2)), (i.div_ceil(2), j.div_ceil(2))];
+        let corners = corners.map(|(i, j)| target(i, j));
+        [0, 1].map(|k| corners.iter().map(|corner| corner[k]).sum::<f64>() / 4.0)
+    };
+    Some(Sample { counts: [rows, columns], targets: (0..rows * columns).map(between).collect(), ..sample.clone() })
+}
+
+/// What the faces are like, a line for each.
+pub(crate) fn told(faces: &[Smooth]) -> String {
+    let mut out = String::new();
+    for smooth in faces {
+        let _ = match &smooth.face {
+            Some(face) => writeln!(out, "STEP: {}", face.told()),
+            None => writeln!(out, "STEP: `{}` has no face: no two rows and columns of it are solved", smooth.name),
+        };
+    }
+    out
+}
+
+/// Which faces are not as exact as asked for.
+pub(crate) fn missed(faces: &[Smooth], tolerance: f64) -> String {
+    let mut out = String::new();
+    for smooth in faces.iter().filter(|smooth| !smooth.is_exact_enough) {
+        let _ =
+            writeln!(out, "the STEP file's face of `{}` is not shown to be within {} um", smooth.name, 1e3 * tolerance);
+    }
+    out
+}
