@@ -96,7 +96,9 @@ fn run(arguments: &Arguments) -> Result<String, String> {
             let (mut row, placed) = (points.unknowns(k), points.placed(k));
             if is_curved {
                 row.truncate(1);
-                row.extend(placed.iter().chain(&points.principal_curvatures(k).ok_or("a point has no curvature")?));
+                // asked for is the second form −dr·dn, which is negative where the body is convex
+                let [most, least] = points.principal_curvatures(k).ok_or("a point has no curvature")?;
+                row.extend(placed.iter().chain(&[-least, -most]));
             } else {
                 row.extend(placed);
             }

@@ -302,7 +302,7 @@ impl<'e> Passing<'e> {
         let mut passed = Vec::with_capacity(passes.len());
         for block in passes.chunks(LANES) {
             for (lane, pass) in block.iter().enumerate() {
-                self.newton.put(lane, &pass.start, &pass.parameters);
+                self.newton.put(lane, pass.start.iter().copied(), &pass.parameters);
             }
             self.newton.run(&[true; LANES][..block.len()], true);
             for (lane, pass) in block.iter().enumerate() {

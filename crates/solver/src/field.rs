@@ -9,8 +9,8 @@
 use flank_expr::LANES;
 
 use crate::lanes::{LaneNewton, Lanes, VITAL};
-use crate::line::Midpoint;
-use crate::solution::{CutBy, Outcome, Range, Solution, distance, verdict};
+use crate::line::{Midpoint, STENCIL};
+use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
 const ASTRAY: f64 = 0.25;
@@ -91,6 +91,11 @@ impl Shape {
     fn place(&self, point: usize) -> (usize, usize) {
         let (i, j) = (point / self.columns, point % self.columns);
         let (line, at) = if self.lines == Lines::Rows { (i, j) } else { (j, i) };
+        self.place_on(line, at)
+    }
+
+    /// Block and lane of a point of a line.
+    fn place_on(&self, line: usize, at: usize) -> (usize, usize) {
         ((at / LANES) * self.count + line, at % LANES)
     }
 }
@@ -153,8 +158,11 @@ impl Field {
         self.shape.count * self.shape.length
     }
 
-    fn value(&self, point: usize, plane: usize) -> f64 {
-        let (block, lane) = self.shape.place(point);
+    pub(crate) fn value(&self, point: usize, plane: usize) -> f64 {
+        self.value_in(self.shape.place(point), plane)
+    }
+
+    fn value_in(&self, (block, lane): (usize, usize), plane: usize) -> f64 {
         self.values[(block * self.shape.planes + plane) * LANES + lane]
     }
 
@@ -168,8 +176,9 @@ impl Field {
         self.marks[block][lane]
     }
 
-    pub(crate) fn unknowns(&self, point: usize) -> Vec<f64> {
-        (0..self.shape.size).map(|k| self.value(point, k)).collect()
+    pub(crate) fn unknowns(&self, point: usize) -> impl Iterator<Item = f64> {
+        let place = self.shape.place(point);
+        (0..self.shape.size).map(move |k| self.value_in(place, k))
     }
 
     /// The verdict; none where nothing has come near.
@@ -178,7 +187,7 @@ impl Field {
             Mark::Unknown => None,
             Mark::Solved => Some(Outcome::Solved),
             Mark::CutByItsTool => Some(Outcome::CutAway(CutBy::ItsTool)),
-            Mark::Outside => Some(verdict(&self.unknowns(point), &self.ranges, true, false)),
+            Mark::Outside => Some(verdict(&self.unknowns(point).collect::<Vec<_>>(), &self.ranges, true, false)),
             Mark::Singular => Some(Outcome::Singular),
             Mark::NotConverged => Some(Outcome::NotConverged { iterations: self.determinant(point) as u32 }),
             Mark::Ambiguous => Some(Outcome::Ambiguous),
@@ -247,7 +256,7 @@ impl Field {
     pub(crate) fn solution(&self, point: usize) -> Option<Solution> {
         Some(Solution {
             outcome: self.outcome(point)?,
-            unknowns: self.unknowns(point),
+            unknowns: self.unknowns(point).collect(),
             residual: self.residual(point),
             iterations: 0,
         })
@@ -256,7 +265,7 @@ impl Field {
     /// Takes what a lane has come to, if that is clear.
     pub(crate) fn take(&mut self, point: usize, newton: &mut LaneNewton<'_>, lane: usize) {
         let (block, column) = self.shape.place(point);
-        let values = &mut self.values[block * self.shape.planes * LANES..][..self.shape.planes * LANES];
+        let values = block_of(self.shape, &mut self.values, block);
         take(self.shape, values, &mut self.marks[block], column, newton, lane);
     }
 
@@ -298,16 +307,14 @@ impl Field {
         let mut waiting = Vec::with_capacity(LANES);
         for level in levels {
             for (line, midpoint) in lines.iter().flat_map(|line| level.iter().map(move |midpoint| (*line, midpoint))) {
-                let at = shape.point(line, midpoint.at);
-                let known = |at: usize| self.is_root(shape.point(line, at));
-                if !follows(midpoint, known) {
+                let (known, lane) = ((self.values.as_slice(), self.marks.as_slice()), waiting.len());
+                if !interpolate(shape, midpoint, known, |at| shape.place_on(line, at), newton, lane) {
                     continue;
                 }
-                let lane = waiting.len();
-                interpolate(shape, midpoint, known, |at, plane| self.value(shape.point(line, at), plane), newton, lane);
-                newton.input(shape.size)[lane] = targets[at][0];
-                newton.input(shape.size + 1)[lane] = targets[at][1];
-                waiting.push((at, midpoint.beside.map(|at| shape.point(line, at))));
+                let target = targets[shape.point(line, midpoint.at)];
+                newton.input(shape.size)[lane] = target[0];
+                newton.input(shape.size + 1)[lane] = target[1];
+                waiting.push((line, midpoint));
                 if waiting.len() == LANES {
                     evaluations += self.solve(newton, &mut waiting);
                 }
@@ -317,19 +324,33 @@ impl Field {
         evaluations
     }
 
-    /// Solves the points that wait in the first lanes, each between two neighbours.
-    fn solve(&mut self, newton: &mut LaneNewton<'_>, waiting: &mut Vec<(usize, [usize; 2])>) -> u64 {
+    /// Solves the points of lines that wait in the first lanes.
+    fn solve(&mut self, newton: &mut LaneNewton<'_>, waiting: &mut Vec<(usize, &Midpoint)>) -> u64 {
         if waiting.is_empty() {
             return 0;
         }
+        let shape = self.shape;
         let evaluations = newton.run(&[true; LANES][..waiting.len()], newton.were_rough());
-        for (lane, (at, [before, behind])) in waiting.drain(..).enumerate() {
-            let apart = || distance(&self.unknowns(before), &self.unknowns(behind), &self.ranges);
-            if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
-                self.take(at, newton, lane);
+        let is_plain = newton.all_plain(waiting.len(), NEAR);
+        for (lane, (line, midpoint)) in waiting.drain(..).enumerate() {
+            let (block, column) = shape.place_on(line, midpoint.at);
+            let [before, behind] = midpoint.beside.map(|at| shape.place_on(line, at));
+            let apart = || self.apart(before, behind);
+            if is_plain {
+                self.marks[block][column] = Mark::Solved;
+                keep(shape, block_of(shape, &mut self.values, block), column, newton, lane);
+            } else if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+                let values = block_of(shape, &mut self.values, block);
+                take(shape, values, &mut self.marks[block], column, newton, lane);
             }
         }
         evaluations
+    }
+
+    /// How far two points are apart, as a share of the ranges.
+    fn apart(&self, a: (usize, usize), b: (usize, usize)) -> f64 {
+        let share = |(k, range): (usize, &Range)| (self.value_in(a, k) - self.value_in(b, k)).abs() / range.width();
+        self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
     }
 
     /// The strips, one beside the other.
@@ -369,7 +390,7 @@ impl Strip<'_> {
         let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for midpoint in levels.iter().flatten() {
             self.set_targets(midpoint.at, newton, targets);
-            if empty[midpoint.at] && midpoint.known.iter().all(|(line, _)| full[*line]) {
+            if empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]) {
                 self.interpolate_line(midpoint, newton);
                 evaluations += newton.run(&[true; LANES][..self.width], rough);
             } else {
@@ -419,7 +440,7 @@ impl Strip<'_> {
             || {
                 for plane in 0..=size {
                     let mut sums = [0.0; LANES];
-                    for (line, weight) in &midpoint.known {
+                    for (line, weight) in midpoint.known() {
                         let values = self.plane(*line, plane);
                         for lane in 0..LANES {
                             sums[lane] += weight * values[lane];
@@ -431,17 +452,11 @@ impl Strip<'_> {
                         *newton.determinant() = sums;
                     }
                 }
-                let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-                for (line, _) in &midpoint.known {
-                    let values = self.plane(*line, size);
-                    for lane in 0..LANES {
-                        least[lane] = if values[lane] < least[lane] { values[lane] } else { least[lane] };
-                        most[lane] = if values[lane] > most[lane] { values[lane] } else { most[lane] };
-                    }
-                }
+                let [before, behind] = midpoint.beside.map(|line| self.plane(line, size));
                 let determinant = newton.determinant();
                 for lane in 0..LANES {
-                    determinant[lane] = if keeps_sign(least[lane], most[lane]) { determinant[lane] } else { f64::NAN };
+                    let is_known = keeps_sign(before[lane], determinant[lane], behind[lane]);
+                    determinant[lane] = if is_known { determinant[lane] } else { f64::NAN };
                 }
             },
         );
@@ -449,12 +464,7 @@ impl Strip<'_> {
 
     /// The start of one point; false if the point is known, or does not follow.
     fn interpolate_lane(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, lane: usize) -> bool {
-        let known = |line: usize| self.marks[line][lane].is_root();
-        let is_next = follows(midpoint, known);
-        if is_next {
-            interpolate(self.shape, midpoint, known, |line, plane| self.plane(line, plane)[lane], newton, lane);
-        }
-        is_next
+        interpolate(self.shape, midpoint, (self.values, self.marks), |line| (line, lane), newton, lane)
     }
 
     /// Takes what the lanes have come to; whether all of them are roots now.
@@ -478,7 +488,7 @@ impl Strip<'_> {
                 self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
             };
             if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
-                let values = &mut self.values[line * shape.planes * LANES..][..shape.planes * LANES];
+                let values = block_of(shape, self.values, line);
                 take(shape, values, &mut self.marks[line], lane, newton, lane);
             }
         }
@@ -486,42 +496,50 @@ impl Strip<'_> {
     }
 }
 
-/// Whether a midpoint is to be solved next: it is not known, its neighbours are.
-fn follows(midpoint: &Midpoint, is_known: impl Fn(usize) -> bool) -> bool {
-    !is_known(midpoint.at) && midpoint.beside.iter().all(|place| is_known(*place))
-}
-
-/// Whether determinants between these two cannot vanish.
+/// Whether a determinant between two others, and the way between them, cannot vanish. Not if one is no number.
 #[inline(always)]
-fn keeps_sign(least: f64, most: f64) -> bool {
-    (least > 0.0) & (most < SAME_DETERMINANT * least) | (most < 0.0) & (least > SAME_DETERMINANT * most)
+fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
+    let is_near = |a: f64, b: f64| {
+        let (product, most) = (a * b, SAME_DETERMINANT * a * a);
+        (product > 0.0) & (product < most) & (SAME_DETERMINANT * product > a * a)
+    };
+    is_near(before, behind) & is_near(before, between) & is_near(behind, between)
 }
 
 /// The start of a lane: on the polynomial through the known points around it, or between its two neighbours if some of them are no
-/// roots; the determinant where it cannot vanish between them, else NaN.
+/// roots; the determinant where it cannot vanish between them, else NaN. False if the point is known or a neighbour is not: then
+/// it is not to be solved next. `place` tells the block and lane of what a midpoint speaks of.
 fn interpolate(
     shape: Shape,
     midpoint: &Midpoint,
-    is_known: impl Fn(usize) -> bool,
-    value: impl Fn(usize, usize) -> f64,
+    (values, marks): (&[f64], &[[Mark; LANES]]),
+    place: impl Fn(usize) -> (usize, usize),
     newton: &mut LaneNewton<'_>,
     lane: usize,
-) {
-    let [before, behind] = midpoint.beside;
-    let share = (midpoint.at - before) as f64 / (behind - before) as f64;
-    let linear = [(before, 1.0 - share), (behind, share)];
-    let is_complete = midpoint.known.iter().all(|(place, _)| is_known(*place));
-    let known = if is_complete { midpoint.known.as_slice() } else { &linear };
-    let sum = |plane: usize| known.iter().map(|(place, weight)| weight * value(*place, plane)).sum::<f64>();
+) -> bool {
+    let is_root = |(block, lane): (usize, usize)| marks[block][lane].is_root();
+    let first = |(block, lane): (usize, usize)| block * shape.planes * LANES + lane;
+    let [before, behind] = midpoint.beside.map(&place);
+    if is_root(place(midpoint.at)) || !is_root(before) || !is_root(behind) {
+        return false;
+    }
+    let (mut stencil, mut is_complete) = ([(0, 0.0); STENCIL], true);
+    for (known, (at, weight)) in stencil.iter_mut().zip(midpoint.known()) {
+        let place = place(*at);
+        is_complete &= is_root(place);
+        *known = (first(place), *weight);
+    }
+    let share = (midpoint.at - midpoint.beside[0]) as f64 / (midpoint.beside[1] - midpoint.beside[0]) as f64;
+    let linear = [(first(before), 1.0 - share), (first(behind), share)];
+    let known = if is_complete { &stencil[..midpoint.known().len()] } else { &linear };
+    let sum = |plane: usize| known.iter().map(|(first, weight)| weight * values[first + plane * LANES]).sum::<f64>();
     for k in 0..shape.size {
         newton.input(k)[lane] = sum(k);
     }
-    let determinants = known.iter().map(|(place, _)| value(*place, shape.size));
-    let (least, most) = determinants.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), determinant| {
-        (least.min(determinant), most.max(determinant))
-    });
-    // a NaN among them makes the sum one
-    newton.determinant()[lane] = if keeps_sign(least, most) { sum(shape.size) } else { f64::NAN };
+    let [before, behind] = linear.map(|(first, _)| values[first + shape.size * LANES]);
+    let between = sum(shape.size);
+    newton.determinant()[lane] = if keeps_sign(before, between, behind) { between } else { f64::NAN };
+    true
 }
 
 /// Lanes that are not active get the numbers of one that is.
@@ -562,8 +580,18 @@ fn take(
     // what the conditions call singular is told by the careful path
     if outcome != Outcome::Singular {
         marks[column] = Mark::of(outcome);
-        for k in 0..shape.planes {
-            values[k * LANES + column] = number(shape, newton, k)[lane];
-        }
+        keep(shape, values, column, newton, lane);
     }
+}
+
+/// Puts the numbers of a lane into a lane of a block.
+fn keep(shape: Shape, values: &mut [f64], column: usize, newton: &mut LaneNewton<'_>, lane: usize) {
+    for k in 0..shape.planes {
+        values[k * LANES + column] = number(shape, newton, k)[lane];
+    }
+}
+
+/// The numbers of a block.
+fn block_of(shape: Shape, values: &mut [f64], block: usize) -> &mut [f64] {
+    &mut values[block * shape.planes * LANES..][..shape.planes * LANES]
 }

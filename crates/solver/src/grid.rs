@@ -9,7 +9,7 @@ use crate::Outcome;
 use crate::field::{Field, Lines, NEAR};
 use crate::lanes::LaneNewton;
 use crate::line::{Midpoint, divided_difference, lattice, levels};
-use crate::newton::solve_with;
+use crate::newton::{LONGEST_STEP, solve_with};
 use crate::roots::{MOST_BOXES, Roots, Undecided, all_roots};
 use crate::solution::{Range, Solution, distance};
 use crate::start::{WIDELY, scan};
@@ -105,16 +105,17 @@ pub(crate) fn solve_field(
         memory,
         effort: Effort::default(),
     };
+    let mut newton = LaneNewton::new(system, ranges);
     let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
-    if let Some(root) = start.filter(|_| !targets.is_empty()).and_then(|start| grid.root_from(middle, start)) {
-        let filling = grid.fill(middle, &root);
+    let start = start.filter(|_| !targets.is_empty());
+    if let Some(root) = start.and_then(|start| grid.root_from(&mut newton, middle, start)) {
+        let filling = grid.fill(&mut newton, middle, &root);
         grid.effort.anchor = targets[middle];
         grid.effort.branches = vec![root];
         return (filling, grid.effort);
     }
     let order = grid.middle_first();
     let mut failures = grid.field();
-    let mut newton = LaneNewton::new(system, ranges);
     for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
         if !grid.look_for(anchor, choice.roots, choice.keeps) {
             failures.put(anchor, &grid.failure(anchor));
@@ -126,7 +127,7 @@ pub(crate) fn solve_field(
             failures.place_loose(&mut newton);
             return (failures, grid.effort);
         }
-        let filling = grid.best_filling(anchor);
+        let filling = grid.best_filling(&mut newton, anchor);
         return (filling, grid.effort);
     }
     failures.place_loose(&mut newton);
@@ -187,7 +188,15 @@ impl Grid<'_> {
         failure.unwrap_or_else(|| Solution::never_reached(self.ranges))
     }
 
-    fn root_from(&mut self, point: usize, start: &[f64]) -> Option<Solution> {
+    /// The root that a start leads to: at once if that is near, else with care.
+    fn root_from(&mut self, newton: &mut LaneNewton<'_>, point: usize, start: &[f64]) -> Option<Solution> {
+        newton.put(0, start.iter().copied(), &self.targets[point]);
+        self.effort.evaluations += newton.run(&[true], true);
+        if newton.is_root(0) && newton.moved(0) <= LONGEST_STEP && newton.outcome(0) == Outcome::Solved {
+            let unknowns = (0..start.len()).map(|k| newton.input(k)[0]).collect();
+            let residual = newton.residuals()[0];
+            return Some(Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 });
+        }
         self.evaluation.set_parameters(&self.targets[point]);
         let solution = solve_with(&mut self.evaluation, self.ranges, start);
         self.effort.evaluations += u64::from(solution.iterations);
@@ -196,10 +205,10 @@ impl Grid<'_> {
 
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
     /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
-    fn best_filling(&mut self, anchor: usize) -> Field {
+    fn best_filling(&mut self, newton: &mut LaneNewton<'_>, anchor: usize) -> Field {
         let mut best: Option<Field> = None;
         for root in self.effort.branches.clone() {
-            let filling = self.fill(anchor, &root);
+            let filling = self.fill(newton, anchor, &root);
             let (most, solved) = (best.as_ref().map_or(0, Field::solved), filling.solved());
             if best.is_none() || solved > most {
                 best = Some(filling);
@@ -216,17 +225,16 @@ impl Grid<'_> {
     }
 
     /// Everything that can be reached from the anchor.
-    fn fill(&mut self, anchor: usize, root: &Solution) -> Field {
+    fn fill(&mut self, newton: &mut LaneNewton<'_>, anchor: usize, root: &Solution) -> Field {
         let mut field = self.field();
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
-        let mut newton = LaneNewton::new(self.system, self.ranges);
-        self.settle(&mut field, &mut newton, &[anchor]);
-        let by_hand = self.spread_in_lanes(&mut field, &mut newton, anchor, [rows.as_slice(), &columns]);
+        self.settle(&mut field, newton, &[anchor]);
+        let by_hand = self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]);
         if !by_hand.is_empty() {
             let solved = self.spread(&mut field, by_hand, &rows, &columns);
-            self.settle(&mut field, &mut newton, &solved);
+            self.settle(&mut field, newton, &solved);
         }
         let lines = self.smoother(&field, [&rows, &columns]);
         let width = self.columns;
@@ -234,26 +242,28 @@ impl Grid<'_> {
         field.divide(lines, &points);
         let (count, length) = ((self.rows, &rows), (self.columns, &columns));
         let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
-        self.effort.evaluations += field.refine_lines(&mut newton, count.1, &levels(length.0, length.1), self.targets);
-        self.refine_strips(&mut field, &mut newton, &levels(count.0, count.1));
+        self.effort.evaluations += field.refine_lines(newton, count.1, &levels(length.0, length.1), self.targets);
+        self.refine_strips(&mut field, newton, &levels(count.0, count.1));
         if !field.is_complete() {
             let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
             let unfinished = self.edge_of_roots(&field);
             self.spread(&mut field, unfinished, &all[0], &all[1]);
         }
-        field.place_loose(&mut newton);
+        field.place_loose(newton);
         field
     }
 
     /// The lines across which the unknowns change more smoothly, by the highest divided differences on the lattice.
     fn smoother(&self, field: &Field, [rows, columns]: [&[usize]; 2]) -> Lines {
         let roughness = |places: &[usize], others: &[usize], point: &dyn Fn(usize, usize) -> usize| {
+            let weights: Vec<f64> = divided_difference(places).collect();
             let rough = |other: &usize| {
-                let points: Vec<usize> = places.iter().map(|place| point(*place, *other)).collect();
-                let is_known = points.iter().all(|point| field.is_root(*point));
-                let unknowns: Vec<Vec<f64>> = points.iter().map(|point| field.unknowns(*point)).collect();
-                let of =
-                    |(k, range): (usize, &Range)| divided_difference(places, |n| unknowns[n][k]).abs() / range.width();
+                let points = || places.iter().map(|place| point(*place, *other));
+                let of = |(k, range): (usize, &Range)| {
+                    let terms = points().zip(&weights).map(|(point, weight)| weight * field.value(point, k));
+                    terms.sum::<f64>().abs() / range.width()
+                };
+                let is_known = points().all(|point| field.is_root(point));
                 if is_known { self.ranges.iter().enumerate().map(of).fold(0.0, f64::max) } else { 0.0 }
             };
             // of the length of a step to that power
@@ -270,7 +280,7 @@ impl Grid<'_> {
         let roots: Vec<usize> = points.iter().copied().filter(|point| field.is_root(*point)).collect();
         for block in roots.chunks(LANES) {
             for (lane, &point) in block.iter().enumerate() {
-                newton.put(lane, &field.unknowns(point), &self.targets[point]);
+                newton.put(lane, field.unknowns(point), &self.targets[point]);
             }
             newton.tangents(block.len());
             self.effort.evaluations += block.len() as u64;
@@ -332,13 +342,13 @@ impl Grid<'_> {
                 if field.is_root(next) {
                     continue;
                 }
-                let near = field.unknowns(point);
+                let near: Vec<f64> = field.unknowns(point).collect();
                 let far = beside(-di, -dj).filter(|far| field.is_root(index(*far)));
                 let start = far.map_or_else(
                     || near.clone(),
                     |far| {
                         let gap = |other: (usize, usize)| (other.0.abs_diff(i) + other.1.abs_diff(j)) as f64;
-                        extrapolated(&near, &field.unknowns(index(far)), gap(to) / gap(far))
+                        extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
                     },
                 );
                 let mut solution = self.step(point, next, &near, &start);
@@ -372,7 +382,7 @@ impl Grid<'_> {
                 let solution = solve_with(&mut self.evaluation, self.ranges, &first);
                 self.effort.evaluations += u64::from(solution.iterations);
                 let stays = solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target]);
-                first = extrapolated(&solution.unknowns, &at, 1.0);
+                first = extrapolated(&solution.unknowns, at.iter().copied(), 1.0);
                 at.clone_from(&solution.unknowns);
                 reached = target;
                 stepped = Some((solution, stays));
@@ -411,6 +421,6 @@ impl Grid<'_> {
 }
 
 /// The start for the next point in line, `ratio` times as far away as the one before: straight on.
-fn extrapolated(near: &[f64], far: &[f64], ratio: f64) -> Vec<f64> {
+fn extrapolated(near: &[f64], far: impl Iterator<Item = f64>, ratio: f64) -> Vec<f64> {
     near.iter().zip(far).map(|(a, b)| a + ratio * (a - b)).collect()
 }

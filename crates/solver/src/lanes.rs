@@ -101,9 +101,9 @@ impl<'s> LaneNewton<'s> {
     }
 
     /// Puts the unknowns and the parameters of a point into a lane.
-    pub(crate) fn put(&mut self, lane: usize, unknowns: &[f64], parameters: &[f64]) {
-        for (k, value) in unknowns.iter().chain(parameters).enumerate() {
-            self.checked.input(k)[lane] = *value;
+    pub(crate) fn put(&mut self, lane: usize, unknowns: impl Iterator<Item = f64>, parameters: &[f64]) {
+        for (k, value) in unknowns.chain(parameters.iter().copied()).enumerate() {
+            self.checked.input(k)[lane] = value;
         }
     }
 
@@ -133,6 +133,11 @@ impl<'s> LaneNewton<'s> {
                 #[inline(always)]
                 || each_lane(|lane| (worst[lane] <= PREDICTED) & !determinant[lane].is_nan()),
             );
+            if is_root[..count].iter().all(|is_root| *is_root) && open == count as u64 {
+                self.ends[..count].fill(End::Root);
+                self.were_rough = false;
+                return evaluations;
+            }
             self.ends = is_root.map(|is_root| if is_root { End::Root } else { End::Open });
             self.ends[count..].fill(End::Idle);
         }
@@ -217,24 +222,25 @@ impl<'s> LaneNewton<'s> {
         instructions.dispatch(
             #[inline(always)]
             || {
-                let mut is_plain = [true; LANES];
+                // as wide as the numbers, so that vectors of the two go together
+                let mut is_plain = [1_u64; LANES];
                 for lane in 0..LANES {
-                    is_plain[lane] &= moved[lane] <= near;
+                    is_plain[lane] &= u64::from(moved[lane] <= near);
                 }
                 for (k, range) in ranges.iter().enumerate() {
                     let values = checked.input(k);
                     for lane in 0..LANES {
-                        is_plain[lane] &= (range.low <= values[lane]) & (values[lane] <= range.high);
+                        is_plain[lane] &= u64::from((range.low <= values[lane]) & (values[lane] <= range.high));
                     }
                 }
                 for k in n..vital {
                     let least = if k < n + *condition_count { 0.0 } else { f64::NEG_INFINITY };
                     let values = checked.output(k);
                     for lane in 0..LANES {
-                        is_plain[lane] &= (least < values[lane]) & (values[lane] < f64::INFINITY);
+                        is_plain[lane] &= u64::from((least < values[lane]) & (values[lane] < f64::INFINITY));
                     }
                 }
-                is_plain[..count].iter().all(|is_plain| *is_plain)
+                is_plain[..count].iter().all(|is_plain| *is_plain == 1)
             },
         )
     }

@@ -63,41 +63,38 @@ impl Grid<'_> {
     }
 
     fn leap(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, leaps: &[Leap]) {
-        let count = leaps.len();
-        let starts: Vec<Vec<f64>> = leaps.iter().map(|leap| field.unknowns(leap.from)).collect();
-        let put = |newton: &mut LaneNewton<'_>, unknowns: &[Vec<f64>], target: fn(&Leap) -> usize| {
-            for (lane, (leap, unknowns)) in leaps.iter().zip(unknowns).enumerate() {
-                newton.put(lane, unknowns, &self.targets[target(leap)]);
+        let (count, size) = (leaps.len(), self.ranges.len());
+        // of one leap after the other
+        let of = |lane: usize| lane * size..(lane + 1) * size;
+        let put = |newton: &mut LaneNewton<'_>, unknowns: &[f64], target: fn(&Leap) -> usize| {
+            for (lane, leap) in leaps.iter().enumerate() {
+                newton.put(lane, unknowns[of(lane)].iter().copied(), &self.targets[target(leap)]);
             }
         };
+        let points = leaps.iter().map(|leap| leap.from);
+        let starts: Vec<f64> = points.flat_map(|point| field.unknowns(point)).collect();
         put(newton, &starts, |leap| leap.to);
         let led = self.along_tangents(newton, &starts);
         put(newton, &led, |leap| leap.to);
         // a start that is not finite fails like any other
         self.effort.evaluations += 2 * count as u64 + newton.run(&[true; LANES][..count], true);
-        let is_root: Vec<bool> = (0..count).map(|lane| newton.is_root(lane)).collect();
-        let before: Vec<f64> = leaps.iter().map(|leap| field.determinant(leap.from)).collect();
-        for (lane, leap) in leaps.iter().enumerate().filter(|(lane, _)| is_root[*lane]) {
-            let ratio = newton.determinant()[lane] / before[lane];
-            if ratio < SAME_DETERMINANT && ratio * SAME_DETERMINANT > 1.0 {
+        for (lane, leap) in leaps.iter().enumerate() {
+            let ratio = newton.determinant()[lane] / field.determinant(leap.from);
+            if newton.is_root(lane) && ratio < SAME_DETERMINANT && ratio * SAME_DETERMINANT > 1.0 {
                 field.take(leap.to, newton, lane);
             }
         }
-        let ends: Vec<Vec<f64>> = leaps
-            .iter()
-            .zip(&starts)
-            .map(|(leap, start)| if field.is_root(leap.to) { field.unknowns(leap.to) } else { start.clone() })
-            .collect();
+        let points = leaps.iter().map(|leap| if field.is_root(leap.to) { leap.to } else { leap.from });
+        let ends: Vec<f64> = points.flat_map(|point| field.unknowns(point)).collect();
         put(newton, &ends, |leap| leap.from);
         let back = self.along_tangents(newton, &ends);
         for (lane, leap) in leaps.iter().enumerate() {
-            let (start, end) = (&starts[lane], &ends[lane]);
+            let [start, led, end, back] = [&starts, &led, &ends, &back].map(|unknowns| &unknowns[of(lane)]);
             let leads = |from: &[f64], led: &[f64], to: &[f64]| {
                 let allowed = ASTRAY * distance(from, led, self.ranges) + NEAR;
                 distance(led, to, self.ranges) <= allowed
             };
-            let stays = distance(start, end, self.ranges) <= NEAR
-                || leads(start, &led[lane], end) && leads(end, &back[lane], start);
+            let stays = distance(start, end, self.ranges) <= NEAR || leads(start, led, end) && leads(end, back, start);
             if field.is_root(leap.to) && !stays {
                 field.forget(leap.to);
             }
@@ -105,12 +102,10 @@ impl Grid<'_> {
     }
 
     /// Where the tangents at the first lanes lead, from the points that they hold.
-    fn along_tangents(&self, newton: &mut LaneNewton<'_>, from: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let steps = newton.tangents(from.len());
-        let led = |(lane, from): (usize, &Vec<f64>)| {
-            let moved = from.iter().zip(steps).zip(self.ranges);
-            moved.map(|((from, steps), range)| from + steps[lane] * range.width()).collect()
-        };
-        from.iter().enumerate().map(led).collect()
+    fn along_tangents(&self, newton: &mut LaneNewton<'_>, from: &[f64]) -> Vec<f64> {
+        let size = self.ranges.len();
+        let steps = newton.tangents(from.len() / size.max(1));
+        let moved = |(k, from): (usize, &f64)| from + steps[k % size][k / size] * self.ranges[k % size].width();
+        from.iter().enumerate().map(moved).collect()
     }
 }

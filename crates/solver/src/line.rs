@@ -1,24 +1,33 @@
 //! Points between solved points: each halving of the gaps starts from a polynomial through what is solved.
 
-/// Solved points that a start is interpolated from; the error goes with this power of the gap.
-const STENCIL: usize = 8;
-/// Gaps that the widest lattice leaves on a line.
-const COARSEST: usize = 4;
+/// Solved points that a start is interpolated from at most; the error goes with this power of the gap.
+pub(crate) const STENCIL: usize = 12;
+/// Where the widest lattice has its places on a line, as shares of it: closer together towards the ends, as polynomials through
+/// few points want it (the extrema of Chebyshev's polynomial of the sixth degree).
+const COARSEST: [f64; 7] = [0.0, 0.067, 0.25, 0.5, 0.75, 0.933, 1.0];
 
-/// A point halfway between two known ones, and the known ones around it with their weights in the polynomial through them.
+/// A point halfway between two known ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Midpoint {
     pub(crate) at: usize,
-    pub(crate) known: Vec<(usize, f64)>,
     /// The nearest known ones before and behind.
     pub(crate) beside: [usize; 2],
+    stencil: [(usize, f64); STENCIL],
+    count: usize,
+}
+
+impl Midpoint {
+    /// The known points around it with their weights in the polynomial through them.
+    pub(crate) fn known(&self) -> &[(usize, f64)] {
+        &self.stencil[..self.count]
+    }
 }
 
 /// The places on a line of `length` points that are solved first: both ends, some between, and `anchor`.
 pub(crate) fn lattice(length: usize, anchor: usize) -> Vec<usize> {
     let last = length.saturating_sub(1);
-    let stride = last.div_ceil(COARSEST).next_power_of_two();
-    let mut places: Vec<usize> = (0..length).step_by(stride).chain([anchor, last]).collect();
+    let places = COARSEST.iter().map(|share| (share * last as f64).round() as usize);
+    let mut places: Vec<usize> = places.chain([anchor]).collect();
     places.sort_unstable();
     places.dedup();
     places
@@ -43,23 +52,43 @@ fn midpoint(known: &[usize], k: usize, beside: [usize; 2]) -> Midpoint {
     let at = (beside[0] + beside[1]) / 2;
     let count = STENCIL.min(known.len());
     let first = (k + 1).saturating_sub(STENCIL / 2).min(known.len() - count);
-    let stencil = &known[first..first + count];
-    Midpoint { at, known: stencil.iter().map(|&place| (place, weight(stencil, place, at))).collect(), beside }
+    let mut stencil = [(0, 0.0); STENCIL];
+    let weights = weights(&known[first..first + count], at);
+    for (k, (place, weight)) in known[first..first + count].iter().zip(weights).enumerate() {
+        stencil[k] = (*place, weight);
+    }
+    Midpoint { at, beside, stencil, count }
 }
 
-/// The coefficient of the highest power in the polynomial through some places and their values.
-pub(crate) fn divided_difference(places: &[usize], value: impl Fn(usize) -> f64) -> f64 {
-    let term = |k: usize| {
-        let others = places.iter().filter(|other| **other != places[k]);
-        value(k) / others.map(|&other| places[k] as f64 - other as f64).product::<f64>()
-    };
-    (0..places.len()).map(term).sum()
+/// The weights of values at some places, [`STENCIL`] at most, in the coefficient of the highest power of the polynomial through them.
+pub(crate) fn divided_difference(places: &[usize]) -> impl Iterator<Item = f64> {
+    products(places, [1.0; STENCIL]).into_iter().take(places.len()).map(|product| 1.0 / product)
 }
 
-/// Lagrange's weight of one place among others, for a value at `at`.
-fn weight(places: &[usize], place: usize, at: usize) -> f64 {
-    let others = places.iter().filter(|other| **other != place);
-    others.map(|&other| (at as f64 - other as f64) / (place as f64 - other as f64)).product()
+/// Lagrange's weights of some places for a value at `at`, which is none of them.
+fn weights(places: &[usize], at: usize) -> impl Iterator<Item = f64> {
+    let mut from = [1.0; STENCIL];
+    for (from, place) in from.iter_mut().zip(places) {
+        *from = at as f64 - *place as f64;
+    }
+    let all: f64 = from.iter().product();
+    products(places, from).into_iter().take(places.len()).map(move |product| all / product)
+}
+
+/// What is given for each of some places, times the distances of all others from it.
+fn products(places: &[usize], mut products: [f64; STENCIL]) -> [f64; STENCIL] {
+    let mut to = [0.0; STENCIL];
+    for (to, place) in to.iter_mut().zip(places) {
+        *to = *place as f64;
+    }
+    for k in 0..places.len() {
+        for other in k + 1..places.len() {
+            let distance = to[k] - to[other];
+            products[k] *= distance;
+            products[other] *= -distance;
+        }
+    }
+    products
 }
 
 #[cfg(test)]
@@ -71,10 +100,10 @@ mod tests {
         for length in [1, 2, 3, 5, 31, 61, 501, 1000] {
             for anchor in [0, length / 2, length - 1] {
                 let start = lattice(length, anchor);
-                assert!(start.len() <= 7 && start.contains(&anchor) && start.contains(&(length - 1)));
+                assert!(start.len() <= 8 && start.contains(&anchor) && start.contains(&(length - 1)));
                 let mut seen = start.clone();
                 for level in levels(length, &start) {
-                    assert!(level.iter().all(|point| point.known.iter().all(|(place, _)| seen.contains(place))));
+                    assert!(level.iter().all(|point| point.known().iter().all(|(place, _)| seen.contains(place))));
                     seen.extend(level.iter().map(|point| point.at));
                 }
                 seen.sort_unstable();
@@ -88,7 +117,7 @@ mod tests {
         let f = |x: usize| (x as f64 / 40.0 - 1.0).powi(5) + x as f64;
         for level in levels(100, &lattice(100, 47)).iter().skip(1) {
             for point in level {
-                let found: f64 = point.known.iter().map(|(place, weight)| weight * f(*place)).sum();
+                let found: f64 = point.known().iter().map(|(place, weight)| weight * f(*place)).sum();
                 assert!((found - f(point.at)).abs() < 1e-9, "{point:?}");
             }
         }

@@ -21,7 +21,7 @@ const MOST_STEPS: usize = 40;
 /// Halvings of a step that are tried until the residuals get smaller.
 const MOST_HALVINGS: i32 = 12;
 /// No unknown moves by more than this share of its range in one step, so that a step does not jump to another branch.
-const LONGEST_STEP: f64 = 0.35;
+pub(crate) const LONGEST_STEP: f64 = 0.35;
 /// Below this pivot (unknowns scaled by their ranges, equations by their size) a Jacobian counts as singular.
 const SINGULAR_BELOW: f64 = 1e-12;
 

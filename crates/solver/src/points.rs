@@ -39,7 +39,7 @@ impl SurfacePoints {
 
     /// The surface's unknowns, mm or radians.
     pub fn unknowns(&self, point: usize) -> Vec<f64> {
-        if self.field.outcome(point).is_some() { self.field.unknowns(point) } else { self.middle.clone() }
+        if self.field.outcome(point).is_some() { self.field.unknowns(point).collect() } else { self.middle.clone() }
     }
 
     /// Position, mm, in the frame of the surface, then the unit normal out of the body that owns the surface.

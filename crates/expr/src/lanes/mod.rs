@@ -89,6 +89,7 @@ impl<'t> LaneEvaluator<'t> {
     ///
     /// # Panics
     /// If there is no such input or it is uniform.
+    #[inline]
     pub fn input(&mut self, index: usize) -> &mut [f64; LANES] {
         let register = self.tape.inputs[index].expect("the input differs from lane to lane");
         &mut self.blocks[register as usize].0
@@ -139,6 +140,7 @@ impl<'t> LaneEvaluator<'t> {
     ///
     /// # Panics
     /// If there is no such output.
+    #[inline]
     pub fn output(&self, index: usize) -> &[f64; LANES] {
         let of_tape = self.tape.outputs[index] as usize;
         let block = if self.native.is_some() { self.tape.block_count + index } else { of_tape };
