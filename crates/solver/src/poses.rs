@@ -86,6 +86,11 @@ impl Posture {
     pub(crate) fn is_root(&self) -> bool {
         self.outcome.is_root()
     }
+
+    /// The axes, and by how much the tool slides along itself, as in [`PoseProblem::unknowns`].
+    pub fn unknowns(&self) -> &[f64] {
+        &self.unknowns
+    }
 }
 
 impl<'g> PoseProblem<'g> {
