@@ -1,10 +1,11 @@
 //! Axes of another machine in closed form, against those that are solved.
 
 use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
-use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use flank_expr::{Expr, Graph, Language, ScalarEvaluator, Signature, Tape, emit_function};
 use flank_solver::{
     Explicit, ExplicitProblem, NotExplicit, Outcome, PoseProblem, Posture, Range, TargetAxis, symmetries,
 };
+use flank_tests::compiled::values_at;
 use flank_tests::repository;
 
 struct Carried<'g> {
@@ -72,8 +73,8 @@ impl<'g> Carried<'g> {
     }
 }
 
-fn even(low: f64, high: f64) -> Vec<Vec<f64>> {
-    (0..=200).map(|k| vec![low + (high - low) * f64::from(k) / 200.0]).collect()
+fn even(low: f64, high: f64, count: u32) -> Vec<Vec<f64>> {
+    (0..count).map(|k| vec![low + (high - low) * f64::from(k) / f64::from(count - 1)]).collect()
 }
 
 /// 1e-12 mm or rad over the whole motion, of axes that stand in up to 100 mm.
@@ -95,7 +96,7 @@ fn the_path_of_the_free_form_machine_is_the_solved_one() {
     for job in ["specs/bevel/pinion_19x62.chain", "specs/bevel/tilted_pinion.chain"] {
         let graph = Graph::new();
         let files = [job, "specs/machines/free_form.chain"];
-        agrees(&Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2)));
+        agrees(&Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2, 201)));
     }
 }
 
@@ -106,4 +107,35 @@ fn the_path_of_a_hobbing_machine_is_the_solved_one() {
     let files = ["specs/hobbing/helical_gear.chain", "specs/machines/hobbing_6axis.chain"];
     let positions = (0..40).map(|k| vec![1.0 + 0.25 * f64::from(k), -13.0 + 0.6 * f64::from(k)]).collect();
     agrees(&Carried::new(&graph, files, ["table", "hob"], positions));
+}
+
+/// What a control runs: compiled, against the solved axes and the first coefficient of their series.
+#[test]
+fn the_emitted_path_is_the_solved_one_at_10_000_positions() {
+    let graph = Graph::new();
+    let files = ["specs/bevel/tilted_pinion.chain", "specs/machines/free_form.chain"];
+    let carried = Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2, 10_000));
+    let explicit = carried.explicit().expect("three rotary axes and three slides");
+    let bound = graph.substitute(&explicit.continuous, &carried.job.bindings());
+    let outputs: Vec<(&str, Expr<'_>)> = carried.axes.iter().map(String::as_str).zip(bound).collect();
+    let motion = carried.job.surfaces[0].generation.motions[0];
+    let points: Vec<[f64; 1]> = carried.positions.iter().map(|at| [at[0]]).collect();
+    for language in [Language::C, Language::Rust] {
+        let signature = Signature { name: "axes", comment: &[] };
+        let text = emit_function(language, signature, &[motion], &outputs).expect("all bound");
+        let Some(found) = values_at(language, ("axes", &text), outputs.len(), &points) else {
+            eprintln!("skipped 1 of 2 languages: no compiler for {language:?}");
+            continue;
+        };
+        for ((at, posture), found) in carried.positions.iter().zip(&carried.line).zip(found) {
+            let series = carried.problem.series(posture, at, 0, 1).expect("no singular pose");
+            for (k, name) in carried.axes.iter().enumerate() {
+                let off = [found[k] - posture.axes[k], found[6 + k] - series[k][1]];
+                assert!(
+                    off.iter().all(|by| by.abs() < 1e-12 * series[k][1].abs().max(1.0)),
+                    "{name} at {at:?}: {off:?}"
+                );
+            }
+        }
+    }
 }

@@ -62,7 +62,7 @@ mod unused;
 
 pub use codes::Code;
 pub use compile::{Compilation, compile_file, compile_text, compile_with_machine};
-pub use derivation::derivation;
+pub use derivation::{derivation, equations};
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use explain::UnknownCode;

@@ -140,6 +140,7 @@ Examples:
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --tolerance 0.1um
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --nc linuxcnc --time 20 --emit c
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --emit c,rust --emit-form exact
   flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json")]
 pub(crate) struct Convert {
     #[command(flatten)]
@@ -147,15 +148,8 @@ pub(crate) struct Convert {
     /// The file of the target machine; of several in it the last one
     #[arg(long, value_name = "FILE")]
     pub(crate) to: PathBuf,
-    /// The surface whose tool is carried over, where the job has several tools
-    #[arg(long, value_name = "NAME")]
-    pub(crate) surface: Option<String>,
-    /// The target's frame that the tool stands in, if it has another name there
-    #[arg(long, value_name = "NAME")]
-    pub(crate) tool_frame: Option<String>,
-    /// The target's frame that the work stands in, if it has another name there
-    #[arg(long, value_name = "NAME")]
-    pub(crate) work_frame: Option<String>,
+    #[command(flatten)]
+    pub(crate) onto: Onto,
     /// How many positions, over the motion as far as the sampled points need it
     #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) positions: u32,
@@ -177,12 +171,29 @@ pub(crate) struct Convert {
     /// Seconds that the NC program takes
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time: Option<f64>,
-    /// Write the polynomials as a function: c, rust
+    /// Write a function of the motion that returns the axes and their first derivatives: c, rust
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(crate) emit: Vec<EmitLanguage>,
+    /// What the function computes: the polynomials, or the exact axes in closed form
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "polynomials", requires = "emit")]
+    pub(crate) emit_form: Vec<EmitForm>,
     /// Print everything as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What is carried over, and which frames of the target stand for the job's.
+#[derive(Args, Debug)]
+pub(crate) struct Onto {
+    /// The surface whose tool is carried over, where the job has several tools
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) surface: Option<String>,
+    /// The target's frame that the tool stands in, if it has another name there
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) tool_frame: Option<String>,
+    /// The target's frame that the work stands in, if it has another name there
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) work_frame: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -203,6 +214,12 @@ pub(crate) enum NcDialect {
 pub(crate) enum EmitLanguage {
     C,
     Rust,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EmitForm {
+    Polynomials,
+    Exact,
 }
 
 impl From<NcDialect> for Dialect {
@@ -271,13 +288,19 @@ Examples:
   flank derive specs/hobbing/helical_gear.chain
   flank derive specs/bevel/pinion_19x62.chain --latex > pinion.tex
   flank derive specs/hobbing/spur_gear.chain --set teeth=10
-  flank derive specs/hobbing/helical_gear.chain --cost  how many operations a point takes")]
+  flank derive specs/hobbing/helical_gear.chain --cost  how many operations a point takes
+  flank derive specs/bevel/tilted_pinion.chain --surface concave --to specs/machines/free_form.chain")]
 pub(crate) struct Derive {
     #[command(flatten)]
     pub(crate) which: Which,
     /// Print LaTeX instead of text
     #[arg(long)]
     pub(crate) latex: bool,
+    /// Print the axes of another machine in closed form: the file of that machine
+    #[arg(long, value_name = "FILE", conflicts_with = "cost")]
+    pub(crate) to: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) onto: Onto,
     /// Print the number of operations that the equations for a point take, with their Jacobian
     #[arg(long, conflicts_with = "latex")]
     pub(crate) cost: bool,

@@ -1,15 +1,23 @@
 //! `flank derive`
 
-use flank_chain_dsl::{Job, derivation};
+use std::path::Path;
+
+use flank_chain_dsl::{Job, derivation, equations};
+use flank_expr::geometry::Vector3;
 use flank_expr::{Graph, Style};
+use flank_solver::Explicit;
 use serde_json::{Value, json};
 
 use crate::arguments::Derive;
+use crate::convert::{self, Carried};
 use crate::cost::SurfaceCost;
 use crate::{Ending, print, spec};
 
 pub(crate) fn run(arguments: &Derive) -> Ending {
     let graph = Graph::new();
+    if let Some(to) = &arguments.to {
+        return carried(&graph, to, arguments);
+    }
     let (_, jobs) = match spec::jobs(&graph, &arguments.which) {
         Ok(found) => found,
         Err(ending) => return ending,
@@ -22,6 +30,62 @@ pub(crate) fn run(arguments: &Derive) -> Ending {
         print(&derivation(job, style));
     }
     Ending::Done
+}
+
+/// Postures from which the elbow of a closed form is taken.
+const POSITIONS: u32 = 101;
+
+/// Prints the axes of another machine in closed form.
+fn carried(graph: &Graph, to: &Path, arguments: &Derive) -> Ending {
+    let style = if arguments.latex { Style::Latex } else { Style::Text };
+    let carry = |job: &Job<'_>, target: &Job<'_>| {
+        let carried = Carried::new(graph, job, target, &arguments.onto, POSITIONS)?;
+        match carried.failures() {
+            told if told.is_empty() => Ok(explicit_page(job, &carried, &carried.explicit(true)?, style)),
+            told => Err(told.trim_end().to_string()),
+        }
+    };
+    match convert::compiled(graph, &arguments.which, to) {
+        Ok((_, job, target)) => match carry(&job, &target) {
+            Ok(page) => {
+                print(&page);
+                Ending::Done
+            }
+            Err(reason) => {
+                anstream::eprintln!("error: {reason}");
+                Ending::Unsolved
+            }
+        },
+        Err(ending) => ending,
+    }
+}
+
+/// The given vectors, then the axes from them.
+fn explicit_page<'g>(job: &Job<'g>, carried: &Carried<'_, 'g>, explicit: &Explicit<'g>, style: Style) -> String {
+    let (work, tool) = (&carried.source.work, &carried.source.tool);
+    let name = |unknown: usize| match carried.free.get(unknown) {
+        Some(axis) => axis.name.clone(),
+        None => carried.problem.unknowns()[unknown].to_string(),
+    };
+    let [first, second, third] = explicit.turns.map(name);
+    let vector = |[names, values]: [Vector3<'g>; 2]| names.0.into_iter().zip(values.0).collect::<Vec<_>>();
+    let given = explicit.given;
+    let groups = [
+        (
+            format!("f: the line about which {third} turns {tool}, seen from {work}, as it is on the job's machine"),
+            vector(given.f),
+        ),
+        (format!("g: a line square to it that turns with {tool}"), vector(given.g)),
+        (format!("o: the origin of {tool}, mm"), vector(given.o)),
+        (
+            format!(
+                "{first} and {second} bring that line where {third} has it, {third} turns the tool about it, and the slides \
+                 bring it into place; angles continued without jumps"
+            ),
+            carried.problem.unknowns().iter().copied().zip(explicit.formulas.iter().copied()).collect(),
+        ),
+    ];
+    equations(&format!("job {} on {}", job.name, carried.machine.name), &groups, style)
 }
 
 /// Prints how many operations the points of each sampled surface take.

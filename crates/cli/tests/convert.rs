@@ -97,3 +97,26 @@ fn printed_axes_are_those_of_the_machine_sheet() {
     let [x, y] = [ends("X ").map(|x| x - off * root.cos()), ends("Y ")];
     [x[0].hypot(y[1]), x[1].hypot(y[0])].into_iter().for_each(|distance| near(distance, 97.95940290780507));
 }
+
+/// The paper's path as formulas, and as functions; where there is none, that is told.
+#[test]
+fn the_explicit_path_is_printed_and_emitted() {
+    let to = ["--to", "specs/machines/free_form.chain"];
+    let run = flank(&[&["derive", "specs/bevel/tilted_pinion.chain", "--surface", "concave"][..], &to].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told = text(&run.stdout);
+    for formula in ["f_z = ", "free_form.A = -atan2(-f_y, -f_x)", "free_form.B = -atan2(f_z, t1)"] {
+        assert!(told.contains(formula), "{formula}: {told}");
+    }
+    let out = folder("convert-exact");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--out", out.to_str().unwrap()];
+    let run = flank(&[&spec[..], &to, &["--emit", "c,rust", "--emit-form", "exact,polynomials"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    for name in ["_exact.c", "_exact.rs", ".c", ".rs"] {
+        assert!(out.join(format!("pinion_19x62_on_free_form{name}")).is_file(), "{name}");
+    }
+    let exact = std::fs::read_to_string(out.join("pinion_19x62_on_free_form_exact.c")).unwrap();
+    assert!(exact.contains("exact but for rounding") && exact.contains("atan2("), "{exact}");
+    let latex = flank(&[&["derive", "specs/bevel/pinion_19x62.chain", "--latex"][..], &to].concat());
+    assert!(text(&latex.stdout).contains("f_{x}"), "{}", text(&latex.stdout));
+}

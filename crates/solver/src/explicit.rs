@@ -39,17 +39,42 @@ pub struct ExplicitProblem<'a, 'g> {
 /// Axes as functions of the motions.
 #[derive(Clone, Debug)]
 pub struct Explicit<'g> {
-    /// In the work's frame, as on the source: the direction into which the first two rotary axes bring the third one.
-    pub direction: Vector3<'g>,
     /// The rotary unknowns, counted from the work, as indices.
     pub turns: [usize; 3],
-    /// The source's tool, its frame's origin, seen from where the first linear axis is: what the linear axes must reach.
-    pub reached: Vector3<'g>,
-    /// Of each unknown its value: angles within half a turn to both sides of zero.
-    pub principal: Vec<Expr<'g>>,
-    /// The same without jumps over the whole line of postures: angles within half a turn to both sides of a law that is linear in the
-    /// motions.
+    /// What the axes are made of, in the work's frame: a variable each, and what it is on the source.
+    pub given: Given<'g>,
+    /// Of each unknown its value, in the variables of `given`: angles within half a turn to both sides of zero.
+    pub formulas: Vec<Expr<'g>>,
+    /// Of each unknown its value, in the motions, without jumps over the whole line of postures: angles within half a turn to both
+    /// sides of a law that is linear in the motions.
     pub continuous: Vec<Expr<'g>>,
+    /// How far the closed form is from the postures, at most, mm or radians.
+    pub off: f64,
+}
+
+/// Three vectors in the work's frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'g> {
+    /// Unit vector: the direction into which the first two rotary axes bring the third one.
+    pub f: [Vector3<'g>; 2],
+    /// Square to it, of constant length; it turns with the tool.
+    pub g: [Vector3<'g>; 2],
+    /// The origin of the tool's frame, mm.
+    pub o: [Vector3<'g>; 2],
+}
+
+impl<'g> Given<'g> {
+    fn new(graph: &'g Graph, [f, g, o]: [Vector3<'g>; 3]) -> Given<'g> {
+        let named = |name: &str| Vector3(["x", "y", "z"].map(|part| graph.variable(format!("{name}_{part}"))));
+        Given { f: [named("f"), f], g: [named("g"), g], o: [named("o"), o] }
+    }
+
+    /// With what the variables are on the source.
+    fn put_into(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let pairs =
+            [self.f, self.g, self.o].map(|[variables, values]| (0..3).map(move |k| (variables.0[k], values.0[k])));
+        values[0].graph().substitute(values, &pairs.into_iter().flatten().collect::<Vec<_>>())
+    }
 }
 
 /// Why there is no closed form.
@@ -159,8 +184,8 @@ impl<'g> ExplicitProblem<'_, 'g> {
             sides.each_ref().map(|side| side.as_ref().map_or(f64::INFINITY, |side| self.off(side, true)));
         let [right, left] = sides;
         let (solved, by) = if off <= other { (right?, off) } else { (left?, other) };
-        let by = if by <= SAME { self.off(&solved, false) } else { by };
-        if by <= SAME { Ok(solved) } else { Err(NotExplicit::Differs { by }) }
+        let off = if by <= SAME { self.off(&solved, false) } else { by };
+        if off <= SAME { Ok(Explicit { off, ..solved }) } else { Err(NotExplicit::Differs { by: off }) }
     }
 
     fn graph(&self) -> &'g Graph {
@@ -199,8 +224,9 @@ impl<'g> ExplicitProblem<'_, 'g> {
     }
 
     /// A linear law of the motions that an angle stays near: its value in the middle, or else a steady turn.
-    fn law(&self, unknown: usize, slope: f64) -> Result<Expr<'g>, NotExplicit> {
+    fn law(&self, joint: Joint<'g>) -> Result<Expr<'g>, NotExplicit> {
         let (at, postures) = self.line;
+        let (unknown, slope) = (joint.unknown, self.numbers(&[joint.slope], &at[..1])[0][0]);
         let (count, middle) = (self.motions.len(), self.middle());
         let angles: Vec<f64> = postures.iter().map(|posture| slope * posture.unknowns()[unknown]).collect();
         let turned = Mat::from_fn(at.len(), 1, |k, _| angles[k] - angles[middle]);
@@ -220,13 +246,22 @@ impl<'g> ExplicitProblem<'_, 'g> {
     }
 }
 
+/// A vector square to an axis.
+fn across_to<'g>(problem: &ExplicitProblem<'_, 'g>, axis: Vector3<'g>) -> Vector3<'g> {
+    let parts = &problem.numbers(&axis.0, &problem.line.0[..1])[0];
+    let least = (0..3).min_by(|&a, &b| parts[a].abs().total_cmp(&parts[b].abs())).expect("three parts");
+    let beside = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
+    axis.cross(Vector3::constant(problem.graph(), beside))
+}
+
 /// The target's chain as this way needs it.
 struct Form<'g> {
     parts: Vec<Part<'g>>,
     joints: [Joint<'g>; 3],
     linear: [usize; 3],
-    /// What the joints do not turn: the rotation of the chain where all unknowns are zero.
-    still: Matrix3<'g>,
+    /// Square to the third joint's axis, where all unknowns are zero.
+    across: Vector3<'g>,
+    given: Given<'g>,
 }
 
 impl<'g> Form<'g> {
@@ -282,45 +317,43 @@ impl<'g> Form<'g> {
         if sines[0].iter().any(|sine| *sine <= PARALLEL) {
             return Err(NotExplicit::Parallel);
         }
-        Ok(Form { parts, joints, linear, still })
+        let third = joints[2].axis;
+        let across = across_to(problem, third);
+        // the work's frame, by what the joints do not turn
+        let seen = |v: Vector3<'g>| problem.source.direction(still.transposed().times(v));
+        let given = [seen(third), seen(across), problem.source.point(Vector3::zero(graph))];
+        Ok(Form { parts, joints, linear, across, given: Given::new(graph, given) })
     }
 
     /// With γ of one sign.
     fn on_side(&self, problem: &ExplicitProblem<'_, 'g>, side: f64) -> Result<Explicit<'g>, NotExplicit> {
-        let graph = problem.graph();
-        let back = self.still.transposed();
-        let third = self.joints[2].axis;
-        let direction = problem.source.direction(back.times(third));
-        let [first, second] = self.carrying(direction, side);
-        let across = self.across(problem, third);
-        let image = problem.source.direction(back.times(across));
-        let image = turned(image, self.joints[0].axis, first.cos(), -first.sin());
+        let Given { f: [f, _], g: [g, _], o: [o, _] } = self.given;
+        let [first, second] = self.carrying(f, side);
+        let image = turned(g, self.joints[0].axis, first.cos(), -first.sin());
         let image = turned(image, self.joints[1].axis, second.cos(), -second.sin());
-        let last = Angle::between(third, across, image, across.dot(across));
+        let last = Angle::between(self.joints[2].axis, self.across, image, self.across.dot(self.across));
         let angles = [first, second, last];
-        let mut explicit = Explicit {
-            direction,
-            turns: self.joints.map(|joint| joint.unknown),
-            reached: Vector3::zero(graph),
-            principal: problem.unknowns.to_vec(),
-            continuous: problem.unknowns.to_vec(),
-        };
-        for (joint, angle) in self.joints.iter().zip(angles) {
-            let slope = problem.numbers(&[joint.slope], &problem.line.0[..1])[0][0];
-            explicit.principal[joint.unknown] = angle.principal() / joint.slope;
-            explicit.continuous[joint.unknown] = angle.about(problem.law(joint.unknown, slope)?) / joint.slope;
-        }
-        let (reached, lengths) = self.lengths(problem, angles)?;
-        explicit.reached = reached;
-        for (unknown, length) in self.linear.into_iter().zip(lengths) {
+        let lengths = self.lengths(problem, angles, o)?;
+        let all = |angle: &dyn Fn(usize) -> Result<Expr<'g>, NotExplicit>| {
+            let mut values = problem.unknowns.to_vec();
+            for (k, joint) in self.joints.iter().enumerate() {
+                values[joint.unknown] = angle(k)? / joint.slope;
+            }
             // a tool that screws along itself shifts by its angle
-            let turns = |values: &[Expr<'g>]| -> Vec<(Expr<'g>, Expr<'g>)> {
-                self.joints.iter().map(|joint| (problem.unknowns[joint.unknown], values[joint.unknown])).collect()
-            };
-            explicit.principal[unknown] = graph.substitute(&[length], &turns(&explicit.principal))[0];
-            explicit.continuous[unknown] = graph.substitute(&[length], &turns(&explicit.continuous))[0];
-        }
-        Ok(explicit)
+            let turns = self.joints.map(|joint| (problem.unknowns[joint.unknown], values[joint.unknown]));
+            for (unknown, length) in self.linear.into_iter().zip(lengths) {
+                values[unknown] = problem.graph().substitute(&[length], &turns)[0];
+            }
+            Ok(values)
+        };
+        let near_its_law = |k: usize| Ok(angles[k].about(problem.law(self.joints[k])?));
+        Ok(Explicit {
+            turns: self.joints.map(|joint| joint.unknown),
+            given: self.given,
+            formulas: all(&|k| Ok(angles[k].principal()))?,
+            continuous: self.given.put_into(&all(&near_its_law)?),
+            off: f64::NAN,
+        })
     }
 
     /// The angles of the first two joints that bring the third one into a direction.
@@ -348,20 +381,13 @@ impl<'g> Form<'g> {
         ]
     }
 
-    /// A vector square to an axis.
-    fn across(&self, problem: &ExplicitProblem<'_, 'g>, axis: Vector3<'g>) -> Vector3<'g> {
-        let parts = &problem.numbers(&axis.0, &problem.line.0[..1])[0];
-        let least = (0..3).min_by(|&a, &b| parts[a].abs().total_cmp(&parts[b].abs())).expect("three parts");
-        let beside = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
-        axis.cross(Vector3::constant(problem.graph(), beside))
-    }
-
-    /// What the linear axes must reach, and their values by Cramer's rule.
+    /// The values of the linear axes, by Cramer's rule, for the tool's origin at a point of the work.
     fn lengths(
         &self,
         problem: &ExplicitProblem<'_, 'g>,
         angles: [Angle<'g>; 3],
-    ) -> Result<(Vector3<'g>, [Expr<'g>; 3]), NotExplicit> {
+        at: Vector3<'g>,
+    ) -> Result<[Expr<'g>; 3], NotExplicit> {
         let graph = problem.graph();
         let variables = self.linear.map(|unknown| problem.unknowns[unknown]);
         let is_first = |part: &Part<'g>| match part {
@@ -390,7 +416,7 @@ impl<'g> Form<'g> {
             }
         };
         let origin = Vector3::zero(graph);
-        let reached = self.parts[..start].iter().fold(problem.source.point(origin), backward);
+        let reached = self.parts[..start].iter().fold(at, backward);
         let tool = self.parts[start..].iter().rev().fold(origin, forward);
         let mut rest = tool;
         let mut directions = [origin; 3];
@@ -412,7 +438,8 @@ impl<'g> Form<'g> {
         let wanted = reached - rest;
         let volume = |[a, b, c]: [Vector3<'g>; 3]| a.dot(b.cross(c));
         let whole = volume(directions);
-        if problem.numbers(&[whole], &problem.line.0[problem.middle()..=problem.middle()])[0][0].abs() <= PARALLEL {
+        let size = self.given.put_into(&[whole]);
+        if problem.numbers(&size, &problem.line.0[problem.middle()..=problem.middle()])[0][0].abs() <= PARALLEL {
             return Err(NotExplicit::Flat);
         }
         let length = |k: usize| {
@@ -420,6 +447,6 @@ impl<'g> Form<'g> {
             replaced[k] = wanted;
             volume(replaced) / whole
         };
-        Ok((reached, std::array::from_fn(length)))
+        Ok(std::array::from_fn(length))
     }
 }

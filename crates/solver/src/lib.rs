@@ -46,7 +46,7 @@ mod whole_numbers;
 pub use certify::Certifier;
 pub use cutting::{CuttingEdges, Left};
 pub use deviation::{Deviation, EaseOff};
-pub use explicit::{Explicit, ExplicitProblem, NotExplicit};
+pub use explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::{Effort, solve_grid};

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use faer::linalg::solvers::{ColPivQr, PartialPivLu, Solve};
-use flank_expr::geometry::{Chain, Pose, Twist};
+use flank_expr::geometry::{Chain, Pose, Step, Twist};
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
 use thiserror::Error;
 
@@ -26,6 +26,8 @@ pub struct PoseProblem<'g> {
     chain: Chain<'g>,
     /// Axes, then amounts of the tool's own symmetries.
     unknowns: Vec<Expr<'g>>,
+    /// By these amounts.
+    slips: Vec<Step<'g>>,
     /// Parameters: the source's motions.
     system: System,
     /// What of the pose the axes cannot reach: components of the deviation that must come out as zero.
@@ -124,9 +126,9 @@ impl<'g> PoseProblem<'g> {
         if variables.len() > 6 {
             return Err(PoseError::Redundant(variables.len() - 6));
         }
-        let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip {k}"))).collect();
+        let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip_{k}"))).collect();
         let slipped: Vec<_> = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
-        let chain = target.then(&Chain::new(graph, slipped));
+        let chain = target.then(&Chain::new(graph, slipped.clone()));
         let off = source.inverse().then(&chain).merged().pose();
         let unknowns: Vec<Expr<'g>> = variables.iter().chain(&amounts).copied().collect();
         let travel = |axis: &TargetAxis<'_>| {
@@ -153,6 +155,7 @@ impl<'g> PoseProblem<'g> {
         Ok(PoseProblem {
             chain,
             unknowns: unknowns.clone(),
+            slips: slipped,
             system: System::one_by_one(&residuals, &unknowns, motions)?.with_conditions(
                 &residuals,
                 &[upright],
@@ -170,6 +173,11 @@ impl<'g> PoseProblem<'g> {
     /// From work to tool on the target machine, in its axes and in the amounts by which the tool slides along itself.
     pub fn chain(&self) -> &Chain<'g> {
         &self.chain
+    }
+
+    /// A chain that ends in the tool's frame, as the machine's with its parameters as symbols, followed by what the tool does not see.
+    pub fn slipped(&self, to_tool: &Chain<'g>) -> Chain<'g> {
+        to_tool.then(&Chain::new(self.unknowns[0].graph(), self.slips.clone()))
     }
 
     /// What the chain and [`PoseProblem::series`] are in: the axes, then those amounts.

@@ -23,6 +23,24 @@ pub fn derivation(job: &Job<'_>, style: Style) -> String {
     page.finish()
 }
 
+/// Texts, each with equations of a variable and its value under it, written as in a derivation; parts that the values under a text
+/// share are named once.
+pub fn equations(title: &str, groups: &[(String, Vec<(Expr<'_>, Expr<'_>)>)], style: Style) -> String {
+    let mut page = Page { out: String::new(), style };
+    page.title(title);
+    for (text, pairs) in groups {
+        page.text(text);
+        let exprs: Vec<Expr<'_>> = pairs.iter().flat_map(|(variable, value)| [*variable, *value]).collect();
+        let Some(first) = exprs.first() else { continue };
+        let listing = first.graph().listing(&exprs, style, "t");
+        page.definitions(&listing.definitions);
+        for pair in listing.values.chunks(2) {
+            page.equation(&pair[0], &pair[1]);
+        }
+    }
+    page.finish()
+}
+
 struct Page {
     out: String,
     style: Style,

@@ -2,10 +2,11 @@
 
 use flank_chain_dsl::Dimension;
 use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown};
-use flank_expr::{Polynomial, Signature, emit_polynomials};
+use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_polynomials};
 
+use super::Carried;
 use super::table::Table;
-use crate::arguments::{Convert, MotionFormat};
+use crate::arguments::{Convert, EmitForm, MotionFormat};
 use crate::files::Folder;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
@@ -15,7 +16,12 @@ const DECIMALS: [u8; 2] = [4, 5];
 ///
 /// # Errors
 /// In words, if a file cannot be written or a program not be made.
-pub(super) fn write(table: &Table, header: Header, arguments: &Convert) -> Result<Vec<String>, String> {
+pub(super) fn write(
+    table: &Table,
+    carried: &Carried<'_, '_>,
+    header: Header,
+    arguments: &Convert,
+) -> Result<Vec<String>, String> {
     let name = format!("{}_on_{}", table.job, table.machine);
     let mut folder = Folder::at(&arguments.out)?;
     let motion = motion_table(table, header);
@@ -29,10 +35,18 @@ pub(super) fn write(table: &Table, header: Header, arguments: &Convert) -> Resul
         let seconds = arguments.time.expect("an NC program is asked for with its cutting time");
         folder.nc(&name, &motion, (*dialect).into(), seconds)?;
     }
-    for language in &arguments.emit {
-        let text =
-            function(table, &name, (*language).into()).ok_or("there are no polynomials to write as a function")?;
-        folder.text(&format!("{name}.{}", language.extension()), &text)?;
+    for form in &arguments.emit_form {
+        for language in &arguments.emit {
+            let (name, text) = match form {
+                EmitForm::Polynomials => (name.clone(), polynomials(table, &name, (*language).into())?),
+                EmitForm::Exact => {
+                    let name = format!("{name}_exact");
+                    let text = exact(table, carried, &name, (*language).into())?;
+                    (name, text)
+                }
+            };
+            folder.text(&format!("{name}.{}", language.extension()), &text)?;
+        }
     }
     Ok(folder.written)
 }
@@ -73,20 +87,37 @@ fn axis_series(index: usize, coefficients: &[f64], series: &super::series::Serie
     AxisSeries { coefficients: coefficients.to_vec(), remainder }
 }
 
-/// The axes and their first derivatives from the motion, as source text.
-fn function(table: &Table, name: &str, language: flank_expr::Language) -> Option<String> {
-    let series = table.series.as_ref()?;
-    let polynomials: Vec<Polynomial<'_>> = table
-        .axes
-        .iter()
-        .zip(&series.axes)
-        .map(|(axis, coefficients)| Polynomial { name: &axis.name, coefficients })
-        .collect();
-    let mut comment = vec![table.title.clone(), "mm and rad; derivatives per rad (mm) of the motion".to_string()];
+/// The axes as polynomials and their first derivatives from the motion, as source text.
+fn polynomials(table: &Table, name: &str, language: Language) -> Result<String, String> {
+    let series = table.series.as_ref().ok_or("there are no polynomials to write as a function")?;
+    let axes = table.axes.iter().zip(&series.axes);
+    let polynomials: Vec<Polynomial<'_>> =
+        axes.map(|(axis, coefficients)| Polynomial { name: &axis.name, coefficients }).collect();
+    let mut comment = head(table);
     comment.extend(series.deviations.get(series.order).map(|most| {
         format!("the flank is off by up to {:.6} um where points were sampled; {}", most * 1e3, table.over())
     }));
     comment.push(table.remainders(series));
     let signature = Signature { name, comment: &comment };
-    Some(emit_polynomials(language, signature, (&table.motions[0].name, series.about), &polynomials))
+    Ok(emit_polynomials(language, signature, (&table.motions[0].name, series.about), &polynomials))
+}
+
+/// The same in closed form.
+fn exact(table: &Table, carried: &Carried<'_, '_>, name: &str, language: Language) -> Result<String, String> {
+    let explicit = carried.explicit(false)?;
+    let axes: Vec<(&str, Expr<'_>)> =
+        table.axes.iter().map(|axis| axis.name.as_str()).zip(explicit.continuous.iter().copied()).collect();
+    let mut comment = head(table);
+    comment.push(format!(
+        "exact but for rounding: within {:.1e} mm or rad of {} solved positions; {}",
+        explicit.off,
+        table.positions.len(),
+        table.over()
+    ));
+    let motion = carried.source.motions[0].variable;
+    emit_function(language, Signature { name, comment: &comment }, &[motion], &axes).map_err(|error| error.to_string())
+}
+
+fn head(table: &Table) -> Vec<String> {
+    vec![table.title.clone(), "mm and rad; derivatives per rad (mm) of the motion".to_string()]
 }

@@ -5,11 +5,14 @@ mod series;
 mod source;
 mod table;
 
-use flank_chain_dsl::{Job, Machine, compile_with_machine};
-use flank_expr::{Expr, Graph};
-use flank_solver::{Outcome, PoseError, PoseProblem, Posture, Range, TargetAxis};
+use std::path::Path;
 
-use crate::arguments::Convert;
+use flank_chain_dsl::{Axis, Job, Machine, compile_with_machine};
+use flank_expr::geometry::Chain;
+use flank_expr::{Expr, Graph};
+use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, TargetAxis};
+
+use crate::arguments::{Convert, Onto, Which};
 use crate::{Ending, print, spec, units};
 use series::Series;
 use source::Source;
@@ -20,31 +23,11 @@ const REACH: f64 = 10_000.0;
 
 pub(crate) fn run(arguments: &Convert) -> Ending {
     let graph = Graph::new();
-    let which = &arguments.which;
-    let mut compilation = compile_with_machine(&graph, &which.file, &arguments.to, &which.set);
-    spec::tell(&compilation.diagnostics, &compilation.sources);
-    if compilation.has_errors() {
-        return Ending::Wrong;
-    }
-    let target = compilation.machine.take();
-    let jobs = match compilation.take_jobs(which.job.as_deref()) {
-        Ok(jobs) => jobs,
-        Err(finding) => {
-            spec::tell(&[finding], &compilation.sources);
-            return Ending::Wrong;
-        }
+    let (hash, job, target) = match compiled(&graph, &arguments.which, &arguments.to) {
+        Ok(compiled) => compiled,
+        Err(ending) => return ending,
     };
-    let target = target.expect("a compilation without errors has the machine");
-    let hash = spec::hash(&compilation);
-    let carried = one(&jobs).and_then(|job| {
-        let (mut table, told) = carry(&graph, job, &target, arguments)?;
-        // a table of one motion; what the target cannot do is no program
-        if table.motions.len() == 1 && told.is_empty() {
-            table.written = files::write(&table, crate::solve::header(&job.name, which, &hash), arguments)?;
-        }
-        Ok((table, told))
-    });
-    match carried {
+    match carry(&graph, (&job, &target), &hash, arguments) {
         Ok((table, told)) => {
             print(&if arguments.json { table.json() } else { table.text() });
             anstream::eprint!("{told}");
@@ -57,64 +40,145 @@ pub(crate) fn run(arguments: &Convert) -> Ending {
     }
 }
 
-fn one<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<&'j Job<'g>, String> {
-    match jobs {
-        [job] => Ok(job),
+/// The hash of the text, the one job and the machine as a job without tool; what is wrong has been told.
+pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(String, Job<'g>, Job<'g>), Ending> {
+    let mut compilation = compile_with_machine(graph, &which.file, to, &which.set);
+    spec::tell(&compilation.diagnostics, &compilation.sources);
+    if compilation.has_errors() {
+        return Err(Ending::Wrong);
+    }
+    let target = compilation.machine.take().expect("a compilation without errors has the machine");
+    let mut jobs = compilation.take_jobs(which.job.as_deref()).map_err(|finding| {
+        spec::tell(&[finding], &compilation.sources);
+        Ending::Wrong
+    })?;
+    let hash = spec::hash(&compilation);
+    match jobs.len() {
+        1 => Ok((hash, jobs.remove(0), target)),
         _ => {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
-            Err(format!("the file holds several jobs, and one is carried over at a time: --job {}", names.join(" or ")))
+            let names = names.join(" or ");
+            anstream::eprintln!("error: the file holds several jobs, and one is carried over at a time: --job {names}");
+            Err(Ending::Wrong)
         }
     }
 }
 
-/// The axes over the motion, their series, and in words what the target cannot do.
+/// The axes over the motion, their series, what is written, and in words what the target cannot do.
 fn carry<'g>(
     graph: &'g Graph,
-    job: &Job<'g>,
-    target: &Job<'g>,
+    (job, target): (&Job<'g>, &Job<'g>),
+    hash: &str,
     arguments: &Convert,
 ) -> Result<(Table, String), String> {
-    let source = Source::of(job, arguments)?;
-    let machine = &target.machines[0];
-    let [work, tool] = [
-        frame(machine, &source.work, arguments.work_frame.as_deref(), "--work-frame")?,
-        frame(machine, &source.tool, arguments.tool_frame.as_deref(), "--tool-frame")?,
-    ];
-    let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
-    let laws: Vec<(Expr<'g>, Expr<'g>)> =
-        machine.axes.iter().filter(|axis| axis.law != axis.variable).map(|axis| (axis.variable, axis.law)).collect();
-    let chain = chain.substituted(&laws);
-    let free: Vec<_> = machine.axes.iter().filter(|axis| axis.law == axis.variable).collect();
-    let axes: Vec<TargetAxis<'g>> = free
-        .iter()
-        .map(|axis| TargetAxis {
-            variable: axis.variable,
-            is_rotary: units::is_angle(axis.dimension),
-            travel: axis.travel.map(|(low, high)| Range { low, high }),
-        })
-        .collect();
-    let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-    let motions: Vec<Expr<'g>> = source.motions.iter().map(|motion| motion.variable).collect();
-    let problem =
-        PoseProblem::new(&chain, &axes, source.driven, &motions, &source.symmetries, REACH, &bindings).map_err(|error| {
-            match error {
-                PoseError::Redundant(more) => format!(
-                    "{} has {more} free axes more than the pose of a tool needs, so it does not tell where they stand: `fix` \
-                     or `couple` {more} of {} in a variant of the machine",
-                    machine.name,
-                    free.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>().join(", ")
-                ),
-                PoseError::Unbound(error) => error.to_string(),
-            }
-        })?;
-    let positions = source.positions(arguments.positions as usize);
-    let line = follow(&problem, &positions, source.motions.len());
-    let told = failures(&source, machine, &free, &positions, &line);
-    let series = (source.motions.len() == 1 && told.is_empty())
-        .then(|| Series::of(&problem, &source, &positions, &line, arguments))
-        .flatten();
-    let table = Table::new((job, machine), &source, &free, (positions, line), series, arguments);
+    let carried = Carried::new(graph, job, target, &arguments.onto, arguments.positions)?;
+    let told = carried.failures();
+    let is_series = carried.source.motions.len() == 1 && told.is_empty();
+    let series = is_series.then(|| Series::of(&carried, arguments)).flatten();
+    let mut table = Table::new(job, &carried, series, arguments);
+    // a table of one motion; what the target cannot do is no program
+    if is_series {
+        let header = crate::solve::header(&job.name, &arguments.which, hash);
+        table.written = files::write(&table, &carried, header, arguments)?;
+    }
     Ok((table, told))
+}
+
+/// A job on another machine.
+pub(crate) struct Carried<'j, 'g> {
+    pub(crate) source: Source<'j, 'g>,
+    pub(crate) machine: &'j Machine<'g>,
+    /// The axes that may stand anywhere.
+    pub(crate) free: Vec<&'j Axis<'g>>,
+    /// From work to tool on the machine, with its parameters as symbols.
+    chain: Chain<'g>,
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+    pub(crate) problem: PoseProblem<'g>,
+    pub(crate) positions: Vec<Vec<f64>>,
+    pub(crate) line: Vec<Posture>,
+}
+
+impl<'j, 'g> Carried<'j, 'g> {
+    /// # Errors
+    /// In words, if it is not clear what is meant, or the machine has not the axes for it.
+    pub(crate) fn new(
+        graph: &'g Graph,
+        job: &'j Job<'g>,
+        target: &'j Job<'g>,
+        onto: &Onto,
+        positions: u32,
+    ) -> Result<Carried<'j, 'g>, String> {
+        let source = Source::of(job, onto.surface.as_deref())?;
+        let machine = &target.machines[0];
+        let [work, tool] = [
+            frame(machine, &source.work, onto.work_frame.as_deref(), "--work-frame")?,
+            frame(machine, &source.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
+        ];
+        let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
+        let axes = machine.axes.iter();
+        let laws: Vec<(Expr<'g>, Expr<'g>)> =
+            axes.filter(|axis| axis.law != axis.variable).map(|axis| (axis.variable, axis.law)).collect();
+        let chain = chain.substituted(&laws);
+        let free: Vec<&Axis<'g>> = machine.axes.iter().filter(|axis| axis.law == axis.variable).collect();
+        let axes: Vec<TargetAxis<'g>> = free.iter().map(|axis| target_axis(axis)).collect();
+        let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
+        let motions: Vec<Expr<'g>> = source.motions.iter().map(|motion| motion.variable).collect();
+        let problem = PoseProblem::new(&chain, &axes, source.driven, &motions, &source.symmetries, REACH, &bindings)
+            .map_err(|error| refused(&error, machine, &free))?;
+        let positions = source.positions(positions as usize);
+        let line = follow(&problem, &positions, source.motions.len());
+        Ok(Carried { source, machine, free, chain, bindings, problem, positions, line })
+    }
+
+    /// The axes in closed form; with the parameters as symbols, or as numbers.
+    ///
+    /// # Errors
+    /// In words, if there is no closed form.
+    pub(crate) fn explicit(&self, symbolic: bool) -> Result<Explicit<'g>, String> {
+        let motions: Vec<Expr<'g>> = self.source.motions.iter().map(|motion| motion.variable).collect();
+        let source = self.source.driven;
+        let [target, source] = if symbolic {
+            [self.problem.slipped(&self.chain), source.clone()]
+        } else {
+            [self.problem.chain().clone(), source.substituted(&self.bindings)]
+        };
+        let problem = ExplicitProblem {
+            target: &target,
+            unknowns: self.problem.unknowns(),
+            source: &source,
+            motions: &motions,
+            bindings: &self.bindings,
+            line: (&self.positions, &self.line),
+        };
+        problem
+            .solve()
+            .map_err(|reason| format!("no explicit form; {} is solved numerically: {reason}", self.machine.name))
+    }
+
+    /// What the target cannot do, each kind once with its first place; empty if nothing.
+    pub(crate) fn failures(&self) -> String {
+        failures(&self.source, self.machine, &self.free, &self.positions, &self.line)
+    }
+}
+
+fn target_axis<'g>(axis: &Axis<'g>) -> TargetAxis<'g> {
+    TargetAxis {
+        variable: axis.variable,
+        is_rotary: units::is_angle(axis.dimension),
+        travel: axis.travel.map(|(low, high)| Range { low, high }),
+    }
+}
+
+fn refused(error: &PoseError, machine: &Machine<'_>, free: &[&Axis<'_>]) -> String {
+    match error {
+        PoseError::Redundant(more) => format!(
+            "{} has {more} free axes more than the pose of a tool needs, so it does not tell where they stand: `fix` or \
+             `couple` {more} of {} in a variant of the machine",
+            machine.name,
+            free.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>().join(", ")
+        ),
+        PoseError::Unbound(error) => error.to_string(),
+    }
 }
 
 /// The frame of the target that stands for one of the source: by the same name, or as asked for.
@@ -146,7 +210,7 @@ fn follow(problem: &PoseProblem<'_>, positions: &[Vec<f64>], motions: usize) -> 
 fn failures(
     source: &Source<'_, '_>,
     machine: &Machine<'_>,
-    free: &[&flank_chain_dsl::Axis<'_>],
+    free: &[&Axis<'_>],
     positions: &[Vec<f64>],
     line: &[Posture],
 ) -> String {

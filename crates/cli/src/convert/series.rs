@@ -1,8 +1,9 @@
 //! The axes as polynomials of the motion, and what cutting them off leaves on the flank.
 
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Posture, Unproven};
+use flank_solver::{Outcome, PoseProblem, Unproven};
 
+use super::Carried;
 use super::source::{Flank, Source};
 use crate::arguments::Convert;
 
@@ -29,13 +30,8 @@ pub(crate) struct Series {
 }
 
 impl Series {
-    pub(crate) fn of(
-        problem: &PoseProblem<'_>,
-        source: &Source<'_, '_>,
-        positions: &[Vec<f64>],
-        line: &[Posture],
-        arguments: &Convert,
-    ) -> Option<Series> {
+    pub(crate) fn of(carried: &Carried<'_, '_>, arguments: &Convert) -> Option<Series> {
+        let Carried { source, problem, positions, line, .. } = carried;
         let middle = positions.len() / 2;
         let about = positions[middle][0];
         let highest = if arguments.tolerance.is_some() { HIGHEST } else { arguments.order as usize };

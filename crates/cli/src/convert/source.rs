@@ -5,7 +5,6 @@ use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Surface};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
-use crate::arguments::Convert;
 use crate::{solve, units};
 
 /// Surfaces of a job that one tool makes in one work.
@@ -35,11 +34,11 @@ pub(crate) struct Flank<'j, 'g> {
 impl<'j, 'g> Source<'j, 'g> {
     /// # Errors
     /// In words, if it is not clear which tool is meant, or nothing moves.
-    pub(crate) fn of(job: &'j Job<'g>, arguments: &Convert) -> Result<Source<'j, 'g>, String> {
+    pub(crate) fn of(job: &'j Job<'g>, asked: Option<&str>) -> Result<Source<'j, 'g>, String> {
         let path =
             |surface: &GeneratedSurface<'g>| (surface.frame.clone(), surface.generation.tool_frame().to_string());
-        let named = |surface: &&&GeneratedSurface<'g>| match &arguments.surface {
-            Some(name) => surface.name == *name,
+        let named = |surface: &&&GeneratedSurface<'g>| match asked {
+            Some(name) => surface.name == name,
             None => true,
         };
         let all: Vec<&GeneratedSurface<'g>> = job.surfaces.iter().collect();
@@ -47,7 +46,7 @@ impl<'j, 'g> Source<'j, 'g> {
             let names: Vec<&str> = all.iter().map(|surface| surface.name.as_str()).collect();
             return Err(format!("{} has no such surface: --surface {}", job.name, names.join(" or ")));
         };
-        if arguments.surface.is_none()
+        if asked.is_none()
             && let Some(other) = all.iter().find(|surface| path(surface) != path(first))
         {
             return Err(format!(

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Axis, Dimension, Job, Machine};
+use flank_chain_dsl::{Axis, Dimension, Job};
 use flank_solver::{Posture, Screw};
 use serde_json::{Value, json};
 
+use super::Carried;
 use super::series::Series;
-use super::source::Source;
 use crate::arguments::Convert;
 use crate::table::aligned;
 use crate::{spec, units};
@@ -35,14 +35,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    pub(crate) fn new(
-        (job, machine): (&Job<'_>, &Machine<'_>),
-        source: &Source<'_, '_>,
-        free: &[&Axis<'_>],
-        (positions, line): (Vec<Vec<f64>>, Vec<Posture>),
-        series: Option<Series>,
-        arguments: &Convert,
-    ) -> Table {
+    pub(crate) fn new(job: &Job<'_>, carried: &Carried<'_, '_>, series: Option<Series>, arguments: &Convert) -> Table {
+        let Carried { source, machine, free, .. } = carried;
         let axis = |axis: &&Axis<'_>| Named { name: axis.name.clone(), dimension: axis.dimension, travel: axis.travel };
         let motions = source.motions.iter();
         let motions =
@@ -57,8 +51,8 @@ impl Table {
             machine: machine.name.clone(),
             motions: motions.collect(),
             axes: free.iter().map(axis).collect(),
-            positions,
-            line,
+            positions: carried.positions.clone(),
+            line: carried.line.clone(),
             symmetries: source.symmetries.clone(),
             series,
             written: Vec::new(),
