@@ -1,12 +1,16 @@
 //! Axes of another machine in closed form, against those that are solved.
 
+use std::f64::consts::FRAC_PI_2;
+
 use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
+use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph, Language, ScalarEvaluator, Signature, Tape, emit_function};
 use flank_solver::{
     Explicit, ExplicitProblem, NotExplicit, Outcome, PoseProblem, Posture, Range, TargetAxis, symmetries,
 };
 use flank_tests::compiled::values_at;
 use flank_tests::repository;
+use nalgebra::Vector3 as Vector;
 
 struct Carried<'g> {
     job: Job<'g>,
@@ -137,5 +141,120 @@ fn the_emitted_path_is_the_solved_one_at_10_000_positions() {
                 );
             }
         }
+    }
+}
+
+/// The two turns of the paper on the free-form machine, by its own equations (F2 to F5 of docs/theory.md): on the cradle machine, X
+/// along z, Y along y and Z against x of its bed.
+struct TwoTurns<'g> {
+    /// From the work's apex to the cutter's centre.
+    radius: Vector3<'g>,
+    /// Y, and the work's axis.
+    axes: [Vector3<'g>; 2],
+    /// ΔU about Y, and ΔT before it about the work's axis.
+    angles: [Expr<'g>; 2],
+}
+
+impl<'g> TwoTurns<'g> {
+    fn of(graph: &'g Graph, job: &Job<'g>) -> TwoTurns<'g> {
+        let machine = &job.machines[0];
+        let laws: Vec<_> = machine.axes.iter().map(|axis| (axis.variable, axis.law)).collect();
+        let chain = |frame: &str| {
+            let chain = machine.chain(graph, "bed", frame).expect("both frames");
+            chain.substituted(&laws).substituted(&job.bindings())
+        };
+        let (cutter, work) = (chain("cutter"), chain("work"));
+        let seen = |Vector3([x, y, z]): Vector3<'g>| Vector3([z, y, -x]);
+        let (origin, along) = (Vector3::zero(graph), Vector3::constant(graph, [0.0, 0.0, 1.0]));
+        let [f, a] = [&cutter, &work].map(|chain| seen(chain.direction(along)));
+        let j = Vector3::constant(graph, [0.0, 1.0, 0.0]);
+        let about_work = f.dot(j).atan2(a.cross(j).dot(f));
+        let turned = about(a, about_work, f);
+        let about_y = -turned.0[0].atan2(turned.0[2]);
+        TwoTurns {
+            radius: seen(cutter.point(origin) - work.point(origin)),
+            axes: [j, a],
+            angles: [about_y, about_work],
+        }
+    }
+
+    /// A vector turned twice.
+    fn turned(&self, v: Vector3<'g>) -> Vector3<'g> {
+        about(self.axes[0], self.angles[0], about(self.axes[1], self.angles[1], v))
+    }
+}
+
+/// F2.
+fn about<'g>(k: Vector3<'g>, angle: Expr<'g>, v: Vector3<'g>) -> Vector3<'g> {
+    let (c, s) = (angle.cos(), angle.sin());
+    v.scaled(c) + k.cross(v).scaled(s) + k.scaled(k.dot(v) * (1.0 - c))
+}
+
+/// Against the free-form machine's Y and Z, whose sense is the opposite of the paper's.
+fn on_the_machine(v: Vector<f64>) -> Vector<f64> {
+    Vector::new(v.x, -v.y, -v.z)
+}
+
+/// ΔT and ΔU, F6: the same axes.
+#[test]
+fn the_papers_two_turns_give_the_axes() {
+    let graph = Graph::new();
+    let files = ["specs/bevel/tilted_pinion.chain", "specs/machines/free_form.chain"];
+    let carried = Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2, 101));
+    let turns = TwoTurns::of(&graph, &carried.job);
+    let law = |name: &str| {
+        let axis = carried.job.machines[0].axes.iter().find(|axis| axis.name == name).expect("an axis");
+        graph.substitute(&[axis.law], &carried.job.bindings())[0]
+    };
+    let place = turns.turned(turns.radius);
+    let values = [&place.0[..], &[law("work"), law("root"), turns.angles[0], turns.angles[1]]].concat();
+    let found = carried.numbers(&values);
+    // where the zero of A lies is the machine's
+    let zero = carried.line[0].axes[3] - (found[0][3] + found[0][6]);
+    for (posture, found) in carried.line.iter().zip(found) {
+        let place = on_the_machine(Vector::new(found[0], found[1], found[2]));
+        let expected = [place.x, place.y, place.z, zero + found[3] + found[6], found[4] - found[5]];
+        for (axis, expected) in posture.axes.iter().zip(expected) {
+            assert!((axis - expected).abs() < 1e-12, "{:?} {expected}", posture.axes);
+        }
+    }
+    assert!((zero.abs() / FRAC_PI_2).fract() < 1e-12, "{zero}");
+}
+
+/// "Due to the implicated motion as the rotation, there is a Coriolis acceleration when the superposition is superimposed": the second
+/// derivatives of X, Y and Z are those of R as the cradle machine moves it, turned, with the accelerations of the two turns and
+/// twice the product of both velocities.
+#[test]
+fn accelerations_have_the_papers_coriolis_term() {
+    let graph = Graph::new();
+    let files = ["specs/bevel/tilted_pinion.chain", "specs/machines/free_form.chain"];
+    let carried = Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2, 21));
+    let turns = TwoTurns::of(&graph, &carried.job);
+    let roll = carried.job.surfaces[0].generation.motions[0];
+    let speed = turns.radius.derivative(roll);
+    let vectors = [turns.radius, speed, speed.derivative(roll)].map(|v| turns.turned(v));
+    // the second turn carries the work's axis, about which the first one is made, in the plane
+    let work_axis = about(turns.axes[0], turns.angles[0], turns.axes[1]);
+    let rates = turns.angles.map(|angle| angle.derivative(roll));
+    let accelerations = rates.map(|rate| rate.derivative(roll));
+    let all: Vec<Expr<'_>> =
+        vectors.into_iter().chain([work_axis]).flat_map(|v| v.0).chain(rates).chain(accelerations).collect();
+    for (k, found) in carried.numbers(&all).iter().enumerate() {
+        let vector = |k: usize| Vector::new(found[3 * k], found[3 * k + 1], found[3 * k + 2]);
+        let [place, relative, relative_acceleration, work_axis] = [0, 1, 2, 3].map(vector);
+        let [about_y, about_work, about_y_rate, about_work_rate] = [12, 13, 14, 15].map(|k| found[k]);
+        let y = Vector::y();
+        let omega = y * about_y + work_axis * about_work;
+        let omega_rate = y * about_y_rate + work_axis * about_work_rate + y.cross(&work_axis) * (about_y * about_work);
+        let carrying = omega_rate.cross(&place) + omega.cross(&omega.cross(&place));
+        let coriolis = 2.0 * omega.cross(&relative);
+        let series = carried.problem.series(&carried.line[k], &carried.positions[k], 0, 2).expect("no singular pose");
+        let solved = |order: usize, factor: f64| Vector::from_fn(|axis, _| factor * series[axis][order]);
+        let velocity = on_the_machine(relative + omega.cross(&place));
+        assert!((velocity - solved(1, 1.0)).norm() < 1e-11, "{velocity}");
+        let acceleration = on_the_machine(relative_acceleration + carrying + coriolis);
+        assert!((acceleration - solved(2, 2.0)).norm() < 1e-10, "{acceleration} {}", solved(2, 2.0));
+        // mm/rad²: without it the polynomials would be another motion
+        assert!(coriolis.norm() > 1.0, "{coriolis}");
     }
 }

@@ -168,7 +168,7 @@ pub(crate) struct Convert {
     /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
     #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
-    /// Seconds that the NC program takes
+    /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time: Option<f64>,
     /// Write a function of the motion that returns the axes and their first derivatives: c, rust

@@ -120,3 +120,53 @@ fn the_explicit_path_is_printed_and_emitted() {
     let latex = flank(&[&["derive", "specs/bevel/pinion_19x62.chain", "--latex"][..], &to].concat());
     assert!(text(&latex.stdout).contains("f_{x}"), "{}", text(&latex.stdout));
 }
+
+#[test]
+fn a_tolerance_that_no_order_meets_is_told() {
+    let out = folder("convert-unmet");
+    let spec = [
+        "convert",
+        "specs/bevel/pinion_19x62.chain",
+        "--to",
+        "specs/machines/free_form.chain",
+        "--tolerance",
+        "1e-13um",
+    ];
+    let run = flank(&[&spec[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stdout));
+    let told = text(&run.stderr);
+    assert!(told.contains("no order up to 30 keeps the flank within 1.000e-13 um; order "), "{told}");
+    assert!(told.contains("nearer than rounding lets it"), "{told}");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "no polynomials were found");
+}
+
+/// At a constant rate velocities are differences of positions in the limit; here of 1,001 of them, which the mean of the ends of each
+/// step meets to the third order.
+#[test]
+fn rates_are_those_of_the_positions() {
+    let out = folder("convert-rates");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain", "--time", "20"];
+    let run = flank(&[&spec[..], &["--positions", "1001", "--json", "--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
+    let rate = |row: usize, axis: usize, order: usize| table["rates"]["positions"][row][axis][order].as_f64().unwrap();
+    let position = |row: usize, axis: usize| table["positions"][row]["axes"][axis].as_f64().unwrap();
+    let step = 20.0 / 1000.0;
+    for row in (0..1000).step_by(37) {
+        for axis in 0..6 {
+            let moved = [
+                position(row + 1, axis) - position(row, axis),
+                rate(row + 1, axis, 0) - rate(row, axis, 0),
+                rate(row + 1, axis, 1) - rate(row, axis, 1),
+            ];
+            for (order, moved) in moved.into_iter().enumerate() {
+                let mean = 0.5 * (rate(row, axis, order) + rate(row + 1, axis, order));
+                // (0.02 s)² / 12 of the third derivative of each, which is below 1e-3 per s³
+                assert!((moved / step - mean).abs() < 4e-8, "{row} {axis} {order}: {} {mean}", moved / step);
+            }
+        }
+    }
+    let most = table["rates"]["most"]["X"][0].as_f64().unwrap();
+    let largest = (0..=1000).map(|row| rate(row, 0, 0).abs()).fold(0.0, f64::max);
+    assert_eq!(most, largest);
+}

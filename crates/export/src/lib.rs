@@ -82,7 +82,7 @@ pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unk
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
 pub use motion::{
-    AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Series, write_motion_csv,
+    AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,
 };
 pub use obj_file::write_obj;

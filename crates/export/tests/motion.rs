@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 use std::process::Command;
 
 use flank_export::{
-    AxisSeries, Dialect, Header, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Series, Unit, Unknown,
-    WriteError, write_motion_csv, write_motion_json, write_nc,
+    AxisSeries, Dialect, Header, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, Unit,
+    Unknown, WriteError, write_motion_csv, write_motion_json, write_nc,
 };
 use schema::faults_of;
 use serde_json::Value;
@@ -55,6 +55,7 @@ fn table() -> MotionTable {
         ],
         rows: (0..ROWS).map(row).map(|row| MotionRow { axes: above_zero(row.axes), ..row }).collect(),
         series: Some(Series { reference: 0.1, axes: coefficients.into_iter().enumerate().map(series).collect() }),
+        rates: None,
     }
 }
 
@@ -236,10 +237,42 @@ fn a_position_at_the_end_of_the_travel_is_taken() {
     assert!(write_nc(&table, Dialect::Fanuc, 1.0, &mut Vec::new()).is_err());
 }
 
+/// Different in each row, axis and order.
+fn rates() -> Rates {
+    let rate = |row: usize, axis: usize| [1.0, 2.0, 3.0].map(|order| order * 0.1 + row as f64 + axis as f64 * 0.01);
+    Rates { seconds: CUTTING_TIME, rows: (0..ROWS).map(|row| (0..6).map(|axis| rate(row, axis)).collect()).collect() }
+}
+
+#[test]
+fn rates_stand_behind_the_positions() {
+    let table = MotionTable { rates: Some(rates()), ..table() };
+    let text = written(|out| write_motion_csv(&table, out));
+    let seconds = "# velocity, acceleration and jerk: per s, s^2 and s^3, while the motion takes 12 s evenly";
+    assert!(text.lines().any(|line| line == seconds), "{text}");
+    let mut body = text.lines().filter(|line| !line.starts_with('#'));
+    let titles: Vec<&str> = body.next().expect("titles").split(',').collect();
+    assert_eq!(titles[7..10], ["slide of X velocity", "slide of X acceleration", "slide of X jerk"]);
+    let row: Vec<f64> = body.nth(2).expect("a row").split(',').map(|cell| cell.parse().expect("a number")).collect();
+    let expected: Vec<f64> = rates().rows[2]
+        .iter()
+        .enumerate()
+        .flat_map(|(axis, of)| of.map(|rate| if axis > 2 { rate.to_degrees() } else { rate }))
+        .collect();
+    assert_eq!(row[7..], expected);
+    let text = written(|out| write_motion_json(&table, out));
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(faults_of(&document, SCHEMA_FILE), Vec::<String>::new());
+    assert_eq!(document["seconds"], 12.0);
+    assert_eq!(document["rows"][2]["rates"][5][2].as_f64(), Some(expected[17]));
+}
+
 #[test]
 fn malformed_tables_are_refused() {
     type Spoil = fn(&mut MotionTable);
-    let spoilers: [Spoil; 5] = [
+    let spoilers: [Spoil; 8] = [
+        |table| table.rates.as_mut().expect("rates").rows[3].truncate(5),
+        |table| table.rates.as_mut().expect("rates").rows.truncate(5),
+        |table| table.rates.as_mut().expect("rates").rows[3][2][1] = f64::NAN,
         |table| table.rows[3].axes.truncate(5),
         |table| table.rows[3].axes[2] = f64::NAN,
         |table| table.rows[3].motion = f64::INFINITY,
@@ -247,7 +280,7 @@ fn malformed_tables_are_refused() {
         |table| table.axes[0].travel = Some([f64::NAN, 0.0]),
     ];
     for spoil in spoilers {
-        let mut table = table();
+        let mut table = MotionTable { rates: Some(rates()), ..table() };
         spoil(&mut table);
         let mut bytes = Vec::new();
         let results = [

@@ -69,6 +69,7 @@ fn motion_table(table: &Table, header: Header) -> MotionTable {
         Dimension::LENGTH => Unit::Millimetre,
         _ => Unit::One,
     };
+    let rates = table.rates.as_ref();
     MotionTable {
         header,
         motion: Unknown { name: motion.name.clone(), unit },
@@ -78,6 +79,7 @@ fn motion_table(table: &Table, header: Header) -> MotionTable {
             reference: series.about,
             axes: (0..).zip(&series.axes).map(|(k, c)| axis_series(k, c, series)).collect(),
         }),
+        rates: rates.map(|rates| flank_export::Rates { seconds: rates.seconds, rows: rates.rows.clone() }),
     }
 }
 

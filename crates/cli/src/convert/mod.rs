@@ -1,6 +1,7 @@
 //! `flank convert`: a job carried over to another machine.
 
 mod files;
+mod rates;
 mod series;
 mod source;
 mod table;
@@ -14,6 +15,7 @@ use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, P
 
 use crate::arguments::{Convert, Onto, Which};
 use crate::{Ending, print, spec, units};
+use rates::Rates;
 use series::Series;
 use source::Source;
 use table::Table;
@@ -72,10 +74,13 @@ fn carry<'g>(
     arguments: &Convert,
 ) -> Result<(Table, String), String> {
     let carried = Carried::new(graph, job, target, &arguments.onto, arguments.positions)?;
-    let told = carried.failures();
-    let is_series = carried.source.motions.len() == 1 && told.is_empty();
-    let series = is_series.then(|| Series::of(&carried, arguments)).flatten();
-    let mut table = Table::new(job, &carried, series, arguments);
+    let mut told = carried.failures();
+    let is_followed = carried.source.motions.len() == 1 && told.is_empty();
+    let series = is_followed.then(|| Series::of(&carried, arguments)).flatten();
+    told.extend(series.as_ref().and_then(|series| series.unmet(arguments.tolerance)));
+    let is_series = is_followed && told.is_empty();
+    let rates = arguments.time.filter(|_| is_series).and_then(|seconds| Rates::of(&carried, seconds));
+    let mut table = Table::new(job, &carried, (series, rates), arguments);
     // a table of one motion; what the target cannot do is no program
     if is_series {
         let header = crate::solve::header(&job.name, &arguments.which, hash);

@@ -71,6 +71,27 @@ impl Series {
     }
 }
 
+impl Series {
+    /// In words, that no order meets a tolerance, and what can be done; nothing if one does.
+    pub(crate) fn unmet(&self, tolerance: Option<f64>) -> Option<String> {
+        /// Nearer than this the flank is not computed, mm.
+        const ROUNDING: f64 = 1e-11;
+        let tolerance = tolerance.filter(|_| !self.meets)?;
+        let (order, least) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
+        let why = if *least < ROUNDING {
+            "nearer than rounding lets it: ask for a larger tolerance"
+        } else {
+            "the series do not reach the ends of the motion: carry over a shorter part of it, with a sample of less of the flank, or \
+             take the positions or the exact form (--emit-form exact) instead of polynomials"
+        };
+        Some(format!(
+            "not reached: no order up to {HIGHEST} keeps the flank within {:.3e} um; order {order} comes nearest, {:.3e} um; {why}\n",
+            tolerance * 1e3,
+            least * 1e3
+        ))
+    }
+}
+
 /// A polynomial at a distance from what it is about.
 fn value(coefficients: &[f64], h: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * h + c)

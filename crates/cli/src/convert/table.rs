@@ -7,10 +7,14 @@ use flank_solver::{Posture, Screw};
 use serde_json::{Value, json};
 
 use super::Carried;
+use super::rates::Rates;
 use super::series::Series;
 use crate::arguments::Convert;
 use crate::table::aligned;
 use crate::{spec, units};
+
+/// Powers of the unit of time.
+const SECONDS: [&str; 3] = ["s", "s^2", "s^3"];
 
 /// A column: the name of a motion or an axis.
 pub(super) struct Named {
@@ -29,13 +33,19 @@ pub(crate) struct Table {
     pub(super) line: Vec<Posture>,
     symmetries: Vec<Screw>,
     pub(super) series: Option<Series>,
+    /// Over the cutting time, if there is one.
+    pub(super) rates: Option<Rates>,
     /// Files that were written.
     pub(super) written: Vec<String>,
-    tolerance: Option<f64>,
 }
 
 impl Table {
-    pub(crate) fn new(job: &Job<'_>, carried: &Carried<'_, '_>, series: Option<Series>, arguments: &Convert) -> Table {
+    pub(crate) fn new(
+        job: &Job<'_>,
+        carried: &Carried<'_, '_>,
+        (series, rates): (Option<Series>, Option<Rates>),
+        arguments: &Convert,
+    ) -> Table {
         let Carried { source, machine, free, .. } = carried;
         let axis = |axis: &&Axis<'_>| Named { name: axis.name.clone(), dimension: axis.dimension, travel: axis.travel };
         let motions = source.motions.iter();
@@ -55,8 +65,8 @@ impl Table {
             line: carried.line.clone(),
             symmetries: source.symmetries.clone(),
             series,
+            rates,
             written: Vec::new(),
-            tolerance: arguments.tolerance,
         }
     }
 
@@ -78,6 +88,9 @@ impl Table {
         let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
         if let Some(series) = &self.series {
             self.series_text(series, &mut out);
+        }
+        if let Some(rates) = &self.rates {
+            self.rates_text(rates, &mut out);
         }
         if !self.written.is_empty() {
             let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
@@ -104,10 +117,20 @@ impl Table {
         self.remainders_text(series, out);
         if let Some(most) = series.deviations.get(series.order) {
             let _ = writeln!(out, "\nthe flank is then off by up to {:.6} um", most * 1e3);
-            if let (Some(tolerance), false) = (self.tolerance, series.meets) {
-                let _ = writeln!(out, "no order up to {} keeps it under {} um", series.order, tolerance * 1e3);
-            }
         }
+    }
+
+    fn rates_text(&self, rates: &Rates, out: &mut String) {
+        let _ = writeln!(out, "\n{} evenly in {} s; at most", self.motions[0].name, rates.seconds);
+        let mut rows = vec![["axis", "velocity", "acceleration", "jerk"].map(String::from)];
+        rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {
+            let each = rates.most(k);
+            let unit = units::symbol(axis.dimension);
+            let [velocity, acceleration, jerk] =
+                std::array::from_fn(|k| format!("{:.6} {unit}/{}", units::shown(axis.dimension, each[k]), SECONDS[k]));
+            [axis.name.clone(), velocity, acceleration, jerk]
+        }));
+        out.push_str(&aligned(&rows, "<>>>"));
     }
 
     /// What the polynomials leave of each axis: seen at the positions, proven over the whole way.
@@ -209,6 +232,20 @@ impl Table {
                 },
             })
         });
+        let rates = self.rates.as_ref().map(|rates| {
+            let shown = |axis: usize, of: [f64; 3]| of.map(|rate| units::shown(self.axes[axis].dimension, rate));
+            let row = |row: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
+                row.iter().enumerate().map(|(axis, of)| shown(axis, *of)).collect()
+            };
+            let most =
+                self.axes.iter().enumerate().map(|(k, axis)| (axis.name.clone(), json!(shown(k, rates.most(k)))));
+            json!({
+                "seconds": rates.seconds,
+                "units": "velocity, acceleration, jerk: mm or deg per s, s^2, s^3",
+                "most": most.collect::<serde_json::Map<String, Value>>(),
+                "positions": rates.rows.iter().map(row).collect::<Vec<_>>(),
+            })
+        });
         let table = json!({
             "schema": "flank.convert/1",
             "job": self.job,
@@ -218,6 +255,7 @@ impl Table {
             "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
             "positions": positions.collect::<Vec<Value>>(),
             "polynomials": series,
+            "rates": rates,
             "files": self.written,
         });
         format!("{table:#}\n")

@@ -7,7 +7,11 @@ use crate::conventions::one_line;
 use crate::error::WriteError;
 use crate::number::shortest;
 
-/// Writes one line for each row: the value of the motion, then the position of each axis.
+/// Behind the names of axes.
+const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];
+
+/// Writes one line for each row: the value of the motion, then the position of each axis, then, where they are known, velocity,
+/// acceleration and jerk of each.
 ///
 /// `# ` lines state the conventions, the axes with unit, address and range, and the polynomials. Lengths are mm, angles degrees,
 /// numbers the shortest text that reads back as the same bits.
@@ -33,6 +37,7 @@ use crate::number::shortest;
 ///     axes: vec![axis("X", false), axis("B", true)],
 ///     rows: vec![MotionRow { motion: 0.0, axes: vec![12.5, std::f64::consts::PI] }],
 ///     series: None,
+///     rates: None,
 /// };
 /// let mut file = Vec::new();
 /// write_motion_csv(&table, &mut file)?;
@@ -46,12 +51,15 @@ pub fn write_motion_csv(table: &MotionTable, out: &mut dyn Write) -> Result<(), 
     table.check()?;
     write_head(table, out)?;
     let mut lines = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(out);
-    let titles = [&table.motion.name].into_iter().chain(table.axes.iter().map(|axis| &axis.name));
-    lines.write_record(titles).map_err(io::Error::from)?;
-    for row in &table.rows {
+    let titles = [&table.motion.name].into_iter().chain(table.axes.iter().map(|axis| &axis.name)).cloned();
+    let of_rates = table.axes.iter().flat_map(|axis| RATES.map(|rate| format!("{} {rate}", axis.name)));
+    let of_rates = of_rates.filter(|_| table.rates.is_some());
+    lines.write_record(titles.chain(of_rates)).map_err(io::Error::from)?;
+    for (index, row) in table.rows.iter().enumerate() {
         let motion = table.motion.unit.written(row.motion);
         let axes = table.axes.iter().zip(&row.axes).map(|(axis, position)| axis.unit().written(*position));
-        lines.write_record([motion].into_iter().chain(axes).map(shortest)).map_err(io::Error::from)?;
+        let rates = table.written_rates(index).into_iter().flatten().flatten();
+        lines.write_record([motion].into_iter().chain(axes).chain(rates).map(shortest)).map_err(io::Error::from)?;
     }
     lines.flush()?;
     Ok(())
@@ -77,6 +85,13 @@ fn write_head(table: &MotionTable, out: &mut dyn Write) -> io::Result<()> {
             write!(out, ", travel {low} to {high}")?;
         }
         writeln!(out)?;
+    }
+    if let Some(rates) = &table.rates {
+        let seconds = shortest(rates.seconds);
+        writeln!(
+            out,
+            "# velocity, acceleration and jerk: per s, s^2 and s^3, while the motion takes {seconds} s evenly"
+        )?;
     }
     let Some(series) = table.written_series() else { return Ok(()) };
     let reference = shortest(series.reference);

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use super::table::{MachineAxis, MotionRow, MotionTable};
+use super::table::{MachineAxis, MotionTable};
 use crate::error::WriteError;
 use crate::json_layout::{UNITS, Units, write_document};
 use crate::number::plain;
@@ -32,7 +32,8 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
         motion: MotionOut { name: &table.motion.name, unit: table.motion.unit.symbol() },
         axes: (0..table.axes.len()).map(|index| axis_out(table, index)).collect(),
         series: series_out(table),
-        rows: table.rows.iter().map(|row| row_out(table, row)).collect(),
+        seconds: table.rates.as_ref().map(|rates| plain(rates.seconds)),
+        rows: (0..table.rows.len()).map(|index| row_out(table, index)).collect(),
     };
     write_document(&document, BROKEN, out)
 }
@@ -49,6 +50,7 @@ struct Document<'a> {
     motion: MotionOut<'a>,
     axes: Vec<AxisOut<'a>>,
     series: Option<SeriesOut>,
+    seconds: Option<f64>,
     rows: Vec<RowOut>,
 }
 
@@ -84,6 +86,7 @@ struct AxisSeriesOut {
 struct RowOut {
     motion: f64,
     axes: Vec<f64>,
+    rates: Option<Vec<[f64; 3]>>,
 }
 
 fn axis_out(table: &MotionTable, index: usize) -> AxisOut<'_> {
@@ -107,10 +110,12 @@ fn series_out(table: &MotionTable) -> Option<SeriesOut> {
     Some(SeriesOut { reference: plain(series.reference), axes: axes.collect() })
 }
 
-fn row_out(table: &MotionTable, row: &MotionRow) -> RowOut {
+fn row_out(table: &MotionTable, index: usize) -> RowOut {
+    let row = &table.rows[index];
     let position = |(axis, position): (&MachineAxis, &f64)| plain(axis.unit().written(*position));
     RowOut {
         motion: plain(table.motion.unit.written(row.motion)),
         axes: table.axes.iter().zip(&row.axes).map(position).collect(),
+        rates: table.written_rates(index),
     }
 }

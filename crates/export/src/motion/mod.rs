@@ -10,4 +10,4 @@ pub use self::csv::write_motion_csv;
 pub use dialect::Dialect;
 pub use json::{MOTION_SCHEMA, write_motion_json};
 pub use nc::{NcError, write_nc};
-pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Series};
+pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Rates, Series};

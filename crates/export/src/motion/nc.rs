@@ -112,6 +112,7 @@ pub enum NcError {
 ///     axes: vec![slide],
 ///     rows: vec![row(0.0, 12.5), row(0.1, -12.0), row(0.4, 7.0)],
 ///     series: None,
+///     rates: None,
 /// };
 /// let mut file = Vec::new();
 /// write_nc(&table, Dialect::Fanuc, 6.0, &mut file)?;

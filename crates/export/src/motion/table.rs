@@ -20,6 +20,17 @@ pub struct MotionTable {
     pub rows: Vec<MotionRow>,
     /// The axes as polynomials of the motion, where these are known.
     pub series: Option<Series>,
+    /// How fast the axes move, if a cutting time is known.
+    pub rates: Option<Rates>,
+}
+
+/// What the axes do per second, its square and its cube.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rates {
+    /// From the first row to the last one.
+    pub seconds: f64,
+    /// For each row and axis velocity, acceleration and jerk, in mm or radians.
+    pub rows: Vec<Vec<[f64; 3]>>,
 }
 
 /// An axis of a machine as its spec describes it.
@@ -113,6 +124,13 @@ impl MotionTable {
         if let Some(given) = self.series.as_ref().map(|series| series.axes.len()).filter(|given| *given != named) {
             return Err(Malformed::SeriesCount { given, named });
         }
+        let rates = self.rates.iter().flat_map(|rates| rates.rows.iter().map(Vec::len)).enumerate();
+        if let Some((row, given)) = rates.clone().find(|(_, given)| *given != named) {
+            return Err(Malformed::AxisCount { row, given, named });
+        }
+        if self.rates.is_some() && rates.count() != self.rows.len() {
+            return Err(Malformed::AxisNumber);
+        }
         let is_finite = |row: &MotionRow| row.axes.iter().chain([&row.motion]).all(|number| number.is_finite());
         if let Some(row) = self.rows.iter().position(|row| !is_finite(row)) {
             return Err(Malformed::MotionNumber { row });
@@ -122,7 +140,13 @@ impl MotionTable {
             of_axes.chain([&series.reference])
         });
         let travels = self.axes.iter().flat_map(|axis| axis.travel.iter().flatten());
-        if of_series.chain(travels).all(|number| number.is_finite()) { Ok(()) } else { Err(Malformed::AxisNumber) }
+        let of_rates =
+            self.rates.iter().flat_map(|rates| rates.rows.iter().flatten().flatten().chain([&rates.seconds]));
+        if of_series.chain(travels).chain(of_rates).all(|number| number.is_finite()) {
+            Ok(())
+        } else {
+            Err(Malformed::AxisNumber)
+        }
     }
 
     /// The lowest and the highest position of an axis, mm or radians; nothing without rows.
@@ -143,6 +167,13 @@ impl MotionTable {
             reference: self.motion.unit.written(series.reference),
             axes: self.axes.iter().zip(&series.axes).map(axis).collect(),
         })
+    }
+
+    /// The rates at a row in the units of files; nothing without rates.
+    pub(crate) fn written_rates(&self, row: usize) -> Option<Vec<[f64; 3]>> {
+        let rates = &self.rates.as_ref()?.rows[row];
+        let written = |(axis, rates): (&MachineAxis, &[f64; 3])| rates.map(|rate| plain(axis.unit().written(rate)));
+        Some(self.axes.iter().zip(rates).map(written).collect())
     }
 
     /// What a reader must know to use the numbers, then the caller's own sentences.
