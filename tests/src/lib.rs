@@ -4,6 +4,7 @@ pub mod compiled;
 mod dice;
 pub mod layout;
 pub mod targets;
+pub mod variants;
 
 use std::path::{Path, PathBuf};
 

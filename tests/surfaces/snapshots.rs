@@ -4,7 +4,10 @@
 
 use std::fmt::Write;
 
+use flank_chain_dsl::Job;
 use flank_expr::Graph;
+use flank_solver::Outcome;
+use flank_tests::variants::{ALL_JOINTS, EASE_OFF};
 use flank_tests::{job, problem};
 
 /// Nine significant digits, without a negative zero.
@@ -15,16 +18,24 @@ fn digits(value: f64) -> String {
 }
 
 fn described(spec: &str) -> String {
+    described_with(spec, &[])
+}
+
+fn described_with(spec: &str, set: &[(&str, &str)]) -> String {
     let graph = Graph::new();
-    let job = job(&graph, spec, &[]);
+    described_job(&job(&graph, spec, set))
+}
+
+fn described_job(job: &Job<'_>) -> String {
     let mut out = String::new();
     for surface in &job.surfaces {
         let Some(sample) = &surface.sample else {
             continue;
         };
         let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-        let problem = problem(&job, surface, coordinates);
+        let problem = problem(job, surface, coordinates);
         let (points, effort) = problem.solve(&sample.targets, sample.counts);
+        let graph = surface.surface.position.0[0].graph();
         let constraints = graph.count(&surface.surface.constraints);
         let tape = problem.system().tape();
         let per_point = effort.evaluations as f64 / points.len() as f64;
@@ -40,7 +51,9 @@ fn described(spec: &str) -> String {
         for (i, j) in [(0, 0), (0, columns - 1), (rows / 2, columns / 2), (rows - 1, 0), (rows - 1, columns - 1)] {
             let point = &points[i * columns + j];
             let numbers = point.position.iter().chain(&point.normal).chain(&point.unknowns);
-            let numbers: Vec<String> = numbers.map(|value| digits(*value)).collect();
+            // where the search for a point that is not there ended means nothing
+            let is_point = !matches!(point.outcome, Outcome::NotConverged { .. });
+            let numbers: Vec<String> = numbers.filter(|_| is_point).map(|value| digits(*value)).collect();
             let _ = writeln!(out, "  {i:>2} {j:>2} {} {}", point.outcome.word(), numbers.join(" "));
         }
     }
@@ -60,6 +73,18 @@ fn helical_gear() {
 #[test]
 fn pinion_19x62() {
     insta::assert_snapshot!(described("specs/bevel/pinion_19x62.chain"));
+}
+
+/// Settings of which there is a table.
+#[test]
+fn pinion_19x62_with_ease_off() {
+    insta::assert_snapshot!(described_with("specs/bevel/pinion_19x62.chain", &EASE_OFF));
+}
+
+/// Settings of which there is a table; some points of the blank are out of the cutter's reach.
+#[test]
+fn pinion_19x62_with_all_joints_moving() {
+    insta::assert_snapshot!(described_with("specs/bevel/pinion_19x62.chain", &ALL_JOINTS));
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub use explain::UnknownCode;
 pub use format::format;
 pub use load::read_file;
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, Parameter, Process,
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Limit, Machine, Parameter, Process,
     Sample, ToolShape,
 };
 pub use render::render;

@@ -191,6 +191,19 @@ pub struct Sample<'g> {
     pub targets: Vec<[f64; 2]>,
     /// Functions of the unknowns, and the ends between which they lie on the branch that is meant.
     pub keep: Vec<(Coordinate<'g>, (f64, f64))>,
+    /// What every point must fulfil.
+    pub limits: Vec<Limit<'g>>,
+}
+
+/// A function of the unknowns that must lie between two ends at every point of a sample.
+#[derive(Clone, Debug)]
+pub struct Limit<'g> {
+    /// The function.
+    pub of: Coordinate<'g>,
+    /// Lower and upper end.
+    pub ends: (f64, f64),
+    /// What is told where it does not, in the words of the spec.
+    pub message: String,
 }
 
 /// A function of the unknowns that a sample gives values to.

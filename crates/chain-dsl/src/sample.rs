@@ -5,14 +5,14 @@ use crate::context::{Context, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::limits;
-use crate::model::{Coordinate, GeneratedSurface, Sample};
+use crate::model::{Coordinate, GeneratedSurface, Limit, Sample};
 use crate::source::Name;
 use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 
 /// Corners of a flank in the axial section.
 const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 
-/// The grid that a `sample` statement asks for, and the branch that it keeps to.
+/// The grid that a `sample` statement asks for, the branch that it keeps to, and what it requires of the points.
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
     written: &ast::Sample,
@@ -20,8 +20,10 @@ pub(crate) fn build<'g>(
     scope: &Scope<'g>,
 ) -> Option<Sample<'g>> {
     let keep: Vec<_> = written.keeps.iter().map(|keep| kept(context, keep, surface, scope)).collect();
+    let limits: Vec<_> = written.limits.iter().map(|limit| limited(context, limit, surface, scope)).collect();
     let grid = grid(context, written, surface, scope)?;
-    Some(Sample { keep: keep.into_iter().collect::<Option<_>>()?, ..grid })
+    let (keep, limits) = (keep.into_iter().collect::<Option<_>>()?, limits.into_iter().collect::<Option<_>>()?);
+    Some(Sample { keep, limits, ..grid })
 }
 
 fn kept<'g>(
@@ -33,6 +35,16 @@ fn kept<'g>(
     let coordinate = coordinate(context, (&written.key, written.definition.as_ref()), surface, scope)?;
     let ends = context.range(&written.range, scope, coordinate.dimension, &format!("`{}`", written.key.node))?;
     Some((coordinate, ends))
+}
+
+fn limited<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Limit,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Limit<'g>> {
+    let (of, ends) = kept(context, &written.within, surface, scope)?;
+    Some(Limit { of, ends, message: written.message.clone() })
 }
 
 fn grid<'g>(
@@ -81,25 +93,31 @@ fn grid<'g>(
         counts: [row_values.len(), column_values.len()],
         targets: row_values.iter().flat_map(|&row| column_values.iter().map(move |&column| [row, column])).collect(),
         keep: Vec::new(),
+        limits: Vec::new(),
     })
 }
 
 impl<'g> GeneratedSurface<'g> {
     /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
-    /// `polar_angle` (about it, in (−π, π]; a sample measures it from the middle of its values), then its unknowns by their names.
+    /// `polar_angle` (about it, in (−π, π]; a sample measures it from the middle of its values), `nx`, `ny`, `nz` (the unit normal out
+    /// of the body), then its unknowns by their names.
     pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
         let [x, y, z] = self.surface.position.0;
-        let of_position = [
+        let [nx, ny, nz] = self.surface.normal.0;
+        let of_point = [
             ("x", x, Dimension::LENGTH),
             ("y", y, Dimension::LENGTH),
             ("z", z, Dimension::LENGTH),
             ("rho", (x * x + y * y).sqrt(), Dimension::LENGTH),
             ("polar_angle", y.atan2(x), Dimension::ANGLE),
+            ("nx", nx, Dimension::NUMBER),
+            ("ny", ny, Dimension::NUMBER),
+            ("nz", nz, Dimension::NUMBER),
         ];
         let unknowns = self.unknowns.iter().map(|u| (u.name.as_str(), u.variable, u.dimension));
         let coordinate =
             |(name, value, dimension): (&str, _, _)| Coordinate { name: name.to_string(), value, dimension };
-        of_position.into_iter().chain(unknowns).map(coordinate).collect()
+        of_point.into_iter().chain(unknowns).map(coordinate).collect()
     }
 
     /// One of [`GeneratedSurface::coordinates`] by its name, or one that the surface's own sample defines.
@@ -268,6 +286,7 @@ fn outline<'g>(
         counts: [profile.len(), length.len()],
         targets: profile.iter().flat_map(|&v| length.iter().map(move |&u| (v, u))).map(|(v, u)| point(v, u)).collect(),
         keep: Vec::new(),
+        limits: Vec::new(),
     })
 }
 

@@ -194,7 +194,7 @@ impl Used {
                             }
                         }
                     }
-                    for keep in &sample.keeps {
+                    for keep in sample.keeps.iter().chain(sample.limits.iter().map(|limit| &limit.within)) {
                         keep.definition.iter().for_each(|definition| self.expression(definition));
                         self.range(&keep.range);
                     }

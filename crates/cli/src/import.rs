@@ -34,6 +34,17 @@ const MOTIONS: [(&str, &[&str], u32, &str); 6] = [
 /// Attributes of motions that the generator of the library does not have.
 const NOT_THERE: [&str; 3] = ["horizontal_distance", "horizontal_motion_coefficients", "angular_motion_coefficients"];
 
+/// Attributes of a tool that make its face mill.
+const OF_TOOL: [&str; 5] = [
+    "blade_point_radius",
+    "blade_pressure_angle",
+    "tool_edge_radius_bevel_gear_tool",
+    "blade_spheric_radius",
+    "blade_profile_height",
+];
+/// Attributes of profiles that a face mill does not have.
+const RELIEVED: [&str; 2] = ["protuberance_height_bevel_gear_tool", "tip_relief_height_bevel_gear_tool"];
+
 /// Names of the settings, by the order of their coefficient.
 mod orders {
     macro_rules! six {
@@ -100,15 +111,22 @@ fn job(text: &str, file: &str, arguments: &Import) -> Result<String, String> {
     let mut out = format!("//! From {file}, REXS {version}, {}.\n", settings.described());
     let _ = writeln!(out, "//! Signs: {}.", said(arguments.signs));
     let machine = machine(&settings, arguments, &mut out)?;
+    let known: Vec<&str> = VALUES.iter().map(|value| value.0).chain(MOTIONS.iter().map(|motion| motion.0)).collect();
+    settings.tell_unused(&known, &mut out);
+    let mut chosen = Vec::new();
+    for (blades, id, flank) in tools {
+        let Some(id) = id else { continue };
+        let tool = Component::one(model, TOOL, Some(id), &format!("--{blades}"))?;
+        tool.tell_unused(&OF_TOOL, &mut out);
+        chosen.push((blades, tool, flank));
+    }
     let _ = write!(
         out,
         "\nuse \"{0}/machines/cradle.chain\"\nuse \"{0}/tools/face_mill.chain\"\n\njob {1} {{\n{machine}",
         arguments.library, arguments.name
     );
     let mut surfaces = String::new();
-    for (blades, id, flank) in tools {
-        let Some(id) = id else { continue };
-        let tool = Component::one(model, TOOL, Some(id), &format!("--{blades}"))?;
+    for (blades, tool, flank) in chosen {
         let _ = write!(out, "\n    // {}\n    tool {blades}_blades = {}", tool.described(), cutter(&tool)?);
         let _ = writeln!(out, "    mount {blades}_blades on m.cutter");
         let _ = writeln!(surfaces, "    surface {flank} in m.work = envelope({blades}_blades.{blades}, over: roll)");
@@ -186,6 +204,14 @@ fn machine(settings: &Component<'_, '_>, arguments: &Import, head: &mut String) 
 }
 
 fn cutter(tool: &Component<'_, '_>) -> Result<String, String> {
+    for attribute in RELIEVED {
+        if tool.coefficients(attribute)?.iter().any(|value| *value != 0.0) {
+            return Err(format!(
+                "{}: `{attribute}` is not zero, and these blades have one profile; face_mill_relieved has a toprem and a flankrem",
+                tool.described()
+            ));
+        }
+    }
     let needed = |attribute: &str, unit| {
         tool.number(attribute, unit)?.ok_or(format!("{} has no `{attribute}`", tool.described()))
     };
@@ -274,9 +300,30 @@ impl<'a, 'i> Component<'a, 'i> {
         self.parsed(name, node.text().unwrap_or_default()).map(Some)
     }
 
+    /// Writes which of the attributes are not known, and what they are.
+    fn tell_unused(&self, known: &[&str], out: &mut String) {
+        let attributes = self.0.children().filter(|node| node.has_tag_name("attribute"));
+        for node in attributes {
+            let name = node.attribute("id").unwrap_or("?").replace(['\n', '\r'], " ");
+            let texts = node.descendants().filter(Node::is_text).filter_map(|text| text.text());
+            let words: Vec<&str> = texts.flat_map(str::split_whitespace).collect();
+            if !known.contains(&name.as_str()) && !words.is_empty() {
+                let unit = node.attribute("unit").filter(|unit| *unit != "none").unwrap_or_default();
+                let value = format!("{} {}", words.join(" "), unit.replace(['\n', '\r'], " "));
+                let _ = writeln!(out, "//! Not used of {}: {name}, {}.", self.described(), value.trim_end());
+            }
+        }
+    }
+
     /// The numbers of an array, or a single one; none if it is not there.
     fn coefficients(&self, name: &str) -> Result<Vec<f64>, String> {
         let Some(node) = self.attribute(name) else { return Ok(Vec::new()) };
+        let array = node.children().find(|inner| inner.has_tag_name("array"));
+        if let Some((array, code)) = array.and_then(|array| Some((array, array.attribute("code")?))) {
+            let text: String = array.text().unwrap_or_default().split_whitespace().collect();
+            return coded(&text, code)
+                .ok_or_else(|| format!("{}: `{name}` is no array of {code} in Base64: `{text}`", self.described()));
+        }
         let cells: Vec<&str> = node
             .descendants()
             .filter(|cell| cell.has_tag_name("c"))
@@ -290,4 +337,37 @@ impl<'a, 'i> Component<'a, 'i> {
         let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
         number.ok_or_else(|| format!("{}: `{name}` is `{}`, which is no number", self.described(), text.trim()))
     }
+}
+
+/// The numbers of a coded array: Base64 of little-endian numbers, one after the other.
+fn coded(text: &str, code: &str) -> Option<Vec<f64>> {
+    let bytes = base64(text)?;
+    let numbers: Vec<f64> = match code {
+        "float64" => bytes.as_chunks().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect(),
+        "float32" => bytes.as_chunks().0.iter().map(|chunk| f64::from(f32::from_le_bytes(*chunk))).collect(),
+        "int32" => bytes.as_chunks().0.iter().map(|chunk| f64::from(i32::from_le_bytes(*chunk))).collect(),
+        _ => return None,
+    };
+    let size = if code == "float64" { 8 } else { 4 };
+    (numbers.len() * size == bytes.len() && numbers.iter().all(|number| number.is_finite())).then_some(numbers)
+}
+
+/// The bytes of a text in Base64 with its padding.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let digits = text.trim_end_matches('=');
+    if !text.len().is_multiple_of(4) || text.len() - digits.len() > 2 {
+        return None;
+    }
+    let (mut bits, mut held, mut bytes) = (0u32, 0, Vec::new());
+    for digit in digits.bytes() {
+        let value = DIGITS.iter().position(|known| *known == digit)?;
+        bits = bits << 6 | u32::try_from(value).ok()?;
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            bytes.push(u8::try_from(bits >> held & 0xff).ok()?);
+        }
+    }
+    Some(bytes)
 }

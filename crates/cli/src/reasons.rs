@@ -39,29 +39,35 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
     tell(count, format!("not converged{near}: no point of this branch was found there"));
+    reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
     reasons
 }
 
-/// At which ends of the grid points lie, if all of them lie in the third of it next to an end with a name: `, at the toe`.
-fn whereabouts(solved: &Solved<'_, '_>, places: &[usize]) -> String {
-    let columns = solved.sample.counts[1];
-    let end = |k: usize| {
-        let count = solved.sample.counts[k];
+/// At which ends of the grid points lie: `, at the toe and the tip`. An end has at least half of its line among them; where none
+/// has, all of them lie in the third of the grid next to it.
+pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &[usize]) -> String {
+    let [rows, columns] = solved.sample.counts;
+    let index = |k: usize, at: usize| if k == 0 { at / columns } else { at % columns };
+    let on_lines =
+        |k: usize, from: usize, to: usize| places.iter().filter(|at| (from..to).contains(&index(k, **at))).count();
+    let ends = [1, 0].into_iter().filter(|&k| solved.sample.counts[k] > 2).filter_map(|k| {
         let (first, last) = solved.sample.labels[k].split_once(" -> ")?;
-        let index = |at: &usize| if k == 0 { at / columns } else { at % columns };
-        let all = |is_there: &dyn Fn(usize) -> bool| places.iter().map(index).all(is_there);
-        match count / 3 {
-            0 => None,
-            third if all(&|i| i < third) => Some(first),
-            third if all(&|i| i >= count - third) => Some(last),
-            _ => None,
-        }
+        let (count, length) = (solved.sample.counts[k], [columns, rows][k]);
+        let third = count / 3;
+        let end = |name, line: usize, from: usize| {
+            (name, 2 * on_lines(k, line, line + 1) >= length, on_lines(k, from, from + third))
+        };
+        Some([end(first, 0, 0), end(last, count - 1, count - third)])
+    });
+    let ends: Vec<(&str, bool, usize)> = ends.flatten().collect();
+    let has_most = |end: &&(&str, bool, usize)| end.1;
+    let names: Vec<&str> = if ends.iter().any(|end| end.1) {
+        ends.iter().filter(has_most).map(|end| end.0).collect()
+    } else {
+        ends.iter().filter(|end| end.2 == places.len()).map(|end| end.0).collect()
     };
-    match (end(1), end(0)) {
-        (None, None) => String::new(),
-        (Some(one), None) | (None, Some(one)) => format!(", at the {one}"),
-        (Some(one), Some(other)) => format!(", at the {one}'s {other}"),
-    }
+    // all round is nowhere in particular
+    if names.is_empty() || names.len() == 4 { String::new() } else { format!(", at the {}", names.join(" and the ")) }
 }
 
 /// What an outcome's word does not tell of one point; may be empty.

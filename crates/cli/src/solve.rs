@@ -15,7 +15,7 @@ use crate::sensitivity::{self, Sensitivity};
 use crate::step::{self, Smooth};
 use crate::table::{Solved, Table};
 use crate::{Ending, cut, print, spec, travel, trims};
-use crate::{branches, certify, geometry, reasons};
+use crate::{branches, certify, geometry, reach, reasons, required};
 
 pub(crate) fn run(arguments: &Solve) -> Ending {
     let start = Instant::now();
@@ -40,7 +40,9 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
             job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, arguments)).collect();
         let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
         let limits: Vec<Line<'_, '_>> = limits.collect();
-        let lines: Vec<&Line<'_, '_>> = limits.iter().chain(solved.iter().flat_map(|solved| &solved.trims)).collect();
+        // a trim that takes nothing has no line
+        let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
+        let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
         let dataset = dataset(job, &solved, &lines, &hash, arguments);
         let faces: Vec<Smooth> = arguments
             .step
@@ -60,6 +62,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         anstream::eprintln!("{}", table.time());
         anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
         let told = branches::ambiguous(&solved)
+            + &required::text(&solved)
             + &table.unsolved()
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
@@ -80,8 +83,9 @@ fn solve_surface<'j, 'g>(
     arguments: &Solve,
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
-    let Found { problem, points, effort, trims } = points(job, surface, sample);
+    let Found { problem, mut points, effort, trims } = points(job, surface, sample);
     let branches = problem.points(&effort.branches);
+    let needed = reach::beyond(job, surface, sample, &mut points);
     let radii = arguments.certify.then(|| certify::radii(&problem, &sample.targets, &points));
     let mut fields = Vec::new();
     if arguments.geometry {
@@ -91,7 +95,20 @@ fn solve_surface<'j, 'g>(
     let cut = cut::of(job, surface, &points);
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
-    Some(Solved { surface, sample, points, effort, branches, radii, fields, sensitivity, trims, cut })
+    Some(Solved {
+        surface,
+        sample,
+        bindings: job.bindings(),
+        points,
+        needed,
+        effort,
+        branches,
+        radii,
+        fields,
+        sensitivity,
+        trims,
+        cut,
+    })
 }
 
 /// The points of a sample, with what it took to find them.

@@ -5,19 +5,25 @@ use std::time::Instant;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::Field;
+use flank_expr::Expr;
 use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::cut::Cut;
 use crate::limits::Line;
+use crate::reach::Needed;
 use crate::sensitivity::{self, Sensitivity};
-use crate::{branches, certify, cut, fields, reasons, units};
+use crate::{branches, certify, cut, fields, reasons, required, units};
 
 /// One surface with its points.
 pub(crate) struct Solved<'j, 'g> {
     pub(crate) surface: &'j GeneratedSurface<'g>,
     pub(crate) sample: &'j Sample<'g>,
+    /// The job's parameters with their values.
+    pub(crate) bindings: Vec<(Expr<'g>, Expr<'g>)>,
     pub(crate) points: Vec<SurfacePoint>,
+    /// Ranges that would reach the points that are outside.
+    pub(crate) needed: Vec<Needed>,
     pub(crate) effort: Effort,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
@@ -222,5 +228,6 @@ fn surface_json(solved: &Solved<'_, '_>) -> Value {
     entries.insert("cut".to_string(), cut::json(solved));
     entries.insert("sensitivity".to_string(), sensitivity::json(solved));
     entries.insert("branches".to_string(), branches::json(solved));
+    entries.insert("not_as_required".to_string(), required::json(solved));
     Value::Object(entries)
 }

@@ -376,3 +376,79 @@ fn wrong_settings_of_hobbing_machines_are_told() {
         assert!(said.contains(told), "{spec}, {set}: {said}");
     }
 }
+
+/// What comes of wrong settings of bevel gears: on all members, in the words of the trade.
+#[test]
+fn bevel_gears_of_wrong_settings_are_told_as_such() {
+    let out = folder("bevel_mistakes");
+    let run_of = |file: &str, set: &[&str]| {
+        let set = set.iter().flat_map(|value| ["--set", value]);
+        let of = ["solve", file, "--no-picture", "--out", out.to_str().unwrap()];
+        let run = flank(&of.into_iter().chain(set).collect::<Vec<_>>());
+        (run.status.code(), text(&run.stderr))
+    };
+    let roots = "the tips miss the root of the blank: deeper they cut through, higher they leave stock";
+    for (spec, set, wanted) in [
+        // the tips cut through, or leave stock
+        ("pinion_19x62", &["m.machine_root_angle=14.5 deg"][..], roots),
+        ("gear_19x62", &["m.machine_root_angle=77 deg"], roots),
+        ("thesis_gear", &["m.root_angle=74 deg"], roots),
+        ("formate_gear", &["m.machine_root_angle=64 deg"], roots),
+        ("helixform_gear", &["m.machine_root_angle=64 deg"], roots),
+        ("duplex_helical_pinion", &["m.helical_motion_1=5.5 mm"], roots),
+        ("hypoid_pinion", &["m.machine_root_angle=5 deg"], roots),
+        ("tilted_pinion", &["m.sliding_base=-3 mm"], roots),
+        ("face_hobbed_pinion", &["m.sliding_base=3.4 mm"], roots),
+        // the cutter of one flank reaches the other one
+        ("hypoid_pinion", &["n.index=0 deg"], "225: cut away by what makes behind_concave"),
+        ("tilted_pinion", &["c.inside_point_radius=56 mm"], "cut away by what makes behind_concave"),
+        ("face_hobbed_pinion", &["n.spindle_start=313.7 deg"], "225: cut away by what makes behind_concave"),
+        // the other side of the cutter
+        (
+            "pinion_19x62",
+            &["c.theta_from=-170 deg", "c.theta_to=-80 deg"],
+            "theta of c.outside.blade from -265.2113 to -238.8375 deg would reach them all; its range is -170.0000 .. -80.0000 deg",
+        ),
+        ("formate_gear", &["c.theta_from=0 deg", "c.theta_to=90 deg"], "theta of c.outside.blade from"),
+    ] {
+        let (code, told) = run_of(&format!("specs/bevel/{spec}.chain"), set);
+        assert_eq!(code, Some(3), "{spec}, {set:?}: {told}");
+        assert!(told.contains(wanted), "{spec}, {set:?}: {told}");
+    }
+    // what `--set` does not reach: the roll, and which blades cut which flank
+    for (spec, from, to, wanted) in [
+        (
+            "tilted_pinion",
+            "in -30 deg .. 30 deg",
+            "in -4 deg .. 4 deg",
+            "124: roll outside its range, by up to 9.943851 deg, at the toe and the tip",
+        ),
+        (
+            "hypoid_pinion",
+            "in -40 deg .. 40 deg",
+            "in -40 deg .. 2 deg",
+            "roll from -5.2705 to 11.8862 deg would reach them all; its range is -40.0000 .. 2.0000 deg",
+        ),
+        ("gear_19x62", "in -25 deg .. 25 deg", "in -5 deg .. 25 deg", "roll outside its range"),
+        ("face_hobbed_pinion", "roll : angle in -40", "roll : angle in -2", "roll outside its range"),
+        (
+            "gear_19x62",
+            "c.outside.blade",
+            "c.inside.blade",
+            "this is the opposite flank: outside blades cut the concave",
+        ),
+        ("formate_gear", "c.inside.blade", "c.outside.blade", "not as required: 225 of 225 points of convex"),
+        ("helixform_gear", "c.outside.blade", "c.inside.blade", "this is the opposite flank"),
+    ] {
+        let path = format!("specs/bevel/{spec}.chain");
+        let right = std::fs::read_to_string(top().join(&path)).unwrap();
+        assert!(right.contains(from), "{spec} has {from}");
+        // beside the specs that it uses
+        let wrong = format!("target/wrong_{spec}.chain");
+        std::fs::write(top().join(&wrong), right.replacen(from, to, 1).replace("\"../", "\"../specs/")).unwrap();
+        let (code, told) = run_of(&wrong, &[]);
+        let _ = std::fs::remove_file(top().join(&wrong));
+        assert_eq!(code, Some(3), "{spec}, {to}: {told}");
+        assert!(told.contains(wanted), "{spec}, {to}: {told}");
+    }
+}

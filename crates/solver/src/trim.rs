@@ -15,7 +15,8 @@ struct Known {
 }
 
 /// Marks the solved points of a grid of the intersection's first surface that its second cuts away, as
-/// [`CutBy::Other`]`(number)`, and gives back where the two meet: on the columns, one after the other, and on the rows.
+/// [`CutBy::Other`]`(number)`, and gives back where the two meet on the grid: on the columns, one after the other, and on the
+/// rows.
 ///
 /// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
 /// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
@@ -51,7 +52,8 @@ pub fn trim(
             if !found.is_empty() {
                 before = found.iter().map(Meeting::unknowns).collect();
             }
-            meetings[coordinate].extend(found);
+            meetings[coordinate]
+                .extend(found.into_iter().filter(|meeting| line.is_on_grid(meeting.along, indices, targets)));
         }
     }
     spread(&mut known, &joined);
@@ -75,6 +77,13 @@ impl Line {
 
     fn along(&self, target: [f64; 2]) -> f64 {
         (0..2).map(|k| (target[k] - self.from[k]) * self.direction[k]).sum()
+    }
+
+    /// Whether a place lies between the ends of the line, or beyond them by no more than the points are apart.
+    fn is_on_grid(&self, along: f64, indices: &[usize], targets: &[[f64; 2]]) -> bool {
+        let length = indices.last().map_or(0.0, |&last| self.along(targets[last]));
+        let gap = length / (indices.len().max(2) - 1) as f64;
+        indices.len() < 2 || (-gap..=length + gap).contains(&along)
     }
 }
 

@@ -148,7 +148,7 @@ fn gap(kind: Kind, parts: &[Part<'_>], index: usize) -> bool {
     match kind {
         Kind::Joined => false,
         Kind::Signed => left.is("not"),
-        Kind::Element => !right.is(":"),
+        Kind::Element => !(right.is(":") || right.is(",")),
         // without a space, the exponent would be that of the unit
         Kind::Power => parts[0].kind == Kind::Number && parts[0].parts.len() > 1,
         Kind::Statement => !(right.kind == Kind::List && right.parts[0].is("(") || right.is(",")),

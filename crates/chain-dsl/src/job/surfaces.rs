@@ -243,7 +243,9 @@ impl<'g> Builder<'_, 'g> {
             return context.report(wrong(format!("`{}` cannot trim itself", joined(by)), help));
         }
         let [own, its] = [index, other].map(|k| self.surfaces[k].0.frame.clone());
-        if own != its {
+        // frames of two machines are both the work
+        let machine = |frame: &str| frame.split('.').next().map(str::to_owned);
+        if own != its && machine(&own) == machine(&its) {
             let message = format!("`{}` is given in `{own}`, `{}` in `{its}`", joined(surface), joined(by));
             return context.report(wrong(message, "give both in the frame of the work"));
         }

@@ -376,6 +376,8 @@ pub struct Sample {
     pub entries: Vec<SampleEntry>,
     /// Which branch is meant.
     pub keeps: Vec<Keep>,
+    /// What its points must fulfil.
+    pub limits: Vec<Limit>,
     /// The whole statement.
     pub span: Span,
 }
@@ -391,15 +393,24 @@ pub struct SampleEntry {
     pub values: SampleValues,
 }
 
-/// `keep key: a .. b`
+/// `keep key: a .. b`, a function of the points and a range of it
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keep {
     /// A coordinate, an unknown, or the name of a coordinate defined here.
     pub key: Name,
     /// What it is, if it is defined here.
     pub definition: Option<Expression>,
-    /// Where it lies on the branch that is meant.
+    /// Where it lies: on the branch that is meant, or at every point.
     pub range: Range,
+}
+
+/// `require key: a .. b, "message"`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// A function of the points and where it must lie.
+    pub within: Keep,
+    /// What is told of points where it does not.
+    pub message: String,
 }
 
 /// The values of a sample entry.

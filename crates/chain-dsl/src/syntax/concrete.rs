@@ -96,6 +96,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::motion => return parts.push(motion(pair)),
         Rule::frame => return parts.push(frame(pair)),
         Rule::entry => return parts.push(entry(pair)),
+        Rule::limit => return parts.push(limit(pair)),
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
         Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
@@ -183,6 +184,13 @@ fn entry(pair: Pair<'_, Rule>) -> Part<'_> {
         parts.push(Part::node(Kind::Operation, range));
     }
     Part::node(Kind::Element, parts)
+}
+
+/// The message of a requirement may stand on a line of its own.
+fn limit(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let message = parts.pop();
+    Part::node(Kind::Steps, [Part::node(Kind::Element, parts)].into_iter().chain(message).collect())
 }
 
 fn expression(pair: Pair<'_, Rule>) -> Part<'_> {

@@ -191,6 +191,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_in => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
+        Rule::kw_require => "require",
         Rule::kw_if => "if",
         Rule::kw_then => "then",
         Rule::kw_else => "else",

@@ -248,7 +248,7 @@ impl Piece<'_> {
     fn sample(&self) -> Sample {
         let surface = self.path(self.range.start + 1);
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
-        Sample { surface, entries: vec![entry], keeps: Vec::new(), span: self.span() }
+        Sample { surface, entries: vec![entry], keeps: Vec::new(), limits: Vec::new(), span: self.span() }
     }
 
     /// The names right after the first opening parenthesis and after each comma on its level.

@@ -8,7 +8,8 @@ use crate::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
-    MachineStatement, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues, ToolStatement,
+    Limit, MachineStatement, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues,
+    ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -184,18 +185,20 @@ impl Build<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let surface = self.path(parts.required(Rule::path));
-        let (mut entries, mut keeps) = (Vec::new(), Vec::new());
+        let (mut entries, mut keeps, mut limits) = (Vec::new(), Vec::new(), Vec::new());
         let mut end = None;
-        while let Some(pair) = parts.optional(Rule::entry).or_else(|| parts.optional(Rule::keep)) {
+        let asked = [Rule::entry, Rule::keep, Rule::limit];
+        while let Some(pair) = asked.into_iter().find_map(|rule| parts.optional(rule)) {
             let place = self.span(&pair);
             self.separated(end, place);
             end = Some(place.end);
             match pair.as_rule() {
-                Rule::keep => keeps.push(self.keep(pair)),
+                Rule::keep => keeps.push(self.keep(&mut Parts::of(pair))),
+                Rule::limit => limits.push(self.limit(pair)),
                 _ => entries.push(self.entry(pair)),
             }
         }
-        Sample { surface, entries, keeps, span }
+        Sample { surface, entries, keeps, limits, span }
     }
 
     /// Asks for a comma or a new line between two entries of a sample.
@@ -209,10 +212,15 @@ impl Build<'_> {
         }
     }
 
-    fn keep(&mut self, pair: Pair<'_, Rule>) -> Keep {
-        let mut parts = Parts::of(pair);
-        let (key, definition) = self.coordinate(&mut parts);
+    fn keep(&mut self, parts: &mut Parts<'_>) -> Keep {
+        let (key, definition) = self.coordinate(parts);
         Keep { key, definition, range: self.range(parts.required(Rule::range)) }
+    }
+
+    fn limit(&mut self, pair: Pair<'_, Rule>) -> Limit {
+        let mut parts = Parts::of(pair);
+        let within = self.keep(&mut parts);
+        Limit { within, message: self.text(parts.required(Rule::string)).node }
     }
 
     /// The name of a coordinate, and what it is if that is said.
