@@ -120,6 +120,8 @@ pub(crate) enum Format {
     Csv,
     /// The same, with a schema
     Json,
+    /// The columns of the CSV file as a Parquet table
+    Parquet,
     /// Triangles, single precision
     Stl,
     /// Triangles with normals

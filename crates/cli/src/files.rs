@@ -5,7 +5,8 @@ use std::path::Path;
 
 use flank_export::{
     Dataset, Dialect, Face, Header, MotionTable, Picture, WriteError, write_3mf, write_atomically, write_csv,
-    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_step, write_stl, write_vtp,
+    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step, write_stl,
+    write_vtp,
 };
 
 use crate::arguments::Format;
@@ -33,6 +34,7 @@ impl<'a> Folder<'a> {
                 Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(dataset, out))?,
                 Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(dataset, out))?,
                 Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(dataset, out))?,
+                Format::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(dataset, out))?,
                 Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(dataset, out))?,
             }
         }
@@ -77,7 +79,11 @@ impl<'a> Folder<'a> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
-    fn write(&mut self, name: &str, content: impl Fn(&mut dyn Write) -> Result<(), WriteError>) -> Result<(), String> {
+    fn write(
+        &mut self,
+        name: &str,
+        content: impl Fn(&mut (dyn Write + Send)) -> Result<(), WriteError>,
+    ) -> Result<(), String> {
         let path = self.path.join(name);
         write_atomically(&path, content).map_err(|error| error.to_string())?;
         self.written.push(spec::shown(&path));

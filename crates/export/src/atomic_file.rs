@@ -26,12 +26,15 @@ use crate::error::{FileError, WriteError};
 /// Names the file and says in plain words what stood in the way, be it the disk or `content`.
 pub fn write_atomically(
     path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
 ) -> Result<(), FileError> {
     replace(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })
 }
 
-fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>) -> Result<(), WriteError> {
+fn replace(
+    path: &Path,
+    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
     let existing = match fs::metadata(path) {
         Ok(found) => Some(found),
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
@@ -48,7 +51,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<(), Write
 fn through_temporary(
     path: &Path,
     permissions: Option<fs::Permissions>,
-    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let folder = folder_of(path);
     let temporary = new_temporary(&folder)?;
@@ -65,7 +68,10 @@ fn through_temporary(
     Ok(())
 }
 
-fn fill(file: File, content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>) -> Result<File, WriteError> {
+fn fill(
+    file: File,
+    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
+) -> Result<File, WriteError> {
     let mut buffer = BufWriter::new(file);
     content(&mut buffer)?;
     buffer.into_inner().map_err(|error| error.into_error().into())

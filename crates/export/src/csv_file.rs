@@ -2,16 +2,12 @@
 
 use std::io::{self, Write};
 
-use crate::columns::{union_of_fields, union_of_unknowns};
+use crate::columns::{titles, union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Field, Patch, Point, Unit, Unknown};
+use crate::dataset::{Dataset, Field, Patch, Point, Unit};
 use crate::error::WriteError;
 use crate::number::shortest;
 use crate::tally::Tally;
-
-const FIRST: [&str; 9] = ["surface", "i", "j", "x", "y", "z", "nx", "ny", "nz"];
-const LAST: [&str; 2] = ["residual", "status"];
-const REASON: &str = "reason";
 
 /// Writes all points as CSV.
 ///
@@ -30,7 +26,7 @@ pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     let unknowns = union_of_unknowns(&dataset.patches);
     let fields = union_of_fields(&dataset.patches);
     let mut table = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(out);
-    let told = dataset.patches.iter().flat_map(|patch| &patch.points).any(|point| !point.reason.is_empty());
+    let told = dataset.has_reasons();
     table.write_record(titles(&unknowns, told, &fields)).map_err(io::Error::from)?;
     for patch in &dataset.patches {
         let places: Vec<Option<usize>> =
@@ -65,39 +61,9 @@ fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "# field `{name}` in {unit}: {meaning}")?;
     }
     for patch in &dataset.patches {
-        writeln!(
-            out,
-            "# surface `{}`: frame {}; {} rows i: {}; {} columns j: {}; {}",
-            one_line(&patch.name),
-            one_line(&patch.frame),
-            patch.rows.count,
-            one_line(&patch.rows.label),
-            patch.columns.count,
-            one_line(&patch.columns.label),
-            Tally::of([patch]).verdict(),
-        )?;
+        writeln!(out, "# surface `{}`: {}", one_line(&patch.name), patch.told())?;
     }
     writeln!(out, "# all surfaces: {}", Tally::of(&dataset.patches).verdict())
-}
-
-/// The titles of all columns; those of unknowns and fields that are not unique have the unit behind them.
-fn titles(unknowns: &[&Unknown], told: bool, fields: &[&Field]) -> Vec<String> {
-    let fixed = |names: &[&str]| names.iter().map(|&name| (name.to_owned(), None)).collect::<Vec<_>>();
-    let of_unknowns = unknowns.iter().map(|unknown| (unknown.name.clone(), Some(unknown.unit.symbol())));
-    let of_fields = fields.iter().flat_map(|field| field.columns().into_iter().map(|name| (name, Some(&*field.unit))));
-    let all: Vec<(String, Option<&str>)> = fixed(&FIRST)
-        .into_iter()
-        .chain(of_unknowns)
-        .chain(fixed(&LAST))
-        .chain(fixed(if told { &[REASON] } else { &[] }))
-        .chain(of_fields)
-        .collect();
-    let shared = |name: &str| all.iter().filter(|(other, _)| other == name).count() > 1;
-    let title = |(name, unit): &(String, Option<&str>)| match unit {
-        Some(unit) if shared(name) => format!("{name} [{unit}]"),
-        _ => name.clone(),
-    };
-    all.iter().map(title).collect()
 }
 
 /// What a point has in the columns of a field; empty cells if the point's patch has no such field.

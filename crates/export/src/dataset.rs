@@ -1,6 +1,8 @@
 //! What the solver's results look like to a writer of files.
 
+use crate::conventions::one_line;
 use crate::error::Malformed;
+use crate::tally::Tally;
 
 /// Everything one job produced, ready to be written.
 #[derive(Debug, Clone, PartialEq)]
@@ -230,6 +232,19 @@ impl Patch {
         self.points.iter().enumerate().map(move |(at, point)| (at / columns, at % columns, point))
     }
 
+    /// Its frame, what rows and columns run over, and how much of it is solved; one line.
+    pub(crate) fn told(&self) -> String {
+        format!(
+            "frame {}; {} rows i: {}; {} columns j: {}; {}",
+            one_line(&self.frame),
+            self.rows.count,
+            one_line(&self.rows.label),
+            self.columns.count,
+            one_line(&self.columns.label),
+            Tally::of([self]).verdict(),
+        )
+    }
+
     fn check(&self) -> Result<(), Malformed> {
         if self.rows.count.checked_mul(self.columns.count) != Some(self.points.len()) {
             return Err(Malformed::PointCount {
@@ -268,6 +283,11 @@ impl Patch {
 }
 
 impl Dataset {
+    /// Whether any of the points says more than its status.
+    pub(crate) fn has_reasons(&self) -> bool {
+        self.patches.iter().flat_map(|patch| &patch.points).any(|point| !point.reason.is_empty())
+    }
+
     /// Whether the grids are complete and every solved point has all its numbers. The writers of data refuse what fails.
     ///
     /// # Errors

@@ -103,6 +103,10 @@ pub enum WriteError {
     /// The picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// The table could not be written.
+    #[cfg(feature = "parquet")]
+    #[error(transparent)]
+    Parquet(parquet::errors::ParquetError),
     /// The stream refused.
     #[error("{}", plain_words(.0))]
     Io(#[from] io::Error),
@@ -133,6 +137,20 @@ pub struct FileError {
     /// What stood in the way.
     #[source]
     pub reason: WriteError,
+}
+
+#[cfg(feature = "parquet")]
+impl From<parquet::errors::ParquetError> for WriteError {
+    fn from(error: parquet::errors::ParquetError) -> WriteError {
+        match error {
+            // what the disk says is said as for every other format
+            parquet::errors::ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+                Ok(refused) => WriteError::Io(*refused),
+                Err(other) => WriteError::Parquet(parquet::errors::ParquetError::External(other)),
+            },
+            other => WriteError::Parquet(other),
+        }
+    }
 }
 
 /// An input or output error as a user would say it.

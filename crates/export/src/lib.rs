@@ -1,4 +1,4 @@
-//! Solved tooth surfaces as files: CSV, JSON, STL, OBJ, 3MF, VTK, STEP, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
+//! Solved tooth surfaces as files: CSV, JSON, Parquet, STL, OBJ, 3MF, VTK, STEP, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
 //!
 //! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
 //! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
@@ -67,6 +67,8 @@ mod json_layout;
 mod motion;
 mod number;
 mod obj_file;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 mod picture;
 mod step;
 mod stl_file;
@@ -86,6 +88,8 @@ pub use motion::{
     write_motion_json, write_nc,
 };
 pub use obj_file::write_obj;
+#[cfg(feature = "parquet")]
+pub use parquet_file::write_parquet;
 pub use picture::{Picture, PictureOptions, field_maps, picture};
 pub use step::{Deviation, Face, write_step};
 pub use stl_file::write_stl;
