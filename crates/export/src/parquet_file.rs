@@ -54,8 +54,8 @@ pub fn write_parquet(dataset: &Dataset, out: &mut (dyn Write + Send)) -> Result<
 /// What a column holds.
 enum Column<'a> {
     Surface,
-    Row,
-    Column,
+    I,
+    J,
     Position(usize),
     Normal(usize),
     Unknown(&'a Unknown),
@@ -65,9 +65,12 @@ enum Column<'a> {
     Field(&'a Field, usize),
 }
 
+/// The number of a point, if it has one.
+type Numbers<'p> = Box<dyn Fn(usize, &Point) -> Option<f64> + 'p>;
+
 /// The columns in the order of their titles.
 fn columns(dataset: &Dataset, told: bool) -> Vec<Column<'_>> {
-    let mut columns = vec![Column::Surface, Column::Row, Column::Column];
+    let mut columns = vec![Column::Surface, Column::I, Column::J];
     columns.extend((0..3).map(Column::Position).chain((0..3).map(Column::Normal)));
     columns.extend(union_of_unknowns(&dataset.patches).into_iter().map(Column::Unknown));
     columns.extend([Column::Residual, Column::Status]);
@@ -83,7 +86,7 @@ impl Column<'_> {
             Column::Surface | Column::Status | Column::Reason => {
                 (Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String))
             }
-            Column::Row | Column::Column => (Physical::INT32, Repetition::REQUIRED, None),
+            Column::I | Column::J => (Physical::INT32, Repetition::REQUIRED, None),
             _ => (Physical::DOUBLE, Repetition::OPTIONAL, None),
         };
         let column =
@@ -107,9 +110,9 @@ impl Column<'_> {
             Column::Surface => texts(&|_| patch.name.clone())?,
             Column::Status => texts(&|point| point.outcome.word().to_owned())?,
             Column::Reason => texts(&|point| point.reason.clone())?,
-            Column::Row | Column::Column => {
+            Column::I | Column::J => {
                 let columns = patch.columns.count;
-                let index = |at| if matches!(self, Column::Row) { at / columns } else { at % columns };
+                let index = |at| if matches!(self, Column::I) { at / columns } else { at % columns };
                 let indices: Vec<i32> = rows.clone().map(|at| index(at) as i32).collect();
                 column.typed::<Int32Type>().write_batch(&indices, None, None)?;
             }
@@ -124,8 +127,8 @@ impl Column<'_> {
         column.close()
     }
 
-    /// The number that a point of the patch has in this column.
-    fn numbers<'p>(&'p self, patch: &'p Patch) -> Box<dyn Fn(usize, &Point) -> Option<f64> + 'p> {
+    /// The numbers that the points of the patch have in this column.
+    fn numbers<'p>(&'p self, patch: &'p Patch) -> Numbers<'p> {
         match self {
             Column::Position(k) => Box::new(|_, point| point.is_solved().then(|| point.position[*k])),
             Column::Normal(k) => Box::new(|_, point| point.is_solved().then(|| point.normal[*k])),

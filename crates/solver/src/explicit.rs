@@ -231,13 +231,13 @@ impl<'g> ExplicitProblem<'_, 'g> {
         let angles: Vec<f64> = postures.iter().map(|posture| slope * posture.unknowns()[unknown]).collect();
         let turned = Mat::from_fn(at.len(), 1, |k, _| angles[k] - angles[middle]);
         let moved = Mat::from_fn(at.len(), count, |k, i| at[k][i] - at[middle][i]);
-        let far = |rates: &Mat<f64>| (&turned - &moved * rates).col_iter().map(|c| c.norm_max()).fold(0.0, f64::max);
+        // a NaN is far as well
+        let stays = |rates: &Mat<f64>| (&turned - &moved * rates).col(0).iter().all(|off| off.abs() <= FAR_TURN);
         let mut rates = Mat::zeros(count, 1);
-        if far(&rates) > FAR_TURN {
+        if !stays(&rates) {
             let squares = moved.transpose() * &moved;
             rates = squares.full_piv_lu().solve(moved.transpose() * &turned);
-            // a NaN is far as well
-            if !(far(&rates) <= FAR_TURN) {
+            if !stays(&rates) {
                 return Err(NotExplicit::TurnsFar);
             }
         }
