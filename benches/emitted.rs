@@ -25,12 +25,12 @@ fn main() {
     let coefficients: Vec<f64> = (0..=ORDER).map(|power| 1.0 / (1.0 + power as f64)).collect();
     let polynomials = AXES.map(|name| Polynomial { name, coefficients: &coefficients });
     println!("{:<12} {:<8} {:>8}  {:>12}  {:>12}", "form", "language", "ns/call", "of 1 kHz", "of 8 kHz");
-    for language in [Language::C, Language::Rust] {
+    for (language, main) in [(Language::C, C_MAIN), (Language::Rust, RUST_MAIN)] {
         let exact = emit_function(language, SIGNATURE, &[motion], &named).expect("parameters are numbers");
         let order = format!("order {ORDER}");
         let forms = [("exact", exact), (&order, emit_polynomials(language, SIGNATURE, ("roll", 0.0), &polynomials))];
         for (form, text) in forms {
-            report(form, language, nanoseconds(language, &text));
+            report(form, language, nanoseconds((language, main), &text));
         }
     }
 }
@@ -47,11 +47,7 @@ fn free_form_axes<'g>(graph: &'g Graph, job: &Job<'g>) -> [Expr<'g>; 6] {
     [x, y, z, work, root, pose[1][0].atan2(pose[0][0])]
 }
 
-fn nanoseconds(language: Language, function: &str) -> Option<f64> {
-    let main = match language {
-        Language::C => C_MAIN,
-        Language::Rust => RUST_MAIN,
-    };
+fn nanoseconds((language, main): (Language, &str), function: &str) -> Option<f64> {
     let printed = output_of(language, function, &main.replace("CALLS", &CALLS.to_string()), &[])?;
     let seconds: f64 = String::from_utf8_lossy(&printed).trim().parse().expect("seconds");
     Some(seconds * 1e9 / CALLS as f64)

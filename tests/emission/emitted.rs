@@ -6,7 +6,7 @@ use flank_expr::{
 use flank_tests::compiled::values_at;
 use flank_tests::{Dice, job};
 
-const LANGUAGES: [Language; 2] = [Language::C, Language::Rust];
+const LANGUAGES: [Language; 3] = [Language::C, Language::Rust, Language::JavaScript];
 const POINTS: usize = 10_000;
 /// Relative to the number, absolute below 1.
 const TOLERANCE: f64 = 1e-12;
@@ -24,7 +24,7 @@ fn agrees(expected: f64, found: f64) -> bool {
     expected == found || (expected.is_nan() && found.is_nan()) || off <= TOLERANCE * expected.abs().max(1.0)
 }
 
-/// Compiles the outputs in both languages and holds values and derivatives against the interpreter.
+/// Compiles the outputs in all languages and holds values and derivatives against the interpreter.
 fn check<const N: usize>(arguments: &[Expr<'_>; N], outputs: &[Expr<'_>], points: &[[f64; N]]) {
     let graph = arguments[0].graph();
     let titles: Vec<String> = (0..outputs.len()).map(|k| format!("f{k}")).collect();
@@ -44,7 +44,7 @@ fn check<const N: usize>(arguments: &[Expr<'_>; N], outputs: &[Expr<'_>], points
         let signature = Signature { name: "under test", comment: &comment };
         let text = emit_function(language, signature, arguments, &named).expect("all are arguments");
         let Some(found) = values_at(language, ("under_test", &text), outputs.len(), points) else {
-            eprintln!("skipped 1 of 2 languages: no compiler for {language:?}");
+            eprintln!("skipped 1 of 3 languages: nothing here compiles or runs {language:?}");
             continue;
         };
         for ((point, expected), found) in points.iter().zip(&expected).zip(found) {
@@ -141,7 +141,7 @@ fn polynomials_meet_their_sums() {
         let signature = Signature { name: "axes", comment: &[] };
         let text = emit_polynomials(language, signature, ("output", REFERENCE), &polynomials);
         let Some(found) = values_at(language, ("axes", &text), polynomials.len(), &at) else {
-            eprintln!("skipped 1 of 2 languages: no compiler for {language:?}");
+            eprintln!("skipped 1 of 3 languages: nothing here compiles or runs {language:?}");
             continue;
         };
         for (point, found) in at.iter().zip(found) {

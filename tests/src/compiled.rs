@@ -1,4 +1,4 @@
-//! Emitted functions, compiled and run by the compilers of their languages.
+//! Emitted functions, compiled by the compilers of their languages and run; those in JavaScript are run as they are.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -6,21 +6,28 @@ use std::process::{Command, Stdio};
 
 use flank_expr::Language;
 
-/// What a text is compiled with, the strictest settings of each compiler.
-fn compiler(language: Language, source: &Path, program: &Path) -> Command {
-    let mut command = match language {
-        Language::C => Command::new("cc"),
-        Language::Rust => Command::new(std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned())),
+/// What a text is compiled with, the strictest settings of each compiler; nothing for a language that is run as it is.
+fn compiler(language: Language, source: &Path, program: &Path) -> Option<Command> {
+    let (name, settings, libraries): (_, &[&str], &[&str]) = match language {
+        Language::C => ("cc".to_owned(), &["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"], &["-lm"]),
+        Language::Rust => {
+            let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+            (rustc, &["--edition", "2024", "-O", "-D", "warnings"], &[])
+        }
+        Language::JavaScript => return None,
     };
+    let mut command = Command::new(name);
+    command.args(settings).arg("-o").arg(program).arg(source).args(libraries);
+    Some(command)
+}
+
+/// The name of the file that a program's text stands in.
+fn source_name(language: Language) -> &'static str {
     match language {
-        Language::C => command.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]),
-        Language::Rust => command.args(["--edition", "2024", "-O", "-D", "warnings"]),
-    };
-    command.arg("-o").arg(program).arg(source);
-    if language == Language::C {
-        command.arg("-lm");
+        Language::C => "program.c",
+        Language::Rust => "program.rs",
+        Language::JavaScript => "program.mjs",
     }
-    command
 }
 
 /// The text of a program: the function, the standard input and output, and a `main`.
@@ -30,26 +37,33 @@ fn program_text(language: Language, function: &str, main: &str) -> String {
             format!("#define _POSIX_C_SOURCE 199309L\n{function}\n#include <stdio.h>\n#include <time.h>\n{main}")
         }
         Language::Rust => format!("{function}\nuse std::io::{{Read, Write}};\n{main}"),
+        Language::JavaScript => format!("{function}\nimport {{ readFileSync, writeFileSync }} from 'node:fs';\n{main}"),
     }
 }
 
-/// What a program writes that was compiled from an emitted function and a `main` which calls it; nothing if the compiler is not
-/// installed.
+/// What a program writes that was made from an emitted function and a `main` which calls it; nothing if the compiler, or Node, is
+/// not installed.
 ///
 /// # Panics
 /// With what the compiler says, if it does not like the text; if the program fails.
 pub fn output_of(language: Language, function: &str, main: &str, input: &[u8]) -> Option<Vec<u8>> {
     let folder = tempfile::tempdir().expect("a folder for the program");
     let program = folder.path().join("program");
-    let source = folder.path().join(if language == Language::C { "program.c" } else { "program.rs" });
+    let source = folder.path().join(source_name(language));
     std::fs::write(&source, program_text(language, function, main)).expect("the text is written");
-    let compiled = match compiler(language, &source, &program).output() {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
-        result => result.expect("the compiler starts"),
+    let mut run = match compiler(language, &source, &program) {
+        Some(mut compiler) => {
+            let compiled = unless_missing(compiler.output())?;
+            assert!(compiled.status.success(), "{language:?}: {}", String::from_utf8_lossy(&compiled.stderr));
+            Command::new(&program)
+        }
+        None => {
+            let mut node = Command::new("node");
+            node.arg(&source);
+            node
+        }
     };
-    assert!(compiled.status.success(), "{language:?}: {}", String::from_utf8_lossy(&compiled.stderr));
-    let mut child =
-        Command::new(&program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program starts");
+    let mut child = unless_missing(run.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn())?;
     let mut stdin = child.stdin.take().expect("its input is a pipe");
     let input = input.to_vec();
     let writer = std::thread::spawn(move || stdin.write_all(&input));
@@ -57,6 +71,14 @@ pub fn output_of(language: Language, function: &str, main: &str, input: &[u8]) -
     writer.join().expect("no panic").expect("all points are read");
     assert!(output.status.success(), "{language:?}: {}", output.status);
     Some(output.stdout)
+}
+
+/// Nothing if a program is not installed.
+fn unless_missing<T>(started: io::Result<T>) -> Option<T> {
+    match started {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        result => Some(result.expect("the program starts")),
+    }
 }
 
 /// Values and derivatives of an emitted function at points, one array for each point; nothing if the compiler is not installed.
@@ -72,6 +94,7 @@ pub fn values_at<const ARGUMENTS: usize>(
     let main = match language {
         Language::C => C_MAIN,
         Language::Rust => RUST_MAIN,
+        Language::JavaScript => JAVASCRIPT_MAIN,
     };
     let call: Vec<String> = (0..ARGUMENTS).map(|k| format!("point[{k}]")).collect();
     let main = main
@@ -115,4 +138,17 @@ fn main() {
     }
     std::io::stdout().write_all(&output).unwrap();
 }
+";
+
+const JAVASCRIPT_MAIN: &str = "
+const input = readFileSync(0);
+const points = new Float64Array(input.buffer.slice(input.byteOffset, input.byteOffset + input.byteLength));
+const output = [];
+for (let at = 0; at < points.length; at += ARGUMENTS) {
+    const point = points.subarray(at, at + ARGUMENTS);
+    const values = new Float64Array(VALUES), derivatives = new Float64Array(DERIVATIVES);
+    NAME(POINT, values, derivatives);
+    output.push(new Uint8Array(values.buffer), new Uint8Array(derivatives.buffer));
+}
+writeFileSync(1, Buffer.concat(output));
 ";

@@ -108,29 +108,40 @@ impl<'a, 'g> Binder<'a, 'g> {
             None => f64::NAN,
         };
         let checked_at = definition.map_or(param.name.span, |(_, span)| span);
-        self.check_value(context, param, value, scope, checked_at);
+        let range = self.check_value(context, param, value, scope, checked_at);
         let variable = context.variable(full_name.clone(), Role::Parameter, value);
         scope.insert(name.clone(), Value::Scalar(variable, dimension));
         if let Some((definition, _)) = definition {
             let is_count = is_count(&param.dimension);
-            self.parameters.push(Parameter { name: full_name, variable, dimension, definition, value, is_count });
+            self.parameters.push(Parameter {
+                name: full_name,
+                variable,
+                dimension,
+                definition,
+                value,
+                is_count,
+                range,
+            });
         }
     }
 
-    /// Counts are whole, values lie in the declared range.
-    fn check_value(&self, context: &mut Context<'g>, param: &Param, value: f64, scope: &Scope<'g>, span: Span) {
+    /// Counts are whole, values lie in the declared range, which is given back.
+    fn check_value(
+        &self,
+        context: &mut Context<'g>,
+        param: &Param,
+        value: f64,
+        scope: &Scope<'g>,
+        span: Span,
+    ) -> Option<(f64, f64)> {
         if is_count(&param.dimension) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
             let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
         }
-        let Some(range) = &param.range else { return };
-        let Some(dimension) = context.dimension(&param.dimension) else {
-            return;
-        };
+        let range = param.range.as_ref()?;
+        let dimension = context.dimension(&param.dimension)?;
         let what = format!("`{}`", param.name.node);
-        let Some((low, high)) = context.range(range, scope, dimension, &what) else {
-            return;
-        };
+        let (low, high) = context.range(range, scope, dimension, &what)?;
         if value < low || value > high {
             let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
             let message = format!("{what} is {value}, outside its range {low} .. {high}");
@@ -138,6 +149,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                 Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");
             context.report(diagnostic);
         }
+        Some((low, high))
     }
 
     /// What was given too little or too much.

@@ -42,6 +42,8 @@ pub struct Parameter<'g> {
     pub value: f64,
     /// Whether it counts something: then it is a whole number and does not change by little.
     pub is_count: bool,
+    /// Between which values it must lie, if that is stated.
+    pub range: Option<(f64, f64)>,
 }
 
 /// A variable that is looked for in a range.

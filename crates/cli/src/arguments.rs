@@ -16,6 +16,7 @@ use flank_expr::Language;
 Examples:
   flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
   flank check specs/machines/*.chain                    is it right, and if not, where and why
+  flank view specs/bevel/pinion_19x62.chain             a page with the machine in 3-D
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank fmt specs/tools/*.chain                         the settled layout
@@ -46,6 +47,8 @@ pub(crate) enum Command {
     Import(Import),
     /// Lay out specs as all of them are laid out; comments stay
     Fmt(Fmt),
+    /// Write a page to look at: the machine moves, the tool generates the work, in 3-D, without a network
+    View(View),
 }
 
 /// Which job of which file, with which values.
@@ -173,7 +176,7 @@ pub(crate) struct Convert {
     /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time: Option<f64>,
-    /// Write a function of the motion that returns the axes and their first derivatives: c, rust
+    /// Write a function of the motion that returns the axes and their first derivatives: c, rust, javascript
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(crate) emit: Vec<EmitLanguage>,
     /// What the function computes: the polynomials, or the exact axes in closed form
@@ -216,6 +219,8 @@ pub(crate) enum NcDialect {
 pub(crate) enum EmitLanguage {
     C,
     Rust,
+    #[value(name = "javascript")]
+    JavaScript,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -239,6 +244,7 @@ impl From<EmitLanguage> for Language {
         match language {
             EmitLanguage::C => Language::C,
             EmitLanguage::Rust => Language::Rust,
+            EmitLanguage::JavaScript => Language::JavaScript,
         }
     }
 }
@@ -248,6 +254,7 @@ impl EmitLanguage {
         match self {
             EmitLanguage::C => "c",
             EmitLanguage::Rust => "rs",
+            EmitLanguage::JavaScript => "mjs",
         }
     }
 }
@@ -424,4 +431,24 @@ pub(crate) struct Fmt {
     /// Change nothing, list the files that would change
     #[arg(long)]
     pub(crate) check: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+One HTML file for each job, which any browser opens by itself. Sliders move the machine and, within limits, the job's parameters:
+the page then solves the same equations anew, from the points solved here.
+
+Examples:
+  flank view specs/bevel/pinion_19x62.chain
+  flank view specs/hobbing/helical_gear.chain --set teeth=37 --out pages
+  flank view specs/bevel/ease_off_19x62.chain --job pinion --json")]
+pub(crate) struct View {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// Folder for the pages; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Print files and sizes as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }

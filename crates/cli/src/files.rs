@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Dataset, Dialect, Face, Header, MotionTable, Picture, WriteError, write_3mf, write_atomically, write_csv,
-    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step, write_stl,
-    write_vtp,
+    Dataset, Dialect, Face, Header, MotionTable, Picture, Scene, WriteError, write_3mf, write_atomically, write_csv,
+    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_page, write_parquet, write_step,
+    write_stl, write_vtp,
 };
 
 use crate::arguments::Format;
@@ -72,6 +72,11 @@ impl<'a> Folder<'a> {
             Dialect::LinuxCnc => "ngc",
         };
         self.write(&format!("{name}.{extension}"), |out| write_nc(motion, to, seconds, out))
+    }
+
+    /// A page to look at.
+    pub(crate) fn page(&mut self, name: &str, dataset: &Dataset, scene: &Scene) -> Result<(), String> {
+        self.write(&format!("{name}.html"), |out| write_page(dataset, scene, out))
     }
 
     /// Any text.

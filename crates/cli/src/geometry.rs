@@ -4,6 +4,8 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, Sample};
 use flank_export::{Field, Values};
 use flank_solver::{Metric, Outcome, PointGeometry, Principal, SurfaceGeometry, SurfacePoint};
 
+use crate::units;
+
 type Vector = [f64; 3];
 
 /// Curvatures with their directions, contact, and the metric of the sample's coordinates, at each of the points.
@@ -108,24 +110,7 @@ fn metric(points: &Points, sample: &Sample<'_>) -> Vec<Field> {
 
 /// mm² per unit of each of two coordinates, which are mm or radians inside.
 fn unit_of_metric(coordinates: [Dimension; 2]) -> String {
-    let below = coordinates[0].times(coordinates[1]);
-    let powers = [("mm", 2 - below.length), ("rad", -below.angle)];
-    let side = |sign: i32| -> Vec<String> {
-        let on_side = powers.iter().filter(|(_, power)| power * sign > 0);
-        on_side
-            .map(|(unit, power)| if power.abs() == 1 { (*unit).into() } else { format!("{unit}^{}", power.abs()) })
-            .collect()
-    };
-    match (side(1).join("*"), side(-1).join("*")) {
-        (above, below) if below.is_empty() => {
-            if above.is_empty() {
-                "1".into()
-            } else {
-                above
-            }
-        }
-        (above, below) => format!("{}/{below}", if above.is_empty() { "1" } else { &above }),
-    }
+    units::inside(Dimension::LENGTH.power(2).over(coordinates[0].times(coordinates[1])))
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod table;
 mod travel;
 mod trims;
 mod units;
+mod view;
 
 use std::process::ExitCode;
 
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Import(arguments) => import::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::View(arguments) => view::run(&arguments),
     };
     ExitCode::from(match ending {
         Ending::Done => 0,

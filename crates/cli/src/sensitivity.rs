@@ -27,6 +27,8 @@ pub(crate) struct Sensitivity {
 
 struct Influence {
     parameter: String,
+    /// The change that values are told for: mm, radians or 1.
+    step: f64,
     unit: String,
     values: Vec<Option<f64>>,
     /// Root of the mean square, and the largest, over all points with a value.
@@ -60,6 +62,7 @@ impl Influence {
         let squares: f64 = known().map(|um| um * um).sum();
         Influence {
             parameter: parameter.name.clone(),
+            step: size,
             unit: format!("um/{step}"),
             rms: (squares / known().count().max(1) as f64).sqrt(),
             largest: known().fold(0.0, |largest: f64, um| largest.max(um.abs())),
@@ -111,6 +114,12 @@ impl Sensitivity {
             self.influences.iter().enumerate().filter(|(_, one)| one.moves()).collect();
         ranked.sort_by(|(_, a), (_, b)| b.rms.total_cmp(&a.rms));
         ranked
+    }
+
+    /// The largest normal displacement by a parameter, mm per mm, radian or 1 of it; `None` for counts.
+    pub(crate) fn most(&self, parameter: &str) -> Option<f64> {
+        let of = self.influences.iter().find(|one| one.parameter == parameter)?;
+        Some(1e-3 * of.largest / of.step)
     }
 
     /// The parameters that move no point; of none can be said so where no point is known.

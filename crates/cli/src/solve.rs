@@ -13,7 +13,7 @@ use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::step::{self, Smooth};
-use crate::table::{Solved, Table};
+use crate::table::{self, Solved, Table};
 use crate::{Ending, cut, print, spec, travel, trims};
 use crate::{branches, certify, geometry, reach, reasons, required};
 
@@ -25,25 +25,22 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         Err(ending) => return ending,
     };
     let hash = spec::hash(&compilation);
+    let wanted =
+        Wanted { geometry: arguments.geometry, sensitivity: arguments.sensitivity, certificates: arguments.certify };
     let mut ending = Ending::Done;
-    let (asked, idle): (Vec<&Job<'_>>, Vec<&Job<'_>>) =
-        jobs.iter().partition(|job| job.surfaces.iter().any(|surface| surface.sample.is_some()));
-    for job in &idle {
-        let kind = if asked.is_empty() { "error" } else { "note" };
-        anstream::eprintln!("{kind}: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
-    }
+    let asked = asked(&jobs);
     if asked.is_empty() {
         return Ending::Wrong;
     }
     for job in asked {
         let solved: Vec<Solved<'_, '_>> =
-            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, arguments)).collect();
+            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted)).collect();
         let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
         let limits: Vec<Line<'_, '_>> = limits.collect();
         // a trim that takes nothing has no line
         let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
-        let dataset = dataset(job, &solved, &lines, &hash, arguments);
+        let dataset = dataset(job, &solved, &lines, header(&job.name, &arguments.which, &hash));
         let faces: Vec<Smooth> = arguments
             .step
             .iter()
@@ -63,7 +60,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
         anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
         let told = branches::ambiguous(&solved)
             + &required::text(&solved)
-            + &table.unsolved()
+            + &table::unsolved(job, &solved)
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
             + &travel::beyond(job, &solved)
@@ -76,25 +73,44 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
     ending
 }
 
+/// The jobs that ask for points; of the others it is told that they do not.
+pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Vec<&'j Job<'g>> {
+    let (asked, idle): (Vec<&Job<'g>>, Vec<&Job<'g>>) =
+        jobs.iter().partition(|job| job.surfaces.iter().any(|surface| surface.sample.is_some()));
+    for job in &idle {
+        let kind = if asked.is_empty() { "error" } else { "note" };
+        anstream::eprintln!("{kind}: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
+    }
+    asked
+}
+
+/// What is wanted of a surface beside its points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    pub(crate) geometry: bool,
+    pub(crate) sensitivity: bool,
+    pub(crate) certificates: bool,
+}
+
 /// The points of one surface, if any are asked for.
-fn solve_surface<'j, 'g>(
+pub(crate) fn solve_surface<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
-    arguments: &Solve,
+    wanted: Wanted,
 ) -> Option<Solved<'j, 'g>> {
     let sample = surface.sample.as_ref()?;
     let Found { problem, mut points, effort, trims } = points(job, surface, sample);
     let branches = problem.points(&effort.branches);
     let needed = reach::beyond(job, surface, sample, &mut points);
-    let radii = arguments.certify.then(|| certify::radii(&problem, &sample.targets, &points));
+    let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets, &points));
     let mut fields = Vec::new();
-    if arguments.geometry {
+    if wanted.geometry {
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
     fields.extend(radii.as_deref().map(certify::field));
     let cut = cut::of(job, surface, &points);
     fields.extend(cut.iter().flat_map(Cut::fields));
-    let sensitivity = arguments.sensitivity.then(|| sensitivity::of(job, surface, &points));
+    let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
     Some(Solved {
         surface,
         sample,
@@ -147,23 +163,15 @@ pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect()
 }
 
-fn dataset(
-    job: &Job<'_>,
-    solved: &[Solved<'_, '_>],
-    lines: &[&Line<'_, '_>],
-    hash: &str,
-    arguments: &Solve,
-) -> Dataset {
+/// The points of all surfaces, then the lines on them.
+pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'_, '_>], header: Header) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
         let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
         let patch = patch(job, &solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
         let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
         Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
-    Dataset {
-        header: header(&job.name, &arguments.which, hash),
-        patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect(),
-    }
+    Dataset { header, patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect() }
 }
 
 /// Where the data of a job comes from.
@@ -198,7 +206,7 @@ pub(crate) fn patch(
     }
 }
 
-fn unit(dimension: Dimension) -> Unit {
+pub(crate) fn unit(dimension: Dimension) -> Unit {
     match dimension {
         Dimension::LENGTH => Unit::Millimetre,
         Dimension::ANGLE => Unit::Degree,

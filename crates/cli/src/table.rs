@@ -183,22 +183,22 @@ impl Table<'_, '_, '_> {
         });
         format!("{table:#}\n")
     }
+}
 
-    /// What was asked for and not solved, in words; empty if nothing.
-    pub(crate) fn unsolved(&self) -> String {
-        let mut out = String::new();
-        for solved in self.solved {
-            let asked = solved.points.len();
-            let missing = asked - solved.row().count();
-            if missing > 0 {
-                let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
-                reasons::counted(self.job, solved).iter().for_each(|reason| {
-                    let _ = writeln!(out, "  {reason}");
-                });
-            }
+/// What was asked for and not solved, in words; empty if nothing.
+pub(crate) fn unsolved(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved {
+        let asked = solved.points.len();
+        let missing = asked - solved.row().count();
+        if missing > 0 {
+            let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
+            reasons::counted(job, solved).iter().for_each(|reason| {
+                let _ = writeln!(out, "  {reason}");
+            });
         }
-        out
     }
+    out
 }
 
 /// Rows with their cells below each other, all to the left but those whose place in `sides` holds a `>`.

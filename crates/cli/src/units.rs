@@ -15,6 +15,20 @@ pub(crate) fn symbol(dimension: Dimension) -> &'static str {
     }
 }
 
+/// A dimension in mm and radians, the units inside: `mm`, `mm/rad`, `1/mm`; `1` for a number.
+pub(crate) fn inside(dimension: Dimension) -> String {
+    let powers = [("mm", dimension.length), ("rad", dimension.angle)];
+    let side = |sign: i32| -> Vec<String> {
+        let on_side = powers.iter().filter(|(_, power)| power * sign > 0);
+        on_side
+            .map(|(unit, power)| if power.abs() == 1 { (*unit).into() } else { format!("{unit}^{}", power.abs()) })
+            .collect()
+    };
+    let [above, below] = [side(1), side(-1)].map(|units| units.join("*"));
+    let above = if above.is_empty() { "1".to_string() } else { above };
+    if below.is_empty() { above } else { format!("{above}/{below}") }
+}
+
 /// A value in that unit.
 pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
     if is_angle(dimension) { value.to_degrees() } else { value }

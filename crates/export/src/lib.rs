@@ -67,6 +67,7 @@ mod json_layout;
 mod motion;
 mod number;
 mod obj_file;
+mod page;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod picture;
@@ -88,6 +89,10 @@ pub use motion::{
     write_motion_json, write_nc,
 };
 pub use obj_file::write_obj;
+pub use page::{
+    PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
+    ToolForm, write_page,
+};
 #[cfg(feature = "parquet")]
 pub use parquet_file::write_parquet;
 pub use picture::{Picture, PictureOptions, field_maps, picture};

@@ -1,4 +1,4 @@
-//! Text inside XML.
+//! Text inside XML and HTML.
 
 /// Text as XML allows it: its special letters escaped, those it forbids left out.
 pub(crate) fn escaped(text: &str) -> String {

@@ -40,7 +40,7 @@ mod terms;
 pub use cost::Cost;
 pub use curve::{Curve, CurveError};
 pub use derivative::Linear;
-pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials};
+pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
 pub use evaluate::ScalarEvaluator;
 pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use interval::{Interval, IntervalEvaluator};

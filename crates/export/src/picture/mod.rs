@@ -23,6 +23,8 @@ mod png;
 mod surface;
 mod svg;
 
+pub(crate) use palette::{patch_colours, scale_colours};
+
 use crate::dataset::Dataset;
 use crate::error::PictureError;
 use paint::Item;

@@ -29,6 +29,16 @@ const SCALE: [Colour; 5] = [
     Colour([254, 232, 92]),
 ];
 
+/// The colours of patches in their order, for those who draw elsewhere.
+pub(crate) fn patch_colours() -> Vec<String> {
+    PATCHES.iter().map(|colour| colour.hex()).collect()
+}
+
+/// Colours at even distances from the lowest to the highest value.
+pub(crate) fn scale_colours() -> Vec<String> {
+    SCALE.iter().map(|colour| colour.hex()).collect()
+}
+
 /// The colour of a share from 0 to 1 of the way from the lowest to the highest value.
 pub(super) fn of_share(share: f64) -> Colour {
     let along = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
@@ -57,6 +67,12 @@ pub(super) fn shaded(base: Colour, normal: Vector) -> Colour {
 }
 
 impl Colour {
+    /// As `#rrggbb`.
+    pub(super) fn hex(self) -> String {
+        let [r, g, b] = self.0;
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+
     /// The colour mixed with a share of another.
     pub(super) fn towards(self, other: Colour, share: f64) -> Colour {
         let mix = |a: u8, b: u8| byte(f64::from(a) + share * (f64::from(b) - f64::from(a)));

@@ -7,7 +7,7 @@ use ttf_parser::GlyphId;
 
 use super::Picture;
 use super::font;
-use super::paint::{Colour, Item, Place};
+use super::paint::{Item, Place};
 use crate::xml::escaped;
 
 /// The picture as an SVG document. Letters are outlines, so it looks the same everywhere; their text is kept in labels.
@@ -56,18 +56,18 @@ fn write_glyphs(items: &[Item], svg: &mut String) -> std::fmt::Result {
 fn write_item(item: &Item, svg: &mut String) -> std::fmt::Result {
     match item {
         Item::Polygon { points, fill, outline, width } => {
-            write!(svg, r#"<polygon fill="{}" stroke="{}" "#, hex(*fill), hex(*outline))?;
+            write!(svg, r#"<polygon fill="{}" stroke="{}" "#, fill.hex(), outline.hex())?;
             write!(svg, r#"stroke-width="{}" points=""#, number(*width))?;
             write_points(points, svg)?;
         }
         Item::Line { points, colour, width } => {
-            write!(svg, r#"<polyline fill="none" stroke="{}" "#, hex(*colour))?;
+            write!(svg, r#"<polyline fill="none" stroke="{}" "#, colour.hex())?;
             write!(svg, r#"stroke-width="{}" points=""#, number(*width))?;
             write_points(points, svg)?;
         }
         Item::Text { at, size, colour, text } => {
             let scale = font::scale(*size);
-            write!(svg, r#"<g fill="{}" aria-label="{}" "#, hex(*colour), escaped(text))?;
+            write!(svg, r#"<g fill="{}" aria-label="{}" "#, colour.hex(), escaped(text))?;
             write!(svg, r#"transform="translate({} {}) "#, number(at[0]), number(at[1]))?;
             write!(svg, r#"scale({scale} {})">"#, -scale)?;
             for placed in font::layout(text) {
@@ -85,11 +85,6 @@ fn write_points(points: &[Place], svg: &mut String) -> std::fmt::Result {
         write!(svg, "{gap}{},{}", number(point[0]), number(point[1]))?;
     }
     Ok(())
-}
-
-fn hex(colour: Colour) -> String {
-    let [red, green, blue] = colour.0;
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// A hundredth of a sheet unit is finer than anyone sees.

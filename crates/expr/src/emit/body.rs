@@ -25,7 +25,7 @@ impl Body {
             body: Body { statements: Vec::new(), helpers: Helpers::default() },
         };
         for name in unread(scope, tape) {
-            writer.body.statements.push(language.unused(name));
+            writer.body.statements.extend(language.unused(name));
         }
         for (number, curve) in tape.curves().iter().enumerate() {
             writer.body.statements.push(curve_table(language, number, curve));
@@ -104,7 +104,7 @@ impl Writer<'_> {
                 let (table, domain) = (curve(b as usize), self.curves[b as usize].clone());
                 let pieces = match self.language {
                     Language::C => format!("{table}, (int)(sizeof {table} / sizeof {table}[0])"),
-                    Language::Rust => table,
+                    Language::Rust | Language::JavaScript => table,
                 };
                 let text = self.call(Helper::Curve, &[&pieces, &domain, &order.to_string(), &x]);
                 self.define(out, &text);
@@ -129,6 +129,7 @@ impl Writer<'_> {
         let path = match self.language {
             Language::C => "",
             Language::Rust => "f64::",
+            Language::JavaScript => "Math.",
         };
         format!("{path}{name}({})", operands.join(", "))
     }
@@ -139,14 +140,13 @@ impl Writer<'_> {
     }
 
     fn unary(&mut self, op: Unary, x: &str) -> String {
-        let is_c = self.language == Language::C;
         let name = match op {
             Unary::Neg if x.starts_with('-') => return format!("-({x})"),
             Unary::Neg => return format!("-{x}"),
             Unary::Sign => return self.call(Helper::Sign, &[x]),
             Unary::Arcinv => return self.call(Helper::Arcinv, &[x]),
-            Unary::Abs if is_c => "fabs",
-            Unary::Ln if is_c => "log",
+            Unary::Abs if self.language == Language::C => "fabs",
+            Unary::Ln if self.language != Language::Rust => "log",
             Unary::Sqrt | Unary::Sin | Unary::Cos | Unary::Tan | Unary::Asin | Unary::Acos | Unary::Atan => op.name(),
             Unary::Sinh | Unary::Cosh | Unary::Tanh | Unary::Asinh | Unary::Acosh | Unary::Atanh => op.name(),
             Unary::Exp | Unary::Ln | Unary::Abs => op.name(),
@@ -157,8 +157,11 @@ impl Writer<'_> {
     fn binary(&mut self, op: Binary, x: &str, y: &str) -> String {
         match op {
             Binary::Add | Binary::Sub | Binary::Mul | Binary::Div => format!("{x} {} {y}", op.name()),
-            Binary::Pow if self.language == Language::C => self.library("pow", &[x, y]),
-            Binary::Pow => self.library("powf", &[x, y]),
+            Binary::Pow => match self.language {
+                Language::C => self.library("pow", &[x, y]),
+                Language::Rust => self.library("powf", &[x, y]),
+                Language::JavaScript => self.call(Helper::Pow, &[x, y]),
+            },
             Binary::Atan2 => self.library("atan2", &[x, y]),
             Binary::Min => self.call(Helper::Min, &[x, y]),
             Binary::Max => self.call(Helper::Max, &[x, y]),

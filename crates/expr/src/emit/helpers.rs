@@ -13,6 +13,7 @@ pub(super) enum Helper {
     Max,
     Arcinv,
     Curve,
+    Pow,
 }
 
 impl Helper {
@@ -24,6 +25,7 @@ impl Helper {
             Helper::Max => "max",
             Helper::Arcinv => "arcinv",
             Helper::Curve => "curve",
+            Helper::Pow => "pow",
         }
     }
 
@@ -39,6 +41,14 @@ impl Helper {
             (Language::Rust, Helper::Max) => RUST_MAX,
             (Language::Rust, Helper::Arcinv) => RUST_ARCINV,
             (Language::Rust, Helper::Curve) => RUST_CURVE,
+            (Language::JavaScript, Helper::Sign) => JAVASCRIPT_SIGN,
+            (Language::JavaScript, Helper::Min) => JAVASCRIPT_MIN,
+            (Language::JavaScript, Helper::Max) => JAVASCRIPT_MAX,
+            (Language::JavaScript, Helper::Arcinv) => JAVASCRIPT_ARCINV,
+            (Language::JavaScript, Helper::Curve) => JAVASCRIPT_CURVE,
+            (Language::JavaScript, Helper::Pow) => JAVASCRIPT_POW,
+            // their libraries have the right one
+            (Language::C | Language::Rust, Helper::Pow) => "",
         }
     }
 }
@@ -77,7 +87,7 @@ impl Language {
     fn preamble(self) -> &'static str {
         match self {
             Language::C => "#include <math.h>\n\n",
-            Language::Rust => "",
+            Language::Rust | Language::JavaScript => "",
         }
     }
 }
@@ -95,6 +105,12 @@ fn NAME_sign(x: f64) -> f64 {
 }
 ";
 
+const JAVASCRIPT_SIGN: &str = "\
+function NAME_sign(x) {
+    return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x + 0.0;
+}
+";
+
 // not fmin and fmax, which drop a NaN
 const C_MIN: &str = "\
 static double NAME_min(double x, double y)
@@ -109,6 +125,12 @@ fn NAME_min(x: f64, y: f64) -> f64 {
 }
 ";
 
+const JAVASCRIPT_MIN: &str = "\
+function NAME_min(x, y) {
+    return Math.min(x, y);
+}
+";
+
 const C_MAX: &str = "\
 static double NAME_max(double x, double y)
 {
@@ -119,6 +141,12 @@ static double NAME_max(double x, double y)
 const RUST_MAX: &str = "\
 fn NAME_max(x: f64, y: f64) -> f64 {
     if x > y || x.is_nan() { x } else { y }
+}
+";
+
+const JAVASCRIPT_MAX: &str = "\
+function NAME_max(x, y) {
+    return Math.max(x, y);
 }
 ";
 
@@ -173,6 +201,29 @@ fn NAME_arcinv(x: f64) -> f64 {
 }
 ";
 
+const JAVASCRIPT_ARCINV: &str = "\
+/** The angle a whose involute function tan(a) - a is x. */
+function NAME_arcinv(x) {
+    const series = [SERIES];
+    const target = Math.abs(x);
+    if (target === 0.0 || Number.isNaN(target)) {
+        return x;
+    }
+    let a = Math.min(Math.cbrt(3.0 * target), Math.atan(target + QUARTER_TURN));
+    for (let step = 0; step < 60; ++step) {
+        const tangent = Math.tan(a), square = a * a;
+        const sum = series.reduceRight((sum, c) => sum * square + c, 0.0);
+        const involute = a > SERIES_BELOW ? tangent - a : a * square * sum;
+        const next = a - (involute - target) / (tangent * tangent);
+        if (!(next > 0.0 && next < a)) {
+            break;
+        }
+        a = next;
+    }
+    return x < 0.0 ? -a : a;
+}
+";
+
 const C_CURVE: &str = "\
 /* derivative of an order (0: the value) of a cubic spline; a piece is its left knot and its cubic in the distance from there */
 static double NAME_curve(const double (*pieces)[5], int count, double low, double high, int order, double x)
@@ -218,5 +269,39 @@ fn NAME_curve(pieces: &[[f64; 5]], low: f64, high: f64, order: u8, x: f64) -> f6
         3 => 6.0 * d,
         _ => 0.0,
     }
+}
+";
+
+const JAVASCRIPT_CURVE: &str = "\
+/** Derivative of an order (0: the value) of a cubic spline; a piece is its left knot and its cubic in the distance from there. */
+function NAME_curve(pieces, low, high, order, x) {
+    if (!(x >= low && x <= high)) {
+        return NaN;
+    }
+    let first = 0, last = pieces.length - 1;
+    while (first < last) {
+        const middle = (first + last + 1) >> 1;
+        if (pieces[middle][0] <= x) {
+            first = middle;
+        } else {
+            last = middle - 1;
+        }
+    }
+    const [knot, a, b, c, d] = pieces[first];
+    const t = x - knot;
+    switch (order) {
+        case 0: return a + t * (b + t * (c + t * d));
+        case 1: return b + t * (2.0 * c + t * 3.0 * d);
+        case 2: return 2.0 * c + t * 6.0 * d;
+        case 3: return 6.0 * d;
+        default: return 0.0;
+    }
+}
+";
+
+// Math.pow has no number for powers of 1 and -1 that the standard of floating-point numbers has one for
+const JAVASCRIPT_POW: &str = "\
+function NAME_pow(x, y) {
+    return x === 1.0 || (x === -1.0 && Math.abs(y) === Infinity) ? 1.0 : Math.pow(x, y);
 }
 ";

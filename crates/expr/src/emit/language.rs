@@ -10,6 +10,14 @@ pub(super) struct Frame<'a> {
     pub(super) language: Language,
     pub(super) scope: &'a Scope,
     pub(super) comment: &'a [String],
+    pub(super) arrays: Arrays,
+}
+
+/// What a function fills.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arrays {
+    Values,
+    ValuesAndDerivatives,
 }
 
 impl Frame<'_> {
@@ -30,7 +38,8 @@ impl Frame<'_> {
             [only] => format!("derivatives: of these by {only}, in the same order"),
             several => format!("derivatives: of these, each by {}", several.join(", ")),
         };
-        for line in self.comment.iter().map(String::as_str).chain([&*outputs, &*slopes]) {
+        let slopes = Some(&*slopes).filter(|_| self.arrays == Arrays::ValuesAndDerivatives);
+        for line in self.comment.iter().map(String::as_str).chain([&*outputs]).chain(slopes) {
             let _ = writeln!(text, "{}", format!(" * {}", inert(line)).trim_end());
         }
         text + " */\n"
@@ -38,17 +47,17 @@ impl Frame<'_> {
 
     fn head(&self, outputs: usize) -> String {
         let (name, arguments) = (self.scope.function(), self.scope.arguments());
-        let slopes = outputs * arguments.len();
+        let arrays = match self.arrays {
+            Arrays::Values => vec![("values", outputs)],
+            Arrays::ValuesAndDerivatives => vec![("values", outputs), ("derivatives", outputs * arguments.len())],
+        };
+        let inputs = arguments.iter().map(|argument| self.language.input(argument));
+        let arrays = arrays.into_iter().map(|(array, length)| self.language.output(array, length));
+        let list = inputs.chain(arrays).collect::<Vec<_>>().join(", ");
         match self.language {
-            Language::C => {
-                let inputs: String = arguments.iter().map(|argument| format!("double {argument}, ")).collect();
-                format!("void {name}({inputs}double values[{outputs}], double derivatives[{slopes}])\n{{\n")
-            }
-            Language::Rust => {
-                let inputs: String = arguments.iter().map(|argument| format!("{argument}: f64, ")).collect();
-                let arrays = format!("values: &mut [f64; {outputs}], derivatives: &mut [f64; {slopes}]");
-                format!("#[allow(non_snake_case)]\npub fn {name}({inputs}{arrays}) {{\n")
-            }
+            Language::C => format!("void {name}({list})\n{{\n"),
+            Language::Rust => format!("#[allow(non_snake_case)]\npub fn {name}({list}) {{\n"),
+            Language::JavaScript => format!("export function {name}({list}) {{\n"),
         }
     }
 }
@@ -60,6 +69,24 @@ fn inert(text: &str) -> String {
 }
 
 impl Language {
+    /// An argument that is a number.
+    fn input(self, name: &str) -> String {
+        match self {
+            Language::C => format!("double {name}"),
+            Language::Rust => format!("{name}: f64"),
+            Language::JavaScript => name.to_string(),
+        }
+    }
+
+    /// An argument that is an array to fill.
+    fn output(self, name: &str, length: usize) -> String {
+        match self {
+            Language::C => format!("double {name}[{length}]"),
+            Language::Rust => format!("{name}: &mut [f64; {length}]"),
+            Language::JavaScript => name.to_string(),
+        }
+    }
+
     /// A number that reads back as the same bits.
     pub(super) fn number(self, value: f64) -> String {
         match (self, value) {
@@ -69,6 +96,9 @@ impl Language {
             (Language::Rust, value) if value.is_nan() => "f64::NAN".to_string(),
             (Language::Rust, f64::INFINITY) => "f64::INFINITY".to_string(),
             (Language::Rust, f64::NEG_INFINITY) => "f64::NEG_INFINITY".to_string(),
+            (Language::JavaScript, value) if value.is_nan() => "NaN".to_string(),
+            (Language::JavaScript, f64::INFINITY) => "Infinity".to_string(),
+            (Language::JavaScript, f64::NEG_INFINITY) => "-Infinity".to_string(),
             (_, value) => format!("{value:?}"),
         }
     }
@@ -78,14 +108,16 @@ impl Language {
         match self {
             Language::C => format!("const double {name} = {value};"),
             Language::Rust => format!("let {name} = {value};"),
+            Language::JavaScript => format!("const {name} = {value};"),
         }
     }
 
-    /// A statement that uses a name for nothing.
-    pub(super) fn unused(self, name: &str) -> String {
+    /// A statement that uses a name for nothing, where compilers want one.
+    pub(super) fn unused(self, name: &str) -> Option<String> {
         match self {
-            Language::C => format!("(void){name};"),
-            Language::Rust => format!("let _ = {name};"),
+            Language::C => Some(format!("(void){name};")),
+            Language::Rust => Some(format!("let _ = {name};")),
+            Language::JavaScript => None,
         }
     }
 
@@ -94,11 +126,12 @@ impl Language {
         let (height, width) = (rows.len(), rows.first().map_or(0, Vec::len));
         let [open, close] = match self {
             Language::C => ["{", "}"],
-            Language::Rust => ["[", "]"],
+            Language::Rust | Language::JavaScript => ["[", "]"],
         };
         let mut text = match self {
             Language::C => format!("static const double {name}[{height}][{width}] = {open}\n"),
             Language::Rust => format!("let {name}: &'static [[f64; {width}]; {height}] = &{open}\n"),
+            Language::JavaScript => format!("const {name} = {open}\n"),
         };
         for row in rows {
             let numbers: Vec<String> = row.iter().map(|value| self.number(*value)).collect();
@@ -112,6 +145,7 @@ impl Language {
         let template = match self {
             Language::C => C_HORNER,
             Language::Rust => RUST_HORNER,
+            Language::JavaScript => JAVASCRIPT_HORNER,
         };
         template
             .replace("REFERENCE", &self.number(reference))
@@ -148,3 +182,18 @@ for power in coefficients {
 }
 *values = value;
 *derivatives = slope;";
+
+const JAVASCRIPT_HORNER: &str = "\
+const distance = ARGUMENT - REFERENCE;
+const value = new Array(OUTPUTS).fill(0.0);
+const slope = new Array(OUTPUTS).fill(0.0);
+for (const power of coefficients) {
+    for (let output = 0; output < OUTPUTS; ++output) {
+        slope[output] = slope[output] * distance + value[output];
+        value[output] = value[output] * distance + power[output];
+    }
+}
+for (let output = 0; output < OUTPUTS; ++output) {
+    values[output] = value[output];
+    derivatives[output] = slope[output];
+}";

@@ -8,7 +8,7 @@ mod names;
 use crate::graph::Expr;
 use crate::tape::{Tape, TapeError};
 use body::Body;
-use language::Frame;
+use language::{Arrays, Frame};
 use names::Scope;
 
 /// The language of an emitted function.
@@ -18,6 +18,8 @@ pub enum Language {
     C,
     /// Rust with the floats of its standard library.
     Rust,
+    /// A module of JavaScript (ECMAScript 2015), for pages and Node.
+    JavaScript,
 }
 
 /// What an emitted function is called and says about itself.
@@ -68,19 +70,60 @@ pub fn emit_function(
     arguments: &[Expr<'_>],
     outputs: &[(&str, Expr<'_>)],
 ) -> Result<String, TapeError> {
-    assert!(!outputs.is_empty(), "a function has at least one output");
     let values = outputs.iter().map(|(_, output)| *output);
     let slopes = outputs.iter().flat_map(|(_, output)| arguments.iter().map(|argument| output.derivative(*argument)));
     let tape = Tape::new(&values.chain(slopes).collect::<Vec<_>>(), arguments)?;
+    Ok(of_tape(language, signature, arguments, outputs, (&tape, Arrays::ValuesAndDerivatives)))
+}
+
+/// The same without derivatives: a function that fills `values[i]` with the outputs. Derivatives by some of the arguments may be
+/// among these.
+///
+/// ```
+/// use flank_expr::{Graph, Language, Signature, emit_values};
+///
+/// let graph = Graph::new();
+/// let phi = graph.variable("φ");
+/// let signature = Signature { name: "swing", comment: &[] };
+/// let text = emit_values(Language::JavaScript, signature, &[phi], &[("X", 2.5 * phi.sin())])?;
+/// assert!(text.contains("export function swing(phi, values) {"));
+/// assert!(text.contains("= Math.sin(phi);"));
+/// # Ok::<(), flank_expr::TapeError>(())
+/// ```
+///
+/// # Errors
+/// As for [`emit_function`].
+///
+/// # Panics
+/// As for [`emit_function`].
+pub fn emit_values(
+    language: Language,
+    signature: Signature<'_>,
+    arguments: &[Expr<'_>],
+    outputs: &[(&str, Expr<'_>)],
+) -> Result<String, TapeError> {
+    let values: Vec<Expr<'_>> = outputs.iter().map(|(_, output)| *output).collect();
+    let tape = Tape::new(&values, arguments)?;
+    Ok(of_tape(language, signature, arguments, outputs, (&tape, Arrays::Values)))
+}
+
+fn of_tape(
+    language: Language,
+    signature: Signature<'_>,
+    arguments: &[Expr<'_>],
+    outputs: &[(&str, Expr<'_>)],
+    (tape, arrays): (&Tape, Arrays),
+) -> String {
+    assert!(!outputs.is_empty(), "a function has at least one output");
     let names: Vec<String> = arguments
         .iter()
         .map(|argument| argument.graph().variable_name(argument.as_variable().expect("inputs of a tape are variables")))
         .collect();
     let scope = Scope::new(signature.name, &names);
-    let body = Body::new(language, &scope, &tape, outputs.len());
-    let frame = Frame { language, scope: &scope, comment: signature.comment };
+    let body = Body::new(language, &scope, tape, outputs.len());
+    let frame = Frame { language, scope: &scope, comment: signature.comment, arrays };
     let titles: Vec<&str> = outputs.iter().map(|(name, _)| *name).collect();
-    Ok(body.helpers.text(language, scope.function()) + &frame.function(&titles, &body.statements))
+    body.helpers.text(language, scope.function()) + &frame.function(&titles, &body.statements)
 }
 
 /// A function that fills `values[i]` with the polynomials and `derivatives[i]` with their first derivatives, by Horner's rule on
@@ -111,7 +154,7 @@ pub fn emit_polynomials(
         (0..powers).rev().map(|power| polynomials.iter().map(coefficient(power)).collect()).collect();
     let table = language.table("coefficients", &rows);
     let loops = language.horner(&scope.arguments()[0], reference, powers, polynomials.len());
-    let frame = Frame { language, scope: &scope, comment: signature.comment };
+    let frame = Frame { language, scope: &scope, comment: signature.comment, arrays: Arrays::ValuesAndDerivatives };
     let titles: Vec<&str> = polynomials.iter().map(|polynomial| polynomial.name).collect();
     frame.function(&titles, &[table, loops])
 }

@@ -1,4 +1,4 @@
-//! Names that both languages take for identifiers.
+//! Names that all languages take for identifiers.
 
 use crate::print::GREEK;
 
@@ -76,14 +76,15 @@ fn is_reserved(name: &str) -> bool {
     KEYWORDS.split_whitespace().chain(MATHEMATICS.split_whitespace()).any(|word| word == name)
 }
 
-/// Of C to C23, of C++ where headers are shared, and of Rust.
+/// Of C to C23, of C++ where headers are shared, of Rust, and of JavaScript with the globals that bodies use.
 const KEYWORDS: &str = "
-    abstract alignas alignof and asm async auto await become bool box break case catch char class compl const constexpr continue
-    crate default delete do double dyn else enum explicit export extern f32 f64 false final float fn for friend gen goto if impl
-    import in inline int let long loop macro main match mod module move mut mutable namespace new not nullptr operator or
-    override priv private protected pub public ref register requires restrict return self short signed sizeof static struct super
-    switch template this throw trait true try type typedef typename typeof union unsafe unsigned unsized use using virtual void
-    volatile where while xor yield";
+    abstract alignas alignof and arguments Array asm async auto await become bool box break case catch char class compl
+    const constexpr continue crate debugger default delete do double dyn else enum eval explicit export extends extern f32
+    f64 false final finally float fn for friend function gen goto if impl implements import in Infinity inline instanceof
+    int interface let long loop macro main match Math mod module move mut mutable namespace NaN new not null nullptr
+    Number operator or override package priv private protected pub public ref register requires restrict return self short
+    signed sizeof static struct super switch template this throw trait true try type typedef typename typeof undefined
+    union unsafe unsigned unsized use using var virtual void volatile where while with xor yield";
 
 /// What `math.h` declares without suffix, as C and POSIX have it.
 const MATHEMATICS: &str = "

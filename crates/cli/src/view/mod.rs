@@ -1,0 +1,157 @@
+//! `flank view`
+
+mod functions;
+mod machines;
+mod parameters;
+mod surfaces;
+mod tools;
+
+use flank_chain_dsl::{Bounded, Job};
+use flank_export::{Dataset, Field, PageMotion, Scene, Tally, Values};
+use flank_expr::Graph;
+use serde_json::{Value, json};
+
+use crate::arguments::View;
+use crate::files::Folder;
+use crate::limits::Line;
+use crate::solve::{self, Wanted};
+use crate::table::{self, Solved};
+use crate::{Ending, branches, print, spec};
+use functions::Functions;
+
+/// What a surface can be coloured by and what a click tells of a point.
+const WANTED: Wanted = Wanted { geometry: true, sensitivity: true, certificates: false };
+/// Share of what a motion passes over that its slider goes beyond.
+const BEYOND: f64 = 0.15;
+
+pub(crate) fn run(arguments: &View) -> Ending {
+    let graph = Graph::new();
+    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
+        Ok(found) => found,
+        Err(ending) => return ending,
+    };
+    let hash = spec::hash(&compilation);
+    let asked = solve::asked(&jobs);
+    if asked.is_empty() {
+        return Ending::Wrong;
+    }
+    let mut ending = Ending::Done;
+    for job in asked {
+        let solved: Vec<Solved<'_, '_>> =
+            job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED)).collect();
+        let lines: Vec<&Line<'_, '_>> = solved.iter().flat_map(|solved| &solved.trims).collect();
+        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&job.name, &arguments.which, &hash));
+        dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
+        let tally = Tally::of(&dataset.patches);
+        let told = branches::ambiguous(&solved) + &table::unsolved(job, &solved);
+        if !told.is_empty() {
+            anstream::eprint!("{told}");
+            ending = Ending::Unsolved;
+        }
+        if tally.solved == 0 {
+            anstream::eprintln!("error: job `{}` has no point to show", job.name);
+            continue;
+        }
+        let written = match write(&graph, job, &solved, &dataset, arguments) {
+            Ok(written) => written,
+            Err(reason) => {
+                anstream::eprintln!("error: {reason}");
+                return Ending::Wrong;
+            }
+        };
+        print(&if arguments.json { written.json(&tally) } else { written.text(&tally) });
+    }
+    ending
+}
+
+/// Whether a field is not zero everywhere, as is that of a parameter without influence.
+fn is_something(field: &Field) -> bool {
+    match &field.values {
+        Values::Scalars(values) => values.iter().flatten().any(|value| *value != 0.0),
+        Values::Vectors(_) => true,
+    }
+}
+
+/// A page that stands in its folder.
+struct Written<'j> {
+    job: &'j str,
+    file: String,
+    bytes: u64,
+}
+
+fn write<'j, 'g>(
+    graph: &'g Graph,
+    job: &'j Job<'g>,
+    solved: &[Solved<'_, 'g>],
+    dataset: &Dataset,
+    arguments: &View,
+) -> Result<Written<'j>, String> {
+    let scene = scene(graph, job, solved);
+    let mut folder = Folder::at(&arguments.out)?;
+    folder.page(&job.name, dataset, &scene)?;
+    let path = arguments.out.join(format!("{}.html", job.name));
+    let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
+    Ok(Written { job: &job.name, file: folder.written.remove(0), bytes })
+}
+
+/// What the page shows beside the points.
+fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scene {
+    let mut functions = Functions::of(job);
+    let surfaces: Vec<_> = solved.iter().map(|solved| surfaces::of(graph, job, solved, &mut functions)).collect();
+    Scene {
+        doc: job.doc.clone(),
+        motions: job.motions.iter().map(|motion| page_motion(motion, solved)).collect(),
+        parameters: parameters::of(job, solved),
+        machines: job
+            .machines
+            .iter()
+            .enumerate()
+            .map(|(k, m)| machines::of(graph, job, (k, m), &mut functions))
+            .collect(),
+        tools: tools::of(job, solved, &mut functions),
+        surfaces,
+        definitions: parameters::definitions(job, &mut functions),
+        notes: Vec::new(),
+        functions: functions.text,
+        function_names: functions.names,
+    }
+}
+
+/// Over what the solved points pass, and a little beyond; it starts where the middle of the first surface is generated.
+fn page_motion(motion: &Bounded<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
+    let values = |solved: &Solved<'_, '_>| -> Vec<f64> {
+        let place = solved.surface.unknowns.iter().position(|unknown| unknown.variable == motion.variable);
+        let of_points = solved.points.iter().filter(|point| point.outcome == flank_solver::Outcome::Solved);
+        place.map_or(Vec::new(), |k| of_points.map(|point| point.unknowns[k]).collect())
+    };
+    let all: Vec<Vec<f64>> = solved.iter().map(values).collect();
+    let passed = all.iter().flatten();
+    let low = passed.clone().copied().reduce(f64::min).unwrap_or(motion.low);
+    let high = passed.copied().reduce(f64::max).unwrap_or(motion.high);
+    let margin = BEYOND * (high - low);
+    let (low, high) = if low < high { (low - margin, high + margin) } else { (motion.low, motion.high) };
+    let start = all.iter().find(|values| !values.is_empty()).map(|values| values[values.len() / 2]);
+    PageMotion {
+        name: motion.name.clone(),
+        unit: solve::unit(motion.dimension),
+        low: low.max(motion.low),
+        high: high.min(motion.high),
+        start: start.unwrap_or(0.5 * (motion.low + motion.high)),
+        is_count: motion.is_count,
+    }
+}
+
+impl Written<'_> {
+    fn text(&self, tally: &Tally) -> String {
+        let kilobytes = self.bytes.div_ceil(1000);
+        format!("job {}: {} of {} points\nwrote {}, {kilobytes} kB\n", self.job, tally.solved, tally.asked, self.file)
+    }
+
+    fn json(&self, tally: &Tally) -> String {
+        let value: Value = json!({
+            "schema": "flank.view/1", "job": self.job, "asked": tally.asked, "solved": tally.solved,
+            "file": self.file, "bytes": self.bytes,
+        });
+        format!("{value:#}\n")
+    }
+}

@@ -1,0 +1,120 @@
+// Opens a page in headless Chromium and uses it as people do: `node browser.mjs PAGE SCREENSHOTS` with what to expect on stdin.
+// Prints what it measured as JSON; fails with the reason.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const [path, folder] = process.argv.slice(2);
+const expected = JSON.parse(readFileSync(0, "utf8"));
+const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
+});
+const page = await browser.newPage({ viewport: { width: 1000, height: 700 } });
+const errors = [];
+page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+page.on("pageerror", (error) => errors.push(String(error)));
+const requests = [];
+page.on("request", (request) => requests.push(request.url()));
+
+const begin = performance.now();
+await page.goto(pathToFileURL(path).href);
+await page.waitForSelector("body[data-ready]", { timeout: 60_000 });
+const opened = performance.now() - begin;
+
+/** The share of pixels of the view near a colour. */
+async function share(colour, name) {
+    const file = `${folder}/${name}.png`;
+    const image = (await page.locator("#view").screenshot({ path: file })).toString("base64");
+    return page.evaluate(async ([image, colour]) => {
+        const picture = new Image();
+        picture.src = `data:image/png;base64,${image}`;
+        await picture.decode();
+        const canvas = document.createElement("canvas");
+        [canvas.width, canvas.height] = [picture.width, picture.height];
+        const context = canvas.getContext("2d");
+        context.drawImage(picture, 0, 0);
+        const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+        let near = 0;
+        for (let at = 0; at < data.length; at += 4) {
+            // of the same hue, whatever the light
+            const [light, want] = [data.slice(at, at + 3), colour].map((c) => Math.max(...c, 1));
+            near += colour.every((c, k) => Math.abs(data[at + k] / light - c / want) < 0.09) ? 1 : 0;
+        }
+        return near / (data.length / 4);
+    }, [image, colour]);
+}
+
+const hex = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+const colours = await page.evaluate(() => window.flank.data.colours);
+const work = await share(hex(colours[0]), "opened");
+assert(work > 0.002, `the first surface covers ${work} of the view`);
+
+// the slider moves the tool against the work, and what is not yet cut turns pale
+const slider = page.locator(`#slider-${expected.motion}`);
+const pose = () => page.evaluate(() => {
+    const { machine, data } = window.flank;
+    return machine.pose(data.surfaces[0].frame_index).invert().multiply(machine.pose(data.surfaces[0].tool_frame)).elements;
+});
+const before = await pose();
+await slider.focus();
+for (let press = 0; press < 40; ++press) await page.keyboard.press("ArrowLeft");
+const after = await pose();
+const moved = Math.max(...after.map((x, k) => Math.abs(x - before[k])));
+assert(moved > 1e-3, `the tool moved by ${moved}`);
+assert(await page.locator("#cut").isChecked());
+const cut = await share(hex(colours[0]), "cut");
+assert(cut < 0.8 * work, `the coloured share was ${work}, and is ${cut} before the cut is done`);
+await page.locator("#cut").uncheck();
+
+// a click reads the values that the program wrote
+const { surface, point } = expected;
+await page.evaluate(([surface]) => {
+    const { flank } = window;
+    flank.visible.forEach((mesh) => (mesh.object.visible = mesh.surface.name === surface));
+    flank.toolParts.forEach((part) => (part.visible = false));
+    flank.fitWork();
+    flank.stage.draw();
+}, [surface]);
+const [x, y] = await page.evaluate(([surface, point]) => {
+    const { flank } = window;
+    const mesh = flank.visible.find((one) => one.surface.name === surface);
+    return flank.stage.pixel(mesh.object, [...mesh.surface.vector(mesh.surface.positions, point)]);
+}, [surface, point]);
+await page.locator("#canvas").click({ position: { x, y } });
+const rows = Object.fromEntries(await page.locator("#point tr").evaluateAll(
+    (rows) => rows.map((row) => [row.cells[0].textContent, row.cells[1].textContent]),
+));
+assert.equal(rows.surface, surface);
+for (const [name, value] of Object.entries(expected.values)) {
+    const shown = parseFloat(rows[name]);
+    assert(Math.abs(shown - value) <= 1e-7 * Math.max(1, Math.abs(value)), `${name} reads ${rows[name]}, not ${value}`);
+}
+
+// colours by a quantity, with its legend
+await page.locator("#quantity").selectOption(expected.motion);
+assert.match(await page.locator("#legend").innerText(), new RegExp(expected.motion));
+const [dark, light] = [await share(hex("#00224e"), "quantity"), await share(hex("#fee85c"), "quantity")];
+assert(dark > 1e-4 && light > 1e-4, `both ends of the scale are seen: ${dark}, ${light}`);
+
+// a moved parameter moves the surface, exactly as the program does
+await page.locator("#parameters summary").click();
+const number = page.locator(`[id="slider-${expected.parameter.name}"] + input`);
+await number.fill(String(expected.parameter.shown));
+await number.press("Enter");
+const position = await page.evaluate(([surface, point]) => {
+    const found = window.flank.surfaces.find((one) => one.name === surface);
+    return [...found.vector(found.positions, point)];
+}, [surface, point]);
+const off = Math.hypot(...position.map((x, k) => x - expected.parameter.position[k]));
+assert(off < 1e-9, `the moved point is ${off} mm off`);
+await page.locator("#view").screenshot({ path: `${folder}/moved.png` });
+await page.locator("#reset").click();
+assert.equal(await page.evaluate(() => window.flank.surfaces.some((one) => one.isMoved)), false);
+
+assert.deepEqual(errors, []);
+const fetched = requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:") && !url.startsWith("blob:"));
+assert.deepEqual(fetched, []);
+await browser.close();
+console.log(JSON.stringify({ opened_ms: Math.round(opened), work, cut, moved, off }));

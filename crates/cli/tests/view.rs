@@ -1,0 +1,186 @@
+//! `flank view` as a user runs it; the page's own solver, in Node, against the program; the page in a browser.
+
+mod support;
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::{Value, json};
+use support::{flank, folder, text, top, written};
+
+const PINION: &str = "specs/bevel/pinion_19x62.chain";
+/// Positions of the page against the program's, mm: both solve to 1e-11.
+const TOLERANCE: f64 = 1e-9;
+
+/// The page of a spec's only job, and what is told of it.
+fn page(spec: &str, out: &Path) -> (PathBuf, Value) {
+    let run = flank(&["view", spec, "--out", out.to_str().expect("a plain path"), "--json"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    (top().join(told["file"].as_str().expect("a file")), told)
+}
+
+/// The points that `flank solve` writes for a spec.
+fn solved(spec: &str, set: &[&str], out: &Path) -> Value {
+    let out = out.to_str().expect("a plain path");
+    let set = set.iter().flat_map(|one| ["--set", one]);
+    let arguments: Vec<&str> = ["solve", spec, "--out", out, "--format", "json", "--no-picture", "--geometry"]
+        .into_iter()
+        .chain(set)
+        .collect();
+    let run = flank(&arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let name = Path::new(spec).file_stem().expect("a name").to_str().expect("UTF-8");
+    let file = std::fs::read(Path::new(out).join(format!("{name}.json"))).expect("the points");
+    serde_json::from_slice(&file).expect("JSON")
+}
+
+/// What a script of `tests/page` prints, run by Node; nothing if Node is not installed.
+fn node(script: &str, arguments: &[&str], input: &Value) -> Option<Value> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page").join(script);
+    let mut command = Command::new("node");
+    command.arg(&script).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = match command.spawn() {
+        Err(error) if error.kind() == ErrorKind::NotFound => return None,
+        child => child.expect("node starts"),
+    };
+    let mut stdin = child.stdin.take().expect("its input is a pipe");
+    // a script that reads nothing may have gone already
+    let _ = stdin.write_all(input.to_string().as_bytes());
+    drop(stdin);
+    let output = child.wait_with_output().expect("node ends");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    Some(serde_json::from_slice(&output.stdout).expect("JSON"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().map_or(Vec::new(), |list| list.iter().map(|x| x.as_f64().expect("a number")).collect())
+}
+
+fn off(a: &Value, b: &Value) -> f64 {
+    let (a, b) = (numbers(a), numbers(b));
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn one_file_for_each_job() {
+    let folder = folder("view");
+    let (file, told) = page("specs/hobbing/spur_gear.chain", &folder);
+    let bytes = std::fs::metadata(&file).expect("the page").len();
+    assert_eq!(told["bytes"].as_u64(), Some(bytes));
+    assert_eq!((&told["job"], &told["asked"]), (&json!("spur_gear"), &told["solved"]));
+    assert!(bytes < 3_000_000, "{bytes} bytes");
+    assert!(std::fs::read_to_string(&file).expect("text").starts_with("<!DOCTYPE html>"));
+    let again = flank(&["view", "specs/hobbing/spur_gear.chain", "--out", folder.to_str().unwrap()]);
+    assert!(text(&again.stdout).contains("wrote"), "{}", text(&again.stdout));
+    assert_eq!(std::fs::metadata(&file).expect("the page").len(), bytes);
+}
+
+/// All that are usual; the largest stays below what mail takes.
+#[test]
+fn pages_of_the_library_are_small() {
+    let folder = folder("view_sizes");
+    for spec in ["specs/hobbing/helical_gear.chain", PINION, "specs/hobbing/worm_wheel.chain"] {
+        let (_, told) = page(spec, &folder);
+        assert!(told["bytes"].as_u64().expect("a size") < 3_000_000, "{told}");
+    }
+}
+
+#[test]
+fn what_cannot_be_shown_is_told() {
+    let folder = folder("view_errors");
+    let out = folder.to_str().unwrap();
+    let idle = written(&folder, "idle.chain", "job idle {\n    param a : length = 1 mm\n}\n");
+    let run = flank(&["view", &idle, "--out", out]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("asks for no points"), "{}", text(&run.stderr));
+    let file = written(&folder, "file", "");
+    let run = flank(&["view", "specs/hobbing/spur_gear.chain", "--out", &file]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("cannot make the folder"), "{}", text(&run.stderr));
+}
+
+/// Both are solved by Newton on the same equations, once on tapes and once as JavaScript. The sample does not depend on the
+/// parameters that are moved, so both are asked for the same points.
+#[test]
+fn the_page_solves_what_the_program_solves() {
+    let folder = folder("view_solver");
+    let (file, _) = page(PINION, &folder);
+    let file = file.to_str().expect("a plain path");
+    let cases: [(&[&str], &[&str]); 3] = [
+        (&[], &[]),
+        (&["m.machine_root_angle=0.28"], &["m.machine_root_angle=0.28 rad"]),
+        (&["m.radial_distance=98.5", "c.blade_angle=0.35"], &["m.radial_distance=98.5 mm", "c.blade_angle=0.35 rad"]),
+    ];
+    for (moves, set) in cases {
+        let arguments: Vec<&str> = [file].into_iter().chain(moves.iter().copied()).collect();
+        let Some(found) = node("solving.mjs", &arguments, &Value::Null) else {
+            eprintln!("skipped 1 test: node is not installed");
+            return;
+        };
+        let expected = solved(PINION, set, &folder);
+        let mut compared = 0;
+        for (found, expected) in
+            found.as_array().expect("surfaces").iter().zip(expected["surfaces"].as_array().unwrap())
+        {
+            assert_eq!(found["name"], expected["name"]);
+            let field = |name| expected["fields"].as_array().unwrap().iter().position(|field| field["name"] == name);
+            let [k1, k2] = ["k1", "k2"].map(|name| field(name).expect("geometry is asked for"));
+            for (found, expected) in
+                found["points"].as_array().unwrap().iter().zip(expected["points"].as_array().unwrap())
+            {
+                assert_eq!(found["status"], expected["status"], "{set:?} {expected}");
+                assert!(off(&found["position"], &expected["position"]) < TOLERANCE, "{set:?} {expected}");
+                assert!(off(&found["normal"], &expected["normal"]) < TOLERANCE, "{set:?} {expected}");
+                if !found["curvatures"].is_null() {
+                    let bent = json!([expected["fields"][k1], expected["fields"][k2]]);
+                    assert!(off(&found["curvatures"], &bent) < TOLERANCE, "{set:?} {bent}");
+                }
+                compared += usize::from(!found["position"].is_null());
+            }
+        }
+        assert!(compared > 1000, "{compared} points of {set:?}");
+    }
+}
+
+/// Opens, turns, clicks and moves as in `tests/page/browser.mjs`.
+#[test]
+fn the_page_works_in_a_browser() {
+    let folder = folder("view_browser");
+    let browser = std::env::var("CHROMIUM").unwrap_or("/usr/bin/chromium".to_string());
+    let driver = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/node_modules/playwright-core");
+    if !Path::new(&browser).exists() || !driver.exists() {
+        eprintln!("skipped 1 test: {browser} or {} is not there; .ci/run installs both", driver.display());
+        return;
+    }
+    let (file, _) = page(PINION, &folder);
+    let (own, moved) = (solved(PINION, &[], &folder), solved(PINION, &["m.machine_root_angle=15.8 deg"], &folder));
+    let (surface, point) = (&own["surfaces"][0], 7 * 31 + 15);
+    let at = &surface["points"][point];
+    let mut values = json!({
+        "x": at["position"][0], "y": at["position"][1], "z": at["position"][2],
+        "normal x": at["normal"][0], "normal y": at["normal"][1], "normal z": at["normal"][2],
+        "row i (root -> tip)": at["i"], "column j (toe -> heel)": at["j"],
+    });
+    for (k, unknown) in surface["unknowns"].as_array().unwrap().iter().enumerate() {
+        values[unknown["name"].as_str().unwrap()] = at["unknowns"][k].clone();
+    }
+    for (k, field) in surface["fields"].as_array().unwrap().iter().enumerate() {
+        if ["k1", "k2", "sliding_angle", "induced_k1"].contains(&field["name"].as_str().unwrap()) {
+            values[field["name"].as_str().unwrap()] = at["fields"][k].clone();
+        }
+    }
+    let expected = json!({
+        "motion": "roll", "surface": surface["name"], "point": point, "values": values,
+        "parameter": {
+            "name": "m.machine_root_angle", "shown": 15.8,
+            "position": moved["surfaces"][0]["points"][point]["position"],
+        },
+    });
+    let arguments = [file.to_str().expect("a plain path"), folder.to_str().expect("a plain path")];
+    let measured = node("browser.mjs", &arguments, &expected).expect("node drives the browser");
+    eprintln!("in the browser: {measured}");
+    assert!(measured["opened_ms"].as_u64().expect("a time") < 20_000, "{measured}");
+}

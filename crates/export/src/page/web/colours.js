@@ -1,0 +1,58 @@
+// From numbers to colours, and the legend that says which is which.
+
+import { digits, ticks } from "./numbers.js";
+
+/** Of lines and letters. */
+export const INK = 0x333333;
+
+/** Components 0 to 1 of `#rrggbb`. */
+export function components(hex) {
+    return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+}
+
+/** The lowest and the highest value of a quantity over the solved points of some surfaces; null where there is none. */
+export function rangeOf(surfaces, name) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const surface of surfaces) {
+        const quantity = surface.quantities().find((one) => one.name === name);
+        if (!quantity || quantity.isOwn) continue;
+        for (let point = 0; point < surface.count; ++point) {
+            const value = surface.isSolved(point) ? quantity.at(point) : NaN;
+            if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+        }
+    }
+    return low <= high ? { low, high } : null;
+}
+
+/** Fills the legend: title, a bar of the scale, its ticks in the quantity's unit. */
+export function drawLegend(element, quantity, range, scale) {
+    element.replaceChildren();
+    element.hidden = !quantity;
+    if (!quantity) return;
+    const title = document.createElement("div");
+    const unit = quantity.unit === "1" ? "" : `, ${quantity.unit}`;
+    title.textContent = `${quantity.name}${unit}`;
+    title.title = quantity.meaning;
+    element.append(title);
+    if (!range) {
+        element.append("not known for the moved parameters");
+        return;
+    }
+    const { low, high } = range;
+    const bar = document.createElement("div");
+    bar.className = "bar";
+    bar.style.background = `linear-gradient(to right, ${scale.join(", ")})`;
+    const marks = document.createElement("div");
+    marks.className = "marks";
+    const place = (value) => (high > low ? (value - low) / (high - low) : 0.5);
+    for (const value of ticks(low, high, 4)) {
+        const mark = document.createElement("span");
+        mark.style.left = `${100 * place(value)}%`;
+        mark.textContent = digits(value, 4);
+        marks.append(mark);
+    }
+    const ends = document.createElement("div");
+    ends.className = "ends";
+    ends.textContent = `${digits(low)} to ${digits(high)}`;
+    element.append(bar, marks, ends);
+}

@@ -1,0 +1,90 @@
+// The controls beside the view, and the tables.
+
+import { digits, fromUnit, inUnit, withUnit } from "./numbers.js";
+
+/** Steps of a slider from end to end. */
+const STEPS = 400;
+/** What stands for numbers that are not known for moved parameters. */
+const OWN_ONLY = "for the job's own values only";
+
+/** An element with properties and children. */
+export function element(tag, properties = {}, ...children) {
+    const made = Object.assign(document.createElement(tag), properties);
+    made.append(...children);
+    return made;
+}
+
+/** A slider with a number beside it; `change(value)` is called with values of the machine: mm, radians. */
+export class Slider {
+    constructor({ name, unit, low, high, isCount, hint }, change) {
+        this.unit = unit;
+        [this.low, this.high] = [inUnit(unit, low), inUnit(unit, high)];
+        const step = isCount ? 1 : (this.high - this.low) / STEPS || "any";
+        const id = `slider-${name}`;
+        this.range = element("input", { type: "range", id, min: this.low, max: this.high, step, title: hint ?? "" });
+        this.number = element("input", { type: "number", step: "any", ariaLabel: `${name} in ${unit}` });
+        this.range.addEventListener("input", () => this.give(Number(this.range.value), change));
+        this.number.addEventListener("change", () => this.give(Number(this.number.value), change));
+        const label = element("label", { htmlFor: id, textContent: name, title: hint ?? name });
+        this.row = element("div", { className: "slider" }, label, this.range, this.number);
+        this.row.append(element("span", { className: "unit", textContent: unit === "1" ? "" : unit }));
+    }
+
+    give(shown, change) {
+        if (!Number.isFinite(shown)) return;
+        const kept = Math.min(Math.max(shown, this.low), this.high);
+        change(fromUnit(this.unit, kept));
+    }
+
+    /** Shows a value of the machine. */
+    set(value) {
+        const shown = inUnit(this.unit, value);
+        this.range.value = shown;
+        this.range.ariaValueText = withUnit(this.unit, value);
+        this.number.value = digits(shown, 7);
+    }
+}
+
+/** A table of names and values; a third cell tells more. */
+export function table(rows) {
+    return element("table", {}, ...rows.map(([name, value, more]) =>
+        element("tr", {},
+            element("th", { textContent: name, title: more ?? "" }),
+            element("td", { textContent: value, title: more ?? "" }))));
+}
+
+/** What is known of one point, row by row. */
+export function pointRows(surface, point) {
+    const { columns, rows } = surface.data;
+    const [i, j] = [Math.floor(point / columns.count), point % columns.count];
+    const list = [["surface", surface.name], [`row i (${rows.label})`, String(i)], [`column j (${columns.label})`, String(j)]];
+    list.push(["status", surface.word(point)]);
+    if (!surface.isSolved(point)) return list;
+    const names = ["x", "y", "z"];
+    names.forEach((name, k) => list.push([name, withUnit("mm", surface.positions[3 * point + k], 9)]));
+    names.forEach((name, k) => list.push([`normal ${name}`, digits(surface.normals[3 * point + k], 9)]));
+    for (const quantity of surface.quantities().filter(({ name, kind }) => !(kind === "place" && name === "z"))) {
+        const value = quantity.isOwn ? OWN_ONLY : `${digits(quantity.at(point), 9)} ${quantity.unit === "1" ? "" : quantity.unit}`;
+        list.push([quantity.name, value, quantity.meaning]);
+    }
+    for (const field of surface.fields.filter(({ components }) => components === 3)) {
+        const parts = surface.vector(field.values, point);
+        const value = surface.isMoved ? OWN_ONLY : Array.from(parts, (part) => digits(part, 4)).join(", ");
+        list.push([field.name, value, field.meaning]);
+    }
+    return list;
+}
+
+/** The command that solves the job with the same values. */
+export function command(data, settings) {
+    const value = (unit, number) => {
+        const text = digits(inUnit(unit, number), 15);
+        if (unit === "1") return text;
+        return unit.startsWith("1/") ? `${text} / 1 ${unit.slice(2)}` : `${text} ${unit}`;
+    };
+    const set = [...settings.byHand].map(([k, number]) => {
+        const { name, unit } = data.parameters[k];
+        return `--set ${name}="${value(unit, number)}"`;
+    });
+    return ["flank solve", data.spec, `--job ${data.job}`, ...set].join(" ");
+}
