@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
-use support::{flank, folder, text, top, written};
+use support::{flank, folder, self_contained, text, top, written};
 
 const PINION: &str = "specs/bevel/pinion_19x62.chain";
 /// Positions of the page against the program's, mm: both solve to 1e-11.
@@ -88,12 +88,25 @@ fn pages_of_the_library_are_small() {
     }
 }
 
+/// A grid that is too fine for a page: told, and thinned.
+#[test]
+fn a_fine_grid_is_thinned() {
+    let folder = folder("view_fine");
+    let spec =
+        self_contained(&["machines/hobbing_6axis", "machines/rack_generating", "tools/rack", "hobbing/spur_gear"]);
+    let fine = written(&folder, "fine.chain", &spec.replace("by 25", "by 251").replace("by 11", "by 101"));
+    let run = flank(&["view", &fine, "--out", folder.to_str().unwrap(), "--json"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("note: the page shows one of"), "{}", text(&run.stderr));
+    let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert!(told["bytes"].as_u64().expect("a size") < 3_000_000, "{told}");
+}
+
 #[test]
 fn what_cannot_be_shown_is_told() {
     let folder = folder("view_errors");
     let out = folder.to_str().unwrap();
-    let idle = written(&folder, "idle.chain", "job idle {\n    param a : length = 1 mm\n}\n");
-    let run = flank(&["view", &idle, "--out", out]);
+    let run = flank(&["view", "specs/bevel/ease_off_19x62.chain", "--job", "pinion", "--out", out]);
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).contains("asks for no points"), "{}", text(&run.stderr));
     let file = written(&folder, "file", "");
@@ -111,8 +124,8 @@ fn the_page_solves_what_the_program_solves() {
     let file = file.to_str().expect("a plain path");
     let cases: [(&[&str], &[&str]); 3] = [
         (&[], &[]),
-        (&["m.machine_root_angle=0.28"], &["m.machine_root_angle=0.28 rad"]),
-        (&["m.radial_distance=98.5", "c.blade_angle=0.35"], &["m.radial_distance=98.5 mm", "c.blade_angle=0.35 rad"]),
+        (&["m.machine_root_angle=0.2745"], &["m.machine_root_angle=0.2745 rad"]),
+        (&["m.radial_distance=98.2", "m.ratio_of_roll=3.345"], &["m.radial_distance=98.2 mm", "m.ratio_of_roll=3.345"]),
     ];
     for (moves, set) in cases {
         let arguments: Vec<&str> = [file].into_iter().chain(moves.iter().copied()).collect();
@@ -156,7 +169,7 @@ fn the_page_works_in_a_browser() {
         return;
     }
     let (file, _) = page(PINION, &folder);
-    let (own, moved) = (solved(PINION, &[], &folder), solved(PINION, &["m.machine_root_angle=15.8 deg"], &folder));
+    let (own, moved) = (solved(PINION, &[], &folder), solved(PINION, &["m.machine_root_angle=15.7 deg"], &folder));
     let (surface, point) = (&own["surfaces"][0], 7 * 31 + 15);
     let at = &surface["points"][point];
     let mut values = json!({
@@ -175,7 +188,7 @@ fn the_page_works_in_a_browser() {
     let expected = json!({
         "motion": "roll", "surface": surface["name"], "point": point, "values": values,
         "parameter": {
-            "name": "m.machine_root_angle", "shown": 15.8,
+            "name": "m.machine_root_angle", "shown": 15.7,
             "position": moved["surfaces"][0]["points"][point]["position"],
         },
     });

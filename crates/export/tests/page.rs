@@ -14,6 +14,7 @@ fn scene(patches: &[Patch]) -> Scene {
         machine: 0,
         frame_index: 0,
         tool_frame: 0,
+        contact: Vec::new(),
         coordinates: ["z", "rho"].map(String::from),
         targets: vec![[0.25, -1.5]; patch.points.len()],
         ranges: vec![[-1.0, 1.0]; patch.unknowns.len()],

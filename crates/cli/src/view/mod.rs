@@ -4,6 +4,7 @@ mod functions;
 mod machines;
 mod parameters;
 mod surfaces;
+mod thin;
 mod tools;
 
 use flank_chain_dsl::{Bounded, Job};
@@ -86,9 +87,20 @@ fn write<'j, 'g>(
     dataset: &Dataset,
     arguments: &View,
 ) -> Result<Written<'j>, String> {
-    let scene = scene(graph, job, solved);
+    let (surfaces, lines) = dataset.patches.split_at(solved.len());
+    let step = thin::step(surfaces);
+    let mut scene = scene(graph, job, solved);
+    if step > 1 {
+        let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
+        anstream::eprintln!("note: {note}");
+        scene.notes.push(note);
+        for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
+            surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();
+        }
+    }
+    let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
     let mut folder = Folder::at(&arguments.out)?;
-    folder.page(&job.name, dataset, &scene)?;
+    folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
     let path = arguments.out.join(format!("{}.html", job.name));
     let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
     Ok(Written { job: &job.name, file: folder.written.remove(0), bytes })

@@ -32,6 +32,7 @@ pub(super) fn of<'g>(
         machine,
         frame_index,
         tool_frame,
+        contact: (0..made.unknowns.len()).filter(|k| surface.generation.motions.contains(&made.unknowns[*k])).collect(),
         coordinates: sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
         targets: sample.targets.clone(),
         ranges: surface.unknowns.iter().map(|unknown| [unknown.low, unknown.high]).collect(),

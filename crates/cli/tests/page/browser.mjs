@@ -46,10 +46,22 @@ async function share(colour, name) {
     }, [image, colour]);
 }
 
+// one surface alone, as large as it goes
+await page.screenshot({ path: `${folder}/page.png` });
+const { surface, point } = expected;
+await page.evaluate(([surface]) => {
+    const { flank } = window;
+    flank.visible.forEach((mesh) => (mesh.object.visible = mesh.surface.name === surface));
+    flank.toolOpacity.value = 0;
+    flank.toolParts.forEach((part) => (part.visible = false));
+    flank.fitWork();
+    flank.stage.draw();
+}, [surface]);
+
 const hex = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
 const colours = await page.evaluate(() => window.flank.data.colours);
 const work = await share(hex(colours[0]), "opened");
-assert(work > 0.002, `the first surface covers ${work} of the view`);
+assert(work > 0.02, `the first surface covers ${work} of the view`);
 
 // the slider moves the tool against the work, and what is not yet cut turns pale
 const slider = page.locator(`#slider-${expected.motion}`);
@@ -69,14 +81,6 @@ assert(cut < 0.8 * work, `the coloured share was ${work}, and is ${cut} before t
 await page.locator("#cut").uncheck();
 
 // a click reads the values that the program wrote
-const { surface, point } = expected;
-await page.evaluate(([surface]) => {
-    const { flank } = window;
-    flank.visible.forEach((mesh) => (mesh.object.visible = mesh.surface.name === surface));
-    flank.toolParts.forEach((part) => (part.visible = false));
-    flank.fitWork();
-    flank.stage.draw();
-}, [surface]);
 const [x, y] = await page.evaluate(([surface, point]) => {
     const { flank } = window;
     const mesh = flank.visible.find((one) => one.surface.name === surface);
@@ -96,7 +100,7 @@ for (const [name, value] of Object.entries(expected.values)) {
 await page.locator("#quantity").selectOption(expected.motion);
 assert.match(await page.locator("#legend").innerText(), new RegExp(expected.motion));
 const [dark, light] = [await share(hex("#00224e"), "quantity"), await share(hex("#fee85c"), "quantity")];
-assert(dark > 1e-4 && light > 1e-4, `both ends of the scale are seen: ${dark}, ${light}`);
+assert(dark > 1e-3 && light > 1e-3, `both ends of the scale are seen: ${dark}, ${light}`);
 
 // a moved parameter moves the surface, exactly as the program does
 await page.locator("#parameters summary").click();

@@ -175,6 +175,8 @@ pub struct PageSurface {
     pub frame_index: usize,
     /// The frame of the tool.
     pub tool_frame: usize,
+    /// The unknowns that are motions of its own envelope, by their places: where one has the value of now, the tool touches.
+    pub contact: Vec<usize>,
     /// What points are asked for by.
     pub coordinates: [String; 2],
     /// The values of these at each point.

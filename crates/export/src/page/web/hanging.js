@@ -118,7 +118,7 @@ export function eye(page) {
         }
     }
     for (const part of page.toolParts) points.push(...verticesOf(part).map((place) => place.applyMatrix4(part.parent.matrix)));
-    const ways = [0.35, 0.7].flatMap((height) => Array.from({ length: 16 }, (_, k) => {
+    const ways = [0.35, 0.7, 1.2].flatMap((height) => Array.from({ length: 16 }, (_, k) => {
         const turn = (k * Math.PI) / 8;
         return new THREE.Vector3(Math.cos(turn), Math.sin(turn), height).normalize();
     }));

@@ -206,9 +206,11 @@ class Page {
         this.motionsOf(surface, point, this.motions).forEach((value, k) => this.setMotion(k, value));
     }
 
+    /** Tool and work; where the tool is an edge only, the work's outline too: else little would tell where things are. */
     fitAll(towards) {
         const work = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.object);
-        this.stage.fit([...work, ...this.toolParts], towards);
+        const around = this.toolParts.some((part) => part.isMesh) ? [] : this.blanks;
+        this.stage.fit([...work, ...this.toolParts, ...around], towards);
     }
 
     fitWork() {

@@ -3,14 +3,15 @@
 import { INK, components } from "./colours.js";
 import { toolMaterial, workMaterial } from "./shading.js";
 
+/** Motions of which the contact is shown. */
 const MOST_MOTIONS = 4;
 
 /** A surface of the work, which can be cut, coloured and clicked. */
 export class WorkMesh {
     constructor(surface, colour, shared) {
         this.surface = surface;
-        const motions = surface.data.unknowns.map((unknown, k) => ({ k, motion: unknown.motion }));
-        this.motions = motions.filter(({ motion }) => motion !== null).slice(-MOST_MOTIONS);
+        const { contact, unknowns } = surface.data;
+        this.motions = contact.slice(0, MOST_MOTIONS).map((k) => ({ k, motion: unknowns[k].motion }));
         const used = [0, 1, 2, 3].map((k) => (k < this.motions.length ? 1 : 0));
         this.now = { value: [0, 0, 0, 0] };
         const own = { ...shared, now: this.now };

@@ -102,7 +102,7 @@ export class Stage {
         const half = (Math.min(this.camera.fov, this.camera.fov * this.camera.aspect) * Math.PI) / 360;
         const distance = Math.max(sphere.radius, 1e-6) / Math.sin(half);
         this.controls.target.copy(sphere.center);
-        this.camera.position.copy(sphere.center).addScaledVector(way.normalize(), 0.92 * distance);
+        this.camera.position.copy(sphere.center).addScaledVector(way.normalize(), distance);
         this.camera.near = distance / 200;
         this.camera.far = distance * 200;
         this.camera.updateProjectionMatrix();
