@@ -132,8 +132,9 @@ fn steps(at: impl Fn(f64, f64) -> [f64; 3]) -> usize {
             lines.iter().all(|&across| {
                 let [a, b, c] = [from, middle, to].map(|along| at(along, across));
                 let chord = [0, 1, 2].map(|k| 0.5 * (a[k] + c[k]));
-                // a NaN, outside the surface's domain, is not drawn
-                !(apart(b, chord) > CHORD * size)
+                let off = apart(b, chord);
+                // outside the surface's domain nothing is drawn
+                off.is_nan() || off <= CHORD * size
             })
         })
     };

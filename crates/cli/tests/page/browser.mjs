@@ -107,6 +107,7 @@ await page.locator("#parameters summary").click();
 const number = page.locator(`[id="slider-${expected.parameter.name}"] + input`);
 await number.fill(String(expected.parameter.shown));
 await number.press("Enter");
+await page.waitForFunction(() => window.flank.surfaces.some((one) => one.isMoved));
 const position = await page.evaluate(([surface, point]) => {
     const found = window.flank.surfaces.find((one) => one.name === surface);
     return [...found.vector(found.positions, point)];
