@@ -17,7 +17,7 @@ use crate::files::Folder;
 use crate::limits::Line;
 use crate::solve::{self, Wanted};
 use crate::table::{self, Solved};
-use crate::{Ending, branches, print, spec};
+use crate::{Ending, branches, print, required, spec};
 use functions::Functions;
 
 /// What a surface can be coloured by and what a click tells of a point.
@@ -40,11 +40,12 @@ pub(crate) fn run(arguments: &View) -> Ending {
     for job in asked {
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED)).collect();
-        let lines: Vec<&Line<'_, '_>> = solved.iter().flat_map(|solved| &solved.trims).collect();
+        let trims = solved.iter().flat_map(|solved| &solved.trims);
+        let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
         let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&job.name, &arguments.which, &hash));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = Tally::of(&dataset.patches);
-        let told = branches::ambiguous(&solved) + &table::unsolved(job, &solved);
+        let told = branches::ambiguous(&solved) + &required::text(&solved) + &table::unsolved(job, &solved);
         if !told.is_empty() {
             anstream::eprint!("{told}");
             ending = Ending::Unsolved;
