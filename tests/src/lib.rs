@@ -3,6 +3,7 @@
 pub mod compiled;
 mod dice;
 pub mod layout;
+pub mod machines;
 pub mod targets;
 pub mod variants;
 

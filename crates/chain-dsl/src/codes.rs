@@ -65,6 +65,7 @@ codes! {
     NotRigid          = "E0402" Error "a matrix is not a rigid motion";
     CyclicExtends     = "E0403" Error "machines extend each other in a circle";
     FrameTree         = "E0404" Error "the frames are not one tree";
+    NcWord            = "E0405" Error "an NC word is not one axis";
     // 05: jobs
     UndrivenAxis      = "E0501" Error "an axis is not driven";
     DrivenTwice       = "E0502" Error "an axis is driven twice";

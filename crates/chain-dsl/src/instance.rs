@@ -7,7 +7,7 @@ use crate::context::{Constant, Context, Role, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::shown;
 use crate::functions::plural;
-use crate::model::Parameter;
+use crate::model::{Bounded, Parameter};
 use crate::source::{Name, Span};
 use crate::syntax::ast::{Argument, Dimension, Expression, Param};
 
@@ -20,6 +20,8 @@ pub(crate) enum Source<'a, 'g> {
     Definition,
     /// `machine m = definition(setting: value, …)` in a job.
     Instance { name: &'a Name, definition: &'a str, settings: &'a [Argument], job: &'a Scope<'g> },
+    /// A machine by itself, under its own name: settings may have no value.
+    Standing { name: &'a Name },
     /// The job itself.
     Job,
 }
@@ -29,7 +31,7 @@ impl<'a> Source<'a, '_> {
     pub(crate) fn user(&self) -> Option<Span> {
         match self {
             Source::Instance { name, .. } => Some(name.span),
-            Source::Definition | Source::Job => None,
+            Source::Definition | Source::Standing { .. } | Source::Job => None,
         }
     }
 }
@@ -40,6 +42,8 @@ pub(crate) struct Binder<'a, 'g> {
     pub(crate) overrides: &'a Overrides,
     pub(crate) parameters: Vec<Parameter<'g>>,
     pub(crate) missing: Vec<Name>,
+    /// All of them, of a machine that stands by itself.
+    pub(crate) standing: Vec<Bounded<'g>>,
     /// The settings of an instance by name.
     settings: HashMap<&'a str, &'a Expression>,
 }
@@ -48,12 +52,12 @@ impl<'a, 'g> Binder<'a, 'g> {
     pub(crate) fn new(source: Source<'a, 'g>, overrides: &'a Overrides) -> Binder<'a, 'g> {
         let given: &[Argument] = match source {
             Source::Instance { settings, .. } => settings,
-            Source::Definition | Source::Job => &[],
+            Source::Definition | Source::Standing { .. } | Source::Job => &[],
         };
         let named = given.iter().filter_map(|setting| Some((setting.name.as_ref()?.node.as_str(), &setting.value)));
         // of two with one name the first counts: the second is reported
         let settings = named.rev().collect();
-        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new(), settings }
+        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new(), standing: Vec::new(), settings }
     }
 
     /// One parameter.
@@ -64,7 +68,9 @@ impl<'a, 'g> Binder<'a, 'g> {
             return;
         };
         let full_name = match &self.source {
-            Source::Instance { name: instance, .. } => format!("{}.{name}", instance.node),
+            Source::Instance { name: instance, .. } | Source::Standing { name: instance } => {
+                format!("{}.{name}", instance.node)
+            }
             Source::Definition | Source::Job => name.clone(),
         };
         // the short name: a default is looked at once by itself and once for each use, and both must say the same
@@ -88,7 +94,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                 Some((definition, expression.span))
             }
             None => {
-                if !matches!(self.source, Source::Definition) {
+                if !matches!(self.source, Source::Definition | Source::Standing { .. }) {
                     self.missing.push(param.name.clone());
                 }
                 None
@@ -111,6 +117,11 @@ impl<'a, 'g> Binder<'a, 'g> {
         let range = self.check_value(context, param, value, scope, checked_at);
         let variable = context.variable(full_name.clone(), Role::Parameter, value);
         scope.insert(name.clone(), Value::Scalar(variable, dimension));
+        if matches!(self.source, Source::Standing { .. }) {
+            let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            let is_count = is_count(&param.dimension);
+            self.standing.push(Bounded { name: full_name.clone(), variable, dimension, low, high, is_count });
+        }
         if let Some((definition, _)) = definition {
             let is_count = is_count(&param.dimension);
             self.parameters.push(Parameter {
@@ -153,10 +164,10 @@ impl<'a, 'g> Binder<'a, 'g> {
     }
 
     /// What was given too little or too much.
-    pub(crate) fn finish(self, context: &mut Context<'g>, known: &[&Param]) -> Vec<Parameter<'g>> {
+    pub(crate) fn finish(&self, context: &mut Context<'g>, known: &[&Param]) {
         let names: Vec<&str> = self.missing.iter().map(|name| name.node.as_str()).collect();
         match &self.source {
-            Source::Definition => {}
+            Source::Definition | Source::Standing { .. } => {}
             Source::Job => {
                 for name in &self.missing {
                     let message = format!("`{}` has no value", name.node);
@@ -178,7 +189,6 @@ impl<'a, 'g> Binder<'a, 'g> {
                 check_settings(context, settings, &known);
             }
         }
-        self.parameters
     }
 }
 

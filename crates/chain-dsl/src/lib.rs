@@ -48,6 +48,7 @@ pub mod limits;
 mod load;
 mod machine;
 mod model;
+mod nc_word;
 mod profile;
 mod render;
 mod requirement;
@@ -69,8 +70,8 @@ pub use explain::UnknownCode;
 pub use format::format;
 pub use load::read_file;
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Limit, Machine, Parameter, Process,
-    Sample, ToolShape,
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Limit, Machine, NcWord, Parameter,
+    Process, Sample, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

@@ -12,7 +12,8 @@ use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
 use crate::limits;
-use crate::model::{Frame, Parameter};
+use crate::model::{Bounded, Frame, NcWord, Parameter};
+use crate::nc_word;
 use crate::requirement;
 use crate::source::{Name, Span};
 use crate::syntax::ast::{self, AxisKind, Let, MachineStatement, Param, Requirement};
@@ -37,6 +38,8 @@ pub(crate) struct Flat<'a> {
     /// Laws beside the first of their axis: perhaps meant for another one.
     repeated_laws: usize,
     frames: Named<'a, &'a ast::Frame>,
+    /// Each with the place of its machine in the line.
+    words: Vec<(&'a ast::NcWord, usize)>,
     /// Of all machines of the line: what a variant demands comes on top of what its parents do.
     requirements: Vec<&'a Requirement>,
 }
@@ -51,6 +54,8 @@ pub(crate) enum LawKind {
 /// A machine with values.
 pub(crate) struct Built<'g> {
     pub(crate) parameters: Vec<Parameter<'g>>,
+    /// Of a machine that stands by itself.
+    pub(crate) settings: Vec<Bounded<'g>>,
     pub(crate) scope: Scope<'g>,
     pub(crate) axes: Vec<BuiltAxis<'g>>,
     pub(crate) frames: Vec<Frame<'g>>,
@@ -67,6 +72,7 @@ pub(crate) struct BuiltAxis<'g> {
     pub(crate) variable: Expr<'g>,
     pub(crate) travel: Option<(f64, f64)>,
     pub(crate) law: Option<(Option<Expr<'g>>, LawKind, Span)>,
+    pub(crate) word: NcWord,
 }
 
 /// What a machine consists of, its parents' things first; what a variant states again replaces the parent's.
@@ -101,12 +107,12 @@ pub(crate) fn flatten<'a, 'g>(
         line.push(next);
     }
     let mut flat = Flat::default();
-    for machine in line.into_iter().rev() {
+    for (place, machine) in line.into_iter().rev().enumerate() {
         if !context.spend(STEPS_PER_STATEMENT * machine.statements.len(), machine.name.span) {
             return None;
         }
         flat.repeated_laws += check_duplicates(context, machine);
-        machine.statements.iter().for_each(|statement| flat.add(statement));
+        machine.statements.iter().for_each(|statement| flat.add(statement, place));
     }
     if let Some(axis) = flat.axes.list.get(limits::AXES.most) {
         context.report(limits::AXES.exceeded(axis.name.span));
@@ -115,7 +121,7 @@ pub(crate) fn flatten<'a, 'g>(
     Some(flat)
 }
 
-/// Name and place of what a statement defines, with a word for its namespace; nothing for a requirement.
+/// Name and place of what a statement defines, with a word for its namespace; nothing for requirements and NC words.
 fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
     Some(match statement {
         MachineStatement::Param(param) => (&param.name, "value"),
@@ -123,7 +129,7 @@ fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
         MachineStatement::Axis(axis) => (&axis.name, "value"),
         MachineStatement::Frame(frame) => (&frame.name, "frame"),
         MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
-        MachineStatement::Require(_) => return None,
+        MachineStatement::Nc(_) | MachineStatement::Require(_) => return None,
     })
 }
 
@@ -173,7 +179,7 @@ impl<'a, T> Named<'a, T> {
 }
 
 impl<'a> Flat<'a> {
-    fn add(&mut self, statement: &'a MachineStatement) {
+    fn add(&mut self, statement: &'a MachineStatement, place: usize) {
         match statement {
             MachineStatement::Param(Param { name, .. }) | MachineStatement::Let(Let { name, .. }) => {
                 self.constants.put(name, statement);
@@ -182,6 +188,7 @@ impl<'a> Flat<'a> {
             MachineStatement::Frame(frame) => self.frames.put(&frame.name, frame),
             MachineStatement::Fix(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Fix)),
             MachineStatement::Couple(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Couple)),
+            MachineStatement::Nc(word) => self.words.push((word, place)),
             MachineStatement::Require(required) => self.requirements.push(required),
         }
     }
@@ -206,7 +213,7 @@ impl<'a> Flat<'a> {
         overrides: &Overrides,
     ) -> Built<'g> {
         let prefix = match &source {
-            Source::Instance { name, .. } => format!("{}.", name.node),
+            Source::Instance { name, .. } | Source::Standing { name } => format!("{}.", name.node),
             _ => String::new(),
         };
         let user = source.user();
@@ -222,16 +229,18 @@ impl<'a> Flat<'a> {
                 _ => {}
             }
         }
-        let parameters = binder.finish(context, &self.params());
+        binder.finish(context, &self.params());
+        let Binder { parameters, standing: settings, .. } = binder;
         let mut axes = self.build_axes(context, &scope, &prefix);
         for axis in &axes {
             scope.insert(axis.name.node.clone(), Value::Scalar(axis.variable, axis.dimension));
         }
         self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
+        nc_word::settle(context, &self.words, &scope, &mut axes);
         let frames = self.build_frames(context, machine, &scope);
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
-        Built { parameters, scope, axes, frames, declared_frames, lost_laws }
+        Built { parameters, settings, scope, axes, frames, declared_frames, lost_laws }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
@@ -244,7 +253,8 @@ impl<'a> Flat<'a> {
             let what = format!("axis `{}`", axis.name.node);
             let travel = axis.range.as_ref().and_then(|range| context.range(range, scope, dimension, &what));
             let variable = context.variable(format!("{prefix}{}", axis.name.node), Role::Axis, f64::NAN);
-            axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None });
+            let word = NcWord::of_axis(&axis.name.node);
+            axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None, word });
         }
         axes
     }

@@ -19,6 +19,9 @@ pub struct Job<'g> {
     pub file: PathBuf,
     /// Job parameters and settings of its machines and tools, each after those that its value depends on.
     pub parameters: Vec<Parameter<'g>>,
+    /// All settings of a machine that stands by itself ([`compile_with_machine`](crate::compile_with_machine)), with the ranges that
+    /// they may have, endless where none is stated. Those without a value are not among the parameters.
+    pub settings: Vec<Bounded<'g>>,
     /// What moves.
     pub motions: Vec<Bounded<'g>>,
     /// Its machines.
@@ -91,6 +94,28 @@ pub struct Axis<'g> {
     pub source: LawSource,
     /// Travel, mm or radians.
     pub travel: Option<(f64, f64)>,
+    /// What NC programs say of it.
+    pub word: NcWord,
+}
+
+/// How NC programs name and count an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NcWord {
+    /// Its letter, perhaps with a number behind.
+    pub address: String,
+    /// Whether the control counts against the axis of the machine's frames.
+    pub reversed: bool,
+    /// What the control shows where the axis stands at zero, mm or radians.
+    pub offset: f64,
+    /// Decimals in which positions are written, in mm or degrees, where the machine says so.
+    pub decimals: Option<u8>,
+}
+
+impl NcWord {
+    /// The word of an axis that nothing is said of: its own name and count.
+    pub(crate) fn of_axis(name: &str) -> NcWord {
+        NcWord { address: name.to_string(), reversed: false, offset: 0.0, decimals: None }
+    }
 }
 
 /// Where an axis has its law from.
@@ -250,5 +275,15 @@ impl<'g> Job<'g> {
             .iter()
             .map(|parameter| (parameter.variable, parameter.variable.graph().constant(parameter.value)))
             .collect()
+    }
+
+    /// The same while some parameters are open: what depends on them is what it is in terms of them.
+    pub fn bindings_beside(&self, open: &[Expr<'g>]) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let mut bindings: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
+        for parameter in self.parameters.iter().filter(|parameter| !open.contains(&parameter.variable)) {
+            let value = parameter.variable.graph().substitute(&[parameter.definition], &bindings)[0];
+            bindings.push((parameter.variable, value));
+        }
+        bindings
     }
 }

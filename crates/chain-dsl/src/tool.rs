@@ -90,7 +90,8 @@ pub(crate) fn build<'g>(
             _ => None,
         })
         .collect();
-    let parameters = binder.finish(context, &params);
+    binder.finish(context, &params);
+    let parameters = binder.parameters;
     let mut surfaces = Vec::new();
     for statement in &tool.statements {
         if let ToolStatement::Surface(written) = statement {

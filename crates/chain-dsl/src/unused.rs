@@ -134,6 +134,10 @@ impl Used {
                 MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
                 MachineStatement::Frame(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
+                MachineStatement::Nc(word) => {
+                    self.expression(&word.value);
+                    word.increment.iter().for_each(|increment| self.expression(increment));
+                }
                 MachineStatement::Require(required) => self.expression(&required.condition),
             }
         }

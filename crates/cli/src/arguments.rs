@@ -146,7 +146,8 @@ Examples:
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --tolerance 0.1um
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --nc linuxcnc --time 20 --emit c
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --emit c,rust --emit-form exact
-  flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json")]
+  flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json
+  flank convert specs/bevel/thesis_gear.chain --to specs/machines/cradle.chain --fit work_offset    settings that do the same")]
 pub(crate) struct Convert {
     #[command(flatten)]
     pub(crate) which: Which,
@@ -155,6 +156,9 @@ pub(crate) struct Convert {
     pub(crate) to: PathBuf,
     #[command(flatten)]
     pub(crate) onto: Onto,
+    /// Settings of the target that are looked for beside those without a value: tilt,swivel
+    #[arg(long, value_delimiter = ',', value_name = "SETTING")]
+    pub(crate) fit: Vec<String>,
     /// How many positions, over the motion as far as the sampled points need it
     #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) positions: u32,

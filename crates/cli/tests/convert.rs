@@ -170,3 +170,89 @@ fn rates_are_those_of_the_positions() {
     let largest = (0..=1000).map(|row| rate(row, 0, 0).abs()).fold(0.0, f64::max);
     assert_eq!(most, largest);
 }
+
+/// Which settings of a cradle generator give this pinion's poses: those of its machine sheet.
+#[test]
+fn settings_of_another_machine_are_found() {
+    let target = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/cradle.chain", "--json"];
+    let fit = "machine_center_to_crossing_point,sliding_base,work_offset,cutter_tilt,cutter_swivel";
+    let run = flank(&[&target[..], &["--fit", fit]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!(found["schema"], "flank.settings/1");
+    let sheet = [
+        ("radial_distance", 97.95940290780507, true),
+        ("cradle_angle", -52.79674678267486, true),
+        ("machine_root_angle", 15.64096727073747, true),
+        ("machine_center_to_crossing_point", -0.001306176586991889, true),
+        ("ratio_of_roll", 3.339685914944047, true),
+        ("sliding_base", 0.0, true),
+        ("work_offset", 0.0, true),
+        ("cutter_tilt", 0.0, true),
+        // without tilt, where to does not matter
+        ("cutter_swivel", 0.0, false),
+    ];
+    let settings = found["settings"].as_array().expect("settings");
+    assert_eq!(settings.len(), sheet.len());
+    for (name, value, determined) in sheet {
+        let setting = settings.iter().find(|setting| setting["name"] == name).expect(name);
+        assert!((setting["value"].as_f64().unwrap() - value).abs() < 1e-8, "{setting}");
+        assert_eq!(setting["determined"], determined, "{setting}");
+    }
+    assert!(found["deviation_um"].as_f64().unwrap() < 1e-6, "{found}");
+    // without the machine centre it is as near as can be, and told
+    let run = flank(&target);
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stderr);
+    assert!(told.contains("no values of these settings make all poses on") && told.contains("--fit"), "{told}");
+    let run = flank(&[&target[..], &["--fit", "cutter_tlit"]].concat());
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("--fit cutter_tlit: there is no such setting"), "{}", text(&run.stderr));
+    let run = flank(&[&target[..], &["--fit", "hypoid_offset"]].concat());
+    assert!(text(&run.stderr).contains("it does not move the tool against the work"), "{}", text(&run.stderr));
+}
+
+/// What no machine can do is told in words, with the place.
+#[test]
+fn bad_targets_are_told() {
+    let out = folder("convert-bad");
+    let told = |job: &str, machine: &str, frames: &[&str]| {
+        let target = support::written(&out, "target.chain", machine);
+        let job = if job.ends_with(".chain") { job.to_string() } else { support::written(&out, "job.chain", job) };
+        let run = flank(&[&["convert", &job, "--to", &target, "--out", out.to_str().unwrap()], frames].concat());
+        assert!(matches!(run.status.code(), Some(1 | 3)), "{}", text(&run.stdout));
+        text(&run.stderr)
+    };
+    let pinion = "specs/bevel/pinion_19x62.chain";
+    let free_form = support::self_contained(&["machines/free_form"]);
+    // without B the cutter's axis cannot be met
+    let told_of = told(pinion, &format!("{free_form}machine stiff extends free_form {{ fix B = 20 deg }}\n"), &[]);
+    assert!(told_of.contains("stiff has no axis that moves the tool about the tool's own"), "{told_of}");
+    assert!(told_of.contains("deg are missing, at roll = "), "{told_of}");
+    // a cutter of 95 mm radius on a small slide
+    let small = format!("{free_form}machine small extends free_form {{ axis Y : linear in -40 mm .. 40 mm }}\n");
+    let told_of = told(pinion, &small, &[]);
+    assert!(told_of.contains("axis small.Y has to stand at 8"), "{told_of}");
+    assert!(told_of.contains("beyond its travel (the tool cuts at a radius of up to 9"), "{told_of}");
+    // two motions, one axis
+    let one = "machine one { axis X : linear frame bed frame hob in bed = translate_x(X) frame table in bed = rotate_z(0 deg) }\n";
+    let told_of = told("specs/hobbing/helical_gear.chain", one, &[]);
+    assert!(told_of.contains("runs over spindle and feed, each by itself, and one has only X to follow"), "{told_of}");
+    // no axis at all
+    let none = "machine none { axis X : linear fix X = 1 mm frame bed frame cutter in bed = translate_x(X) frame work in bed = rotate_z(0 deg) }\n";
+    assert!(told(pinion, none, &[]).contains("no axis of none moves the tool against the work"));
+}
+
+/// A shaped gear and its cutter turn about parallel axes: two axes of the free-form machine do the same.
+#[test]
+fn a_singular_pose_is_told_with_its_place() {
+    let out = folder("convert-singular");
+    let job = ["convert", "specs/hobbing/shaped_gear.chain", "--job", "shaped_gear", "--out", out.to_str().unwrap()];
+    let to = ["--to", "specs/machines/free_form.chain", "--tool-frame", "cutter", "--work-frame", "work"];
+    let run = flank(&[&job[..], &to].concat());
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(3), "{told}{}", text(&run.stdout));
+    assert!(told.contains("free_form stands in a singular pose: "), "{told}");
+    assert!(told.contains("A, C can move together without moving the tool"), "{told}");
+    assert!(told.contains("at roll = "), "{told}");
+}

@@ -19,7 +19,15 @@ const CUTTING_TIME: f64 = 12.0;
 const ROWS: usize = 101;
 
 fn axis(address: &str, is_rotary: bool, decimals: u8, travel: Option<[f64; 2]>) -> MachineAxis {
-    MachineAxis { name: format!("slide of {address}"), address: address.to_owned(), is_rotary, decimals, travel }
+    MachineAxis {
+        name: format!("slide of {address}"),
+        address: address.to_owned(),
+        reversed: false,
+        offset: 0.0,
+        is_rotary,
+        decimals,
+        travel,
+    }
 }
 
 /// A cutter swung about a blank: lengths and angles of all sizes, one of them over several turns, rows unevenly far apart.
@@ -146,6 +154,25 @@ fn programs_read_back_as_the_table() {
             }
         }
     }
+}
+
+/// A control that counts against the machine and from another zero: travel, extent and positions are as it counts.
+#[test]
+fn axes_are_written_as_the_control_counts() {
+    let mut table = table();
+    (table.axes[4].reversed, table.axes[4].offset) = (true, PI / 2.0);
+    let moves = read_program(&program(&table, Dialect::Fanuc));
+    for (there, row) in moves.iter().zip(&table.rows) {
+        assert!((there.positions["B"] - (90.0 - row.axes[4].to_degrees())).abs() <= 0.5e-6 + 1e-12);
+    }
+    let text = program(&table, Dialect::LinuxCnc);
+    let told = "axis B: -slide of B + 90 deg, from 72.759700 to 72.811263 deg, travel 0 .. 100 deg";
+    assert!(text.replace(")\n(", " ").contains(told), "{told} in {text}");
+    table.axes[4].travel = Some([-1.0, 0.31]);
+    table.rows[100].axes[4] = 0.32;
+    let beyond =
+        write_nc(&table, Dialect::Fanuc, CUTTING_TIME, &mut Vec::new()).expect_err("beyond its travel").to_string();
+    assert!(beyond.contains("to 71.665351 deg") && beyond.contains("travel is 72.2383"), "{beyond}");
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! The same relative pose on another machine: axis values for which tool and work stand to each other as they do on the first.
 
 use faer::Mat;
-use faer::linalg::solvers::{ColPivQr, PartialPivLu, Solve};
+use faer::linalg::solvers::{FullPivLu, PartialPivLu, Solve, Svd};
 use flank_expr::geometry::{Chain, Pose, Step, Twist};
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
 use thiserror::Error;
 
 use crate::newton::{Linearized, TOLERANCE, solve_with};
 use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
-use crate::start::{WIDELY, scan};
+use crate::start::{WIDELY, probe, scan};
 use crate::symmetry::Screw;
 use crate::system::System;
 
@@ -16,6 +16,8 @@ use crate::system::System;
 const MOST_HALVINGS: u32 = 12;
 /// Of its range, or of a turn, no axis moves farther in one step beyond where it was expected.
 const ASTRAY: f64 = 0.02;
+/// Of a pose: displacements along x, y, z, turns about them.
+const COMPONENTS: usize = 6;
 /// Where it has no travel, a rotary axis turns as far as it must; this is how far it may (rad).
 const FREE_TURNS: f64 = 1e4;
 
@@ -118,7 +120,7 @@ impl<'g> PoseProblem<'g> {
         let [target, source] = [target, source].map(|chain| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
         let mut slips = symmetries.to_vec();
-        while let Some(slip) = doubled(&target, &variables, &slips)? {
+        while let Some(slip) = doubled(&target, &variables, &[], &slips)? {
             slips.remove(slip);
         }
         // with axes enough the tool may as well stand exactly as it does on the source
@@ -126,8 +128,7 @@ impl<'g> PoseProblem<'g> {
         if variables.len() > 6 {
             return Err(PoseError::Redundant(variables.len() - 6));
         }
-        let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip_{k}"))).collect();
-        let slipped: Vec<_> = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
+        let (slipped, amounts) = slipping(graph, &slips);
         let chain = target.then(&Chain::new(graph, slipped.clone()));
         let off = source.inverse().then(&chain).merged().pose();
         let unknowns: Vec<Expr<'g>> = variables.iter().chain(&amounts).copied().collect();
@@ -147,7 +148,7 @@ impl<'g> PoseProblem<'g> {
         let far: Vec<Range> = axes.iter().zip(&travels).map(around).chain(slid).collect();
         let search = [near, far];
         let deviation = deviation(&off);
-        let components = independent(&deviation, &unknowns, motions, &search[1])?;
+        let components = independent(&chain, &unknowns, &search[0])?;
         let residuals: Vec<Expr<'g>> = components.iter().map(|&k| deviation[k]).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(motions).copied().collect();
         // the antisymmetric part of a rotation vanishes at half a turn as well
@@ -269,6 +270,26 @@ impl<'g> PoseProblem<'g> {
         inputs.iter().all(|c| c.is_finite()).then(|| inputs.chunks(terms).map(<[f64]>::to_vec).collect())
     }
 
+    /// How near a posture is to a singular one: the least change of the pose that axes can make together, as a share of the largest,
+    /// and the axes that make it.
+    pub fn weakest(&self, posture: &Posture, motions: &[f64]) -> (f64, Vec<usize>) {
+        const INVOLVED: f64 = 0.02;
+        let size = self.system.size();
+        let mut evaluation = self.system.evaluation(motions);
+        evaluation.at(&posture.unknowns);
+        let width = |j: usize| self.search[1][j].width();
+        let scaled = |i: usize, j: usize| evaluation.jacobian(i, j) * width(j);
+        let row = |i: usize| (0..size).map(|j| scaled(i, j).abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let Ok(svd) = Svd::new(Mat::from_fn(size, size, |i, j| scaled(i, j) / row(i)).as_ref()) else {
+            return (0.0, Vec::new());
+        };
+        let (sizes, v) = (svd.S(), svd.V());
+        let share = |k: usize| v[(k, size - 1)].abs();
+        let most = (0..size).map(share).fold(0.0, f64::max);
+        let involved = (0..self.axes).filter(|&k| share(k) > INVOLVED * most).collect();
+        (sizes[size - 1] / sizes[0], involved)
+    }
+
     fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
         let mut deviation = [0.0; 6];
         ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
@@ -335,15 +356,28 @@ fn deviation<'g>(off: &Pose<'g>) -> Vec<Expr<'g>> {
     off.translation.0.into_iter().chain(turn).collect()
 }
 
-/// A symmetry that an axis of the target does by itself, wherever the others stand.
-fn doubled<'g>(target: &Chain<'g>, axes: &[Expr<'g>], slips: &[Screw]) -> Result<Option<usize>, TapeError> {
+/// Steps by which a tool slides along itself, and by how much along each of its symmetries.
+pub(crate) fn slipping<'g>(graph: &'g Graph, slips: &[Screw]) -> (Vec<Step<'g>>, Vec<Expr<'g>>) {
+    let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip_{k}"))).collect();
+    let slipped = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
+    (slipped, amounts)
+}
+
+/// A symmetry that an axis of the target does by itself, wherever the others and the settings stand.
+pub(crate) fn doubled<'g>(
+    target: &Chain<'g>,
+    axes: &[Expr<'g>],
+    settings: &[Expr<'g>],
+    slips: &[Screw],
+) -> Result<Option<usize>, TapeError> {
     let basis = Mat::from_fn(6, slips.len(), |i, j| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] });
-    let numbers: Vec<f64> = (0..axes.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
+    let inputs: Vec<Expr<'g>> = axes.iter().chain(settings).copied().collect();
+    let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
     for axis in axes {
         let Twist { angular, linear } = target.twist(*axis);
         let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
         let mut out = [0.0; 6];
-        ScalarEvaluator::new(&Tape::new(&twist, axes)?).run(&numbers, &mut out);
+        ScalarEvaluator::new(&Tape::new(&twist, &inputs)?).run(&numbers, &mut out);
         let of = Mat::from_fn(6, 1, |i, _| out[i]);
         let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
         let left = &of - &basis * &shares;
@@ -354,28 +388,45 @@ fn doubled<'g>(target: &Chain<'g>, axes: &[Expr<'g>], slips: &[Screw]) -> Result
     Ok(None)
 }
 
-/// As many components of the deviation as there are unknowns: those that they change most independently.
-fn independent(
-    deviation: &[Expr<'_>],
-    unknowns: &[Expr<'_>],
-    motions: &[Expr<'_>],
-    ranges: &[Range],
-) -> Result<Vec<usize>, TapeError> {
-    if unknowns.len() == deviation.len() {
-        return Ok((0..deviation.len()).collect());
+/// As many components of the deviation as there are unknowns: those that they change most independently, most everywhere within the
+/// travels. Where the pose is met, the deviation changes by the tool's twist.
+fn independent(chain: &Chain<'_>, unknowns: &[Expr<'_>], ranges: &[Range]) -> Result<Vec<usize>, TapeError> {
+    const PLACES: u32 = 16;
+    /// Of two sets, a place where one is this near to nothing does not count more than all others.
+    const LEAST: f64 = 1e-6;
+    if unknowns.len() == COMPONENTS {
+        return Ok((0..COMPONENTS).collect());
     }
-    let slopes: Vec<Expr<'_>> = unknowns.iter().flat_map(|x| deviation.iter().map(|f| f.derivative(*x))).collect();
-    let inputs: Vec<Expr<'_>> = unknowns.iter().chain(motions).copied().collect();
-    let tape = Tape::new(&slopes, &inputs)?;
-    let somewhere = ranges.iter().map(|range| range.at(0.37)).chain(motions.iter().map(|_| 0.1));
-    let mut out = vec![0.0; slopes.len()];
-    ScalarEvaluator::new(&tape).run(&somewhere.collect::<Vec<f64>>(), &mut out);
-    // rows: unknowns by their range; columns: components, displacements by the largest
-    let of = |i: usize, j: usize| out[i * deviation.len() + j] * ranges[i].width();
-    let size = |j: usize| (0..unknowns.len()).map(|i| of(i, j).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    let qr = ColPivQr::new(Mat::from_fn(unknowns.len(), deviation.len(), |i, j| of(i, j) / size(j)).as_ref());
-    let (order, _) = qr.P().arrays();
-    let mut chosen: Vec<usize> = order[..unknowns.len()].to_vec();
-    chosen.sort_unstable();
-    Ok(chosen)
+    let twists = unknowns.iter().flat_map(|x| {
+        let Twist { angular, linear } = chain.twist(*x);
+        linear.0.into_iter().chain(angular.0)
+    });
+    let tape = Tape::new(&twists.collect::<Vec<Expr<'_>>>(), unknowns)?;
+    let mut evaluator = ScalarEvaluator::new(&tape);
+    let mut places = Vec::new();
+    for k in 1..=PLACES {
+        let mut out = vec![0.0; tape.output_count()];
+        evaluator.run(&probe(ranges, k), &mut out);
+        // unknowns by their range; displacements and turns each by the largest of them
+        let of = |i: usize, j: usize| out[COMPONENTS * i + j] * ranges[i].width();
+        let largest = |columns: std::ops::Range<usize>| {
+            let each = columns.flat_map(|j| (0..unknowns.len()).map(move |i| (i, j)));
+            each.map(|(i, j)| of(i, j).abs()).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        let sizes = [largest(0..3), largest(3..COMPONENTS)];
+        places.push(Mat::from_fn(unknowns.len(), COMPONENTS, |i, j| of(i, j) / sizes[j / 3]));
+    }
+    let independence = |chosen: &[usize]| -> f64 {
+        let each = places.iter().map(|twists| {
+            let square = Mat::from_fn(chosen.len(), chosen.len(), |i, j| twists[(i, chosen[j])]);
+            let lu = FullPivLu::new(square.as_ref());
+            let size: f64 = (0..chosen.len()).map(|k| lu.U()[(k, k)].abs()).product();
+            (size + LEAST).ln()
+        });
+        each.sum()
+    };
+    let sets = (0u32..1 << COMPONENTS).filter(|set| set.count_ones() as usize == unknowns.len());
+    let sets = sets.map(|set| (0..COMPONENTS).filter(|k| set >> k & 1 == 1).collect::<Vec<usize>>());
+    let best = sets.map(|set| (independence(&set), set)).max_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(best.map_or_else(Vec::new, |(_, set)| set))
 }

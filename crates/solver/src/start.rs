@@ -5,10 +5,10 @@ use crate::solution::{Range, Solution, distance};
 use crate::system::Evaluation;
 
 /// Bases of the Halton sequence: one for each unknown.
-const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
+const PRIMES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
 /// The k-th point of a sequence that fills the box evenly, the same in every run.
-fn probe(ranges: &[Range], k: u32) -> Vec<f64> {
+pub(crate) fn probe(ranges: &[Range], k: u32) -> Vec<f64> {
     ranges
         .iter()
         .zip(PRIMES.into_iter().cycle())

@@ -171,6 +171,7 @@ fn family(head: &[Part<'_>]) -> Option<(Family, &'static [usize])> {
         "axis" => (Family::Axis, &[2]),
         "frame" => (Family::Frame, &[2, EQUALS]),
         "fix" | "couple" => (Family::Law, &[1, EQUALS]),
+        "nc" => (Family::NcWord, &[EQUALS]),
         "machine" | "tool" => (Family::Instance, &[1, EQUALS]),
         "drive" => (Family::Drive, &[EQUALS]),
         "surface" => (Family::Surface, &[2, EQUALS]),

@@ -47,6 +47,7 @@ pub(super) enum Family {
     Frame,
     /// `fix` and `couple`.
     Law,
+    NcWord,
     /// `machine` and `tool` in a job.
     Instance,
     Drive,

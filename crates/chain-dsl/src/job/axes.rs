@@ -82,6 +82,7 @@ impl<'g> Builder<'_, 'g> {
                     law,
                     source,
                     travel: axis.travel,
+                    word: axis.word.clone(),
                 });
             }
             let lost = self.lost_laws.get(&index).copied().unwrap_or(0);

@@ -100,7 +100,8 @@ pub(crate) fn build<'g>(
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
     }
-    let parameters = binder.finish(context, &[]);
+    binder.finish(context, &[]);
+    let parameters = binder.parameters;
     for statement in &job.statements {
         match statement {
             JobStatement::Mount { tool, frame } => builder.mount(context, tool, frame, job),
@@ -139,8 +140,10 @@ impl<'g> Builder<'_, 'g> {
         machines: Vec<Machine<'g>>,
         file: &Path,
     ) -> Job<'g> {
+        let mut settings = Vec::new();
         for (_, _, built) in self.machines {
             parameters.extend(built.parameters);
+            settings.extend(built.settings);
         }
         for (_, built) in self.tools {
             parameters.extend(built.parameters);
@@ -148,7 +151,7 @@ impl<'g> Builder<'_, 'g> {
         // a setting comes after the job parameters that it is made of, and those were made first
         parameters.sort_by_key(|parameter| parameter.variable.as_variable());
         let surfaces = self.surfaces.into_iter().map(|(surface, _)| surface).collect();
-        Job { name, doc, file: file.to_path_buf(), parameters, motions: self.motions, machines, surfaces }
+        Job { name, doc, file: file.to_path_buf(), parameters, settings, motions: self.motions, machines, surfaces }
     }
 
     fn define(&mut self, context: &mut Context<'g>, name: &Name) {
@@ -229,6 +232,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn source<'s>(&'s self, instance: &'s ast::Instance) -> Source<'s, 'g> {
+        if self.stands_alone {
+            return Source::Standing { name: &instance.name };
+        }
         let definition = &instance.definition.node;
         Source::Instance { name: &instance.name, definition, settings: &instance.settings, job: &self.scope }
     }

@@ -85,6 +85,8 @@ pub enum MachineStatement {
     Fix(Assignment),
     /// `couple C = …`: an axis that follows others.
     Couple(Assignment),
+    /// `nc A1 = -A by 0.001 deg`: what an NC program says of an axis.
+    Nc(NcWord),
     /// `require a < b, "…"`
     Require(Requirement),
 }
@@ -133,6 +135,17 @@ pub enum AxisKind {
     Linear,
     /// About a line: an angle.
     Rotary,
+}
+
+/// `nc ADDRESS = value by increment`
+#[derive(Clone, Debug, PartialEq)]
+pub struct NcWord {
+    /// Letter, perhaps with a number, that the axis has in programs.
+    pub address: Name,
+    /// The number behind it, made of the axis.
+    pub value: Expression,
+    /// The step in which it is written.
+    pub increment: Option<Expression>,
 }
 
 /// `frame name in parent = transform …`; the root has neither parent nor transforms.

@@ -95,6 +95,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::function => return parts.push(function(pair)),
         Rule::motion => return parts.push(motion(pair)),
         Rule::frame => return parts.push(frame(pair)),
+        Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
@@ -173,6 +174,16 @@ fn frame(pair: Pair<'_, Rule>) -> Part<'_> {
     if let Some(equals) = parts.iter().position(|part| part.is("=")) {
         let calls = parts.split_off(equals + 1);
         parts.push(Part::node(Kind::Steps, calls));
+    }
+    Part::node(Kind::Statement, parts)
+}
+
+/// The increment stands in one row with the value.
+fn nc_word(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    if let (Some(equals), true) = (parts.iter().position(|part| part.is("=")), parts.iter().any(|part| part.is("by"))) {
+        let value = parts.split_off(equals + 1);
+        parts.push(Part::node(Kind::Operation, value));
     }
     Part::node(Kind::Statement, parts)
 }

@@ -75,6 +75,7 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::kw_in if matches!(before.statement, "motion" | "surface") && !before.name => {
             "`in` and a range".to_owned()
         }
+        Rule::kw_by if before.statement == "nc" => "`by` and the increment".to_owned(),
         Rule::kw_by if before.statement == "trim" => "`by` and the surface that cuts".to_owned(),
         Rule::kw_by if before.statement == "cut" => "`by` and the sweep of the edges that cut".to_owned(),
         Rule::kw_by => "`by` and a number of points".to_owned(),
@@ -160,6 +161,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "sample" | "trim" | "cut" => "surface",
         "require" => "condition",
         "fn" => "function",
+        "nc" => "NC word",
         other => other,
     }
 }

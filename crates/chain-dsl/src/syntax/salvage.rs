@@ -6,8 +6,8 @@ use crate::source::{Name, Span, Spanned};
 
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,
-    GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Param, Parameter, Path, Sample, SampleEntry,
-    SampleValues, Segment, Side, SurfaceParameter, ToolStatement, Type,
+    GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, NcWord, Param, Parameter, Path, Sample,
+    SampleEntry, SampleValues, Segment, Side, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -23,6 +23,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
         "frame" => MachineStatement::Frame(piece.frame(name)),
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
+        "nc" => MachineStatement::Nc(NcWord { address: name, value: piece.error(), increment: None }),
         "require" => return None,
         _ => MachineStatement::Let(piece.let_statement(name)),
     })

@@ -15,7 +15,7 @@ pub(super) enum Reserved {
 pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
-pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple", "require"];
+pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "fix", "couple", "nc", "require"];
 
 /// Words that begin a statement in a tool.
 pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
@@ -32,7 +32,7 @@ const DEFINING: &[&str] =
     &["fn", "machine", "tool", "job", "param", "let", "axis", "frame", "profile", "surface", "motion"];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut"];
+const FREE: &[&str] = &["profile", "cut", "nc"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

@@ -225,10 +225,17 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(8) {
+        match self.random.below(9) {
             0 => self.param(),
             1 => self.assignment("let"),
             7 => self.requirement(),
+            8 => {
+                self.assignment("nc");
+                if self.random.one_in(2) {
+                    self.put("by");
+                    self.value();
+                }
+            }
             2 => self.assignment("fix"),
             3 => self.assignment("couple"),
             4 => {

@@ -211,3 +211,44 @@ fn conditions_are_decided_by_the_parameters() {
         assert_eq!(laws(&text)[0], law);
     }
 }
+
+/// What NC programs say of the axes of a machine, and a variant of it that has other letters.
+#[test]
+fn nc_words_name_and_count_axes() {
+    let text = "
+        machine table extends lathe {
+            param tool_turns : count = 1
+            axis tilt : rotary
+            frame tilted in work = rotate_x(tilt)
+            nc A = if tool_turns == 1 then -tilt else tilt
+            nc Z = height - Z by 1 um
+        }
+        machine other_table extends table {
+            nc B1 = tilt - 90 deg by 0.0001 deg
+        }
+        job j {
+            machine m = table(height: 4 mm)
+            machine n = other_table(height: 4 mm, tool_turns: 0)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 0 mm
+            drive m.tilt = 0 deg
+            drive n.C = turn
+            drive n.Z = 0 mm
+            drive n.tilt = 0 deg
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    let words = |machine: usize| -> Vec<(String, bool, f64, Option<u8>)> {
+        let axes = compilation.jobs[0].machines[machine].axes.iter().map(|axis| axis.word.clone());
+        axes.map(|word| (word.address, word.reversed, word.offset, word.decimals)).collect()
+    };
+    let word = |address: &str, reversed, offset, decimals| (address.to_string(), reversed, offset, decimals);
+    let slide = word("Z", true, 4.0, Some(3));
+    let spindle = word("C", false, 0.0, None);
+    assert_eq!(words(0), [slide.clone(), spindle.clone(), word("A", true, 0.0, None)]);
+    assert_eq!(words(1), [slide, spindle, word("B1", false, -std::f64::consts::FRAC_PI_2, Some(4))]);
+}

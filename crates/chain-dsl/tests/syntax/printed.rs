@@ -57,6 +57,10 @@ fn machine_statement(statement: &MachineStatement) -> String {
         }
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),
+        MachineStatement::Nc(it) => {
+            let by = it.increment.as_ref().map_or(String::new(), |by| format!(" by {}", expression(by)));
+            format!("nc {} {}{by}", it.address.node, expression(&it.value))
+        }
         MachineStatement::Require(it) => requirement(it),
     }
 }

@@ -1,16 +1,22 @@
 //! What `flank convert` leaves in its folder: motion tables, NC programs, functions.
 
-use flank_chain_dsl::Dimension;
+use flank_chain_dsl::{Dimension, NcWord};
 use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown};
 use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_polynomials};
 
 use super::Carried;
-use super::table::Table;
+use super::blocks::Blocks;
+use super::table::{Named, Table};
 use crate::arguments::{Convert, EmitForm, MotionFormat};
 use crate::files::Folder;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
 const DECIMALS: [u8; 2] = [4, 5];
+
+/// Decimals of an axis's positions in NC programs.
+pub(super) fn decimals(dimension: Dimension, word: &NcWord) -> u8 {
+    word.decimals.unwrap_or(DECIMALS[usize::from(dimension == Dimension::ANGLE)])
+}
 
 /// Writes what is asked for and names it.
 ///
@@ -51,15 +57,18 @@ pub(super) fn write(
     Ok(folder.written)
 }
 
-fn motion_table(table: &Table, header: Header) -> MotionTable {
+fn motion_table(table: &Table, mut header: Header) -> MotionTable {
     let motion = &table.motions[0];
-    let axis = |axis: &super::table::Named| {
+    header.conventions.extend(table.blocks.map(Blocks::sentence));
+    let axis = |(axis, word): (&Named, &NcWord)| {
         let is_rotary = axis.dimension == Dimension::ANGLE;
         MachineAxis {
             name: axis.name.clone(),
-            address: axis.name.clone(),
+            address: word.address.clone(),
+            reversed: word.reversed,
+            offset: word.offset,
             is_rotary,
-            decimals: DECIMALS[usize::from(is_rotary)],
+            decimals: decimals(axis.dimension, word),
             travel: axis.travel.map(|(low, high)| [low, high]),
         }
     };
@@ -73,7 +82,7 @@ fn motion_table(table: &Table, header: Header) -> MotionTable {
     MotionTable {
         header,
         motion: Unknown { name: motion.name.clone(), unit },
-        axes: table.axes.iter().map(axis).collect(),
+        axes: table.axes.iter().zip(&table.words).map(axis).collect(),
         rows: rows.map(|(at, posture)| MotionRow { motion: at[0], axes: posture.axes.clone() }).collect(),
         series: table.series.as_ref().map(|series| Series {
             reference: series.about,

@@ -1,20 +1,24 @@
 //! `flank convert`: a job carried over to another machine.
 
+mod blocks;
+mod failures;
 mod files;
 mod rates;
 mod series;
+mod settings;
 mod source;
 mod table;
 
 use std::path::Path;
 
-use flank_chain_dsl::{Axis, Job, Machine, compile_with_machine};
+use flank_chain_dsl::{Axis, Bounded, Job, Machine, compile_with_machine};
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, Graph};
-use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, TargetAxis};
+use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis};
 
 use crate::arguments::{Convert, Onto, Which};
 use crate::{Ending, print, spec, units};
+use blocks::Blocks;
 use rates::Rates;
 use series::Series;
 use source::Source;
@@ -29,9 +33,16 @@ pub(crate) fn run(arguments: &Convert) -> Ending {
         Ok(compiled) => compiled,
         Err(ending) => return ending,
     };
-    match carry(&graph, (&job, &target), &hash, arguments) {
-        Ok((table, told)) => {
-            print(&if arguments.json { table.json() } else { table.text() });
+    let carried = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit).and_then(|target| {
+        if !target.settings.is_empty() {
+            return settings::find(&job, &target, arguments);
+        }
+        let (table, told) = carry(&job, target, &hash, arguments)?;
+        Ok((if arguments.json { table.json() } else { table.text() }, told))
+    });
+    match carried {
+        Ok((shown, told)) => {
+            print(&shown);
             anstream::eprint!("{told}");
             if told.is_empty() { Ending::Done } else { Ending::Unsolved }
         }
@@ -68,12 +79,12 @@ pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result
 
 /// The axes over the motion, their series, what is written, and in words what the target cannot do.
 fn carry<'g>(
-    graph: &'g Graph,
-    (job, target): (&Job<'g>, &Job<'g>),
+    job: &Job<'g>,
+    target: Target<'_, 'g>,
     hash: &str,
     arguments: &Convert,
 ) -> Result<(Table, String), String> {
-    let carried = Carried::new(graph, job, target, &arguments.onto, arguments.positions)?;
+    let carried = Carried::on(target, arguments.positions)?;
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
     let series = is_followed.then(|| Series::of(&carried, arguments)).flatten();
@@ -81,6 +92,7 @@ fn carry<'g>(
     let is_series = is_followed && told.is_empty();
     let rates = arguments.time.filter(|_| is_series).and_then(|seconds| Rates::of(&carried, seconds));
     let mut table = Table::new(job, &carried, (series, rates), arguments);
+    table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried)).flatten();
     // a table of one motion; what the target cannot do is no program
     if is_series {
         let header = crate::solve::header(&job.name, &arguments.which, hash);
@@ -89,11 +101,84 @@ fn carry<'g>(
     Ok((table, told))
 }
 
+/// The machine that a job is carried over to.
+struct Target<'t, 'g> {
+    job: &'t Job<'g>,
+    machine: &'t Machine<'g>,
+    source: Source<'t, 'g>,
+    /// From work to tool, in free axes and parameters.
+    chain: Chain<'g>,
+    /// The axes that move the tool against the work.
+    free: Vec<&'t Axis<'g>>,
+    axes: Vec<TargetAxis<'g>>,
+    /// Settings that are looked for: those without a value, and those asked for.
+    settings: Vec<&'t Bounded<'g>>,
+    /// Numbers for the parameters of both machines.
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'t, 'g> Target<'t, 'g> {
+    fn of(
+        graph: &'g Graph,
+        job: &'t Job<'g>,
+        target: &'t Job<'g>,
+        onto: &Onto,
+        fit: &[String],
+    ) -> Result<Target<'t, 'g>, String> {
+        let source = Source::of(job, onto.surface.as_deref())?;
+        let machine = &target.machines[0];
+        let [work, tool] = [
+            frame(machine, &source.work, onto.work_frame.as_deref(), "--work-frame")?,
+            frame(machine, &source.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
+        ];
+        let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
+        let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
+        let laws: Vec<(Expr<'g>, Expr<'g>)> = followers.map(|axis| (axis.variable, axis.law)).collect();
+        let chain = chain.substituted(&laws);
+        let settings = settings::wanted(target, &chain, fit)?;
+        let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
+        let bindings = job.bindings().into_iter().chain(target.bindings_beside(&open)).collect::<Vec<_>>();
+        let settled = chain.substituted(&bindings);
+        let moves = |axis: &&Axis<'g>| axis.law == axis.variable && !settled.twist(axis.variable).is_zero();
+        let free: Vec<&Axis<'g>> = machine.axes.iter().filter(moves).collect();
+        let axes = free.iter().map(|axis| target_axis(axis)).collect();
+        failures::check_count(machine, &source, &free)?;
+        Ok(Target { job: target, machine, source, chain, free, axes, settings, bindings })
+    }
+
+    fn motions(&self) -> Vec<Expr<'g>> {
+        self.source.motions.iter().map(|motion| motion.variable).collect()
+    }
+
+    fn problem(&self, unseen: &[Screw]) -> Result<PoseProblem<'g>, String> {
+        PoseProblem::new(&self.chain, &self.axes, self.source.driven, &self.motions(), unseen, REACH, &self.bindings)
+            .map_err(|error| refused(&error, self.machine, &self.free))
+    }
+
+    /// Postures at all positions.
+    fn postures(&self, positions: &[Vec<f64>]) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
+        let unseen = &self.source.symmetries;
+        let problem = self.problem(unseen)?;
+        let line = follow(&problem, positions, self.source.motions.len());
+        if line.iter().all(is_good) || unseen.is_empty() {
+            return Ok((problem, line));
+        }
+        // an axis that only happens to move the tool along itself there does not know how far: as far as on the source
+        let exact = self.problem(&[])?;
+        let exactly = follow(&exact, positions, self.source.motions.len());
+        Ok(if exactly.iter().all(is_good) { (exact, exactly) } else { (problem, line) })
+    }
+}
+
+fn is_good(posture: &Posture) -> bool {
+    posture.outcome == Outcome::Solved && posture.missing.is_none()
+}
+
 /// A job on another machine.
 pub(crate) struct Carried<'j, 'g> {
     pub(crate) source: Source<'j, 'g>,
     pub(crate) machine: &'j Machine<'g>,
-    /// The axes that may stand anywhere.
+    /// The axes that move the tool against the work.
     pub(crate) free: Vec<&'j Axis<'g>>,
     /// From work to tool on the machine, with its parameters as symbols.
     chain: Chain<'g>,
@@ -105,7 +190,7 @@ pub(crate) struct Carried<'j, 'g> {
 
 impl<'j, 'g> Carried<'j, 'g> {
     /// # Errors
-    /// In words, if it is not clear what is meant, or the machine has not the axes for it.
+    /// In words, if it is not clear what is meant, or the machine has not the axes or the settings for it.
     pub(crate) fn new(
         graph: &'g Graph,
         job: &'j Job<'g>,
@@ -113,25 +198,17 @@ impl<'j, 'g> Carried<'j, 'g> {
         onto: &Onto,
         positions: u32,
     ) -> Result<Carried<'j, 'g>, String> {
-        let source = Source::of(job, onto.surface.as_deref())?;
-        let machine = &target.machines[0];
-        let [work, tool] = [
-            frame(machine, &source.work, onto.work_frame.as_deref(), "--work-frame")?,
-            frame(machine, &source.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
-        ];
-        let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
-        let axes = machine.axes.iter();
-        let laws: Vec<(Expr<'g>, Expr<'g>)> =
-            axes.filter(|axis| axis.law != axis.variable).map(|axis| (axis.variable, axis.law)).collect();
-        let chain = chain.substituted(&laws);
-        let free: Vec<&Axis<'g>> = machine.axes.iter().filter(|axis| axis.law == axis.variable).collect();
-        let axes: Vec<TargetAxis<'g>> = free.iter().map(|axis| target_axis(axis)).collect();
-        let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-        let motions: Vec<Expr<'g>> = source.motions.iter().map(|motion| motion.variable).collect();
-        let problem = PoseProblem::new(&chain, &axes, source.driven, &motions, &source.symmetries, REACH, &bindings)
-            .map_err(|error| refused(&error, machine, &free))?;
-        let positions = source.positions(positions as usize);
-        let line = follow(&problem, &positions, source.motions.len());
+        let target = Target::of(graph, job, target, onto, &[])?;
+        match target.settings.first() {
+            Some(open) => Err(format!("{} has no value: --set {}=…", open.name, open.name)),
+            None => Carried::on(target, positions),
+        }
+    }
+
+    fn on(target: Target<'j, 'g>, positions: u32) -> Result<Carried<'j, 'g>, String> {
+        let positions = target.source.positions(positions as usize);
+        let (problem, line) = target.postures(&positions)?;
+        let Target { source, machine, free, chain, bindings, .. } = target;
         Ok(Carried { source, machine, free, chain, bindings, problem, positions, line })
     }
 
@@ -162,7 +239,7 @@ impl<'j, 'g> Carried<'j, 'g> {
 
     /// What the target cannot do, each kind once with its first place; empty if nothing.
     pub(crate) fn failures(&self) -> String {
-        failures(&self.source, self.machine, &self.free, &self.positions, &self.line)
+        failures::told(self)
     }
 }
 
@@ -200,56 +277,19 @@ fn frame(machine: &Machine<'_>, source: &str, asked: Option<&str>, option: &str)
     ))
 }
 
-/// Postures at all positions, from the middle to both ends if there is one motion, else row by row.
+/// Postures at all positions: of one motion from the middle to both ends, or from a quarter, if the middle has none; else row by row.
 fn follow(problem: &PoseProblem<'_>, positions: &[Vec<f64>], motions: usize) -> Vec<Posture> {
-    let start = if motions == 1 { positions.len() / 2 } else { 0 };
-    let Some(first) = problem.postures(&positions[start]).into_iter().next() else { return Vec::new() };
+    let starts: &[usize] = if motions == 1 { &[2, 1, 3, 0, 4] } else { &[0] };
+    let each = starts.iter().filter_map(|quarter| {
+        let at = quarter * (positions.len() - 1) / 4;
+        Some((at, problem.postures(&positions[at]).into_iter().next()?))
+    });
+    let mut each = each.peekable();
+    let Some(middle) = each.peek().cloned() else { return Vec::new() };
+    let (start, first) = each.find(|(_, posture)| is_good(posture)).unwrap_or(middle);
     let down: Vec<Vec<f64>> = positions[..=start].iter().rev().cloned().collect();
     let mut line: Vec<Posture> = problem.follow(&first, &down).into_iter().rev().collect();
     line.pop();
     line.extend(problem.follow(&first, &positions[start..]));
     line
-}
-
-/// What the target cannot do, each kind once with its first place; empty if nothing.
-fn failures(
-    source: &Source<'_, '_>,
-    machine: &Machine<'_>,
-    free: &[&Axis<'_>],
-    positions: &[Vec<f64>],
-    line: &[Posture],
-) -> String {
-    let name = &machine.name;
-    let mut kinds: Vec<(String, String, usize)> = Vec::new();
-    for (position, posture) in positions.iter().zip(line) {
-        let (kind, told) = match (posture.outcome, posture.missing) {
-            (Outcome::Outside { unknown, by }, _) => {
-                let axis = free[unknown];
-                let [at, by] = [posture.axes[unknown], by].map(|x| units::text(axis.dimension, x, 4));
-                let told = format!("axis {}.{} has to stand at {at}, {by} beyond its travel", name, axis.name);
-                (format!("beyond {}", axis.name), told)
-            }
-            (Outcome::Solved, None) => continue,
-            (Outcome::Solved, Some(missing)) => {
-                let line = ["x", "y", "z"][missing.direction % 3];
-                let what = if missing.direction < 3 {
-                    format!("along {line} by {:.6} mm", missing.by)
-                } else {
-                    format!("about {line} by {:.6} deg", missing.by.to_degrees())
-                };
-                let told = format!("{name} has no axis that moves the tool {what}, along its own axes");
-                (format!("missing {}", missing.direction), told)
-            }
-            (Outcome::Singular, _) => (
-                "singular".to_string(),
-                format!("{name} stands in a singular pose: two of its axes move the tool alike"),
-            ),
-            _ => ("lost".to_string(), format!("no posture of {name} was found")),
-        };
-        match kinds.iter_mut().find(|(known, ..)| *known == kind) {
-            Some((.., count)) => *count += 1,
-            None => kinds.push((kind, format!("{told}, at {}", source.place(position)), 1)),
-        }
-    }
-    kinds.iter().map(|(_, told, count)| format!("not reached: {count} of {} positions: {told}\n", line.len())).collect()
 }

@@ -1,8 +1,8 @@
 //! What is carried over: a tool that moves against a work.
 
 use flank_chain_dsl::{Bounded, GeneratedSurface, Job, ToolShape};
-use flank_expr::Expr;
-use flank_expr::geometry::{Chain, Surface};
+use flank_expr::geometry::{Chain, Surface, Vector3};
+use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
 use crate::{solve, units};
@@ -109,6 +109,25 @@ impl<'j, 'g> Source<'j, 'g> {
         let each: Vec<String> =
             each.map(|(motion, at)| format!("{} = {}", motion.name, units::text(motion.dimension, *at, 4))).collect();
         each.join(", ")
+    }
+}
+
+impl Flank<'_, '_> {
+    /// The largest distance of the tool's points that touch from the axis of a turn, mm.
+    pub(crate) fn tool_radius(&self, turn: &Screw) -> Option<f64> {
+        let graph = self.tool.position.0[0].graph();
+        let [axis, linear] = [turn.angular, turn.linear].map(|v| Vector3::constant(graph, v));
+        let arm = (self.tool.position - axis.cross(linear)).cross(axis);
+        let tape =
+            Tape::new(&[arm.dot(arm)], &self.tool.unknowns).expect("a job without errors leaves nothing unbound");
+        let mut evaluator = ScalarEvaluator::new(&tape);
+        let mut out = [0.0];
+        let solved = self.points.iter().filter(|point| point.outcome == Outcome::Solved);
+        let radii = solved.map(|point| {
+            evaluator.run(&point.unknowns[..self.tool.unknowns.len()], &mut out);
+            out[0].sqrt()
+        });
+        radii.reduce(f64::max)
     }
 }
 

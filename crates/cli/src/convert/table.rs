@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Axis, Dimension, Job};
+use flank_chain_dsl::{Axis, Dimension, Job, NcWord};
 use flank_solver::{Posture, Screw};
 use serde_json::{Value, json};
 
 use super::Carried;
+use super::blocks::Blocks;
 use super::rates::Rates;
 use super::series::Series;
 use crate::arguments::Convert;
@@ -29,12 +30,16 @@ pub(crate) struct Table {
     pub(super) machine: String,
     pub(super) motions: Vec<Named>,
     pub(super) axes: Vec<Named>,
+    /// What NC programs say of each axis.
+    pub(super) words: Vec<NcWord>,
     pub(super) positions: Vec<Vec<f64>>,
     pub(super) line: Vec<Posture>,
     symmetries: Vec<Screw>,
     pub(super) series: Option<Series>,
     /// Over the cutting time, if there is one.
     pub(super) rates: Option<Rates>,
+    /// What an NC program leaves on the flank.
+    pub(super) blocks: Option<Blocks>,
     /// Files that were written.
     pub(super) written: Vec<String>,
 }
@@ -61,11 +66,13 @@ impl Table {
             machine: machine.name.clone(),
             motions: motions.collect(),
             axes: free.iter().map(axis).collect(),
+            words: free.iter().map(|axis| axis.word.clone()).collect(),
             positions: carried.positions.clone(),
             line: carried.line.clone(),
             symmetries: source.symmetries.clone(),
             series,
             rates,
+            blocks: None,
             written: Vec::new(),
         }
     }
@@ -91,6 +98,9 @@ impl Table {
         }
         if let Some(rates) = &self.rates {
             self.rates_text(rates, &mut out);
+        }
+        if let Some(blocks) = self.blocks {
+            let _ = writeln!(out, "\nNC programs: {}", blocks.sentence());
         }
         if !self.written.is_empty() {
             let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
@@ -256,6 +266,7 @@ impl Table {
             "positions": positions.collect::<Vec<Value>>(),
             "polynomials": series,
             "rates": rates,
+            "nc_deviation": self.blocks.map(|b| json!({ "straight_mm": b.straight, "rounding_mm": b.rounding })),
             "files": self.written,
         });
         format!("{table:#}\n")

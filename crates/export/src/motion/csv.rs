@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::table::MotionTable;
+use super::table::{AS_IN_THE_SPEC, MotionTable};
 use crate::conventions::one_line;
 use crate::error::WriteError;
 use crate::number::shortest;
@@ -21,6 +21,8 @@ const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];
 /// let axis = |name: &str, is_rotary| MachineAxis {
 ///     name: name.into(),
 ///     address: name.into(),
+///     reversed: false,
+///     offset: 0.0,
 ///     is_rotary,
 ///     decimals: 4,
 ///     travel: None,
@@ -70,7 +72,7 @@ fn write_head(table: &MotionTable, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# {}", one_line(&header.program))?;
     writeln!(out, "# spec: {}, hash {}", one_line(&header.spec), one_line(&header.spec_hash))?;
     writeln!(out, "# job: {}", one_line(&header.job))?;
-    for sentence in table.sentences() {
+    for sentence in table.sentences(AS_IN_THE_SPEC) {
         writeln!(out, "# {sentence}")?;
     }
     let motion = one_line(&table.motion.name);

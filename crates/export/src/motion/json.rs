@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use super::table::{MachineAxis, MotionTable};
+use super::table::{AS_IN_THE_SPEC, MachineAxis, MotionTable};
 use crate::error::WriteError;
 use crate::json_layout::{UNITS, Units, write_document};
 use crate::number::plain;
@@ -27,7 +27,7 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
         spec: &header.spec,
         spec_hash: &header.spec_hash,
         job: &header.job,
-        conventions: table.sentences(),
+        conventions: table.sentences(AS_IN_THE_SPEC),
         units: UNITS,
         motion: MotionOut { name: &table.motion.name, unit: table.motion.unit.symbol() },
         axes: (0..table.axes.len()).map(|index| axis_out(table, index)).collect(),

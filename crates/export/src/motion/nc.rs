@@ -101,6 +101,8 @@ pub enum NcError {
 /// let slide = MachineAxis {
 ///     name: "slide".into(),
 ///     address: "X".into(),
+///     reversed: false,
+///     offset: 0.0,
 ///     is_rotary: false,
 ///     decimals: 3,
 ///     travel: Some([-50.0, 50.0]),
@@ -183,7 +185,12 @@ fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String>
         format!("job {}, for {}", header.job, dialect.name()),
         format!("by {}, spec {}, hash {}", header.program, header.spec, header.spec_hash),
     ];
-    head.extend(table.sentences().into_iter().map(|sentence| format!("- {sentence}")));
+    head.extend(
+        table
+            .sentences("axes are counted as the control does, see their lines below")
+            .into_iter()
+            .map(|sentence| format!("- {sentence}")),
+    );
     head.push("- no rotary axis may roll over, positions are absolute".to_owned());
     head.push("- the first block is a rapid of all axes to the first position".to_owned());
     head.push(format!("- cutting time {} s, inverse-time feed in 1/min", shortest(cutting_time)));
@@ -196,12 +203,22 @@ fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String>
 
 fn axis_line(table: &MotionTable, index: usize, axis: &MachineAxis) -> String {
     let unit = axis.unit().symbol();
-    let [low, high] = table.extent(index).unwrap_or_default().map(|position| axis.printed(position));
-    let travel = match axis.travel.map(|ends| axis.written(ends).map(shortest)) {
+    let mut ends = table.extent(index).unwrap_or_default();
+    if axis.reversed {
+        ends.reverse();
+    }
+    let [low, high] = ends.map(|position| axis.printed(position));
+    let travel = axis.travel.map(|ends| axis.written(axis.programmed_ends(ends)));
+    let travel = match travel.map(|ends| ends.map(shortest)) {
         Some([low, high]) => format!("travel {low} .. {high} {unit}"),
         None => "travel not limited".to_owned(),
     };
-    format!("axis {}: {}, from {low} to {high} {unit}, {travel}", axis.address, axis.name)
+    let sign = if axis.reversed { "-" } else { "" };
+    let offset = match axis.unit().written(axis.offset) {
+        0.0 => String::new(),
+        offset => format!(" {} {} {unit}", if offset < 0.0 { '-' } else { '+' }, shortest(plain(offset.abs()))),
+    };
+    format!("axis {}: {sign}{}{offset}, from {low} to {high} {unit}, {travel}", axis.address, axis.name)
 }
 
 /// All blocks between the opening and the closing, without numbers.
@@ -233,7 +250,8 @@ fn positions(table: &MotionTable, dialect: Dialect, row: usize) -> Result<Vec<St
     let row = &table.rows[row];
     let word = |(axis, position): (&MachineAxis, &f64)| {
         let (printed, unit) = (axis.printed(*position), axis.unit().symbol());
-        let [low, high] = axis.written(axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]));
+        let travel = axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let [low, high] = axis.written(axis.programmed_ends(travel));
         let is_within = |value: f64| value >= low - ROUNDING && value <= high + ROUNDING;
         if !printed.parse().is_ok_and(is_within) {
             return Err(NcError::BeyondTravel {

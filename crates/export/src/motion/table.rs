@@ -7,6 +7,9 @@ use crate::dataset::{Header, Unit, Unknown};
 use crate::error::Malformed;
 use crate::number::plain;
 
+/// How positions of files of data are to be read.
+pub(crate) const AS_IN_THE_SPEC: &str = "axes are named, signed and counted as in the machine's spec";
+
 /// What each axis of a machine does while a motion runs. Inside all angles are radians; files have degrees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionTable {
@@ -40,6 +43,10 @@ pub struct MachineAxis {
     pub name: String,
     /// How NC programs call it, such as `X` or `B1`.
     pub address: String,
+    /// Whether NC programs count it the other way.
+    pub reversed: bool,
+    /// What NC programs say where it stands at zero, mm or radians.
+    pub offset: f64,
     /// Whether its positions are angles, else lengths.
     pub is_rotary: bool,
     /// Decimals of its positions in NC programs, in mm or degrees.
@@ -82,14 +89,26 @@ impl MachineAxis {
         if self.is_rotary { Unit::Degree } else { Unit::Millimetre }
     }
 
+    /// Two positions as NC programs have them, the lower one first.
+    pub(crate) fn programmed_ends(&self, ends: [f64; 2]) -> [f64; 2] {
+        let [a, b] = ends.map(|end| self.programmed(end));
+        [a.min(b), a.max(b)]
+    }
+
     /// Two positions as files of data have them.
     pub(crate) fn written(&self, ends: [f64; 2]) -> [f64; 2] {
         ends.map(|end| plain(self.unit().written(end)))
     }
 
-    /// A position as NC programs write it: with its decimals, without a negative zero.
+    /// Where the control sees it, mm or radians.
+    pub(crate) fn programmed(&self, position: f64) -> f64 {
+        if self.reversed { self.offset - position } else { self.offset + position }
+    }
+
+    /// A position as NC programs write it: as the control counts, with the axis's decimals, without a negative zero.
     pub(crate) fn printed(&self, position: f64) -> String {
-        let text = format!("{:.*}", usize::from(self.decimals), self.unit().written(position));
+        let programmed = self.unit().written(self.programmed(position));
+        let text = format!("{:.*}", usize::from(self.decimals), programmed);
         match text.strip_prefix('-') {
             Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
             _ => text,
@@ -139,7 +158,7 @@ impl MotionTable {
             let of_axes = series.axes.iter().flat_map(|axis| axis.coefficients.iter().chain(&axis.remainder));
             of_axes.chain([&series.reference])
         });
-        let travels = self.axes.iter().flat_map(|axis| axis.travel.iter().flatten());
+        let travels = self.axes.iter().flat_map(|axis| axis.travel.iter().flatten().chain([&axis.offset]));
         let of_rates =
             self.rates.iter().flat_map(|rates| rates.rows.iter().flatten().flatten().chain([&rates.seconds]));
         if of_series.chain(travels).chain(of_rates).all(|number| number.is_finite()) {
@@ -176,12 +195,9 @@ impl MotionTable {
         Some(self.axes.iter().zip(rates).map(written).collect())
     }
 
-    /// What a reader must know to use the numbers, then the caller's own sentences.
-    pub(crate) fn sentences(&self) -> Vec<String> {
-        let fixed = [
-            "lengths in mm, angles in degrees, not reduced to one turn",
-            "axes are named, signed and counted as in the machine's spec",
-        ];
+    /// What a reader must know to use the numbers, beginning with how they are `counted`, then the caller's own sentences.
+    pub(crate) fn sentences(&self, counted: &str) -> Vec<String> {
+        let fixed = ["lengths in mm, angles in degrees, not reduced to one turn", counted];
         let own = self.header.conventions.iter().map(|sentence| one_line(sentence));
         fixed.iter().map(|&sentence| sentence.to_owned()).chain(own).collect()
     }

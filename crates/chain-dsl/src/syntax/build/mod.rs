@@ -159,6 +159,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_frame
             | kw_fix
             | kw_couple
+            | kw_nc
             | kw_profile
             | kw_along
             | kw_surface

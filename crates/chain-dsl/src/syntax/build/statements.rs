@@ -8,7 +8,7 @@ use crate::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
-    Limit, MachineStatement, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues,
+    Limit, MachineStatement, NcWord, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues,
     ToolStatement,
 };
 use super::super::grammar::Rule;
@@ -24,6 +24,7 @@ impl Build<'_> {
             Rule::frame => MachineStatement::Frame(self.frame(pair)),
             Rule::fix => MachineStatement::Fix(self.assignment(pair)),
             Rule::couple => MachineStatement::Couple(self.assignment(pair)),
+            Rule::nc_word => MachineStatement::Nc(self.nc_word(pair)),
             Rule::requirement => MachineStatement::Require(self.requirement(pair)),
             _ => return None,
         })
@@ -98,6 +99,15 @@ impl Build<'_> {
             _ => AxisKind::Linear,
         };
         Axis { doc, name, kind, range: parts.optional(Rule::range).map(|range| self.range(range)) }
+    }
+
+    fn nc_word(&mut self, pair: Pair<'_, Rule>) -> NcWord {
+        let mut parts = Parts::of(pair);
+        NcWord {
+            address: self.name(parts.required(Rule::name)),
+            value: self.expression(parts.required(Rule::expression)),
+            increment: parts.optional(Rule::expression).map(|increment| self.expression(increment)),
+        }
     }
 
     fn frame(&mut self, pair: Pair<'_, Rule>) -> Frame {

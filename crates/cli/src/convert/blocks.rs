@@ -1,0 +1,127 @@
+//! What a program of straight blocks leaves on the flank: between positions the axes run straight, and positions are rounded.
+
+use flank_chain_dsl::Axis;
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, PoseProblem};
+
+use super::Carried;
+use super::files::decimals;
+use super::source::{Flank, Source};
+use crate::units;
+
+/// The largest normal distances from the flank where points are sampled, mm; each a sum over the axes, as if all were off the
+/// worse way at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Blocks {
+    /// Left by straight lines between positions.
+    pub(super) straight: f64,
+    /// Left by the rounding of positions.
+    pub(super) rounding: f64,
+}
+
+impl Blocks {
+    /// For positions of one motion in order.
+    pub(super) fn of(carried: &Carried<'_, '_>) -> Option<Blocks> {
+        let Carried { problem, source, free: axes, positions, line, .. } = carried;
+        let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
+        let series: Vec<Vec<Vec<f64>>> = each.collect::<Option<_>>()?;
+        let blocks = positions.windows(2).zip(series.windows(2)).map(|(ends, series)| {
+            let step = ends[1][0] - ends[0][0];
+            // a chord is off by x'' step² / 8 at the most; x'' is twice the coefficient
+            let bend = |k: usize| 0.25 * step * step * series[0][k][2].abs().max(series[1][k][2].abs());
+            Block { from: ends[0][0], step, start: &series[0], bends: (0..axes.len()).map(bend).collect() }
+        });
+        let blocks: Vec<Block<'_>> = blocks.collect();
+        let halves: Vec<f64> = axes.iter().map(|axis| half_increment(axis)).collect();
+        let mut most: Option<Blocks> = None;
+        for flank in source.flanks.iter().filter(|flank| !flank.points.is_empty()) {
+            for (straight, rounding) in Influence::new(problem, source, flank, axes.len()).off(&blocks, &halves) {
+                let worst = most.get_or_insert_default();
+                worst.straight = worst.straight.max(straight);
+                worst.rounding = worst.rounding.max(rounding);
+            }
+        }
+        most
+    }
+
+    /// For the head of a program.
+    pub(super) fn sentence(self) -> String {
+        format!(
+            "where points were sampled, straight blocks leave the flank off by up to {:.4} um, rounded positions by up to {:.4} um",
+            self.straight * 1e3,
+            self.rounding * 1e3
+        )
+    }
+}
+
+/// What lies between two positions.
+struct Block<'s> {
+    from: f64,
+    step: f64,
+    /// Series of all unknowns about its first position.
+    start: &'s [Vec<f64>],
+    /// How far each axis is off in between, mm or rad.
+    bends: Vec<f64>,
+}
+
+impl Block<'_> {
+    fn unknowns(&self, at: f64) -> Vec<f64> {
+        let h = at - self.from;
+        self.start.iter().map(|c| c[0] + h * (c[1] + h * c[2])).collect()
+    }
+}
+
+fn half_increment(axis: &Axis<'_>) -> f64 {
+    let half = 0.5 * 10f64.powi(-i32::from(decimals(axis.dimension, &axis.word)));
+    if units::is_angle(axis.dimension) { half.to_radians() } else { half }
+}
+
+/// How far axes move the points of a tool that touch a flank, along its normal.
+struct Influence<'f, 'j, 'g> {
+    flank: &'f Flank<'j, 'g>,
+    /// Of the tool's unknowns and the target's: a point's derivatives by each axis.
+    tape: Tape,
+    tool: usize,
+    /// Index of the motion among the surface's unknowns.
+    motion: usize,
+    axes: usize,
+}
+
+impl<'f, 'j, 'g> Influence<'f, 'j, 'g> {
+    fn new(
+        problem: &PoseProblem<'g>,
+        source: &Source<'_, 'g>,
+        flank: &'f Flank<'j, 'g>,
+        axes: usize,
+    ) -> Influence<'f, 'j, 'g> {
+        let inputs: Vec<Expr<'g>> = flank.tool.unknowns.iter().chain(problem.unknowns()).copied().collect();
+        let position = problem.chain().point(flank.tool.position);
+        let slopes: Vec<Expr<'g>> =
+            problem.unknowns()[..axes].iter().flat_map(|axis| position.derivative(*axis).0).collect();
+        let motion = flank.surface.unknowns.iter().position(|u| u.variable == source.motions[0].variable);
+        Influence {
+            flank,
+            tape: Tape::new(&slopes, &inputs).expect("a job without errors leaves nothing unbound"),
+            tool: flank.tool.unknowns.len(),
+            motion: motion.expect("the surface is an envelope over the motion"),
+            axes,
+        }
+    }
+
+    /// Of each solved point what straight blocks and rounding leave.
+    fn off(&self, blocks: &[Block<'_>], halves: &[f64]) -> Vec<(f64, f64)> {
+        let mut evaluator = ScalarEvaluator::new(&self.tape);
+        let mut slopes = vec![0.0; 3 * self.axes];
+        let solved = self.flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
+        let of = |point: &flank_solver::SurfacePoint| {
+            let at = point.unknowns[self.motion];
+            let block = &blocks[blocks.partition_point(|block| block.from + block.step < at).min(blocks.len() - 1)];
+            let inputs: Vec<f64> = point.unknowns[..self.tool].iter().copied().chain(block.unknowns(at)).collect();
+            evaluator.run(&inputs, &mut slopes);
+            let along = |k: usize| (0..3).map(|i| point.normal[i] * slopes[3 * k + i]).sum::<f64>().abs();
+            let sum = |off: &[f64]| (0..self.axes).map(|k| along(k) * off[k]).sum::<f64>();
+            (sum(&block.bends), sum(halves))
+        };
+        if blocks.is_empty() { Vec::new() } else { solved.map(of).collect() }
+    }
+}

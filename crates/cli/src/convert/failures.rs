@@ -1,0 +1,119 @@
+//! What the target cannot do, in words.
+
+use flank_chain_dsl::{Axis, Machine};
+use flank_solver::{Missing, Outcome, Posture};
+
+use super::Carried;
+use super::source::Source;
+use crate::units;
+
+/// Of what all axes can do together: below it they turn fast.
+const NEARLY_SINGULAR: f64 = 1e-3;
+
+/// Of a pose: three displacements, three turns.
+const FREEDOMS: usize = 6;
+
+/// Whether there are as many axes as things that move by themselves.
+///
+/// # Errors
+/// In words, if there are fewer.
+pub(super) fn check_count(machine: &Machine<'_>, source: &Source<'_, '_>, free: &[&Axis<'_>]) -> Result<(), String> {
+    let names = |names: Vec<&str>, join: &str| names.join(join);
+    let motions = names(source.motions.iter().map(|motion| motion.name.as_str()).collect(), " and ");
+    let axes = names(free.iter().map(|axis| axis.name.as_str()).collect(), ", ");
+    match (free.len(), source.motions.len()) {
+        (0, _) => Err(format!(
+            "no axis of {} moves the tool against the work: all are fixed, coupled, or elsewhere; {motions} cannot be followed",
+            machine.name
+        )),
+        (few, many) if few < many => Err(format!(
+            "the job runs over {motions}, each by itself, and {} has only {axes} to follow: it needs at least {many} free axes",
+            machine.name
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What the target cannot do, each kind once with its first place; empty if nothing.
+pub(super) fn told(carried: &Carried<'_, '_>) -> String {
+    let Carried { positions, line, source, .. } = carried;
+    let mut kinds: Vec<(String, String, usize)> = Vec::new();
+    for (k, (position, posture)) in positions.iter().zip(line).enumerate() {
+        let (kind, told) = match (posture.outcome, posture.missing) {
+            (Outcome::Solved, None) => continue,
+            (Outcome::Outside { unknown, by }, _) => beyond(carried, posture, unknown, by),
+            (Outcome::Solved, Some(missing)) => lacking(carried, missing),
+            (outcome, _) => {
+                let before = k.checked_sub(1).map(|k| (&positions[k], &line[k]));
+                let near = before.filter(|(_, posture)| posture.outcome == Outcome::Solved);
+                let (at, near) = near.unwrap_or((position, posture));
+                lost(carried, outcome == Outcome::Singular, near, at)
+            }
+        };
+        match kinds.iter_mut().find(|(known, ..)| *known == kind) {
+            Some((.., count)) => *count += 1,
+            None => kinds.push((kind, format!("{told}, at {}", source.place(position)), 1)),
+        }
+    }
+    kinds.iter().map(|(_, told, count)| format!("not reached: {count} of {} positions: {told}\n", line.len())).collect()
+}
+
+fn beyond(carried: &Carried<'_, '_>, posture: &Posture, unknown: usize, by: f64) -> (String, String) {
+    let axis = carried.free[unknown];
+    let [at, by] = [posture.axes[unknown], by].map(|x| units::text(axis.dimension, x, 4));
+    let name = format!("{}.{}", carried.machine.name, axis.name);
+    let radius = tool_radius(&carried.source).filter(|_| !units::is_angle(axis.dimension));
+    let radius = radius.map_or(String::new(), |radius| format!(" (the tool cuts at a radius of up to {radius:.3} mm)"));
+    (format!("beyond {}", axis.name), format!("axis {name} has to stand at {at}, {by} beyond its travel{radius}"))
+}
+
+fn lacking(carried: &Carried<'_, '_>, missing: Missing) -> (String, String) {
+    let line = ["x", "y", "z"][missing.direction % 3];
+    let what = if missing.direction < 3 {
+        format!("along the tool's own {line} axis, {:.6} mm are missing", missing.by.abs())
+    } else {
+        format!("about the tool's own {line} axis, {:.6} deg are missing", missing.by.to_degrees().abs())
+    };
+    (
+        format!("missing {}", missing.direction),
+        format!("{} has no axis that moves the tool {what}", carried.machine.name),
+    )
+}
+
+fn lost(carried: &Carried<'_, '_>, is_singular: bool, near: &Posture, at: &[f64]) -> (String, String) {
+    let name = &carried.machine.name;
+    let freedoms = carried.problem.unknowns().len();
+    if freedoms < FREEDOMS {
+        let unseen = match freedoms - carried.free.len() {
+            0 => String::new(),
+            slips => format!(" and {slips} of motions that the tool does not see"),
+        };
+        let told = format!(
+            "a pose has {FREEDOMS} freedoms, and {name} has {} of axes{unseen}: no posture was found",
+            carried.free.len()
+        );
+        return ("few".to_string(), told);
+    }
+    let (size, axes) = carried.problem.weakest(near, at);
+    let alike: Vec<&str> = axes.iter().map(|&k| carried.free[k].name.as_str()).collect();
+    let alike = match alike[..] {
+        [one] => format!("{one} can move without moving the tool"),
+        _ => format!("{} can move together without moving the tool", alike.join(", ")),
+    };
+    if is_singular {
+        ("singular".to_string(), format!("{name} stands in a singular pose: {alike}"))
+    } else if size < NEARLY_SINGULAR {
+        (
+            "nearly singular".to_string(),
+            format!("{name} passes near a singular pose, where {alike}, and its axes do not follow"),
+        )
+    } else {
+        ("lost".to_string(), format!("no posture of {name} was found"))
+    }
+}
+
+/// The largest distance of the tool's points that touch the flank from the axis about which it may turn unseen, mm.
+fn tool_radius(source: &Source<'_, '_>) -> Option<f64> {
+    let turn = source.symmetries.iter().find(|screw| screw.angular != [0.0; 3])?;
+    source.flanks.iter().filter_map(|flank| flank.tool_radius(turn)).reduce(f64::max)
+}
