@@ -49,6 +49,10 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Write a page to look at: the machine moves, the tool generates the work, in 3-D, without a network
     View(View),
+    /// Print a script that completes arguments in a shell
+    Completions(Completions),
+    /// Write manual pages
+    Man(Man),
 }
 
 /// Which job of which file, with which values.
@@ -455,4 +459,26 @@ pub(crate) struct View {
     /// Print files and sizes as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank completions bash > ~/.local/share/bash-completion/completions/flank
+  flank completions fish > ~/.config/fish/completions/flank.fish
+  flank completions powershell >> $PROFILE")]
+pub(crate) struct Completions {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank man --out ~/.local/share/man/man1
+  man flank-solve")]
+pub(crate) struct Man {
+    /// Folder for the pages; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
 }

@@ -20,6 +20,7 @@ mod reach;
 mod reasons;
 mod required;
 mod sensitivity;
+mod shell;
 mod solve;
 mod spec;
 mod step;
@@ -57,6 +58,8 @@ fn main() -> ExitCode {
         Command::Import(arguments) => import::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
     };
     ExitCode::from(match ending {
         Ending::Done => 0,
