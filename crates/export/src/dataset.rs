@@ -70,7 +70,7 @@ pub enum Values {
 }
 
 /// One direction of a grid.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Axis {
     /// What changes along it, such as `z`, or from where to where it runs, such as `toe -> heel`.
     pub label: String,

@@ -65,8 +65,8 @@ struct TallyOut {
 struct SurfaceOut<'a> {
     name: &'a str,
     frame: &'a str,
-    rows: AxisOut<'a>,
-    columns: AxisOut<'a>,
+    rows: &'a Axis,
+    columns: &'a Axis,
     unknowns: Vec<UnknownOut<'a>>,
     fields: Vec<FieldOut<'a>>,
     #[serde(flatten)]
@@ -75,19 +75,14 @@ struct SurfaceOut<'a> {
 }
 
 #[derive(Serialize)]
-struct AxisOut<'a> {
-    label: &'a str,
-    count: usize,
-}
-
-#[derive(Serialize)]
 struct UnknownOut<'a> {
     name: &'a str,
     unit: &'static str,
 }
 
+/// What is said of a field before its values.
 #[derive(Serialize)]
-struct FieldOut<'a> {
+pub(crate) struct FieldOut<'a> {
     name: &'a str,
     unit: &'a str,
     components: usize,
@@ -122,12 +117,11 @@ impl TallyOut {
 }
 
 fn surface<'a>(patch: &'a Patch) -> SurfaceOut<'a> {
-    let axis = |axis: &'a Axis| AxisOut { label: &axis.label, count: axis.count };
     SurfaceOut {
         name: &patch.name,
         frame: &patch.frame,
-        rows: axis(&patch.rows),
-        columns: axis(&patch.columns),
+        rows: &patch.rows,
+        columns: &patch.columns,
         unknowns: patch.unknowns.iter().map(|u| UnknownOut { name: &u.name, unit: u.unit.symbol() }).collect(),
         fields: patch.fields.iter().map(field).collect(),
         tally: TallyOut::of(&Tally::of([patch])),
@@ -135,7 +129,7 @@ fn surface<'a>(patch: &'a Patch) -> SurfaceOut<'a> {
     }
 }
 
-fn field(field: &Field) -> FieldOut<'_> {
+pub(crate) fn field(field: &Field) -> FieldOut<'_> {
     FieldOut { name: &field.name, unit: &field.unit, components: field.columns().len(), meaning: &field.meaning }
 }
 

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::base64::encoded;
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
 use crate::conventions::sentences;
-use crate::dataset::{Dataset, Field, Patch, Values};
+use crate::dataset::{Axis, Dataset, Field, Patch, Values};
+use crate::json_file;
 use crate::picture::{patch_colours, scale_colours};
 use crate::tally::Tally;
 
@@ -43,8 +44,8 @@ struct SurfaceOut<'a> {
     frame: &'a str,
     #[serde(flatten)]
     scene: &'a PageSurface,
-    rows: AxisOut<'a>,
-    columns: AxisOut<'a>,
+    rows: &'a Axis,
+    columns: &'a Axis,
     unknowns: Vec<UnknownOut<'a>>,
     /// Status words; the first is that of solved points.
     words: Vec<&'static str>,
@@ -58,12 +59,6 @@ struct SurfaceOut<'a> {
 }
 
 #[derive(Serialize)]
-struct AxisOut<'a> {
-    label: &'a str,
-    count: usize,
-}
-
-#[derive(Serialize)]
 struct UnknownOut<'a> {
     name: &'a str,
     unit: &'static str,
@@ -74,10 +69,8 @@ struct UnknownOut<'a> {
 
 #[derive(Serialize)]
 struct FieldOut<'a> {
-    name: &'a str,
-    unit: &'a str,
-    meaning: &'a str,
-    components: usize,
+    #[serde(flatten)]
+    field: json_file::FieldOut<'a>,
     values: String,
 }
 
@@ -128,8 +121,8 @@ fn surface<'a>(patch: &'a Patch, scene: &'a PageSurface) -> SurfaceOut<'a> {
         name: &patch.name,
         frame: &patch.frame,
         scene,
-        rows: AxisOut { label: &patch.rows.label, count: patch.rows.count },
-        columns: AxisOut { label: &patch.columns.label, count: patch.columns.count },
+        rows: &patch.rows,
+        columns: &patch.columns,
         unknowns: of_unknown
             .map(|((unknown, &[low, high]), &motion)| UnknownOut {
                 name: &unknown.name,
@@ -167,13 +160,7 @@ fn field(field: &Field) -> FieldOut<'_> {
         Values::Scalars(values) => encoded(values.iter().map(|value| value.unwrap_or(f64::NAN))),
         Values::Vectors(values) => encoded(values.iter().flat_map(|value| value.unwrap_or([f64::NAN; 3]))),
     };
-    FieldOut {
-        name: &field.name,
-        unit: &field.unit,
-        meaning: &field.meaning,
-        components: field.columns().len(),
-        values,
-    }
+    FieldOut { field: json_file::field(field), values }
 }
 
 fn line(patch: &Patch) -> LineOut<'_> {

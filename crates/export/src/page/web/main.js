@@ -170,7 +170,7 @@ class Page {
     }
 
     click(x, y) {
-        const objects = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.object);
+        const objects = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.target);
         const hit = this.stage.under(x, y, objects);
         if (!hit) return;
         const mesh = hit.object.userData.mesh;

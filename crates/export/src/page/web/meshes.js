@@ -17,7 +17,9 @@ export class WorkMesh {
         const own = { ...shared, now: this.now };
         this.object = new THREE.Mesh(new THREE.BufferGeometry(), workMaterial(own, components(colour), used));
         this.object.userData.mesh = this;
-        this.outline = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: INK }));
+        const ink = surface.data.rows.count > 1 && surface.data.columns.count > 1 ? INK : colour;
+        this.outline = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: ink }));
+        this.outline.userData.mesh = this;
         this.object.add(this.outline);
         this.rebuild();
     }
@@ -41,7 +43,7 @@ export class WorkMesh {
         this.outline.geometry.dispose();
         this.outline.geometry = new THREE.BufferGeometry();
         this.outline.geometry.setAttribute("position", geometry.getAttribute("position"));
-        this.outline.geometry.setIndex(bordersOf(triangles));
+        this.outline.geometry.setIndex([...bordersOf(triangles), ...surface.pieces()]);
         this.colour(null);
     }
 
@@ -63,12 +65,18 @@ export class WorkMesh {
         this.now.value = [0, 1, 2, 3].map((k) => (k < this.motions.length ? motions[this.motions[k].motion] : 0));
     }
 
-    /** The solved point of the grid nearest to where a ray met the mesh. */
+    /** What a click can hit: the surface, or the line that it is. */
+    get target() {
+        return this.object.geometry.index.count > 0 ? this.object : this.outline;
+    }
+
+    /** The solved point of the grid nearest to where a ray met the surface. */
     pointAt(hit) {
         const place = this.object.worldToLocal(hit.point.clone());
-        const { a, b, c } = hit.face;
+        const ends = () => [0, 1].map((k) => this.outline.geometry.index.getX(hit.index + k));
+        const corners = hit.face ? [hit.face.a, hit.face.b, hit.face.c] : ends();
         const away = (point) => place.distanceTo(new THREE.Vector3(...this.surface.vector(this.surface.positions, point)));
-        return [a, b, c].reduce((best, point) => (away(point) < away(best) ? point : best));
+        return corners.reduce((best, point) => (away(point) < away(best) ? point : best));
     }
 }
 

@@ -116,6 +116,7 @@ export class Stage {
         const place = new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height);
         const ray = new THREE.Raycaster();
         ray.setFromCamera(place, this.camera);
+        ray.params.Line.threshold = 0.02 * this.size;
         return ray.intersectObjects(objects, false)[0];
     }
 

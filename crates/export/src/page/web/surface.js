@@ -138,6 +138,14 @@ export class WorkSurface {
         return corners;
     }
 
+    /** Ends of the pieces of a line, where the grid has one row or one column only. */
+    pieces() {
+        const { rows, columns } = this.data;
+        if (rows.count > 1 && columns.count > 1) return [];
+        const starts = Array.from({ length: this.count - 1 }, (_, point) => point);
+        return starts.filter((point) => this.isSolved(point) && this.isSolved(point + 1)).flatMap((point) => [point, point + 1]);
+    }
+
     /**
      * What it can be coloured by, and what a click tells, in the units that are shown. `isOwn` marks numbers that hold for the
      * job's own values only.
