@@ -449,7 +449,7 @@ the page then solves the same equations anew, from the points solved here.
 Examples:
   flank view specs/bevel/pinion_19x62.chain
   flank view specs/hobbing/helical_gear.chain --set teeth=37 --out pages
-  flank view specs/bevel/ease_off_19x62.chain --job pinion --json")]
+  flank view specs/bevel/ease_off_19x62.chain --job conjugate --json")]
 pub(crate) struct View {
     #[command(flatten)]
     pub(crate) which: Which,
