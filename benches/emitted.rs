@@ -1,13 +1,10 @@
 //! Emitted functions of a free-form machine, compiled by the compilers of their languages: time per call beside an interpolation
 //! cycle. Six axes with first derivatives, of a tilted cutter on a cradle carried over by the explicit path, and as polynomials.
 
-use std::f64::consts::FRAC_PI_2;
-
-use flank_chain_dsl::Job;
-use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, Graph, Language, Polynomial, Signature, emit_function, emit_polynomials};
+use flank_solver::ExplicitProblem;
 use flank_tests::compiled::output_of;
-use flank_tests::job;
+use flank_tests::conversion::{Conversion, compiled};
 
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 /// Of the polynomials.
@@ -17,9 +14,7 @@ const SIGNATURE: Signature<'static> = Signature { name: "axes", comment: &[] };
 
 fn main() {
     let graph = Graph::new();
-    let job = job(&graph, "specs/bevel/tilted_pinion.chain", &[]);
-    let motion = job.surfaces[0].generation.motions[0];
-    let axes = free_form_axes(&graph, &job);
+    let (motion, axes) = free_form_axes(&graph);
     let named: Vec<(&str, Expr<'_>)> = AXES.into_iter().zip(axes).collect();
     // how long Horner's rule takes does not depend on the numbers
     let coefficients: Vec<f64> = (0..=ORDER).map(|power| 1.0 / (1.0 + power as f64)).collect();
@@ -35,16 +30,23 @@ fn main() {
     }
 }
 
-/// The explicit path: work axis in the XZ plane through the origin, cutter axis parallel to Z.
-fn free_form_axes<'g>(graph: &'g Graph, job: &Job<'g>) -> [Expr<'g>; 6] {
-    let t_work_cutter = job.surfaces[0].generation.driven.substituted(&job.bindings());
-    let cutter_axis = t_work_cutter.pose().matrix4().map(|row| row[2]);
-    let work = cutter_axis[1].atan2(-cutter_axis[0]);
-    let root = (-cutter_axis[2]).asin();
-    let turned = vec![Step::Rotate(Axis::Y, root + FRAC_PI_2), Step::Rotate(Axis::Z, work)];
-    let pose = Chain::new(graph, turned).then(&t_work_cutter).pose().matrix4();
-    let [x, y, z, _] = pose.map(|row| row[3]);
-    [x, y, z, work, root, pose[1][0].atan2(pose[0][0])]
+/// The explicit path over the sampled flank's roll, as `flank convert --emit-form exact` writes it.
+fn free_form_axes<'g>(graph: &'g Graph) -> (Expr<'g>, Vec<Expr<'g>>) {
+    let (job, target) = compiled(graph, ["specs/bevel/tilted_pinion.chain", "specs/machines/free_form.chain"]);
+    let Conversion { problem, .. } = Conversion::new(graph, &job, &target, ["work", "cutter"]);
+    let positions: Vec<Vec<f64>> = (0..101).map(|k| vec![-0.3 + 0.006 * f64::from(k)]).collect();
+    let first = problem.postures(&positions[0]).swap_remove(0);
+    let line = problem.follow(&first, &positions);
+    let generation = &job.surfaces[0].generation;
+    let explicit = ExplicitProblem {
+        target: problem.chain(),
+        unknowns: problem.unknowns(),
+        source: &generation.driven.substituted(&job.bindings()),
+        motions: &generation.motions,
+        bindings: &[],
+        line: (&positions, &line),
+    };
+    (generation.motions[0], explicit.solve().expect("three rotary axes and three slides").continuous)
 }
 
 fn nanoseconds((language, main): (Language, &str), function: &str) -> Option<f64> {

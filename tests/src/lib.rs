@@ -1,6 +1,7 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
 pub mod compiled;
+pub mod conversion;
 mod dice;
 pub mod layout;
 pub mod machines;

@@ -2,59 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
-use flank_expr::geometry::{Axis as Line, Chain, Step};
+use flank_chain_dsl::ToolShape;
+use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, Unproven, symmetries};
-use flank_tests::{points, reference_json, repository};
+use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, Unproven};
+use flank_tests::conversion::{Conversion, compiled, target_axes, tool_symmetries};
+use flank_tests::{points, reference_json};
 use serde_json::Value;
-
-struct Conversion<'g> {
-    problem: PoseProblem<'g>,
-    axes: Vec<String>,
-}
-
-fn compiled<'g>(graph: &'g Graph, [job, machine]: [&str; 2]) -> (Job<'g>, Job<'g>) {
-    let Compilation { mut jobs, machine, diagnostics, .. } =
-        compile_with_machine(graph, &repository(job), &repository(machine), &[]);
-    assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    (jobs.swap_remove(0), machine.expect("no error"))
-}
-
-fn tool_symmetries(job: &Job<'_>, surface: usize) -> Vec<Screw> {
-    let surface = &job.surfaces[surface];
-    let ToolShape::Surface(tool) = &surface.generation.tool else { return Vec::new() };
-    let ranges = surface.unknowns[..2].iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    symmetries(&[(&tool.bound(&job.bindings()), ranges)]).expect("all bound")
-}
-
-fn target_axes<'g>(target: &Job<'g>) -> Vec<TargetAxis<'g>> {
-    let axis = |axis: &Axis<'g>| TargetAxis {
-        variable: axis.variable,
-        is_rotary: axis.dimension == Dimension::ANGLE,
-        travel: axis.travel.map(|(low, high)| Range { low, high }),
-    };
-    target.machines[0].axes.iter().map(axis).collect()
-}
-
-fn conversion<'g>(graph: &'g Graph, job: &Job<'g>, target: &Job<'g>, frames: [&str; 2]) -> Conversion<'g> {
-    let generation = &job.surfaces[0].generation;
-    let machine = &target.machines[0];
-    let chain: Chain<'g> = machine.chain(graph, frames[0], frames[1]).expect("both frames");
-    let axes = target_axes(target);
-    let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-    let problem = PoseProblem::new(
-        &chain,
-        &axes,
-        &generation.driven,
-        &generation.motions,
-        &tool_symmetries(job, 0),
-        1000.0,
-        &bindings,
-    )
-    .expect("six axes");
-    Conversion { problem, axes: machine.axes.iter().map(|axis| axis.name.clone()).collect() }
-}
 
 #[test]
 fn a_cutter_of_revolution_turns_freely() {
@@ -81,7 +35,7 @@ const TABLES: [&str; 2] = ["specs/bevel/tilted_pinion.chain", "specs/machines/fr
 fn axes_meet_the_table() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
     let reference = reference_json("freeform.json");
     let rows = reference["axes"].as_array().expect("rows");
     let motions: Vec<Vec<f64>> = rows.iter().map(|row| vec![-row["psi"].as_f64().expect("a number")]).collect();
@@ -100,7 +54,7 @@ fn axes_meet_the_table() {
 fn taylor_coefficients_meet_the_table() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
     let reference = reference_json("freeform.json");
     let first = conversion.problem.postures(&[0.0]);
     let series = conversion.problem.series(&first[0], &[0.0], 0, 6).expect("no singular pose");
@@ -120,7 +74,7 @@ fn taylor_coefficients_meet_the_table() {
 fn what_cut_off_series_leave_meets_the_table() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
     let first = conversion.problem.postures(&[0.0]);
     let series = conversion.problem.series(&first[0], &[0.0], 0, 6).expect("no singular pose");
     let ToolShape::Surface(tool) = &job.surfaces[0].generation.tool else { panic!("a cutter has a surface") };
@@ -163,7 +117,7 @@ fn a_hobbing_job_on_its_own_machine_is_itself() {
     let rise = 38.0 * f64::tan(f64::asin(2.0 * 3.0 / 76.0));
     assert_eq!((angular, linear[0], linear[1]), ([0.0, 0.0, 1.0], 0.0, 0.0));
     assert!((linear[2] - rise).abs() < 1e-9, "{linear:?}");
-    let conversion = conversion(&graph, &job, &target, ["table", "hob"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["table", "hob"]);
     let positions: Vec<Vec<f64>> =
         (0..40).map(|k| vec![1.0 + 0.25 * f64::from(k), -13.0 + 0.6 * f64::from(k)]).collect();
     let first = conversion.problem.postures(&positions[0]);
@@ -224,7 +178,7 @@ fn sampled_and_proven(conversion: &Conversion<'_>, range: Range, series: &[Vec<f
 fn remainders_are_bounded() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
     let reference = reference_json("freeform.json");
     let range = Range { low: -0.3, high: 0.2 };
     let first = conversion.problem.postures(&[0.0]).swap_remove(0);
@@ -247,7 +201,7 @@ fn remainders_are_bounded() {
 fn remainders_of_wrong_polynomials_show() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, TABLES);
-    let conversion = conversion(&graph, &job, &target, ["work", "cutter"]);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
     let first = conversion.problem.postures(&[0.0]).swap_remove(0);
     let mut series = conversion.problem.series(&first, &[0.0], 0, 6).expect("no singular pose");
     series[0][1] += 0.5;
@@ -293,7 +247,7 @@ fn in_a_singular_pose_nothing_is_claimed() {
     let machine = &target.machines[0];
     let chain = machine.chain(&graph, "work", "cutter").expect("both frames");
     let tube = |beside: f64| {
-        let turned = [(Line::X, swing), (Line::Y, graph.constant(beside))].map(|(line, by)| Step::Rotate(line, by));
+        let turned = [(Axis::X, swing), (Axis::Y, graph.constant(beside))].map(|(line, by)| Step::Rotate(line, by));
         let source = Chain::new(&graph, turned.to_vec());
         let problem = PoseProblem::new(&chain, &target_axes(&target), &source, &[swing], &[], 1000.0, &[]);
         let problem = problem.expect("six axes");

@@ -2,14 +2,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
+use flank_chain_dsl::Job;
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph, Language, ScalarEvaluator, Signature, Tape, emit_function};
-use flank_solver::{
-    Explicit, ExplicitProblem, NotExplicit, Outcome, PoseProblem, Posture, Range, TargetAxis, symmetries,
-};
+use flank_solver::{Explicit, ExplicitProblem, NotExplicit, Outcome, PoseProblem, Posture};
 use flank_tests::compiled::values_at;
-use flank_tests::repository;
+use flank_tests::conversion::{Conversion, compiled};
 use nalgebra::Vector3 as Vector;
 
 struct Carried<'g> {
@@ -22,30 +20,12 @@ struct Carried<'g> {
 
 impl<'g> Carried<'g> {
     /// A job's first surface on another machine, as solved from the first position on.
-    fn new(graph: &'g Graph, [job, machine]: [&str; 2], frames: [&str; 2], positions: Vec<Vec<f64>>) -> Carried<'g> {
-        let Compilation { mut jobs, machine, diagnostics, .. } =
-            compile_with_machine(graph, &repository(job), &repository(machine), &[]);
-        assert!(diagnostics.is_empty(), "{diagnostics:?}");
-        let (job, target) = (jobs.swap_remove(0), machine.expect("no error"));
-        let surface = &job.surfaces[0];
-        let ToolShape::Surface(tool) = &surface.generation.tool else { panic!("a tool has a surface") };
-        let ranges = surface.unknowns[..2].iter().map(|u| Range { low: u.low, high: u.high }).collect();
-        let slips = symmetries(&[(&tool.bound(&job.bindings()), ranges)]).expect("all bound");
-        let machine = &target.machines[0];
-        let axis = |axis: &Axis<'g>| TargetAxis {
-            variable: axis.variable,
-            is_rotary: axis.dimension == Dimension::ANGLE,
-            travel: axis.travel.map(|(low, high)| Range { low, high }),
-        };
-        let axes: Vec<TargetAxis<'g>> = machine.axes.iter().map(axis).collect();
-        let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-        let (driven, motions) = (&surface.generation.driven, &surface.generation.motions);
-        let chain = machine.chain(graph, frames[0], frames[1]).expect("both frames");
-        let problem = PoseProblem::new(&chain, &axes, driven, motions, &slips, 1000.0, &bindings).expect("six axes");
+    fn new(graph: &'g Graph, files: [&str; 2], frames: [&str; 2], positions: Vec<Vec<f64>>) -> Carried<'g> {
+        let (job, target) = compiled(graph, files);
+        let Conversion { problem, axes } = Conversion::new(graph, &job, &target, frames);
         let first = problem.postures(&positions[0]).swap_remove(0);
         let line = problem.follow(&first, &positions);
         assert!(line.iter().all(|posture| matches!(posture.outcome, Outcome::Solved | Outcome::Outside { .. })));
-        let axes = machine.axes.iter().map(|axis| axis.name.clone()).collect();
         Carried { job, axes, problem, positions, line }
     }
 

@@ -10,7 +10,7 @@ use crate::newton::{Linearized, TOLERANCE, solve_with};
 use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
 use crate::start::{WIDELY, probe, scan};
 use crate::symmetry::Screw;
-use crate::system::System;
+use crate::system::{Evaluation, System};
 
 /// Halvings of a step along the motion until the axes follow.
 const MOST_HALVINGS: u32 = 12;
@@ -18,6 +18,10 @@ const MOST_HALVINGS: u32 = 12;
 const ASTRAY: f64 = 0.02;
 /// Of a pose: displacements along x, y, z, turns about them.
 const COMPONENTS: usize = 6;
+/// Postures that the next one is expected from.
+const MOST_PASSED: usize = 6;
+/// Where steps get longer, rounding of the last postures grows by the sum of their weights: fewer postures count then.
+const LARGEST_WEIGHTS: f64 = 100.0;
 /// Where it has no travel, a rotary axis turns as far as it must; this is how far it may (rad).
 const FREE_TURNS: f64 = 1e4;
 
@@ -208,28 +212,29 @@ impl<'g> PoseProblem<'g> {
     /// Postures at values of the motions, each continuous with the one before it, from one of [`PoseProblem::postures`] at the
     /// first. Where no posture follows, the rest has no root: the last one tells why.
     pub fn follow(&self, first: &Posture, motions: &[Vec<f64>]) -> Vec<Posture> {
-        let mut line: Vec<Posture> = Vec::with_capacity(motions.len());
-        let mut trail =
-            Trail { at: motions.first().cloned().unwrap_or_default(), here: first.unknowns.clone(), slope: None };
-        for wanted in motions {
-            let posture = self.advance(&mut trail, wanted);
-            line.push(posture);
-        }
-        line
+        let Some(start) = motions.first() else { return Vec::new() };
+        let mut walk = Walk {
+            evaluation: self.system.evaluation(start),
+            ranges: self.wide(),
+            passed: vec![(start.clone(), first.unknowns.clone())],
+        };
+        motions.iter().map(|wanted| self.advance(&mut walk, wanted)).collect()
     }
 
     /// Goes on to a value of the motions, in steps that are halved until the axes follow.
-    fn advance(&self, trail: &mut Trail, wanted: &[f64]) -> Posture {
+    fn advance(&self, walk: &mut Walk<'_>, wanted: &[f64]) -> Posture {
         let mut share = 1.0;
         let mut smallest = 0;
         loop {
-            let step: Vec<f64> = trail.at.iter().zip(wanted).map(|(a, b)| a + share * (b - a)).collect();
-            let expected = trail.expected(&step);
-            let solution = solve_with(&mut self.system.evaluation(&step), &self.wide(), &expected);
+            let at = &walk.passed[walk.passed.len() - 1].0;
+            let step: Vec<f64> = at.iter().zip(wanted).map(|(a, b)| a + share * (b - a)).collect();
+            let expected = walk.expected(&step);
+            walk.evaluation.set_parameters(&step);
+            let solution = solve_with(&mut walk.evaluation, &walk.ranges, &expected);
             let moved = distance(&solution.unknowns, &expected, &self.search[1]);
             let follows = solution.is_solved() && moved <= ASTRAY;
             if follows {
-                trail.take(step, &solution.unknowns);
+                walk.take(step, &solution.unknowns);
                 if share == 1.0 {
                     return self.posture(wanted, solution);
                 }
@@ -292,7 +297,9 @@ impl<'g> PoseProblem<'g> {
 
     fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
         let mut deviation = [0.0; 6];
-        ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
+        if self.components.len() < deviation.len() {
+            ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
+        }
         let rest = (0..6).filter(|k| !self.components.contains(k)).map(|k| Missing { direction: k, by: deviation[k] });
         let missing = rest.max_by(|a, b| a.by.abs().total_cmp(&b.by.abs())).filter(|most| most.by.abs() > TOLERANCE);
         let axes = solution.unknowns[..self.axes].to_vec();
@@ -314,30 +321,57 @@ impl<'g> PoseProblem<'g> {
     }
 }
 
-/// Where a line of postures has got to.
-struct Trail {
-    at: Vec<f64>,
-    here: Vec<f64>,
-    /// The last step of the motions and of the unknowns.
-    slope: Option<(Vec<f64>, Vec<f64>)>,
+/// A line of postures on its way.
+struct Walk<'s> {
+    evaluation: Evaluation<'s>,
+    /// Where Newton may go.
+    ranges: Vec<Range>,
+    /// The last values of the motions with their unknowns, no two of them the same, the newest one behind.
+    passed: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
-impl Trail {
-    /// Straight on.
+impl Walk<'_> {
+    /// By the polynomial through the last postures; where there are several motions, straight on.
     fn expected(&self, step: &[f64]) -> Vec<f64> {
-        let Some((by, moved)) = &self.slope else { return self.here.clone() };
-        let length: f64 = by.iter().map(|x| x * x).sum();
-        let along: f64 = by.iter().zip(step.iter().zip(&self.at)).map(|(by, (to, from))| by * (to - from)).sum();
-        let share = if length > 0.0 { along / length } else { 0.0 };
-        self.here.iter().zip(moved).map(|(x, by)| x + share * by).collect()
+        let most = if step.len() == 1 { MOST_PASSED } else { 2 };
+        let weights = (1..=most.min(self.passed.len())).rev().map(|count| self.weights(step, count));
+        // one point alone has the weight one
+        let weights =
+            weights.into_iter().find(|weights| weights.iter().map(|w| w.abs()).sum::<f64>() <= LARGEST_WEIGHTS);
+        let weights = weights.unwrap_or(vec![1.0]);
+        let used = &self.passed[self.passed.len() - weights.len()..];
+        let of = |k: usize| used.iter().zip(&weights).map(|((_, unknowns), weight)| weight * unknowns[k]).sum();
+        (0..used[0].1.len()).map(of).collect()
+    }
+
+    /// Lagrange's weights of the last few postures, by how far each is from the newest one along the step.
+    fn weights(&self, step: &[f64], count: usize) -> Vec<f64> {
+        let used = &self.passed[self.passed.len() - count..];
+        let newest = &used[count - 1].0;
+        let along: Vec<f64> = if count > 1 {
+            used[count - 2].0.iter().zip(newest).map(|(before, newest)| newest - before).collect()
+        } else {
+            return vec![1.0];
+        };
+        let place = |at: &[f64]| -> f64 { at.iter().zip(newest).zip(&along).map(|((a, b), by)| (a - b) * by).sum() };
+        let (places, aim): (Vec<f64>, f64) = (used.iter().map(|(at, _)| place(at)).collect(), place(step));
+        let weight = |i: usize| {
+            let others = places.iter().enumerate().filter(|(j, _)| *j != i);
+            others.map(|(_, place)| (aim - place) / (places[i] - place)).product()
+        };
+        (0..count).map(weight).collect()
     }
 
     fn take(&mut self, step: Vec<f64>, unknowns: &[f64]) {
-        let by: Vec<f64> = step.iter().zip(&self.at).map(|(to, from)| to - from).collect();
-        if by.iter().any(|x| *x != 0.0) {
-            self.slope = Some((by, unknowns.iter().zip(&self.here).map(|(to, from)| to - from).collect()));
+        let newest = self.passed.last_mut().expect("a walk has begun somewhere");
+        if newest.0 == step {
+            newest.1 = unknowns.to_vec();
+            return;
         }
-        (self.at, self.here) = (step, unknowns.to_vec());
+        if self.passed.len() == MOST_PASSED {
+            self.passed.remove(0);
+        }
+        self.passed.push((step, unknowns.to_vec()));
     }
 }
 

@@ -9,11 +9,11 @@ use crate::solution::Range;
 /// Order of the polynomials in the middle of a tube.
 const ORDER: usize = 12;
 /// Of the range, the first piece that is tried, and the shortest.
-const LONGEST: f64 = 0.25;
+const LONGEST: f64 = 0.5;
 const SHORTEST: f64 = 1e-6;
-/// A piece is halved while its radii are above this share of its unknowns (mm; angles of a radian), down to pieces of
-/// [`SHORT_ENOUGH`] of the range: a few hundred roundings.
-const THIN: f64 = 1e-13;
+/// A piece is halved while its radii are above this share of its unknowns, of 100 mm or rad if they are smaller, down to pieces of
+/// [`SHORT_ENOUGH`] of the range: some hundred roundings.
+const THIN: f64 = 1e-14;
 const SHORT_ENOUGH: f64 = 1e-3;
 /// Parts of a piece in which the distance from a polynomial is bounded; a power of two, so that their length is exact.
 const PARTS: usize = 16;
@@ -171,7 +171,7 @@ impl<'p, 'g> Prover<'p, 'g> {
             let line = self.problem.follow(&posture, &[vec![at], vec![middle], vec![end]]);
             let piece = line.iter().all(Posture::is_root).then(|| self.piece(&line[1], middle, at, next)).flatten();
             let is_thin = |piece: &Piece| {
-                let sizes = piece.centre.iter().map(|c| c[0].abs().max(1.0));
+                let sizes = piece.centre.iter().map(|c| c[0].abs().max(100.0));
                 piece.radii.iter().zip(sizes).all(|(radius, size)| *radius <= THIN * size)
             };
             match piece.filter(|piece| is_thin(piece) || length <= SHORT_ENOUGH * whole) {
