@@ -49,6 +49,8 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Write a page to look at: the machine moves, the tool generates the work, in 3-D, without a network
     View(View),
+    /// Make a job of one in the library, with all that it uses
+    New(New),
     /// Print a script that completes arguments in a shell
     Completions(Completions),
     /// Write manual pages
@@ -481,4 +483,33 @@ pub(crate) struct Man {
     /// Folder for the pages; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  flank new                                                   what there is to start from
+  flank new helical_gear --name my_gear --set teeth=37 --set helix_angle=\"15 deg\"
+  flank new pinion_19x62 --ask --out my_gears                 asks for each parameter; Enter keeps it")]
+pub(crate) struct New {
+    /// The job to start from; without one, all are listed
+    pub(crate) template: Option<String>,
+    /// What the new job is called
+    #[arg(long, value_name = "NAME", value_parser = job_name)]
+    pub(crate) name: Option<String>,
+    /// Give a parameter another value
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+    /// Ask for each parameter that is not set
+    #[arg(long)]
+    pub(crate) ask: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+}
+
+fn job_name(text: &str) -> Result<String, String> {
+    let is_word = text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    let is_name = is_word && text.starts_with(|letter: char| letter.is_ascii_alphabetic());
+    is_name.then(|| text.to_owned()).ok_or("a name has letters, digits and _, a letter first".to_owned())
 }

@@ -16,6 +16,7 @@ mod fmt;
 mod geometry;
 mod import;
 mod limits;
+mod new;
 mod reach;
 mod reasons;
 mod required;
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         Command::Import(arguments) => import::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::View(arguments) => view::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Completions(arguments) => shell::completions(&arguments),
         Command::Man(arguments) => shell::man(&arguments),
     };
