@@ -1,10 +1,10 @@
 //! Jobs carried over to other machines.
 
-use flank_chain_dsl::{Axis, Compilation, Dimension, Job, ToolShape, compile_with_machine};
+use flank_chain_dsl::Job;
 use flank_expr::{Expr, Graph};
-use flank_solver::{PoseProblem, Range, Screw, TargetAxis, symmetries};
+use flank_solver::{PoseProblem, TargetAxis};
 
-use crate::repository;
+use crate::machines::{beside, target_axis, unseen};
 
 /// Beyond this no slide without travel goes, mm.
 const REACH: f64 = 1000.0;
@@ -21,32 +21,14 @@ pub struct Conversion<'g> {
 ///
 /// # Panics
 /// If one of them is wrong.
-pub fn compiled<'g>(graph: &'g Graph, [job, machine]: [&str; 2]) -> (Job<'g>, Job<'g>) {
-    let Compilation { mut jobs, machine, diagnostics, .. } =
-        compile_with_machine(graph, &repository(job), &repository(machine), &[]);
-    assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    (jobs.swap_remove(0), machine.expect("no error"))
-}
-
-/// What the tool of a surface does not see of its own motion.
-///
-/// # Panics
-/// If the surface depends on something that is not bound.
-pub fn tool_symmetries(job: &Job<'_>, surface: usize) -> Vec<Screw> {
-    let surface = &job.surfaces[surface];
-    let ToolShape::Surface(tool) = &surface.generation.tool else { return Vec::new() };
-    let ranges = surface.unknowns[..2].iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    symmetries(&[(&tool.bound(&job.bindings()), ranges)]).expect("all bound")
+pub fn compiled<'g>(graph: &'g Graph, files: [&str; 2]) -> (Job<'g>, Job<'g>) {
+    let (mut jobs, machine) = beside(graph, files, &[]);
+    (jobs.swap_remove(0), machine)
 }
 
 /// All axes of a machine.
 pub fn target_axes<'g>(target: &Job<'g>) -> Vec<TargetAxis<'g>> {
-    let axis = |axis: &Axis<'g>| TargetAxis {
-        variable: axis.variable,
-        is_rotary: axis.dimension == Dimension::ANGLE,
-        travel: axis.travel.map(|(low, high)| Range { low, high }),
-    };
-    target.machines[0].axes.iter().map(axis).collect()
+    target.machines[0].axes.iter().map(target_axis).collect()
 }
 
 impl<'g> Conversion<'g> {
@@ -55,13 +37,13 @@ impl<'g> Conversion<'g> {
     /// # Panics
     /// If there are no such frames, or too many axes.
     pub fn new(graph: &'g Graph, job: &Job<'g>, target: &Job<'g>, frames: [&str; 2]) -> Conversion<'g> {
-        let generation = &job.surfaces[0].generation;
+        let surface = &job.surfaces[0];
         let machine = &target.machines[0];
         let chain = machine.chain(graph, frames[0], frames[1]).expect("both frames");
         let axes = target_axes(target);
         let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-        let (driven, motions) = (&generation.driven, &generation.motions);
-        let slips = tool_symmetries(job, 0);
+        let (driven, motions) = (&surface.generation.driven, &surface.generation.motions);
+        let slips = unseen(job, surface);
         let problem = PoseProblem::new(&chain, &axes, driven, motions, &slips, REACH, &bindings).expect("six axes");
         Conversion { problem, axes: machine.axes.iter().map(|axis| axis.name.clone()).collect() }
     }

@@ -6,7 +6,8 @@ use flank_chain_dsl::ToolShape;
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, Unproven};
-use flank_tests::conversion::{Conversion, compiled, target_axes, tool_symmetries};
+use flank_tests::conversion::{Conversion, compiled, target_axes};
+use flank_tests::machines::unseen;
 use flank_tests::{points, reference_json};
 use serde_json::Value;
 
@@ -14,7 +15,7 @@ use serde_json::Value;
 fn a_cutter_of_revolution_turns_freely() {
     let graph = Graph::new();
     let (job, _) = compiled(&graph, TABLES);
-    let found = tool_symmetries(&job, 0);
+    let found = unseen(&job, &job.surfaces[0]);
     assert_eq!(found, [Screw { angular: [0.0, 0.0, 1.0], linear: [0.0; 3] }]);
 }
 
@@ -111,7 +112,7 @@ fn a_hobbing_job_on_its_own_machine_is_itself() {
     let graph = Graph::new();
     let (job, target) = compiled(&graph, ["specs/hobbing/helical_gear.chain", "specs/machines/hobbing_6axis.chain"]);
     let generation = &job.surfaces[0].generation;
-    let screws = tool_symmetries(&job, 0);
+    let screws = unseen(&job, &job.surfaces[0]);
     let [Screw { angular, linear }] = screws[..] else { panic!("one screw: {screws:?}") };
     // the lead of the thread, divided by a turn
     let rise = 38.0 * f64::tan(f64::asin(2.0 * 3.0 / 76.0));
@@ -146,7 +147,7 @@ fn what_a_machine_has_no_axis_for_is_told() {
     let chain = chain.substituted(&[(still, graph.constant(0.2))]);
     let axes: Vec<TargetAxis<'_>> = target_axes(&target).into_iter().filter(|axis| axis.variable != still).collect();
     let generation = &job.surfaces[0].generation;
-    let screws = tool_symmetries(&job, 0);
+    let screws = unseen(&job, &job.surfaces[0]);
     let bindings = job.bindings();
     let problem = PoseProblem::new(&chain, &axes, &generation.driven, &generation.motions, &screws, 1000.0, &bindings)
         .expect("few");

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use flank_chain_dsl::Job;
-use flank_expr::geometry::Vector3;
+use flank_expr::geometry::{Axis, Chain, Step, Vector3};
 use flank_expr::{Expr, Graph, Language, ScalarEvaluator, Signature, Tape, emit_function};
 use flank_solver::{Explicit, ExplicitProblem, NotExplicit, Outcome, PoseProblem, Posture};
 use flank_tests::compiled::values_at;
@@ -82,6 +82,51 @@ fn the_path_of_the_free_form_machine_is_the_solved_one() {
         let files = [job, "specs/machines/free_form.chain"];
         agrees(&Carried::new(&graph, files, ["work", "cutter"], even(-0.3, 0.2, 201)));
     }
+}
+
+/// A table that tilts, a head that swivels over a table, a fork head; the tool's own turn is the third angle.
+#[test]
+fn the_paths_of_machining_centres_are_the_solved_ones() {
+    for machine in ["table_table", "head_table", "head_head"] {
+        let graph = Graph::new();
+        let machine = format!("specs/machines/five_axis_{machine}.chain");
+        let files = ["specs/bevel/pinion_19x62.chain", &machine];
+        agrees(&Carried::new(&graph, files, ["work", "tip"], even(-0.18, 0.19, 201)));
+    }
+}
+
+/// Two rotary axes without the cutter's spindle, and three of which two are parallel.
+#[test]
+fn what_has_no_explicit_form_is_told() {
+    let graph = Graph::new();
+    let files = ["specs/bevel/pinion_19x62.chain", "specs/machines/free_form.chain"];
+    let carried = Carried::new(&graph, files, ["work", "cutter"], even(-0.18, 0.19, 3));
+    let told = |target: &Chain<'_>, unknowns: &[usize]| {
+        let unknowns: Vec<Expr<'_>> = unknowns.iter().map(|k| carried.problem.unknowns()[*k]).collect();
+        let generation = &carried.job.surfaces[0].generation;
+        ExplicitProblem {
+            target,
+            unknowns: &unknowns,
+            source: &generation.driven,
+            motions: &generation.motions,
+            bindings: &carried.job.bindings(),
+            line: (&carried.positions, &carried.line),
+        }
+        .solve()
+        .expect_err("no form for it")
+    };
+    let [x, y, z, a, b, c] = carried.problem.unknowns()[..] else { panic!("six axes") };
+    let still = carried.problem.chain().substituted(&[(b, graph.constant(0.3))]);
+    assert_eq!(told(&still, &[0, 1, 2, 3, 5]), NotExplicit::Count { rotary: 2, linear: 3 });
+    let slides = Step::Translate(Vector3([x, y, z]));
+    let turn = |line, by| Step::Rotate(line, by);
+    let parallel = Chain::new(&graph, vec![turn(Axis::Z, a), turn(Axis::Z, b), slides, turn(Axis::X, c)]);
+    assert_eq!(told(&parallel, &[0, 1, 2, 3, 4, 5]), NotExplicit::Parallel);
+    let geared = Chain::new(&graph, vec![turn(Axis::Z, a), turn(Axis::Y, a * b), slides, turn(Axis::X, c)]);
+    assert_eq!(told(&geared, &[0, 1, 2, 3, 4, 5]), NotExplicit::Coupled);
+    let flat = Step::Translate(Vector3([x, y + z, graph.constant(0.0)]));
+    let flat = Chain::new(&graph, vec![turn(Axis::Z, a), turn(Axis::Y, b), flat, turn(Axis::X, c)]);
+    assert_eq!(told(&flat, &[0, 1, 2, 3, 4, 5]), NotExplicit::Flat);
 }
 
 /// Two motions, a spindle of more than a turn.

@@ -7,7 +7,8 @@ use flank_chain_dsl::Job;
 use flank_expr::geometry::{Axis, Chain, Step, Vector3};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PoseProblem, Posture, Range, Screw, TargetAxis};
-use flank_tests::machines::{beside, target_axis};
+use flank_tests::conversion::target_axes;
+use flank_tests::machines::beside;
 use flank_tests::{Dice, reference_csv};
 
 /// A tool turns about its own axis without the work's seeing it.
@@ -24,10 +25,6 @@ fn machine<'g>(graph: &'g Graph, name: &str, settings: &[(&str, String)]) -> Job
 /// From work to tool, with numbers for the settings.
 fn chain<'g>(graph: &'g Graph, machine: &Job<'g>) -> Chain<'g> {
     machine.machines[0].chain(graph, "work", "tip").expect("both frames").substituted(&machine.bindings())
-}
-
-fn target_axes<'g>(machine: &Job<'g>) -> Vec<TargetAxis<'g>> {
-    machine.machines[0].axes.iter().map(target_axis).collect()
 }
 
 /// The tool's tip at a point of the work and turned as a table with these angles has it: five motions.
