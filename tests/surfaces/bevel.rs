@@ -466,6 +466,7 @@ fn wrong_settings_are_told_in_the_words_of_the_trade() {
         ("formate_gear", "m.ratio_of_roll", "1.02", "is not generated"),
         ("helixform_gear", "m.ratio_of_roll", "1.02", "is not generated"),
         ("pair_from_blank", "face_width", "80 mm", "the teeth vanish at the toe"),
+        ("pair_from_blank", "shaft_angle", "120 deg", "the gear would be an internal one"),
         ("pair_from_blank", "dedendum_factor", "2.3", "meet before its tips"),
     ] {
         let set = vec![(name.to_string(), value.to_string())];

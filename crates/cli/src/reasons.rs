@@ -38,7 +38,13 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let open = solved.points.iter().filter(|point| matches!(point.outcome, Outcome::NotConverged { .. }));
     let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
-    tell(count, format!("not converged{near}: no point of this branch was found there"));
+    // the others may end where the surface turns back
+    let ends = if solved.points.iter().any(|point| point.outcome == Outcome::Solved) {
+        "; `--limits` shows where the surface ends"
+    } else {
+        ""
+    };
+    tell(count, format!("not converged{near}: no point of this branch was found there{ends}"));
     reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
     reasons
 }
