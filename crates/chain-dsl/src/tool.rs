@@ -31,7 +31,7 @@ pub(crate) struct BuiltTool<'g> {
 /// One surface of a tool in the tool's frame.
 pub(crate) struct ToolSurface<'g> {
     pub(crate) name: String,
-    /// Its smooth pieces; `None` if it is not known which they are (and that is reported).
+    /// Its smooth pieces; `None` if it is not known which they are (and that is reported), or nobody wants them.
     pub(crate) pieces: Option<Vec<Piece<'g>>>,
 }
 
@@ -40,19 +40,23 @@ pub(crate) struct ToolSurface<'g> {
 pub(crate) struct Piece<'g> {
     /// The name of the segment.
     pub(crate) name: Option<String>,
-    /// `None` if something in it is wrong (and reported).
+    /// `None` if something in it is wrong (and reported), or nobody wants it.
     pub(crate) surface: Option<(ToolShape<'g>, Vec<Bounded<'g>>)>,
 }
 
 /// A segment of a profile, and the name of the profile.
 type Along<'a, 'g> = (&'a str, &'a Rc<Segment<'g>>);
 
-/// Gives values to the parameters and builds the surfaces.
+/// Whether somebody wants a surface, or a piece of it.
+pub(crate) type Wanted<'w> = &'w dyn Fn(&str, Option<&str>) -> bool;
+
+/// Gives values to the parameters and builds the surfaces that are wanted; the others have no pieces that are known.
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
     tool: &ast::Tool,
     source: Source<'_, 'g>,
     overrides: &Overrides,
+    wanted: Wanted<'_>,
 ) -> BuiltTool<'g> {
     let user = source.user();
     let mut binder = Binder::new(source, overrides);
@@ -95,7 +99,8 @@ pub(crate) fn build<'g>(
     let mut surfaces = Vec::new();
     for statement in &tool.statements {
         if let ToolStatement::Surface(written) = statement {
-            let pieces = pieces(context, written, &scope);
+            let is_wanted = wanted(&written.name.node, None);
+            let pieces = if is_wanted { pieces(context, written, &scope, wanted) } else { None };
             surfaces.push(ToolSurface { name: written.name.node.clone(), pieces });
         }
     }
@@ -103,7 +108,12 @@ pub(crate) fn build<'g>(
 }
 
 /// The smooth pieces of a surface: one for each segment of the profile that it runs along.
-fn pieces<'g>(context: &mut Context<'g>, written: &ast::ToolSurface, scope: &Scope<'g>) -> Option<Vec<Piece<'g>>> {
+fn pieces<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+    wanted: Wanted<'_>,
+) -> Option<Vec<Piece<'g>>> {
     let mut along = written.parameters.iter().filter_map(|parameter| match parameter {
         SurfaceParameter::Along(name, profile) => Some((name, profile)),
         SurfaceParameter::Within(_) => None,
@@ -133,7 +143,11 @@ fn pieces<'g>(context: &mut Context<'g>, written: &ast::ToolSurface, scope: &Sco
     };
     let piece = |segment: &Rc<Segment<'g>>| Piece {
         name: Some(segment.name.clone()),
-        surface: build_surface(context, written, scope, Some((&name.node, segment))),
+        surface: if wanted(&written.name.node, Some(&segment.name)) {
+            build_surface(context, written, scope, Some((&name.node, segment)))
+        } else {
+            None
+        },
     };
     Some(profile.segments.iter().map(piece).collect())
 }

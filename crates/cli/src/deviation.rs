@@ -6,7 +6,7 @@ use std::time::Instant;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps};
 use flank_expr::Graph;
-use flank_solver::{EaseOff, Outcome, SurfacePoint};
+use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::Deviation;
@@ -101,9 +101,15 @@ fn measure<'j, 'g>([surface, from]: [Named<'j, 'g>; 2], as_it_lies: bool) -> Res
         ))
     };
     let near = problem(surface.job, surface.surface, [same(0)?, same(1)?]);
-    let (near, _) = near.solve(&sample.targets, sample.counts);
     let points = problem(from.job, from.surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
-    let (points, _) = points.solve(&sample.targets, sample.counts);
+    let (targets, counts) = (sample.targets.as_slice(), sample.counts);
+    let solved = |of: &SurfaceProblem| of.solve(targets, counts).0;
+    let (near, points) = std::thread::scope(|scope| {
+        let near = scope.spawn(|| solved(&near));
+        let points = solved(&points);
+        (near.join(), points)
+    });
+    let near = near.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let held = &surface.surface.surface;
     let deviation = flank_solver::Deviation::new(held, ranges(surface.surface), &surface.job.bindings())
         .expect("a job without errors leaves nothing unbound");

@@ -19,7 +19,7 @@ use crate::machine::{self, Built, Machines};
 use crate::model::{Bounded, GeneratedSurface, Job, Machine, Parameter};
 use crate::requirement;
 use crate::source::{Name, Span};
-use crate::syntax::ast::{self, JobStatement};
+use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::tool::{self, BuiltTool, Tools};
 
 /// The definitions that jobs draw on.
@@ -49,6 +49,8 @@ struct Builder<'a, 'g> {
     /// Machines with an axis that has no law (which has been reported).
     unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
+    /// What the surfaces of the job are made from and over: `c.outside.blade`, `roll`.
+    named: Vec<Vec<String>>,
     /// Whether axes without a law are free.
     stands_alone: bool,
 }
@@ -69,6 +71,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             laws: Vec::new(),
             unsettled: HashSet::new(),
             surfaces: Vec::new(),
+            named: Vec::new(),
             stands_alone,
         }
     }
@@ -96,6 +99,15 @@ pub(crate) fn build<'g>(
     file: &Path,
 ) -> Job<'g> {
     let mut builder = Builder::new(definitions, false);
+    for statement in &job.statements {
+        if let JobStatement::Surface(surface) = statement {
+            surface.value.each(&mut |part| {
+                if let ExpressionKind::Path(path) = &part.kind {
+                    builder.named.push(path.segments.iter().map(|segment| segment.node.clone()).collect());
+                }
+            });
+        }
+    }
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
@@ -226,7 +238,15 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let source = self.source(instance);
-        let built = tool::build(context, definition, source, self.definitions.overrides);
+        // of most tools, a job needs few surfaces
+        let name = instance.name.node.as_str();
+        let is_named =
+            |path: &&Vec<String>, surface: &str| path[0] == name && path.get(1).is_some_and(|it| it == surface);
+        let wanted = |surface: &str, piece: Option<&str>| {
+            let mut paths = self.named.iter().filter(|path| is_named(path, surface));
+            paths.any(|path| piece.is_none() || path.get(2).is_none_or(|it| Some(it.as_str()) == piece))
+        };
+        let built = tool::build(context, definition, source, self.definitions.overrides, &wanted);
         self.expose(&instance.name, &built.scope);
         self.tools.push((instance.name.clone(), built));
     }
