@@ -255,4 +255,10 @@ fn a_singular_pose_is_told_with_its_place() {
     assert!(told.contains("free_form stands in a singular pose: "), "{told}");
     assert!(told.contains("A, C can move together without moving the tool"), "{told}");
     assert!(told.contains("at roll = "), "{told}");
+    // one of them is enough, and five axes meet these poses
+    let fixed =
+        support::self_contained(&["machines/free_form"]) + "machine still extends free_form { fix C = 0 deg }\n";
+    let fixed = support::written(&out, "still.chain", &fixed);
+    let run = flank(&[&job[..], &["--to", &fixed, "--tool-frame", "cutter", "--work-frame", "work"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
 }

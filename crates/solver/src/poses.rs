@@ -34,6 +34,11 @@ pub struct PoseProblem<'g> {
     unknowns: Vec<Expr<'g>>,
     /// By these amounts.
     slips: Vec<Step<'g>>,
+    motions: Vec<Expr<'g>>,
+    /// What vanishes where the pose is met: displacements, then turns.
+    deviation: Vec<Expr<'g>>,
+    /// What is positive there, and negative half a turn away.
+    upright: Expr<'g>,
     /// Parameters: the source's motions.
     system: System,
     /// What of the pose the axes cannot reach: components of the deviation that must come out as zero.
@@ -161,18 +166,36 @@ impl<'g> PoseProblem<'g> {
             chain,
             unknowns: unknowns.clone(),
             slips: slipped,
-            system: System::one_by_one(&residuals, &unknowns, motions)?.with_conditions(
-                &residuals,
-                &[upright],
-                &[],
-                &inputs,
-            )?,
+            motions: motions.to_vec(),
+            upright,
+            system: equations(&residuals, upright, &unknowns, motions)?,
             rest: Tape::new(&deviation, &inputs)?,
+            deviation,
             components,
             axes: axes.len(),
             travels,
             search,
         })
+    }
+
+    /// The same with fewer axes than a pose has freedoms, from mixtures of all components of the deviation instead of some of them:
+    /// they fix a posture wherever it stands, but where the pose cannot be met they do not tell which direction is missing. Nothing
+    /// where all six components count anyway.
+    pub fn mixed(&self) -> Option<PoseProblem<'g>> {
+        /// Turns count as displacements so far away, mm.
+        const ARM: f64 = 100.0;
+        if self.unknowns.len() == COMPONENTS {
+            return None;
+        }
+        let shares = [Range { low: -1.0, high: 1.0 }; COMPONENTS];
+        let mixture = |k: usize| {
+            let each = probe(&shares, k as u32 + 1).into_iter().zip(&self.deviation).enumerate();
+            let each = each.map(|(j, (share, part))| if j < 3 { share * *part } else { share * ARM * *part });
+            each.reduce(|sum, part| sum + part).expect("six components")
+        };
+        let residuals: Vec<Expr<'g>> = (0..self.unknowns.len()).map(mixture).collect();
+        let system = equations(&residuals, self.upright, &self.unknowns, &self.motions).ok()?;
+        Some(PoseProblem { system, components: Vec::new(), ..self.clone() })
     }
 
     /// From work to tool on the target machine, in its axes and in the amounts by which the tool slides along itself.
@@ -197,16 +220,27 @@ impl<'g> PoseProblem<'g> {
     /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; if there
     /// is none, those beyond the travels; if there is none either, what came nearest to one.
     pub fn postures(&self, motions: &[f64]) -> Vec<Posture> {
-        let look = |ranges: &[Range]| scan(&mut self.system.evaluation(motions), ranges, WIDELY).0;
-        let mut found = look(&self.search[0]);
-        if !found.iter().any(Solution::is_solved) {
-            found = look(&self.search[1]);
+        let near = self.look(motions, &self.search[0]);
+        let is_within = |posture: &Posture| posture.outcome == Outcome::Solved;
+        if near.first().is_some_and(|first| is_within(first) && first.missing.is_none()) {
+            return near;
         }
+        let far = self.look(motions, &self.search[1]);
+        let is_beyond = |posture: &Posture| matches!(posture.outcome, Outcome::Outside { .. });
+        let is_whole = |first: &Posture| (is_within(first) || is_beyond(first)) && first.missing.is_none();
+        if far.first().is_some_and(is_whole) || !near.iter().any(is_within) { far } else { near }
+    }
+
+    /// Postures somewhere in ranges, those with the whole pose before those that lack some of it, the least turned one first.
+    fn look(&self, motions: &[f64], ranges: &[Range]) -> Vec<Posture> {
+        let mut found = scan(&mut self.system.evaluation(motions), ranges, WIDELY).0;
         let turned = |solution: &Solution| -> f64 {
             solution.unknowns.iter().zip(&self.search[1]).map(|(x, range)| (x / range.width()).powi(2)).sum()
         };
         found.sort_by(|a, b| turned(a).total_cmp(&turned(b)));
-        found.into_iter().map(|solution| self.posture(motions, solution)).collect()
+        let mut postures: Vec<Posture> = found.into_iter().map(|solution| self.posture(motions, solution)).collect();
+        postures.sort_by_key(|posture| posture.missing.is_some());
+        postures
     }
 
     /// Postures at values of the motions, each continuous with the one before it, from one of [`PoseProblem::postures`] at the
@@ -381,6 +415,17 @@ fn lost(solution: &Solution) -> Outcome {
         Outcome::Singular => Outcome::Singular,
         _ => Outcome::NotConverged { iterations: solution.iterations },
     }
+}
+
+/// Residuals that vanish, where something else is positive.
+fn equations<'g>(
+    residuals: &[Expr<'g>],
+    positive: Expr<'g>,
+    unknowns: &[Expr<'g>],
+    motions: &[Expr<'g>],
+) -> Result<System, TapeError> {
+    let inputs: Vec<Expr<'g>> = unknowns.iter().chain(motions).copied().collect();
+    System::one_by_one(residuals, unknowns, motions)?.with_conditions(residuals, &[positive], &[], &inputs)
 }
 
 /// Displacement (mm) and turn (the sines of small angles) of what should be the identity.

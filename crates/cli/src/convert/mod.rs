@@ -160,18 +160,30 @@ impl<'t, 'g> Target<'t, 'g> {
         let unseen = &self.source.symmetries;
         let problem = self.problem(unseen)?;
         let line = follow(&problem, positions, self.source.motions.len());
-        if line.iter().all(is_good) || unseen.is_empty() {
+        if line.iter().all(is_met) {
             return Ok((problem, line));
         }
         // an axis that only happens to move the tool along itself there does not know how far: as far as on the source
-        let exact = self.problem(&[])?;
-        let exactly = follow(&exact, positions, self.source.motions.len());
-        Ok(if exactly.iter().all(is_good) { (exact, exactly) } else { (problem, line) })
+        let exact = if unseen.is_empty() { None } else { Some(self.problem(&[])?) };
+        let mixed = [Some(&problem), exact.as_ref()].map(|problem| problem.and_then(PoseProblem::mixed));
+        for other in [exact].into_iter().chain(mixed).flatten() {
+            let line = follow(&other, positions, self.source.motions.len());
+            if line.iter().all(is_met) {
+                return Ok((other, line));
+            }
+        }
+        Ok((problem, line))
     }
 }
 
+/// Whether the tool stands as it should and the axes can.
 fn is_good(posture: &Posture) -> bool {
-    posture.outcome == Outcome::Solved && posture.missing.is_none()
+    posture.outcome == Outcome::Solved && is_met(posture)
+}
+
+/// Whether the tool stands as it should, within the travels or beyond.
+fn is_met(posture: &Posture) -> bool {
+    matches!(posture.outcome, Outcome::Solved | Outcome::Outside { .. }) && posture.missing.is_none()
 }
 
 /// A job on another machine.
