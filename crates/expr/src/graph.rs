@@ -65,6 +65,16 @@ impl Node {
         };
         a.into_iter().chain(b)
     }
+
+    /// The same of other nodes.
+    pub(crate) fn with_operands(self, other: impl Fn(NodeId) -> NodeId) -> Node {
+        match self {
+            Node::Constant(_) | Node::Variable(_) => self,
+            Node::Unary(op, a) => Node::Unary(op, other(a)),
+            Node::Binary(op, a, b) => Node::Binary(op, other(a), other(b)),
+            Node::Curve(curve, order, a) => Node::Curve(curve, order, other(a)),
+        }
+    }
 }
 
 #[derive(Default)]

@@ -44,7 +44,7 @@ pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials,
 pub use evaluate::ScalarEvaluator;
 pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use interval::{Interval, IntervalEvaluator};
-pub use lanes::{InstructionSet, LANES, LaneEvaluator, LaneTape};
+pub use lanes::{InstructionSet, LANES, LaneEvaluator, LaneTape, Varies};
 pub use op::{Binary, Unary};
 pub use print::{Definition, Listing, Style};
 pub use tape::{Instruction, Operation, Tape, TapeError};

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::curve::Curve;
 use crate::graph::{CurveId, Expr, Graph, Node, NodeId};
-use crate::hash::NodeMap;
+use crate::hash::{NodeMap, NodeSet};
 use crate::op::{Binary, Unary};
 
 /// What an instruction does with its registers.
@@ -68,6 +68,33 @@ impl Tape {
     /// # Panics
     /// If an entry of `inputs` is not a variable, or the expressions are of different graphs.
     pub fn new(outputs: &[Expr<'_>], inputs: &[Expr<'_>]) -> Result<Tape, TapeError> {
+        Tape::with_definitions(outputs, inputs, &[])
+    }
+
+    /// The same where some variables stand for expressions, each in the inputs and in variables defined before it. What depends on
+    /// them is computed from their numbers: nothing cancels because of what they stand for. An input that is defined has no
+    /// effect.
+    ///
+    /// ```
+    /// use flank_expr::{Graph, ScalarEvaluator, Tape};
+    /// let graph = Graph::new();
+    /// let (x, y) = (graph.variable("x"), graph.variable("y"));
+    /// let tape = Tape::with_definitions(&[y, 3.0 * y - x], &[x], &[(y, x / 3.0)]).expect("y is defined");
+    /// let mut out = [0.0; 2];
+    /// ScalarEvaluator::new(&tape).run(&[0.7], &mut out);
+    /// assert_eq!(out, [0.7 / 3.0, 3.0 * (0.7 / 3.0) - 0.7], "rounding and all");
+    /// ```
+    ///
+    /// # Errors
+    /// If an output or a definition depends on a variable that is neither an input nor defined.
+    ///
+    /// # Panics
+    /// As for [`Tape::new`], and if what is defined is not a variable, or is needed by a definition before its own.
+    pub fn with_definitions(
+        outputs: &[Expr<'_>],
+        inputs: &[Expr<'_>],
+        definitions: &[(Expr<'_>, Expr<'_>)],
+    ) -> Result<Tape, TapeError> {
         assert!(inputs.iter().all(|input| input.as_variable().is_some()), "inputs of a tape are variables");
         let mut tape = Tape {
             input_count: inputs.len(),
@@ -81,11 +108,16 @@ impl Tape {
             return Ok(tape);
         };
         let graph = first.graph();
-        for &expr in outputs.iter().chain(inputs) {
+        for &expr in
+            outputs.iter().chain(inputs).chain(definitions.iter().flat_map(|(variable, value)| [variable, value]))
+        {
             graph.assert_owns(expr);
         }
-        let order = graph.reachable(outputs.iter().map(|output| output.id));
-        let mut registers = Registers::new(graph, &order, outputs);
+        let roots = definitions.iter().map(|(_, value)| vec![value.id]);
+        let roots = roots.chain([outputs.iter().map(|output| output.id).collect()]);
+        let mut seen = NodeSet::default();
+        let order: Vec<NodeId> = roots.flat_map(|roots| graph.reachable(roots)).filter(|id| seen.insert(*id)).collect();
+        let mut registers = Registers::new(graph, &order, outputs, definitions);
         for (index, input) in inputs.iter().enumerate() {
             registers.place.insert(input.id, index as u32);
         }
@@ -93,7 +125,7 @@ impl Tape {
         registers.next = (tape.input_count + tape.constants.len()) as u32;
         tape.instructions = order.iter().filter_map(|&id| registers.step(graph, id)).collect();
         tape.curves = registers.curves.iter().map(|&id| graph.curve_of(id)).collect();
-        tape.outputs = outputs.iter().map(|output| registers.place[&output.id]).collect();
+        tape.outputs = outputs.iter().map(|output| registers.place[&registers.meant(output.id)]).collect();
         tape.register_count = registers.next as usize;
         Ok(tape)
     }
@@ -105,7 +137,7 @@ impl Tape {
                     registers.place.insert(id, (self.input_count + self.constants.len()) as u32);
                     self.constants.push(f64::from_bits(bits));
                 }
-                Node::Variable(variable) if !registers.place.contains_key(&id) => {
+                Node::Variable(variable) if !registers.place.contains_key(&id) && registers.meant(id) == id => {
                     return Err(TapeError::UnboundVariable(graph.variable_name(variable)));
                 }
                 _ => {}
@@ -153,6 +185,8 @@ impl Tape {
 /// Which node lives in which register, and which registers are free.
 struct Registers {
     place: NodeMap<NodeId, u32>,
+    /// What defined variables stand for.
+    meanings: NodeMap<NodeId, NodeId>,
     uses: NodeMap<NodeId, u32>,
     /// The cosine that has the angle of a sine, and the other way round, where both are wanted.
     partners: NodeMap<NodeId, NodeId>,
@@ -163,17 +197,26 @@ struct Registers {
 }
 
 impl Registers {
-    fn new(graph: &Graph, order: &[NodeId], outputs: &[Expr<'_>]) -> Registers {
+    fn new(graph: &Graph, order: &[NodeId], outputs: &[Expr<'_>], definitions: &[(Expr<'_>, Expr<'_>)]) -> Registers {
+        let mut meanings = NodeMap::<NodeId, NodeId>::default();
+        for (variable, value) in definitions {
+            assert!(variable.as_variable().is_some(), "what is defined is a variable");
+            let meaning = meanings.get(&value.id).copied().unwrap_or(value.id);
+            meanings.insert(variable.id, meaning);
+        }
+        let meant = |id: NodeId| meanings.get(&id).copied().unwrap_or(id);
         let mut uses = NodeMap::with_capacity_and_hasher(order.len(), Default::default());
         for &id in order {
             let mut before = None;
-            for operand in graph.node(id).operands().filter(|&operand| before.replace(operand) != Some(operand)) {
+            for operand in
+                graph.node(id).operands().map(meant).filter(|&operand| before.replace(operand) != Some(operand))
+            {
                 *uses.entry(operand).or_insert(0) += 1;
             }
         }
         // an output is read once more, after the last step
         for output in outputs {
-            *uses.entry(output.id).or_insert(0) += 1;
+            *uses.entry(meant(output.id)).or_insert(0) += 1;
         }
         // leaves are never written again
         for &id in order {
@@ -182,7 +225,11 @@ impl Registers {
             }
         }
         let partners = partners(graph, order);
-        Registers { place: NodeMap::default(), uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
+        Registers { place: NodeMap::default(), meanings, uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
+    }
+
+    fn meant(&self, id: NodeId) -> NodeId {
+        self.meanings.get(&id).copied().unwrap_or(id)
     }
 
     /// The instruction of a node; none for a leaf, which is in its register from the start, nor for the second of a sine and
@@ -191,7 +238,7 @@ impl Registers {
         if self.place.contains_key(&id) {
             return None;
         }
-        let (operation, a, b) = match graph.node(id) {
+        let (operation, a, b) = match graph.node(id).with_operands(|operand| self.meant(operand)) {
             Node::Unary(Unary::Sin, a) if self.partners.contains_key(&id) => {
                 return Some(self.sin_cos_step(id, self.partners[&id], a));
             }

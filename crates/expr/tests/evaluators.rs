@@ -6,7 +6,7 @@ mod support;
 
 use flank_expr::{
     Graph, InstructionSet, Interval, IntervalEvaluator, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape,
-    TaylorEvaluator,
+    TaylorEvaluator, Varies,
 };
 use suite::Subject;
 
@@ -131,24 +131,53 @@ impl Subject for Lanes {
 
 evaluator_suite!(lanes, Lanes);
 
-/// Every second input is the same in all lanes.
-struct Uniform;
+/// Inputs of every kind; what is computed once for all lanes is carried to another evaluator.
+struct Varying;
 
-impl Subject for Uniform {
+impl Varying {
+    fn rows(tape: &Tape, points: &[Vec<f64>], instructions: InstructionSet, first: usize) -> Vec<Vec<f64>> {
+        const KINDS: [Varies; 4] = [Varies::ByRun, Varies::Freely, Varies::ByLane, Varies::Seldom];
+        let varies: Vec<Varies> = (0..tape.input_count()).map(|k| KINDS[(k + first) % 4]).collect();
+        let laid_out = LaneTape::with_inputs(tape, &varies);
+        let [mut one, mut other] = [(); 2].map(|()| LaneEvaluator::new(&laid_out, instructions));
+        let put = |evaluator: &mut LaneEvaluator<'_>, point: &[f64], has_run: bool| {
+            for (k, &value) in point.iter().enumerate() {
+                match varies[k] {
+                    Varies::ByRun if has_run => evaluator.set_uniform(k, value),
+                    Varies::ByRun => {}
+                    Varies::Seldom => evaluator.set_uniform(k, value),
+                    Varies::ByLane | Varies::Freely => evaluator.input(k).fill(value),
+                }
+            }
+        };
+        let mut row = |point: &Vec<f64>| {
+            put(&mut one, point, true);
+            let mut prepared = Vec::new();
+            one.prepare(&mut prepared);
+            put(&mut other, point, false);
+            other.set_prepared(&prepared);
+            [&mut one, &mut other].into_iter().for_each(LaneEvaluator::run);
+            let [row, same] = [&one, &other]
+                .map(|run| (0..tape.output_count()).map(|k| run.output(k)[LANES - 1]).collect::<Vec<f64>>());
+            assert!(row.iter().zip(&same).all(|(a, b)| Varying::agrees(*a, b)), "{row:?}, carried over {same:?}");
+            row
+        };
+        points.iter().map(&mut row).collect()
+    }
+}
+
+impl Subject for Varying {
     type Value = f64;
 
     fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let uniform: Vec<bool> = (0..tape.input_count()).map(|k| k % 2 == 0).collect();
-        let laid_out = LaneTape::with_uniform(tape, &uniform);
-        let mut evaluator = LaneEvaluator::new(&laid_out, InstructionSet::fastest());
-        let mut row = |point: &Vec<f64>| {
-            for (k, &value) in point.iter().enumerate() {
-                if uniform[k] { evaluator.set_uniform(k, value) } else { evaluator.input(k).fill(value) }
-            }
-            evaluator.run();
-            (0..tape.output_count()).map(|k| evaluator.output(k)[LANES - 1]).collect()
-        };
-        points.iter().map(&mut row).collect()
+        let rows = |instructions| (0..4).map(move |first| Varying::rows(tape, points, instructions, first));
+        let mut all: Vec<_> = InstructionSet::available().into_iter().flat_map(rows).collect();
+        let plain = all.swap_remove(0);
+        for other in all {
+            let pairs = plain.iter().flatten().zip(other.iter().flatten());
+            assert!(pairs.into_iter().all(|(a, b)| Varying::agrees(*a, b)), "{plain:?}, otherwise {other:?}");
+        }
+        plain
     }
 
     fn agrees(expected: f64, found: &f64) -> bool {
@@ -156,17 +185,21 @@ impl Subject for Uniform {
     }
 }
 
-evaluator_suite!(uniform_inputs, Uniform);
+evaluator_suite!(varying_inputs, Varying);
 
-/// What depends on uniform inputs alone is no work of lanes.
+/// What depends on uniform inputs alone is no work of lanes, and what depends on the lane alone none of each run.
 #[test]
-fn uniform_parts_are_computed_once() {
+fn parts_are_computed_as_often_as_their_inputs_change() {
     let graph = Graph::new();
     let (x, y) = (graph.variable("x"), graph.variable("y"));
     let tape = Tape::new(&[y.sin().exp() * x, y.cos()], &[x, y]).expect("every variable is an input");
-    assert_eq!(LaneTape::new(&tape).stages(), [0, 3]);
+    let stages = |varies| LaneTape::with_inputs(&tape, varies).stages();
+    assert_eq!(LaneTape::new(&tape).stages(), [0, 0, 3]);
     // the product, and the cosine spread over the lanes
-    assert_eq!(LaneTape::with_uniform(&tape, &[false, true]).stages(), [2, 2]);
+    assert_eq!(stages(&[Varies::Freely, Varies::ByRun]), [2, 0, 2]);
+    assert_eq!(stages(&[Varies::Freely, Varies::ByLane]), [0, 2, 1]);
+    assert_eq!(stages(&[Varies::ByLane, Varies::Seldom]), [2, 1, 1]);
+    assert_eq!(stages(&[Varies::ByLane, Varies::ByRun]), [2, 0, 2]);
 }
 
 /// Evaluators that are wrong in one way each: the suite must notice.

@@ -219,7 +219,8 @@ impl Field {
 
     /// Whether nothing is left to look for.
     pub(crate) fn is_complete(&self) -> bool {
-        self.marks.iter().flatten().filter(|mark| mark.is_root()).count() == self.len()
+        let roots = |marks: &[Mark; LANES]| marks.iter().map(|mark| u8::from(mark.is_root())).sum::<u8>();
+        self.marks.iter().map(|marks| usize::from(roots(marks))).sum::<usize>() == self.len()
     }
 
     /// A point by the careful path.
@@ -353,6 +354,39 @@ impl Field {
         self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
     }
 
+    /// What follows from the first target of each line, if `newton` solves such lines.
+    pub(crate) fn prepare(&self, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) -> Vec<f64> {
+        let mut prepared = Vec::new();
+        (0..self.shape.count).for_each(|line| newton.prepare(targets[self.shape.point(line, 0)][0], &mut prepared));
+        prepared
+    }
+
+    /// Solves lines with known points at some `places`, along these, as far as whole parts of them are plain roots. Gives the number
+    /// of evaluations.
+    pub(crate) fn take_lines(
+        &mut self,
+        on_line: &mut OnLine<'_, '_>,
+        lines: &[usize],
+        places: &[usize],
+        targets: &[[f64; 2]],
+    ) -> u64 {
+        let points = |line: usize| places.iter().map(move |place| (line, *place));
+        let is_known = |(line, place): (usize, usize)| self.is_root(self.shape.point(line, place));
+        let known = lines.iter().filter(|line| points(**line).all(is_known));
+        let determinant = |line: &usize| self.determinant(self.shape.point(*line, places[0]));
+        let known: Vec<(usize, f64)> = known.map(|line| (*line, determinant(line))).collect();
+        let mut evaluations = 0;
+        for mut strip in self.strips() {
+            strip.set_second_targets(on_line, targets);
+            for (line, determinant) in &known {
+                on_line.newton.determinant().fill(*determinant);
+                strip.take_at_once(*line, on_line, targets);
+                evaluations += strip.width as u64;
+            }
+        }
+        evaluations
+    }
+
     /// The strips, one beside the other.
     pub(crate) fn strips(&mut self) -> Vec<Strip<'_>> {
         let Field { shape, ranges, values, marks, .. } = self;
@@ -362,6 +396,21 @@ impl Field {
             Strip { shape: *shape, ranges, first, width: LANES.min(shape.length - first), values, marks }
         };
         values.zip(marks.chunks_mut(shape.count.max(1))).enumerate().map(strip).collect()
+    }
+}
+
+/// What solves lines whose points follow from the targets of line and lane.
+pub(crate) struct OnLine<'n, 's> {
+    pub(crate) newton: &'n mut LaneNewton<'s>,
+    /// The second targets of the lanes.
+    second: Lanes,
+    /// What follows from the first targets, line by line.
+    prepared: &'n [f64],
+}
+
+impl<'n, 's> OnLine<'n, 's> {
+    pub(crate) fn new(newton: &'n mut LaneNewton<'s>, prepared: &'n [f64]) -> OnLine<'n, 's> {
+        OnLine { newton, second: [0.0; LANES], prepared }
     }
 }
 
@@ -382,16 +431,34 @@ impl Strip<'_> {
     pub(crate) fn refine(
         &mut self,
         newton: &mut LaneNewton<'_>,
+        mut on_line: Option<OnLine<'_, '_>>,
         levels: &[Vec<Midpoint>],
         targets: &[[f64; 2]],
     ) -> u64 {
         let (mut evaluations, mut rough) = (0, true);
+        if let Some(on_line) = &mut on_line {
+            self.set_second_targets(on_line, targets);
+        }
         let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
         let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for midpoint in levels.iter().flatten() {
+            let is_free = empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]);
+            empty[midpoint.at] = false;
+            if let Some(on_line) = on_line.as_mut().filter(|_| is_free) {
+                evaluations += self.width as u64;
+                *on_line.newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
+                if self.take_at_once(midpoint.at, on_line, targets) {
+                    full[midpoint.at] = true;
+                    continue;
+                }
+            }
             self.set_targets(midpoint.at, newton, targets);
-            if empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]) {
-                self.interpolate_line(midpoint, newton);
+            if is_free {
+                if newton.has_all_given() {
+                    *newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
+                } else {
+                    self.interpolate_line(midpoint, newton, rough);
+                }
                 evaluations += newton.run(&[true; LANES][..self.width], rough);
             } else {
                 let mut active = [false; LANES];
@@ -404,20 +471,48 @@ impl Strip<'_> {
             }
             rough = newton.were_rough();
             full[midpoint.at] = self.take_line(midpoint, newton);
-            empty[midpoint.at] = false;
         }
         evaluations
     }
 
+    fn set_second_targets(&self, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) {
+        let second = on_line.newton.input(self.shape.size + 1);
+        second.iter_mut().zip(self.targets_on(0, targets)).for_each(|(value, target)| *value = target[1]);
+        on_line.second = *second;
+    }
+
+    /// Solves a line whose first targets are the same and whose second targets are those of the first line; false if they are not, or
+    /// if some point is no plain root on the side of the determinants that are given.
+    fn take_at_once(&mut self, line: usize, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) -> bool {
+        let OnLine { newton, second, prepared } = on_line;
+        if self.shape.lines == Lines::Columns {
+            return false;
+        }
+        let first = targets[self.shape.point(line, 0)][0];
+        let targets = &targets[self.shape.point(line, self.first)..][..self.width];
+        let differs = |(target, second): (&[f64; 2], &f64)| u64::from((target[0] != first) | (target[1] != *second));
+        let differ = newton.instructions().dispatch(
+            #[inline(always)]
+            || targets.iter().zip(second.iter()).map(differs).fold(0, |all, differs| all | differs),
+        );
+        let length = prepared.len() / self.shape.count;
+        differ == 0
+            && newton.run_prepared(&prepared[line * length..][..length], self.width)
+            && self.take_plain(line, newton)
+    }
+
     fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {
-        let next = self.shape.point(line, 1) - self.shape.point(line, 0);
-        let targets = targets[self.shape.point(line, self.first)..].iter().step_by(next).take(self.width);
         for k in 0..2 {
             let values = newton.input(self.shape.size + k);
-            for (value, target) in values.iter_mut().zip(targets.clone()) {
+            for (value, target) in values.iter_mut().zip(self.targets_on(line, targets)) {
                 *value = target[k];
             }
         }
+    }
+
+    fn targets_on<'t>(&self, line: usize, targets: &'t [[f64; 2]]) -> impl Iterator<Item = &'t [f64; 2]> + use<'t> {
+        let next = self.shape.point(line, 1) - self.shape.point(line, 0);
+        targets[self.shape.point(line, self.first)..].iter().step_by(next).take(self.width)
     }
 
     fn is_line_of_roots(&self, line: usize) -> bool {
@@ -432,13 +527,16 @@ impl Strip<'_> {
         &self.values.as_chunks::<LANES>().0[line * self.shape.planes + plane]
     }
 
-    /// The starts of a whole line, from whole lines.
-    fn interpolate_line(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) {
+    /// The starts of a whole line, from whole lines. What is given needs none, but for a step from rough starts.
+    fn interpolate_line(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, rough: bool) {
         let size = self.shape.size;
         newton.instructions().dispatch(
             #[inline(always)]
             || {
                 for plane in 0..=size {
+                    if newton.is_given(plane) && !rough {
+                        continue;
+                    }
                     let mut sums = [0.0; LANES];
                     for (line, weight) in midpoint.known() {
                         let values = self.plane(*line, plane);
@@ -467,16 +565,25 @@ impl Strip<'_> {
         interpolate(self.shape, midpoint, (self.values, self.marks), |line| (line, lane), newton, lane)
     }
 
-    /// Takes what the lanes have come to; whether all of them are roots now.
-    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
-        let line = midpoint.at;
+    /// Takes what the lanes have come to if all are plain roots.
+    fn take_plain(&mut self, line: usize, newton: &mut LaneNewton<'_>) -> bool {
         let (shape, width) = (self.shape, self.width);
-        if newton.all_plain(width, NEAR) {
+        let are_plain = newton.all_plain(width, NEAR);
+        if are_plain {
             let values = &mut self.values.as_chunks_mut::<LANES>().0[line * shape.planes..][..shape.planes];
             for (k, values) in values.iter_mut().enumerate() {
                 *values = *number(shape, newton, k);
             }
             self.marks[line][..width].fill(Mark::Solved);
+        }
+        are_plain
+    }
+
+    /// Takes what the lanes have come to; whether all of them are roots now.
+    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
+        let line = midpoint.at;
+        let (shape, width) = (self.shape, self.width);
+        if self.take_plain(line, newton) {
             return true;
         }
         for lane in 0..width {

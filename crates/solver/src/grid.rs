@@ -6,7 +6,7 @@ use flank_expr::LANES;
 use rayon::prelude::*;
 
 use crate::Outcome;
-use crate::field::{Field, Lines, NEAR};
+use crate::field::{Field, Lines, NEAR, OnLine, Strip};
 use crate::lanes::LaneNewton;
 use crate::line::{Midpoint, divided_difference, lattice, levels};
 use crate::newton::{LONGEST_STEP, solve_with};
@@ -105,11 +105,11 @@ pub(crate) fn solve_field(
         memory,
         effort: Effort::default(),
     };
-    let mut newton = LaneNewton::new(system, ranges);
+    let newton = &mut LaneNewton::new(system, ranges);
     let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
     let start = start.filter(|_| !targets.is_empty());
-    if let Some(root) = start.and_then(|start| grid.root_from(&mut newton, middle, start)) {
-        let filling = grid.fill(&mut newton, middle, &root);
+    if let Some(root) = start.and_then(|start| grid.root_from(newton, middle, start)) {
+        let filling = grid.fill(newton, middle, &root);
         grid.effort.anchor = targets[middle];
         grid.effort.branches = vec![root];
         return (filling, grid.effort);
@@ -124,13 +124,13 @@ pub(crate) fn solve_field(
         if grid.effort.branches.len() > 1 && choice.several == Several::Refuse {
             let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(ranges) };
             (0..targets.len()).for_each(|point| failures.put(point, &ambiguous));
-            failures.place_loose(&mut newton);
+            failures.place_loose(newton);
             return (failures, grid.effort);
         }
-        let filling = grid.best_filling(&mut newton, anchor);
+        let filling = grid.best_filling(newton, anchor);
         return (filling, grid.effort);
     }
-    failures.place_loose(&mut newton);
+    failures.place_loose(newton);
     (failures, grid.effort)
 }
 
@@ -146,7 +146,7 @@ pub(crate) struct Grid<'s> {
     pub(crate) effort: Effort,
 }
 
-impl Grid<'_> {
+impl<'s> Grid<'s> {
     /// All points, the ones near the middle first.
     fn middle_first(&self) -> Vec<usize> {
         let distance = |point: usize| {
@@ -205,7 +205,7 @@ impl Grid<'_> {
 
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
     /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
-    fn best_filling(&mut self, newton: &mut LaneNewton<'_>, anchor: usize) -> Field {
+    fn best_filling(&mut self, newton: &mut LaneNewton<'s>, anchor: usize) -> Field {
         let mut best: Option<Field> = None;
         for root in self.effort.branches.clone() {
             let filling = self.fill(newton, anchor, &root);
@@ -225,31 +225,44 @@ impl Grid<'_> {
     }
 
     /// Everything that can be reached from the anchor.
-    fn fill(&mut self, newton: &mut LaneNewton<'_>, anchor: usize, root: &Solution) -> Field {
+    fn fill(&mut self, careful: &mut LaneNewton<'s>, anchor: usize, root: &Solution) -> Field {
         let mut field = self.field();
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
+        let given = LaneNewton::with_given(self.system, self.ranges);
+        // an equation that hardly depends on an unknown does not give it
+        let leads = |newton: &mut LaneNewton<'_>| newton.leads_to(&root.unknowns, &self.targets[anchor]);
+        let mut given = given.and_then(|mut newton| leads(&mut newton).then_some(newton));
+        let newton = given.as_mut().unwrap_or(&mut *careful);
         self.settle(&mut field, newton, &[anchor]);
         let by_hand = self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]);
         if !by_hand.is_empty() {
             let solved = self.spread(&mut field, by_hand, &rows, &columns);
             self.settle(&mut field, newton, &solved);
         }
-        let lines = self.smoother(&field, [&rows, &columns]);
+        // what follows from no start may have its lines along the rows, on which the first target is the same more often than not
+        let lines = if newton.has_all_given() { Lines::Rows } else { self.smoother(&field, [&rows, &columns]) };
         let width = self.columns;
         let points: Vec<usize> = rows.iter().flat_map(|i| columns.iter().map(move |j| i * width + j)).collect();
         field.divide(lines, &points);
         let (count, length) = ((self.rows, &rows), (self.columns, &columns));
         let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
+        let has_all_given = newton.has_all_given();
+        let mut on_lines = LaneNewton::on_lines(self.system, self.ranges).filter(|_| has_all_given);
+        let prepared = on_lines.as_mut().map_or_else(Vec::new, |on_lines| field.prepare(on_lines, self.targets));
+        if let Some(on_lines) = &mut on_lines {
+            let mut on_line = OnLine::new(on_lines, &prepared);
+            self.effort.evaluations += field.take_lines(&mut on_line, count.1, length.1, self.targets);
+        }
         self.effort.evaluations += field.refine_lines(newton, count.1, &levels(length.0, length.1), self.targets);
-        self.refine_strips(&mut field, newton, &levels(count.0, count.1));
+        self.refine_strips(&mut field, (newton, on_lines), &prepared, &levels(count.0, count.1));
         if !field.is_complete() {
             let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
             let unfinished = self.edge_of_roots(&field);
             self.spread(&mut field, unfinished, &all[0], &all[1]);
         }
-        field.place_loose(newton);
+        field.place_loose(careful);
         field
     }
 
@@ -293,15 +306,28 @@ impl Grid<'_> {
     }
 
     /// All rows, from those that are known; on as many threads as there are.
-    fn refine_strips(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, levels: &[Vec<Midpoint>]) {
+    fn refine_strips(
+        &mut self,
+        field: &mut Field,
+        (newton, mut on_lines): (&mut LaneNewton<'s>, Option<LaneNewton<'s>>),
+        prepared: &[f64],
+        levels: &[Vec<Midpoint>],
+    ) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
-        let mut strips = field.strips();
+        let refine = |newton: &mut LaneNewton<'s>, on_lines: &mut Option<LaneNewton<'s>>, mut strip: Strip<'_>| {
+            let on_line = on_lines.as_mut().map(|on_lines| OnLine::new(on_lines, prepared));
+            strip.refine(newton, on_line, levels, targets)
+        };
+        let strips = field.strips();
         self.effort.evaluations += if targets.len() < SHARED || rayon::current_num_threads() == 1 {
-            strips.iter_mut().map(|strip| strip.refine(newton, levels, targets)).sum::<u64>()
+            strips.into_iter().map(|strip| refine(newton, &mut on_lines, strip)).sum::<u64>()
         } else {
-            let another = || LaneNewton::new(system, ranges);
+            let (has_given, is_on_lines) = (newton.has_given(), on_lines.is_some());
+            let given = || LaneNewton::with_given(system, ranges).filter(|_| has_given);
+            let on_lines = || LaneNewton::on_lines(system, ranges).filter(|_| is_on_lines);
+            let another = || (given().unwrap_or_else(|| LaneNewton::new(system, ranges)), on_lines());
             let strips = strips.into_par_iter();
-            strips.map_init(another, |newton, mut strip| strip.refine(newton, levels, targets)).sum::<u64>()
+            strips.map_init(another, |(newton, on_lines), strip| refine(newton, on_lines, strip)).sum::<u64>()
         };
     }
 

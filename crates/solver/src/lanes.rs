@@ -2,10 +2,11 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
-use flank_expr::{InstructionSet, LANES, LaneEvaluator};
+use flank_expr::{InstructionSet, LANES, LaneEvaluator, LaneTape};
 
+use crate::field::NEAR;
 use crate::newton::{LARGEST_TOLERANCE, Linearized, OF_SIZE, TOLERANCE, newton_step};
-use crate::solution::{Outcome, Range, verdict};
+use crate::solution::{Outcome, Range, distance, verdict};
 use crate::system::{System, side_of};
 
 /// Steps after which a lane is left to the careful path.
@@ -31,7 +32,10 @@ pub(crate) struct LaneNewton<'s> {
     checked: LaneEvaluator<'s>,
     linearized: LaneEvaluator<'s>,
     is_written_out: bool,
+    /// Unknowns that the last outputs of `checked` give, whatever the inputs.
+    given: &'s [usize],
     condition_count: usize,
+    extra_count: usize,
     /// Unknowns and parameters.
     input_count: usize,
     /// The last step of each unknown, as a share of its range.
@@ -63,23 +67,49 @@ enum End {
 
 impl<'s> LaneNewton<'s> {
     pub(crate) fn new(system: &'s System, ranges: &'s [Range]) -> LaneNewton<'s> {
+        LaneNewton::of(system, ranges, (&system.lanes.checked, &[]))
+    }
+
+    /// The same with unknowns in closed form where equations give them; none if they give none.
+    pub(crate) fn with_given(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
+        let given = system.lanes.given.as_ref()?;
+        Some(LaneNewton::of(system, ranges, (&given.checked, &given.unknowns)))
+    }
+
+    /// The same for lines of points whose first parameter is that of the line, and the second one that of the lane; none if
+    /// equations do not give all unknowns.
+    pub(crate) fn on_lines(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
+        let given = system.lanes.given.as_ref()?;
+        Some(LaneNewton::of(system, ranges, (given.on_lines.as_ref()?, &given.unknowns)))
+    }
+
+    fn of(system: &'s System, ranges: &'s [Range], (checked, given): (&'s LaneTape, &'s [usize])) -> LaneNewton<'s> {
         let instructions = system.instructions();
         let mut linearized = LaneEvaluator::new(&system.lanes.linearized, instructions);
         let input_count = system.tape().input_count();
         let is_written_out = system.lanes.is_written_out;
-        for (k, range) in ranges.iter().enumerate().filter(|_| is_written_out) {
-            linearized.set_uniform(input_count + k, range.width());
+        let mut checked = LaneEvaluator::new(checked, instructions);
+        for (k, range) in ranges.iter().enumerate() {
+            let width = (input_count + k, range.width());
+            if is_written_out {
+                linearized.set_uniform(width.0, width.1);
+            }
+            if !given.is_empty() {
+                checked.set_uniform(width.0, width.1);
+            }
         }
         LaneNewton {
             ranges,
             instructions,
-            checked: LaneEvaluator::new(&system.lanes.checked, instructions),
+            checked,
             linearized,
             is_written_out,
+            given,
             condition_count: system.condition_count(),
+            extra_count: system.extra_count(),
             input_count,
             steps: vec![[0.0; LANES]; ranges.len()],
-            sharpness: vec![[0.0; LANES]; ranges.len()],
+            sharpness: vec![[1.0 / TOLERANCE; LANES]; ranges.len()],
             residual: [0.0; LANES],
             worst: [0.0; LANES],
             determinant: [f64::NAN; LANES],
@@ -107,8 +137,33 @@ impl<'s> LaneNewton<'s> {
         }
     }
 
+    /// Whether an unknown is given in closed form: what it is before a run has no effect.
+    pub(crate) fn is_given(&self, unknown: usize) -> bool {
+        self.given.contains(&unknown)
+    }
+
+    /// Whether any is.
+    pub(crate) fn has_given(&self) -> bool {
+        !self.given.is_empty()
+    }
+
+    /// Whether what is given at a root comes out near it, as a root.
+    pub(crate) fn leads_to(&mut self, unknowns: &[f64], parameters: &[f64]) -> bool {
+        self.put(0, unknowns.iter().copied(), parameters);
+        self.sharpness.fill([1.0 / TOLERANCE; LANES]);
+        self.measure(1);
+        let found: Vec<f64> = (0..unknowns.len()).map(|k| self.checked.input(k)[0]).collect();
+        self.worst[0] <= 1.0 && distance(unknowns, &found, self.ranges) <= NEAR
+    }
+
+    /// Whether all of them are.
+    pub(crate) fn has_all_given(&self) -> bool {
+        self.given.len() == self.ranges.len()
+    }
+
     /// Before a run the determinant at the start where it is known not to vanish around there, else NaN: then the lane takes
-    /// one step at least. After it the one at the root. Scaled as in `newton_step`.
+    /// one step at least. After it the one at the root. Scaled as in `newton_step`. Where all unknowns are given only its sign
+    /// counts: the root must be on that side of where the determinant vanishes.
     pub(crate) fn determinant(&mut self) -> &mut Lanes {
         &mut self.determinant
     }
@@ -117,6 +172,8 @@ impl<'s> LaneNewton<'s> {
     /// a step, without a look at whether it is needed.
     pub(crate) fn run(&mut self, active: &[bool], rough: bool) -> u64 {
         let count = active.len();
+        // what is given is no rough start
+        let rough = rough && !self.has_all_given();
         self.sharpness.fill([1.0 / TOLERANCE; LANES]);
         self.moved = [0.0; LANES];
         self.ends = [End::Idle; LANES];
@@ -127,12 +184,7 @@ impl<'s> LaneNewton<'s> {
         } else {
             self.measure(count);
             evaluations += open;
-            let LaneNewton { worst, determinant, .. } = self;
-            // a determinant that is not known is no number
-            let is_root = self.instructions.dispatch(
-                #[inline(always)]
-                || each_lane(|lane| (worst[lane] <= PREDICTED) & !determinant[lane].is_nan()),
-            );
+            let is_root = self.are_predicted();
             if is_root[..count].iter().all(|is_root| *is_root) && open == count as u64 {
                 self.ends[..count].fill(End::Root);
                 self.were_rough = false;
@@ -169,6 +221,51 @@ impl<'s> LaneNewton<'s> {
             }
         }
         evaluations
+    }
+
+    /// The same for points of one line without a step, by what [`LaneNewton::prepare`] has found for it; whether all of the
+    /// first lanes have come to a root.
+    pub(crate) fn run_prepared(&mut self, prepared: &[f64], count: usize) -> bool {
+        self.checked.set_prepared(prepared);
+        self.measure(count);
+        let are_roots = self.are_predicted()[..count].iter().all(|is_root| *is_root);
+        self.ends[..count].fill(if are_roots { End::Root } else { End::Lost });
+        are_roots
+    }
+
+    /// Adds what depends on the first parameter alone.
+    pub(crate) fn prepare(&mut self, parameter: f64, prepared: &mut Vec<f64>) {
+        self.checked.set_uniform(self.ranges.len(), parameter);
+        self.checked.prepare(prepared);
+    }
+
+    /// Where what was measured is a root, so that no step is needed.
+    fn are_predicted(&mut self) -> [bool; LANES] {
+        self.take_given_determinant();
+        let LaneNewton { instructions, worst, determinant, .. } = self;
+        // a determinant that is not known is no number
+        instructions.dispatch(
+            #[inline(always)]
+            || each_lane(|lane| (worst[lane] <= PREDICTED) & !determinant[lane].is_nan()),
+        )
+    }
+
+    /// Where all unknowns are given, so is the determinant: a number only if it is clear and has the sign that it had before.
+    fn take_given_determinant(&mut self) {
+        if !self.has_all_given() {
+            return;
+        }
+        let LaneNewton { instructions, checked, determinant, .. } = self;
+        let given = checked.output(checked.output_count() - 1);
+        instructions.dispatch(
+            #[inline(always)]
+            || {
+                for lane in 0..LANES {
+                    let is_clear = (given[lane].abs() >= CLEAR) & (given[lane] * determinant[lane] > 0.0);
+                    determinant[lane] = if is_clear { given[lane] } else { f64::NAN };
+                }
+            },
+        );
     }
 
     fn open_lanes(&self) -> u64 {
@@ -213,36 +310,46 @@ impl<'s> LaneNewton<'s> {
     /// Whether all of the first lanes have come to a root that is nothing special: near their starts, inside the ranges, with all
     /// conditions met and numbers for what else is wanted.
     pub(crate) fn all_plain(&mut self, count: usize, near: f64) -> bool {
-        let vital = self.vital_outputs().end;
+        let vital = (self.extra_count > 0).then(|| self.first_given() - 1);
         let LaneNewton { ranges, instructions, checked, condition_count, moved, ends, .. } = self;
         if !ends[..count].iter().all(|end| *end == End::Root) {
             return false;
         }
         let n = ranges.len();
-        instructions.dispatch(
+        let is_plain = instructions.dispatch(
             #[inline(always)]
             || {
-                // as wide as the numbers, so that vectors of the two go together
-                let mut is_plain = [1_u64; LANES];
+                // how far they are out of bounds, the least condition, and a sum of zeros with what is not finite
+                let (mut excess, mut least, mut zero) = ([0.0; LANES], [f64::INFINITY; LANES], [0.0; LANES]);
                 for lane in 0..LANES {
-                    is_plain[lane] &= u64::from(moved[lane] <= near);
+                    excess[lane] = moved[lane] - near;
                 }
                 for (k, range) in ranges.iter().enumerate() {
                     let values = checked.input(k);
                     for lane in 0..LANES {
-                        is_plain[lane] &= u64::from((range.low <= values[lane]) & (values[lane] <= range.high));
+                        let (below, above) = (range.low - values[lane], values[lane] - range.high);
+                        let outside = if below > above { below } else { above };
+                        excess[lane] = if outside > excess[lane] { outside } else { excess[lane] };
+                        zero[lane] += 0.0 * values[lane];
                     }
                 }
-                for k in n..vital {
-                    let least = if k < n + *condition_count { 0.0 } else { f64::NEG_INFINITY };
+                for k in n..n + *condition_count {
                     let values = checked.output(k);
                     for lane in 0..LANES {
-                        is_plain[lane] &= u64::from((least < values[lane]) & (values[lane] < f64::INFINITY));
+                        least[lane] = if values[lane] < least[lane] { values[lane] } else { least[lane] };
+                        zero[lane] += 0.0 * values[lane];
                     }
                 }
-                is_plain[..count].iter().all(|is_plain| *is_plain == 1)
+                if let Some(vital) = vital {
+                    let values = checked.output(vital);
+                    for lane in 0..LANES {
+                        zero[lane] += 0.0 * values[lane];
+                    }
+                }
+                each_lane(|lane| (excess[lane] <= 0.0) & (least[lane] > 0.0) & (zero[lane] == 0.0))
             },
-        )
+        );
+        is_plain[..count].iter().fold(true, |all, is_plain| all & is_plain)
     }
 
     /// How far a lane has come from its start, as a share of the ranges.
@@ -260,15 +367,20 @@ impl<'s> LaneNewton<'s> {
         self.checked.output(self.ranges.len() + self.condition_count + k)
     }
 
-    /// Computes what is wanted at a root for the first lanes, whatever they hold.
+    /// Computes what is wanted at a root for the first lanes, which hold it, but for what is given.
     pub(crate) fn place(&mut self, count: usize) {
         self.checked.run_first(count);
+    }
+
+    /// The output after all that is wanted at a root and the sum of what must be finite, if anything is.
+    fn first_given(&self) -> usize {
+        self.ranges.len() + self.condition_count + self.extra_count + usize::from(self.extra_count > 0)
     }
 
     /// Numbers of the outputs that must be finite.
     fn vital_outputs(&self) -> std::ops::Range<usize> {
         let first = self.ranges.len() + self.condition_count;
-        first..self.checked.output_count().min(first + VITAL)
+        first..first + self.extra_count.min(VITAL)
     }
 
     /// What the root of a lane is; singular also where what else is wanted is no number.
@@ -296,6 +408,10 @@ impl<'s> LaneNewton<'s> {
     /// Residuals at the unknowns.
     fn measure(&mut self, count: usize) {
         self.checked.run_first(count);
+        let first = self.first_given();
+        for (k, unknown) in self.given.iter().enumerate() {
+            *self.checked.input(*unknown) = *self.checked.output(first + k);
+        }
         let LaneNewton { instructions, checked, sharpness, worst, residual, .. } = self;
         (*worst, *residual) = ([0.0; LANES], [0.0; LANES]);
         instructions.dispatch(

@@ -23,6 +23,7 @@ mod explicit;
 mod extent;
 mod field;
 mod geometry;
+mod given;
 mod grid;
 mod intersection;
 mod lanes;

@@ -1,8 +1,9 @@
 //! The step of Newton as functions of the unknowns, for systems of few equations: lanes then compute it with the residuals.
 
 use flank_expr::geometry::cofactors;
-use flank_expr::{Expr, LaneTape, Tape, TapeError};
+use flank_expr::{Expr, LaneTape, Tape, TapeError, Varies};
 
+use crate::given::given_unknowns;
 use crate::newton::{LARGEST_TOLERANCE, OF_SIZE, TOLERANCE};
 
 /// Equations up to which the step is written out.
@@ -19,36 +20,117 @@ pub(crate) fn written_out<'g>(
     unknowns: &[Expr<'g>],
     parameters: &[Expr<'g>],
 ) -> Result<LaneTape, TapeError> {
-    let graph = unknowns[0].graph();
-    let widths: Vec<Expr<'g>> = (0..unknowns.len()).map(|k| graph.variable(format!("width {k}"))).collect();
-    let jacobian: Vec<Vec<Expr<'g>>> =
-        residuals.iter().map(|f| unknowns.iter().map(|x| f.derivative(*x)).collect()).collect();
-    // row by row
-    let cofactors: Vec<Vec<Expr<'g>>> = (0..residuals.len()).map(|row| cofactors(graph, &jacobian, row)).collect();
-    let sum = |terms: &mut dyn Iterator<Item = Expr<'g>>| terms.reduce(|a, b| a + b).unwrap_or(graph.constant(0.0));
-    let determinant = sum(&mut jacobian[0].iter().zip(&cofactors[0]).map(|(a, b)| *a * *b));
+    let linear = Linear::new(residuals, unknowns);
+    let (graph, widths) = (unknowns[0].graph(), &linear.widths);
     let steps = (0..unknowns.len()).map(|k| {
-        let right = sum(&mut residuals.iter().zip(&cofactors).map(|(f, row)| *f * row[k]));
-        -right / (determinant * widths[k])
+        let right = linear.sum(residuals.iter().zip(&linear.cofactors).map(|(f, row)| *f * row[k]));
+        -right / (linear.determinant * widths[k])
     });
-    let entries = |row: &[Expr<'g>]| row.iter().copied().enumerate().filter(|(_, entry)| !entry.is_zero()).collect();
-    let entries: Vec<Vec<(usize, Expr<'g>)>> = jacobian.iter().map(|row| entries(row)).collect();
-    let sharpness = entries.iter().map(|row| {
-        let size = sum(&mut row.iter().map(|(k, entry)| entry.abs() * unknowns[*k].abs().max(graph.constant(1.0))));
+    let sharpness = linear.entries().map(|row| {
+        let size = linear.sum(row.map(|(k, entry)| entry.abs() * unknowns[k].abs().max(graph.constant(1.0))));
         let allowed = (OF_SIZE * size).max(graph.constant(TOLERANCE)).min(graph.constant(LARGEST_TOLERANCE));
         1.0 / allowed
     });
-    let largest = entries.iter().map(|row| {
-        let scaled = row.iter().map(|(k, entry)| entry.abs() * widths[*k]);
-        scaled.reduce(|a, b| a.max(b)).unwrap_or(graph.constant(0.0))
-    });
-    let volume = widths.iter().copied().reduce(|a, b| a * b).unwrap_or(graph.constant(1.0));
-    let scale = largest.reduce(|a, b| a * b).unwrap_or(graph.constant(1.0));
-    let outputs: Vec<Expr<'g>> =
-        residuals.iter().copied().chain(steps).chain(sharpness).chain([determinant * volume / scale]).collect();
-    let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&widths).copied().collect();
-    let uniform: Vec<bool> = (0..inputs.len()).map(|k| k >= unknowns.len() + parameters.len()).collect();
-    Ok(LaneTape::with_uniform(&Tape::new(&outputs, &inputs)?, &uniform))
+    let outputs = residuals.iter().copied().chain(steps).chain(sharpness).chain([linear.scaled_determinant()]);
+    let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(widths).copied().collect();
+    let tape = Tape::new(&outputs.collect::<Vec<_>>(), &inputs)?;
+    Ok(LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len())))
+}
+
+/// What is wanted at a root, with some unknowns in closed form.
+#[derive(Clone, Debug)]
+pub(crate) struct GivenTapes {
+    /// What is wanted, then the unknowns that equations give, and the determinant as in [`written_out`] if they give all of them.
+    /// Inputs are those of [`written_out`]; the given unknowns among them have no effect.
+    pub(crate) checked: LaneTape,
+    /// The same for points of which the first parameter is the same in all lanes and the second one stays in its lane, if all
+    /// unknowns are given by two parameters.
+    pub(crate) on_lines: Option<LaneTape>,
+    /// The numbers of the given unknowns.
+    pub(crate) unknowns: Vec<usize>,
+}
+
+impl GivenTapes {
+    /// Lays out what is wanted; `None` if no equation gives an unknown.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor a parameter.
+    pub(crate) fn new<'g>(
+        wanted: &[Expr<'g>],
+        residuals: &[Expr<'g>],
+        unknowns: &[Expr<'g>],
+        parameters: &[Expr<'g>],
+    ) -> Result<Option<GivenTapes>, TapeError> {
+        let given = given_unknowns(residuals, unknowns);
+        if given.is_empty() {
+            return Ok(None);
+        }
+        let has_all = given.len() == unknowns.len();
+        let linear = Linear::new(residuals, unknowns);
+        let determinant = has_all.then(|| linear.scaled_determinant());
+        let found = given.iter().map(|given| unknowns[given.unknown]);
+        let outputs: Vec<Expr<'g>> = wanted.iter().copied().chain(found).chain(determinant).collect();
+        let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&linear.widths).copied().collect();
+        let definitions: Vec<_> = given.iter().map(|given| (unknowns[given.unknown], given.form)).collect();
+        let tape = Tape::with_definitions(&outputs, &inputs, &definitions)?;
+        let mut varies = freely(unknowns.len(), parameters.len());
+        let checked = LaneTape::with_inputs(&tape, &varies);
+        let on_lines = (has_all && parameters.len() == 2).then(|| {
+            varies[unknowns.len()..][..2].copy_from_slice(&[Varies::ByRun, Varies::ByLane]);
+            LaneTape::with_inputs(&tape, &varies)
+        });
+        Ok(Some(GivenTapes { checked, on_lines, unknowns: given.iter().map(|given| given.unknown).collect() }))
+    }
+}
+
+/// How the inputs vary: unknowns and parameters freely, then the widths of the ranges.
+fn freely(unknowns: usize, parameters: usize) -> Vec<Varies> {
+    [vec![Varies::Freely; unknowns + parameters], vec![Varies::Seldom; unknowns]].concat()
+}
+
+/// Derivatives of equations.
+struct Linear<'g> {
+    /// Row by row, with the cofactors.
+    jacobian: Vec<Vec<Expr<'g>>>,
+    cofactors: Vec<Vec<Expr<'g>>>,
+    determinant: Expr<'g>,
+    /// Variables for the widths of the ranges.
+    widths: Vec<Expr<'g>>,
+}
+
+impl<'g> Linear<'g> {
+    fn new(residuals: &[Expr<'g>], unknowns: &[Expr<'g>]) -> Linear<'g> {
+        let graph = unknowns[0].graph();
+        let slopes = |f: &Expr<'g>| unknowns.iter().map(|x| f.derivative(*x)).collect();
+        let jacobian: Vec<Vec<Expr<'g>>> = residuals.iter().map(slopes).collect();
+        let cofactors: Vec<Vec<Expr<'g>>> = (0..residuals.len()).map(|row| cofactors(graph, &jacobian, row)).collect();
+        let terms = jacobian[0].iter().zip(&cofactors[0]).map(|(a, b)| *a * *b);
+        let determinant = terms.reduce(|a, b| a + b).unwrap_or(graph.constant(0.0));
+        let widths = (0..unknowns.len()).map(|k| graph.variable(format!("width {k}"))).collect();
+        Linear { jacobian, cofactors, determinant, widths }
+    }
+
+    fn sum(&self, terms: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
+        terms.reduce(|a, b| a + b).unwrap_or(self.determinant.graph().constant(0.0))
+    }
+
+    /// What is not zero in each row, by number of the unknown.
+    fn entries(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, Expr<'g>)>> {
+        self.jacobian.iter().map(|row| row.iter().copied().enumerate().filter(|(_, entry)| !entry.is_zero()))
+    }
+
+    /// The determinant, with unknowns scaled by their ranges and each equation by its largest entry.
+    fn scaled_determinant(&self) -> Expr<'g> {
+        let graph = self.determinant.graph();
+        let product = |factors: &mut dyn Iterator<Item = Expr<'g>>| factors.reduce(|a, b| a * b);
+        let largest = self.entries().map(|row| {
+            let scaled = row.map(|(k, entry)| entry.abs() * self.widths[k]);
+            scaled.reduce(|a, b| a.max(b)).unwrap_or(graph.constant(0.0))
+        });
+        let scale = product(&mut largest.into_iter()).unwrap_or(graph.constant(1.0));
+        let volume = product(&mut self.widths.iter().copied()).unwrap_or(graph.constant(1.0));
+        self.determinant * volume / scale
+    }
 }
 
 #[cfg(test)]

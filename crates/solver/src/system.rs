@@ -2,9 +2,10 @@
 
 use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
+use crate::lanes::VITAL;
 use crate::newton::Linearized;
 use crate::solution::{CutBy, Outcome};
-use crate::step::{MOST_EQUATIONS, written_out};
+use crate::step::{GivenTapes, MOST_EQUATIONS, written_out};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -15,17 +16,20 @@ pub struct System {
     /// What must be positive at a root for it to be one of the thing that is looked for.
     conditions: Tape,
     pub(crate) lanes: LaneTapes,
+    extra_count: usize,
     instructions: InstructionSet,
 }
 
 /// The same for many points at once; all take unknowns, then parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneTapes {
-    /// Residuals, conditions, and what else is wanted at a root, with what these have in common.
+    /// Residuals, conditions, and what else is wanted at a root, with what these have in common; then the sum of what must be finite
+    /// of that, if anything is wanted.
     pub(crate) checked: LaneTape,
     /// The step of Newton, see [`written_out`]; residuals, then the Jacobian row by row where it is not written out.
     pub(crate) linearized: LaneTape,
     pub(crate) is_written_out: bool,
+    pub(crate) given: Option<GivenTapes>,
 }
 
 impl System {
@@ -69,13 +73,14 @@ impl System {
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
         let residuals = Tape::new(residuals, &inputs)?;
         let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
-        let lanes = LaneTapes { checked, linearized, is_written_out: false };
-        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, instructions: InstructionSet::fastest() })
+        let lanes = LaneTapes { checked, linearized, is_written_out: false, given: None };
+        let instructions = InstructionSet::fastest();
+        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, extra_count: 0, instructions })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
     /// the unknowns and parameters it was made with, is negative, and singular where one is zero. `extras` are computed at
-    /// the roots of a grid.
+    /// the roots of a grid, where unknowns have a closed form if an equation is linear in them.
     ///
     /// # Errors
     /// If a condition depends on another variable.
@@ -86,10 +91,17 @@ impl System {
         extras: &[Expr<'g>],
         inputs: &[Expr<'g>],
     ) -> Result<System, TapeError> {
-        let checked = Tape::new(&[residuals, conditions, extras].concat(), inputs)?;
+        // finite only if all of what must be finite is
+        let vital = extras.iter().take(VITAL).copied().reduce(|a, b| a + b);
+        let wanted = [residuals, conditions, extras, vital.as_slice()].concat();
+        let (unknowns, parameters) = inputs.split_at(self.size);
+        let checked = LaneTape::new(&Tape::new(&wanted, inputs)?);
+        let is_written_out = self.lanes.is_written_out;
+        let given = || GivenTapes::new(&wanted, residuals, unknowns, parameters);
+        let given = if is_written_out { given()? } else { None };
         let conditions = Tape::new(conditions, inputs)?;
-        let lanes = LaneTapes { checked: LaneTape::new(&checked), ..self.lanes };
-        Ok(System { conditions, lanes, ..self })
+        let lanes = LaneTapes { checked, given, ..self.lanes };
+        Ok(System { conditions, lanes, extra_count: extras.len(), ..self })
     }
 
     /// The same system, for whose grids only these instructions are used: without machine code of its own, say. The results are
@@ -108,7 +120,7 @@ impl System {
 
     /// Numbers that are wanted at a root beside the unknowns.
     pub(crate) fn extra_count(&self) -> usize {
-        self.lanes.checked.output_count() - self.size - self.condition_count()
+        self.extra_count
     }
 
     /// Number of unknowns.

@@ -13,8 +13,9 @@ use pulp::Arch;
 use crate::evaluate::execute;
 use block::Block;
 pub use block::LANES;
-use native::Native;
-pub use program::LaneTape;
+use native::{Native, Part, WIDTH, Wide};
+use program::LaneInstruction;
+pub use program::{LaneTape, Varies};
 
 /// Instructions of the machine that lanes run on. All give the same bits.
 #[derive(Clone, Copy, Debug)]
@@ -61,27 +62,32 @@ pub struct LaneEvaluator<'t> {
     instructions: InstructionSet,
     native: Option<&'t Native>,
     scalars: Vec<f64>,
+    /// The same for machine code, with its own after them: each as often as a register has lanes.
+    wide: Vec<Wide>,
     /// Those of the tape; for machine code the outputs follow.
     blocks: Vec<Block>,
-    scratch: Vec<f64>,
+    scratch: Vec<Wide>,
     /// A uniform input changed since the last run.
     is_stale: bool,
+    /// So did what varies by lane alone.
+    is_kept_stale: bool,
 }
 
 impl<'t> LaneEvaluator<'t> {
     /// An evaluator for one tape.
     pub fn new(tape: &'t LaneTape, instructions: InstructionSet) -> LaneEvaluator<'t> {
         let native = instructions.is_native.then(|| tape.native()).flatten();
-        let mut scalars = tape.scalars.clone();
-        scalars.extend_from_slice(native.map_or(&[], Native::constants));
+        let constants = native.map(|native| tape.scalars.iter().chain(native.constants()));
         LaneEvaluator {
             tape,
             instructions,
             native,
-            scalars,
+            scalars: tape.scalars.clone(),
+            wide: constants.into_iter().flatten().map(|number| Wide([*number; WIDTH])).collect(),
             blocks: vec![Block::default(); native.map_or(tape.block_count, Native::block_count)],
-            scratch: vec![0.0; native.map_or(0, Native::scratch_len)],
+            scratch: vec![Wide::default(); native.map_or(0, Native::scratch_len)],
             is_stale: true,
+            is_kept_stale: true,
         }
     }
 
@@ -92,6 +98,7 @@ impl<'t> LaneEvaluator<'t> {
     #[inline]
     pub fn input(&mut self, index: usize) -> &mut [f64; LANES] {
         let register = self.tape.inputs[index].expect("the input differs from lane to lane");
+        self.is_kept_stale |= self.tape.varies[index] == Varies::ByLane;
         &mut self.blocks[register as usize].0
     }
 
@@ -101,8 +108,51 @@ impl<'t> LaneEvaluator<'t> {
     /// If there is no such input or it is not uniform.
     pub fn set_uniform(&mut self, index: usize, value: f64) {
         assert!(self.tape.inputs[index].is_none(), "the input is the same in all lanes");
-        self.is_stale |= self.scalars[index].to_bits() != value.to_bits();
+        let is_new = self.scalars[index].to_bits() != value.to_bits();
+        self.is_stale |= is_new;
+        self.is_kept_stale |= is_new && self.tape.varies[index] == Varies::Seldom;
         self.scalars[index] = value;
+    }
+
+    /// What is computed once for all lanes from the uniform inputs as they are, added to what is there: for
+    /// [`LaneEvaluator::set_prepared`].
+    pub fn prepare(&mut self, prepared: &mut Vec<f64>) {
+        self.execute_once();
+        prepared.extend_from_slice(&self.scalars[..self.tape.inputs.len()]);
+        prepared.extend_from_slice(&self.scalars[self.tape.first_result()..]);
+    }
+
+    /// Gives all uniform inputs the values that they had for [`LaneEvaluator::prepare`] of an evaluator of the same tape, without
+    /// computing anything anew. Those that vary seldom must be as they were.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as [`LaneTape::prepared_len`] says.
+    pub fn set_prepared(&mut self, prepared: &[f64]) {
+        let inputs = self.tape.inputs.len();
+        self.scalars[..inputs].copy_from_slice(&prepared[..inputs]);
+        self.scalars[self.tape.first_result()..].copy_from_slice(&prepared[inputs..]);
+        self.widen(0..inputs);
+        self.widen(self.tape.first_result()..self.scalars.len());
+        self.is_stale = false;
+    }
+
+    /// Gives machine code the scalars of a range.
+    fn widen(&mut self, range: std::ops::Range<usize>) {
+        if self.native.is_some() {
+            let pairs = self.wide[range.clone()].iter_mut().zip(&self.scalars[range]);
+            self.instructions.dispatch(
+                #[inline(always)]
+                || pairs.for_each(|(wide, number)| *wide = Wide([*number; WIDTH])),
+            );
+        }
+    }
+
+    fn execute_once(&mut self) {
+        if self.is_stale {
+            execute(&self.tape.once, &self.tape.curves, &mut self.scalars);
+            self.widen(0..self.scalars.len());
+            self.is_stale = false;
+        }
     }
 
     /// Computes the outputs at the inputs. A domain error gives NaN in its lane.
@@ -112,19 +162,23 @@ impl<'t> LaneEvaluator<'t> {
 
     /// The same for the first `count` lanes alone; outputs of the others mean nothing.
     pub fn run_first(&mut self, count: usize) {
-        let LaneEvaluator { tape, instructions, native, scalars, blocks, scratch, .. } = self;
-        if self.is_stale {
-            execute(&tape.once, &tape.curves, scalars);
-            self.is_stale = false;
+        self.execute_once();
+        let LaneEvaluator { tape, instructions, native, scalars, wide, blocks, scratch, .. } = self;
+        let mut is_done = |part, count: usize, steps: &[LaneInstruction], blocks: &mut [Block]| {
+            let is_native = native.is_some_and(|native| native.run(part, count, wide, blocks, scratch));
+            if !is_native {
+                instructions.dispatch(
+                    #[inline(always)]
+                    || block::run(steps, &tape.curves, scalars, blocks),
+                );
+            }
+            is_native
+        };
+        if self.is_kept_stale && !tape.by_lane.is_empty() {
+            is_done(Part::ByLane, LANES, &tape.by_lane, blocks);
         }
-        if native.is_some_and(|native| native.run(count, scalars, blocks, scratch)) {
-            return;
-        }
-        instructions.dispatch(
-            #[inline(always)]
-            || block::run(&tape.each, &tape.curves, scalars, blocks),
-        );
-        if native.is_some() {
+        self.is_kept_stale = false;
+        if !is_done(Part::Each, count, &tape.each, blocks) && native.is_some() {
             for (k, &output) in tape.outputs.iter().enumerate() {
                 blocks[tape.block_count + k] = blocks[output as usize];
             }

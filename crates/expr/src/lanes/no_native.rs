@@ -3,6 +3,19 @@
 use super::block::Block;
 use super::program::LaneTape;
 
+/// What fills a vector register.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wide(pub(super) [f64; WIDTH]);
+
+pub(super) const WIDTH: usize = 1;
+
+/// Which of a tape's instructions.
+#[derive(Clone, Copy)]
+pub(super) enum Part {
+    ByLane,
+    Each,
+}
+
 /// The code of a tape: there is none.
 #[derive(Clone, Debug)]
 pub(super) enum Native {}
@@ -24,7 +37,7 @@ impl Native {
         match *self {}
     }
 
-    pub(super) fn run(&self, _: usize, _: &[f64], _: &mut [Block], _: &mut [f64]) -> bool {
+    pub(super) fn run(&self, _: Part, _: usize, _: &[Wide], _: &mut [Block], _: &mut [Wide]) -> bool {
         match *self {}
     }
 }

@@ -34,18 +34,51 @@ pub(super) struct LaneInstruction {
     pub(super) b: u32,
 }
 
+/// How an input changes, and with it all that depends on nothing else: that is computed as often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Varies {
+    /// The same in all lanes, seldom another number.
+    Seldom,
+    /// The same in all lanes, another number for each run.
+    ByRun,
+    /// Another number in each lane, for many runs.
+    ByLane,
+    /// Another number in each lane and for each run.
+    Freely,
+}
+
+impl Varies {
+    fn is_uniform(self) -> bool {
+        matches!(self, Varies::Seldom | Varies::ByRun)
+    }
+
+    /// How something changes that depends on two things.
+    fn and(self, other: Varies) -> Varies {
+        match (self, other) {
+            (Varies::Seldom, other) | (other, Varies::Seldom) => other,
+            (one, other) if one == other => one,
+            _ => Varies::Freely,
+        }
+    }
+}
+
 /// A tape laid out for [`LaneEvaluator`](crate::LaneEvaluator)s.
 #[derive(Clone, Debug)]
 pub struct LaneTape {
     /// Registers of the first stage: inputs (those that are uniform are used), constants, then one for each result. Their
     /// values before it: the constants are among them.
     pub(super) scalars: Vec<f64>,
+    result_count: usize,
     pub(super) once: Vec<Instruction>,
+    /// What depends on the lane alone; results have blocks of their own, which are named.
+    pub(super) by_lane: Vec<LaneInstruction>,
+    pub(super) kept: Vec<u32>,
     pub(super) each: Vec<LaneInstruction>,
     pub(super) curves: Vec<Arc<Curve>>,
     pub(super) block_count: usize,
     /// The block of each input; none if it is uniform.
     pub(super) inputs: Vec<Option<u32>>,
+    pub(super) varies: Vec<Varies>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
     native: OnceLock<Option<Native>>,
@@ -53,41 +86,43 @@ pub struct LaneTape {
 
 /// Where the value lives that a register of the tape holds at some step.
 #[derive(Clone, Copy, Debug)]
-enum Place {
-    Scalar(u32),
-    Block(u32),
+struct Place {
+    varies: Varies,
+    /// The number of a scalar if it is uniform, else of a block.
+    index: u32,
 }
 
 impl LaneTape {
     /// A tape whose inputs all differ from lane to lane.
     pub fn new(tape: &Tape) -> LaneTape {
-        LaneTape::with_uniform(tape, &vec![false; tape.input_count()])
+        LaneTape::with_inputs(tape, &vec![Varies::Freely; tape.input_count()])
     }
 
-    /// A tape some of whose inputs are the same in all lanes. What depends only on these is computed once for all lanes, and
-    /// only after one of them changed.
+    /// A tape some of whose inputs are the same in all lanes, or for many runs. What depends only on these is computed only after
+    /// one of them changed, and once for all lanes if it is the same in all.
     ///
     /// # Panics
-    /// If there is not one entry of `uniform` for each input.
-    pub fn with_uniform(tape: &Tape, uniform: &[bool]) -> LaneTape {
-        assert_eq!(uniform.len(), tape.input_count(), "one entry for each input");
-        let mut division = Division::new(tape, uniform);
-        let inputs = (0..tape.input_count()).map(|k| match division.places[k] {
-            Place::Block(block) => Some(block),
-            Place::Scalar(_) => None,
-        });
-        let inputs = inputs.collect();
+    /// If there is not one entry of `varies` for each input.
+    pub fn with_inputs(tape: &Tape, varies: &[Varies]) -> LaneTape {
+        assert_eq!(varies.len(), tape.input_count(), "one entry for each input");
+        let mut division = Division::new(tape, varies);
+        let block = |place: &Place| (!place.varies.is_uniform()).then_some(place.index);
+        let inputs = division.places[..tape.input_count()].iter().map(block).collect();
         tape.instructions().iter().for_each(|step| division.step(step));
         let outputs = tape.outputs().iter().map(|&register| division.output(register)).collect();
         let mut scalars = vec![0.0; division.scalar_count as usize];
         scalars[tape.input_count()..][..tape.constants().len()].copy_from_slice(tape.constants());
         LaneTape {
+            result_count: scalars.len() - tape.input_count() - tape.constants().len(),
             scalars,
             once: division.once,
+            by_lane: division.by_lane,
+            kept: division.kept,
             each: division.each,
             curves: tape.curves().to_vec(),
             block_count: division.block_count as usize,
             inputs,
+            varies: varies.to_vec(),
             outputs,
             native: OnceLock::new(),
         }
@@ -103,9 +138,20 @@ impl LaneTape {
         self.outputs.len()
     }
 
-    /// Instructions that are executed once for all lanes, and for each block of them.
-    pub fn stages(&self) -> [usize; 2] {
-        [self.once.len(), self.each.len()]
+    /// Results of the first stage follow inputs and constants.
+    pub(super) fn first_result(&self) -> usize {
+        self.scalars.len() - self.result_count
+    }
+
+    /// Numbers of a [`LaneEvaluator::prepare`](crate::LaneEvaluator::prepare).
+    pub fn prepared_len(&self) -> usize {
+        self.inputs.len() + self.result_count
+    }
+
+    /// Instructions that are executed once for all lanes, those that are executed after an input changed that varies by lane, and
+    /// those for each run.
+    pub fn stages(&self) -> [usize; 3] {
+        [self.once.len(), self.by_lane.len(), self.each.len()]
     }
 }
 
@@ -116,93 +162,112 @@ struct Division {
     scalar_count: u32,
     block_count: u32,
     once: Vec<Instruction>,
+    by_lane: Vec<LaneInstruction>,
+    kept: Vec<u32>,
     each: Vec<LaneInstruction>,
 }
 
 impl Division {
-    fn new(tape: &Tape, uniform: &[bool]) -> Division {
+    fn new(tape: &Tape, varies: &[Varies]) -> Division {
         let scalar_count = (tape.input_count() + tape.constants().len()) as u32;
-        let places: Vec<Place> = (0..tape.register_count() as u32).map(Place::Scalar).collect();
-        let blocks = vec![None; places.len()];
-        let mut division =
-            Division { places, blocks, scalar_count, block_count: 0, once: Vec::new(), each: Vec::new() };
-        for input in (0..tape.input_count()).filter(|&k| !uniform[k]) {
-            division.block(input as u32);
+        let place = |index: usize| Place {
+            varies: varies.get(index).filter(|varies| varies.is_uniform()).copied().unwrap_or(Varies::Seldom),
+            index: index as u32,
+        };
+        let places: Vec<Place> = (0..tape.register_count()).map(place).collect();
+        let mut division = Division {
+            blocks: vec![None; places.len()],
+            places,
+            scalar_count,
+            block_count: 0,
+            once: Vec::new(),
+            by_lane: Vec::new(),
+            kept: Vec::new(),
+            each: Vec::new(),
+        };
+        for (input, varies) in varies.iter().enumerate().filter(|(_, varies)| !varies.is_uniform()) {
+            let index = division.fresh_block();
+            division.blocks[input] = Some(index);
+            division.places[input] = Place { varies: *varies, index };
         }
         division
     }
 
-    /// A register of the tape holds a value of lanes from now on.
-    fn block(&mut self, register: u32) -> u32 {
-        let block = *self.blocks[register as usize].get_or_insert_with(|| {
-            self.block_count += 1;
-            self.block_count - 1
-        });
-        self.places[register as usize] = Place::Block(block);
-        block
+    fn fresh_block(&mut self) -> u32 {
+        self.block_count += 1;
+        self.block_count - 1
     }
 
-    /// A register of the tape holds a value of the first stage from now on.
-    fn scalar(&mut self, register: u32) -> u32 {
-        self.scalar_count += 1;
-        self.places[register as usize] = Place::Scalar(self.scalar_count - 1);
-        self.scalar_count - 1
+    /// What a register of the tape holds from now on is kept in a place of its own kind.
+    fn place(&mut self, register: u32, varies: Varies) -> u32 {
+        let index = match varies {
+            Varies::Seldom | Varies::ByRun => {
+                self.scalar_count += 1;
+                self.scalar_count - 1
+            }
+            Varies::ByLane => {
+                let block = self.fresh_block();
+                self.kept.push(block);
+                block
+            }
+            Varies::Freely => {
+                let block = self.blocks[register as usize].unwrap_or_else(|| self.fresh_block());
+                self.blocks[register as usize] = Some(block);
+                block
+            }
+        };
+        self.places[register as usize] = Place { varies, index };
+        index
+    }
+
+    fn push(&mut self, varies: Varies, instruction: LaneInstruction) {
+        if varies == Varies::ByLane { &mut self.by_lane } else { &mut self.each }.push(instruction);
     }
 
     fn step(&mut self, step: &Instruction) {
-        use Place::{Block, Scalar};
-        let a = self.places[step.a as usize];
-        match (step.operation, a) {
-            (Operation::Binary(op), _) => self.binary(op, step.out, a, self.places[step.b as usize]),
-            (Operation::SinCos, Scalar(a)) => {
-                let (out, b) = (self.scalar(step.out), self.scalar(step.b));
-                self.once.push(Instruction { operation: step.operation, out, a, b });
-            }
-            (Operation::SinCos, Block(a)) => {
-                let (out, b) = (self.block(step.out), self.block(step.b));
-                self.each.push(LaneInstruction { operation: LaneOperation::SinCos, out, a, b });
-            }
-            (Operation::Unary(_) | Operation::Curve(_), Scalar(a)) => {
-                let out = self.scalar(step.out);
-                // `b` is the number of a curve, or not used: a register that exists
-                let b = if matches!(step.operation, Operation::Curve(_)) { step.b } else { a };
-                self.once.push(Instruction { operation: step.operation, out, a, b });
-            }
-            (Operation::Unary(op), Block(a)) => {
-                let out = self.block(step.out);
-                self.each.push(LaneInstruction { operation: LaneOperation::Unary(op), out, a, b: a });
-            }
-            (Operation::Curve(order), Block(a)) => {
-                let out = self.block(step.out);
-                self.each.push(LaneInstruction { operation: LaneOperation::Curve(order), out, a, b: step.b });
-            }
+        let Place { varies, index: a } = self.places[step.a as usize];
+        let operation = match step.operation {
+            Operation::Binary(op) => return self.binary(op, step.out, step.a, step.b),
+            Operation::SinCos => LaneOperation::SinCos,
+            Operation::Unary(op) => LaneOperation::Unary(op),
+            Operation::Curve(order) => LaneOperation::Curve(order),
+        };
+        let out = self.place(step.out, varies);
+        let b = match step.operation {
+            Operation::SinCos => self.place(step.b, varies),
+            Operation::Curve(_) => step.b,
+            _ => a,
+        };
+        if varies.is_uniform() {
+            self.once.push(Instruction { operation: step.operation, out, a, b });
+        } else {
+            self.push(varies, LaneInstruction { operation, out, a, b });
         }
     }
 
-    fn binary(&mut self, op: Binary, register: u32, a: Place, b: Place) {
-        use Place::{Block, Scalar};
-        let (operation, a, b) = match (a, b) {
-            (Scalar(a), Scalar(b)) => {
-                let out = self.scalar(register);
-                self.once.push(Instruction { operation: Operation::Binary(op), out, a, b });
+    fn binary(&mut self, op: Binary, register: u32, a: u32, b: u32) {
+        let [a, b] = [a, b].map(|register| self.places[register as usize]);
+        let varies = a.varies.and(b.varies);
+        let out = self.place(register, varies);
+        let operation = match (a.varies.is_uniform(), b.varies.is_uniform()) {
+            (true, true) => {
+                self.once.push(Instruction { operation: Operation::Binary(op), out, a: a.index, b: b.index });
                 return;
             }
-            (Scalar(a), Block(b)) => (LaneOperation::ScalarLeft(op), a, b),
-            (Block(a), Scalar(b)) => (LaneOperation::ScalarRight(op), a, b),
-            (Block(a), Block(b)) => (LaneOperation::Binary(op), a, b),
+            (true, false) => LaneOperation::ScalarLeft(op),
+            (false, true) => LaneOperation::ScalarRight(op),
+            (false, false) => LaneOperation::Binary(op),
         };
-        let out = self.block(register);
-        self.each.push(LaneInstruction { operation, out, a, b });
+        self.push(varies, LaneInstruction { operation, out, a: a.index, b: b.index });
     }
 
     fn output(&mut self, register: u32) -> u32 {
-        match self.places[register as usize] {
-            Place::Block(block) => block,
-            Place::Scalar(scalar) => {
-                let out = self.block(register);
-                self.each.push(LaneInstruction { operation: LaneOperation::Spread, out, a: scalar, b: scalar });
-                out
-            }
+        let Place { varies, index } = self.places[register as usize];
+        if !varies.is_uniform() {
+            return index;
         }
+        let out = self.place(register, Varies::Freely);
+        self.push(Varies::Freely, LaneInstruction { operation: LaneOperation::Spread, out, a: index, b: index });
+        out
     }
 }

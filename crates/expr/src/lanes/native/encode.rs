@@ -57,12 +57,10 @@ const COMPARE: u8 = 0xc2;
 const SHIFT: u8 = 0x73;
 const LOAD: u8 = 0x10;
 const STORE: u8 = 0x11;
-const BROADCAST: u8 = 0x19;
 const SELECT: u8 = 0x4b;
 
 /// Opcode maps by their number in the prefix.
 const MAP_0F: u8 = 1;
-const MAP_0F38: u8 = 2;
 const MAP_0F3A: u8 = 3;
 
 /// Machine code as it grows.
@@ -137,11 +135,6 @@ impl Code {
 
     pub(super) fn store(&mut self, to: Place, from: Ymm) {
         self.vector(MAP_0F, STORE, from, 0, Operand::Memory(to));
-    }
-
-    /// One number in all lanes.
-    pub(super) fn broadcast(&mut self, to: Ymm, from: Place) {
-        self.vector(MAP_0F38, BROADCAST, to, 0, Operand::Memory(from));
     }
 
     /// Saves what a function has to preserve and keeps its four arguments (System V).

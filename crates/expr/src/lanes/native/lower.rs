@@ -58,33 +58,37 @@ pub(super) struct Lowered {
     pub(super) constants: Vec<f64>,
     /// Operations by the number that calls have.
     pub(super) calls: Vec<Call>,
+    pub(super) has_angles: bool,
 }
 
-/// Lays out a tape; outputs go to the blocks after its own, then the largest angle of each lane.
-pub(super) fn lower(tape: &LaneTape) -> Lowered {
+/// Lays out instructions of a tape; `stores` are blocks with those that they go to. The largest angle of each lane goes to `angles`.
+/// `constants` are those that follow the numbers of the tape already.
+pub(super) fn lower(
+    tape: &LaneTape,
+    instructions: &[LaneInstruction],
+    stores: impl Iterator<Item = (u32, u32)>,
+    angles: u32,
+    constants: Vec<f64>,
+) -> Lowered {
     let mut lowering = Lowering {
         steps: Vec::new(),
         blocks: vec![None; tape.block_count],
         scalars: BTreeMap::new(),
-        constants: Vec::new(),
+        constants,
         first_constant: tape.scalars.len() as u32,
         calls: Vec::new(),
         largest_angle: None,
     };
-    for block in tape.inputs.iter().flatten() {
-        let input = lowering.push(Step::Input(*block));
-        lowering.blocks[*block as usize] = Some(input);
+    instructions.iter().for_each(|instruction| lowering.instruction(instruction, &tape.curves));
+    for (from, to) in stores {
+        let value = lowering.block(from);
+        lowering.push(Step::Store(to, value));
     }
-    tape.each.iter().for_each(|instruction| lowering.instruction(instruction, &tape.curves));
-    let first_output = tape.block_count as u32;
-    for (k, &block) in (0..).zip(&tape.outputs) {
-        let value = lowering.block(block);
-        lowering.push(Step::Store(first_output + k, value));
-    }
+    let has_angles = lowering.largest_angle.is_some();
     if let Some(angle) = lowering.largest_angle {
-        lowering.push(Step::Store(first_output + tape.outputs.len() as u32, angle));
+        lowering.push(Step::Store(angles, angle));
     }
-    Lowered { steps: lowering.steps, constants: lowering.constants, calls: lowering.calls }
+    Lowered { steps: lowering.steps, constants: lowering.constants, calls: lowering.calls, has_angles }
 }
 
 struct Lowering {
@@ -104,8 +108,14 @@ impl Lowering {
         (self.steps.len() - 1) as Value
     }
 
-    fn block(&self, block: u32) -> Value {
-        self.blocks[block as usize].expect("a tape reads what it has written")
+    /// The value of a block: what it holds before the code runs if nothing has been put there.
+    fn block(&mut self, block: u32) -> Value {
+        if let Some(value) = self.blocks[block as usize] {
+            return value;
+        }
+        let value = self.push(Step::Input(block));
+        self.blocks[block as usize] = Some(value);
+        value
     }
 
     fn scalar(&mut self, index: u32) -> Value {
@@ -164,19 +174,25 @@ impl Lowering {
                 self.blocks[b as usize] = Some(cosine);
                 sine
             }
-            LaneOperation::Unary(op) => self.unary(op, self.block(a)),
-            LaneOperation::Binary(op) => self.binary(op, self.block(a), self.block(b)),
+            LaneOperation::Unary(op) => {
+                let a = self.block(a);
+                self.unary(op, a)
+            }
+            LaneOperation::Binary(op) => {
+                let (a, b) = (self.block(a), self.block(b));
+                self.binary(op, a, b)
+            }
             LaneOperation::ScalarLeft(op) => {
-                let left = self.scalar(a);
-                self.binary(op, left, self.block(b))
+                let (a, b) = (self.scalar(a), self.block(b));
+                self.binary(op, a, b)
             }
             LaneOperation::ScalarRight(op) => {
-                let right = self.scalar(b);
-                self.binary(op, self.block(a), right)
+                let (a, b) = (self.block(a), self.scalar(b));
+                self.binary(op, a, b)
             }
             LaneOperation::Curve(order) => {
-                let curve = curves[b as usize].clone();
-                self.call(Call::Curve(order, curve), self.block(a), self.block(a))
+                let (curve, a) = (curves[b as usize].clone(), self.block(a));
+                self.call(Call::Curve(order, curve), a, a)
             }
             LaneOperation::Spread => self.scalar(a),
         };

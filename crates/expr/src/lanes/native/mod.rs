@@ -14,7 +14,7 @@ use std::sync::Arc;
 use memmap2::{Mmap, MmapMut};
 use pulp::Arch;
 
-use self::lower::{Call, lower};
+use self::lower::{Call, Lowered, lower};
 use self::registers::{OPERANDS, RESULT, assemble};
 use super::block::{Block, LANES};
 use super::program::LaneTape;
@@ -23,11 +23,16 @@ use crate::kernel::trigonometric::FARTHEST;
 use crate::op::Unary;
 
 /// Lanes of a vector register.
-const WIDTH: usize = 4;
+pub(super) const WIDTH: usize = 4;
 /// Longer tapes are not translated: their code would not stay in a cache.
 const MOST_INSTRUCTIONS: usize = 20_000;
 
 type Vector = [f64; WIDTH];
+
+/// What fills a vector register.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(32))]
+pub(super) struct Wide(pub(super) Vector);
 
 /// The code of a tape.
 #[derive(Clone, Debug)]
@@ -39,34 +44,53 @@ struct Translation {
     /// Numbers that follow the scalars of the tape.
     constants: Vec<f64>,
     /// What the code has the program do; it holds their addresses.
-    _calls: Vec<Call>,
+    _calls: [Vec<Call>; 2],
+    /// Where the code of [`Part::Each`] begins.
+    each: usize,
     blocks: usize,
     scalars: usize,
     scratch: usize,
-    /// The block of the largest angles.
+    /// The block of the largest angles, and whether the two functions write it.
     angles: usize,
+    has_angles: [bool; 2],
+}
+
+/// Which of a tape's instructions.
+#[derive(Clone, Copy)]
+pub(super) enum Part {
+    ByLane,
+    Each,
 }
 
 impl Native {
     /// None where the machine lacks the instructions or forbids such memory, and for tapes too long for it.
     pub(super) fn translate(tape: &LaneTape) -> Option<Native> {
-        if !is_available() || tape.each.len() > MOST_INSTRUCTIONS {
+        if !is_available() || tape.by_lane.len() + tape.each.len() > MOST_INSTRUCTIONS {
             return None;
         }
-        let lowered = lower(tape);
-        let addresses: Vec<usize> = lowered.calls.iter().map(|call| std::ptr::from_ref(call).addr()).collect();
-        let assembled = assemble(&lowered, (called as *const ()).addr(), &addresses);
-        let mut memory = MmapMut::map_anon(assembled.code.len()).ok()?;
-        memory.copy_from_slice(&assembled.code);
         let angles = tape.block_count + tape.outputs.len();
+        let kept = tape.kept.iter().map(|block| (*block, *block));
+        let kept = lower(tape, &tape.by_lane, kept, angles as u32, Vec::new());
+        let outputs = tape.outputs.iter().zip(tape.block_count as u32..).map(|(block, output)| (*block, output));
+        let each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
+        let assembled = |lowered: &Lowered| {
+            let addresses: Vec<usize> = lowered.calls.iter().map(|call| std::ptr::from_ref(call).addr()).collect();
+            assemble(lowered, (called as *const ()).addr(), &addresses)
+        };
+        let [kept_code, each_code] = [&kept, &each].map(assembled);
+        let code = [kept_code.code.as_slice(), &each_code.code].concat();
+        let mut memory = MmapMut::map_anon(code.len()).ok()?;
+        memory.copy_from_slice(&code);
         Some(Native(Arc::new(Translation {
             memory: memory.make_exec().ok()?,
-            scalars: tape.scalars.len() + lowered.constants.len(),
-            constants: lowered.constants,
-            _calls: lowered.calls,
+            each: kept_code.code.len(),
+            scalars: tape.scalars.len() + each.constants.len(),
+            constants: each.constants,
+            _calls: [kept.calls, each.calls],
             blocks: angles + 1,
-            scratch: WIDTH * assembled.scratch,
+            scratch: kept_code.scratch.max(each_code.scratch),
             angles,
+            has_angles: [kept.has_angles, each.has_angles],
         })))
     }
 
@@ -75,7 +99,7 @@ impl Native {
         self.0.blocks
     }
 
-    /// Numbers of scratch memory.
+    /// Vectors of scratch memory.
     pub(super) fn scratch_len(&self) -> usize {
         self.0.scratch
     }
@@ -86,22 +110,34 @@ impl Native {
     }
 
     /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large.
-    pub(super) fn run(&self, count: usize, scalars: &[f64], blocks: &mut [Block], scratch: &mut [f64]) -> bool {
+    pub(super) fn run(
+        &self,
+        part: Part,
+        count: usize,
+        scalars: &[Wide],
+        blocks: &mut [Block],
+        scratch: &mut [Wide],
+    ) -> bool {
         let vectors = count.clamp(1, LANES).div_ceil(WIDTH);
-        self.enter(vectors, scalars, blocks, scratch);
-        blocks[self.0.angles].0[..vectors * WIDTH].iter().all(|angle| *angle <= FARTHEST)
+        self.enter(part, vectors, scalars, blocks, scratch);
+        let angles = &blocks[self.0.angles].0[..vectors * WIDTH];
+        !self.0.has_angles[part as usize] || angles.iter().all(|angle| *angle <= FARTHEST)
     }
 
     #[allow(unsafe_code)]
-    fn enter(&self, vectors: usize, scalars: &[f64], blocks: &mut [Block], scratch: &mut [f64]) {
+    fn enter(&self, part: Part, vectors: usize, scalars: &[Wide], blocks: &mut [Block], scratch: &mut [Wide]) {
         let code = &self.0;
         assert!(blocks.len() >= code.blocks && scalars.len() >= code.scalars && scratch.len() >= code.scratch);
-        // SAFETY: the memory holds a whole function of this type, made by `assemble` for a machine that has AVX2. It reads and
-        // writes blocks, scalars and scratch memory only up to the lengths that were just compared, and of each block the
-        // first `vectors` vectors, which it has.
+        let start = match part {
+            Part::ByLane => 0,
+            Part::Each => code.each,
+        };
+        // SAFETY: the memory holds two whole functions of this type, one after the other, made by `assemble` for a machine that has
+        // AVX2, and `start` is where one of them begins. They read and write blocks, scalars and scratch memory only up to the
+        // lengths that were just compared, and of each block the first `vectors` vectors, which it has.
         unsafe {
-            let function: extern "sysv64" fn(*mut Block, *const f64, *mut f64, usize) =
-                std::mem::transmute(code.memory.as_ptr());
+            let function: extern "sysv64" fn(*mut Block, *const Wide, *mut Wide, usize) =
+                std::mem::transmute(code.memory.as_ptr().add(start));
             function(blocks.as_mut_ptr(), scalars.as_ptr(), scratch.as_mut_ptr(), vectors);
         }
     }
@@ -114,11 +150,11 @@ pub(super) fn is_available() -> bool {
 
 /// What the code calls: an operation on four lanes of the scratch memory.
 #[allow(unsafe_code)]
-extern "sysv64" fn called(call: *const Call, scratch: *mut Vector) {
+extern "sysv64" fn called(call: *const Call, scratch: *mut Wide) {
     // SAFETY: only code that `assemble` made calls this, with an address of a `Call` that lives as long as the code and its own
     // scratch memory, of which the places for operands and result are always a part.
     let (call, places) = unsafe { (&*call, std::slice::from_raw_parts_mut(scratch, RESULT + 1)) };
-    places[RESULT] = call.apply(OPERANDS.map(|place| places[place]));
+    places[RESULT] = Wide(call.apply(OPERANDS.map(|place| places[place].0)));
 }
 
 impl Call {

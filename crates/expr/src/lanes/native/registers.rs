@@ -95,7 +95,7 @@ impl<'s> Allocation<'s> {
                 let in_memory_only = |value: Value| self.place[value as usize].is_none();
                 let (a, b) = if op.commutes() && in_memory_only(a) && !in_memory_only(b) { (b, a) } else { (a, b) };
                 let first = self.load(a, &[b]);
-                let second = self.operand(k, b, a);
+                let second = self.operand(b, a);
                 let to = self.define(k);
                 self.code.packed(op, to, first, second);
             }
@@ -125,25 +125,19 @@ impl<'s> Allocation<'s> {
         }
     }
 
-    /// The second operand of step `k`: from memory if it is there and this is its last use.
-    fn operand(&mut self, k: usize, value: Value, other: Value) -> Operand {
-        let is_last = self.next_use_after(k, value) == NEVER;
+    /// The second operand of a step: from memory if it is there, since that takes no instruction of its own.
+    fn operand(&mut self, value: Value, other: Value) -> Operand {
         match self.home(value) {
-            Some(place) if self.place[value as usize].is_none() && is_last => Operand::Memory(place),
+            Some(place) if self.place[value as usize].is_none() => Operand::Memory(place),
             _ => Operand::Register(self.load(value, &[other])),
         }
-    }
-
-    fn next_use_after(&self, k: usize, value: Value) -> u32 {
-        let operands = self.steps[k].operands();
-        let index = operands.iter().position(|operand| *operand == Some(value)).expect("an operand of the step");
-        self.use_after[k][index]
     }
 
     /// Four lanes in memory that a value can be read from.
     fn home(&self, value: Value) -> Option<Place> {
         match (self.steps[value as usize], self.slot[value as usize]) {
             (Step::Input(block), _) => Some(block_place(block)),
+            (Step::Scalar(index), _) => Some(Place { base: Base::Scalars, offset: (index as usize * VECTOR) as i32 }),
             (_, Some(slot)) => Some(slot_place(slot as usize)),
             _ => None,
         }
@@ -155,13 +149,7 @@ impl<'s> Allocation<'s> {
             return register;
         }
         let register = self.free_register(others);
-        match (self.steps[value as usize], self.home(value)) {
-            (Step::Scalar(index), _) => {
-                let place = Place { base: Base::Scalars, offset: 8 * index as i32 };
-                self.code.broadcast(register, place);
-            }
-            (_, home) => self.code.load(register, home.expect("a value is in a register or in memory")),
-        }
+        self.code.load(register, self.home(value).expect("a value is in a register or in memory"));
         self.put(value, register);
         register
     }
@@ -192,8 +180,7 @@ impl<'s> Allocation<'s> {
 
     /// Writes a value to the scratch memory unless it can be read from memory as it is.
     fn save(&mut self, value: Value, register: Ymm) {
-        let is_scalar = matches!(self.steps[value as usize], Step::Scalar(_));
-        if is_scalar || self.home(value).is_some() || self.next_use[value as usize] == NEVER {
+        if self.home(value).is_some() || self.next_use[value as usize] == NEVER {
             return;
         }
         let slot = self.free_slots.pop().unwrap_or_else(|| {
