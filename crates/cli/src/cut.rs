@@ -11,7 +11,7 @@ use crate::solve::ranges;
 use crate::table::Solved;
 
 /// What the numbers are, for pictures.
-const NOTE: &str = "What the single edges leave over the surface that edges without end would generate, along its normal; plus \
+pub(crate) const NOTE: &str = "What the single edges leave over the surface that edges without end would generate, along its normal; plus \
     is material.";
 
 /// What is left at each point of a surface.

@@ -9,29 +9,29 @@ use flank_expr::Graph;
 use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
 
-use crate::arguments::Deviation;
+use crate::arguments::{Deviation, Which};
 use crate::files::Folder;
 use crate::solve::{header, patch, problem, ranges};
 use crate::{Ending, print, spec};
 
-const NOTE: &str = "along the normal, plus is material";
+pub(crate) const NOTE: &str = "along the normal, plus is material";
 
 /// A surface of a job.
 #[derive(Clone, Copy)]
-struct Named<'j, 'g> {
-    job: &'j Job<'g>,
-    surface: &'j GeneratedSurface<'g>,
+pub(crate) struct Named<'j, 'g> {
+    pub(crate) job: &'j Job<'g>,
+    pub(crate) surface: &'j GeneratedSurface<'g>,
 }
 
 impl Named<'_, '_> {
-    fn whole_name(&self) -> String {
+    pub(crate) fn whole_name(&self) -> String {
         format!("{}.{}", self.job.name, self.surface.name)
     }
 }
 
 /// One surface held against another one.
-struct Measured<'j, 'g> {
-    surface: Named<'j, 'g>,
+pub(crate) struct Measured<'j, 'g> {
+    pub(crate) surface: Named<'j, 'g>,
     from: Named<'j, 'g>,
     sample: &'j Sample<'g>,
     points: Vec<SurfacePoint>,
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Deviation) -> Ending {
 }
 
 /// A surface by its name, with that of its job where several have it.
-fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 'g>, String> {
+pub(crate) fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 'g>, String> {
     let all = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| Named { job, surface }));
     let found: Vec<Named<'j, 'g>> = all().filter(|of| of.surface.name == name || of.whole_name() == name).collect();
     match found[..] {
@@ -87,7 +87,10 @@ fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 'g>, String
     }
 }
 
-fn measure<'j, 'g>([surface, from]: [Named<'j, 'g>; 2], as_it_lies: bool) -> Result<Measured<'j, 'g>, String> {
+pub(crate) fn measure<'j, 'g>(
+    [surface, from]: [Named<'j, 'g>; 2],
+    as_it_lies: bool,
+) -> Result<Measured<'j, 'g>, String> {
     let of = &from.surface.name;
     let sample = from.surface.sample.as_ref().ok_or(format!(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
@@ -232,7 +235,7 @@ impl Measured<'_, '_> {
     }
 
     /// Why numbers are missing, if some are.
-    fn missing(&self) -> String {
+    pub(crate) fn missing(&self) -> String {
         let (all, known) = (self.points.len(), self.known().count());
         let [surface, from] = [&self.surface.surface.name, &self.from.surface.name];
         if self.turn.is_none() && self.is_turned {
@@ -256,7 +259,8 @@ impl Measured<'_, '_> {
         out
     }
 
-    fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
+    /// The points with their deviations as their one field.
+    pub(crate) fn dataset(&self, which: &Which, hash: &str) -> Dataset {
         let axis = |k: usize| Axis { label: self.sample.labels[k].clone(), count: self.sample.counts[k] };
         let patch = patch(self.from.job, &self.from.surface.name, self.from.surface, [axis(0), axis(1)], &self.points);
         let field = Field {
@@ -265,15 +269,22 @@ impl Measured<'_, '_> {
             meaning: NOTE.to_string(),
             values: Values::Scalars(self.deviations.clone()),
         };
-        let mut header = header(&self.from.job.name, &arguments.which, hash);
+        let mut header = header(&self.from.job.name, which, hash);
         let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
         header.conventions.push(format!("{} turned about z by {turn:?} deg", self.surface.surface.name));
-        let dataset = Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] };
+        Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
+    }
+
+    pub(crate) fn title(&self) -> String {
+        format!("{} from {}", self.surface.whole_name(), self.from.whole_name())
+    }
+
+    fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
+        let dataset = self.dataset(&arguments.which, hash);
         let mut folder = Folder::at(&arguments.out)?;
         folder.data(&self.name(), &dataset, &arguments.format)?;
         if !arguments.no_picture {
-            let title = format!("{} from {}", self.surface.whole_name(), self.from.whole_name());
-            let map = field_maps(&dataset, &title, &[(0, 0)], NOTE, &PictureOptions::default());
+            let map = field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
             folder.picture(&self.name(), &map)?;
         }
         Ok(folder.written)

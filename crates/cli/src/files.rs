@@ -9,7 +9,7 @@ use flank_export::{
     write_stl, write_vtp,
 };
 
-use crate::arguments::Format;
+use crate::arguments::{Format, PictureFormat};
 use crate::spec;
 
 /// A folder that is written to, and the files that stand there now.
@@ -48,10 +48,19 @@ impl<'a> Folder<'a> {
 
     /// A picture as PNG and SVG.
     pub(crate) fn picture(&mut self, name: &str, drawn: &Picture) -> Result<(), String> {
-        let png = drawn.png().map_err(|error| error.to_string())?;
-        self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))?;
-        let svg = drawn.svg();
-        self.write(&format!("{name}.svg"), |out| Ok(out.write_all(svg.as_bytes())?))
+        self.picture_as(name, drawn, PictureFormat::Png)?;
+        self.picture_as(name, drawn, PictureFormat::Svg)
+    }
+
+    /// A picture in one format.
+    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), String> {
+        match format {
+            PictureFormat::Png => {
+                let png = drawn.png().map_err(|error| error.to_string())?;
+                self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))
+            }
+            PictureFormat::Svg => self.text(&format!("{name}.svg"), &drawn.svg()),
+        }
     }
 
     /// Axis positions over a motion.

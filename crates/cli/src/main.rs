@@ -17,6 +17,7 @@ mod geometry;
 mod import;
 mod limits;
 mod new;
+mod plot;
 mod reach;
 mod reasons;
 mod required;
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Deviation(arguments) => deviation::run(&arguments),
+        Command::Plot(arguments) => plot::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Import(arguments) => import::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),

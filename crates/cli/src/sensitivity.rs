@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use crate::table::{Solved, aligned};
 
 /// Maps on one picture.
-const MAPS: usize = 6;
+pub(crate) const MAPS: usize = 6;
 
 /// What the numbers are, for pictures.
-const NOTE: &str = "Normal displacement of the surface per unit of a parameter, exact derivative; plus is more \
+pub(crate) const NOTE: &str = "Normal displacement of the surface per unit of a parameter, exact derivative; plus is more \
     material. Parameters whose definition contains it follow; to first order it does not matter whether the points that are \
     asked for move with it.";
 
@@ -122,6 +122,16 @@ impl Sensitivity {
         Some(1e-3 * of.largest / of.step)
     }
 
+    /// The names of all parameters, in the order of [`Sensitivity::fields`].
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = &str> {
+        self.influences.iter().map(|one| one.parameter.as_str())
+    }
+
+    /// The places, in that order, of those that move the surface most.
+    pub(crate) fn most_moving(&self, count: usize) -> Vec<usize> {
+        self.ranked().into_iter().take(count).map(|(k, _)| k).collect()
+    }
+
     /// The parameters that move no point; of none can be said so where no point is known.
     fn idle(&self) -> Vec<&str> {
         self.influences.iter().filter(|one| self.points > 0 && !one.moves()).map(|one| one.parameter.as_str()).collect()
@@ -184,8 +194,8 @@ pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(Str
     for solved in solved {
         let Some(sensitivity) = &solved.sensitivity else { continue };
         let Some(patch) = dataset.patches.iter().position(|patch| patch.name == solved.surface.name) else { continue };
-        let most = sensitivity.ranked().into_iter().take(MAPS);
-        let shown: Vec<(usize, usize)> = most.map(|(k, _)| (patch, solved.fields.len() + k)).collect();
+        let most = sensitivity.most_moving(MAPS).into_iter();
+        let shown: Vec<(usize, usize)> = most.map(|k| (patch, solved.fields.len() + k)).collect();
         let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);
         let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
         pictures.push((solved.surface.name.clone(), picture));

@@ -85,7 +85,7 @@ pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Vec<&'j Job<'g>> {
 }
 
 /// What is wanted of a surface beside its points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub(crate) geometry: bool,
     pub(crate) sensitivity: bool,
@@ -163,7 +163,7 @@ pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect()
 }
 
-/// The points of all surfaces, then the lines on them.
+/// The points of all surfaces, with all that is known of them, and lines on them.
 pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'_, '_>], header: Header) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
         let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };

@@ -38,7 +38,7 @@ pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
 }
 
 /// The motions with the ranges that the solved points of all surfaces need.
-fn reached<'g>(job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<(Expr<'g>, Range)> {
+pub(crate) fn reached<'g>(job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<(Expr<'g>, Range)> {
     let mut ends: HashMap<Option<VariableId>, Range> = HashMap::new();
     for surface in solved {
         for (k, unknown) in surface.surface.unknowns.iter().enumerate() {

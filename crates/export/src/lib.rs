@@ -95,7 +95,10 @@ pub use page::{
 };
 #[cfg(feature = "parquet")]
 pub use parquet_file::write_parquet;
-pub use picture::{Picture, PictureOptions, field_maps, picture};
+pub use picture::{
+    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions, Section, SectionLine, ToolPosition,
+    axis_positions, field_lines, field_maps, machine, picture, rows_follow_profile, section, topography,
+};
 pub use step::{Deviation, Face, write_step};
 pub use stl_file::write_stl;
 pub use tally::Tally;

@@ -28,13 +28,34 @@ pub(crate) fn dimension(millimetres: f64) -> String {
 /// A bound of bands that are `step` wide, for people: as many decimals as the step needs, with a real minus sign.
 pub(crate) fn levelled(value: f64, step: f64) -> String {
     let size = value.abs().max(step);
-    let text = if (1e-3..1e6).contains(&size) {
+    let text = if value == 0.0 && step < 1e-3 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&size) {
         let decimals = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
         format!("{:.decimals$}", plain(value))
     } else {
         format!("{:.1e}", plain(value))
     };
     text.replace('-', "\u{2212}")
+}
+
+/// A unit for people.
+pub(crate) fn shown_unit(unit: &str) -> String {
+    if unit == "1" {
+        return "no unit".to_owned();
+    }
+    let powers = [("^2", "\u{b2}"), ("^3", "\u{b3}")];
+    powers.into_iter().fold(unit.replace("um", "\u{b5}m"), |unit, (power, raised)| unit.replace(power, raised))
+}
+
+/// A text with numbers, with real minus signs before them.
+pub(crate) fn with_minus(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let is_sign = |at: usize| {
+        let behind = letters.get(at + 1).is_some_and(char::is_ascii_digit);
+        letters[at] == '-' && behind && (at == 0 || letters[at - 1] == ' ')
+    };
+    (0..letters.len()).map(|at| if is_sign(at) { '\u{2212}' } else { letters[at] }).collect()
 }
 
 /// A residual for people: two significant digits.
@@ -67,6 +88,12 @@ mod tests {
         assert_eq!(levelled(-0.0, 5.0), "0");
         assert_eq!(levelled(1500.0, 500.0), "1500");
         assert_eq!(levelled(2e-5, 1e-5), "2.0e\u{2212}5");
+    }
+
+    #[test]
+    fn a_minus_is_one_before_numbers_only() {
+        assert_eq!(with_minus("-3.2 mm, feed -1 a-1 - 2"), "\u{2212}3.2 mm, feed \u{2212}1 a-1 - 2");
+        assert_eq!(shown_unit("um/mm^2"), "\u{b5}m/mm\u{b2}");
     }
 
     #[test]

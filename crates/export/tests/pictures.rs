@@ -1,18 +1,16 @@
 //! Pictures of all kinds of datasets: they exist, are well formed, show something, and SVG and PNG are the same.
 
+mod readers;
 mod synthetic;
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
-use flank_export::{Dataset, Field, PictureError, PictureOptions, Values, field_maps, picture};
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, roxmltree};
-
-/// The pictures are left here for people to look at.
-fn kept(name: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
-}
+use flank_export::{
+    Dataset, Field, Patch, PictureError, PictureOptions, Values, field_maps, picture, rows_follow_profile,
+};
+use readers::{Drawn, kept, labels};
+use resvg::tiny_skia::Pixmap;
+use resvg::usvg::roxmltree;
 
 fn drawn(dataset: &Dataset) -> (String, Pixmap) {
     let picture = picture(dataset, &PictureOptions::default());
@@ -42,20 +40,8 @@ fn every_dataset_has_a_picture() {
 fn the_png_is_the_svg() {
     let some = ["spur", "holes", "face", "point", "empty"];
     for (name, dataset) in synthetic::gallery().into_iter().filter(|(name, _)| some.contains(name)) {
-        let (svg, pixels) = drawn(&dataset);
-        same(&svg, &pixels, name);
+        Drawn::of(&picture(&dataset, &PictureOptions::default()), name).is_the_same_in_both();
     }
-}
-
-/// Another program draws the same from the SVG.
-fn same(svg: &str, pixels: &Pixmap, name: &str) {
-    let tree = Tree::from_str(svg, &Options::default()).expect("an SVG that others can read");
-    let mut others = Pixmap::new(1200, 900).expect("a usual size");
-    resvg::render(&tree, Transform::identity(), &mut others.as_mut());
-    let differences = pixels.data().iter().zip(others.data()).map(|(&a, &b)| a.abs_diff(b));
-    let off = differences.clone().filter(|&difference| difference > 40).count();
-    let mean = differences.map(f64::from).sum::<f64>() / pixels.data().len() as f64;
-    assert!(mean < 0.02 && off < 200, "{name}: {mean} on average, {off} bytes far off");
 }
 
 /// A flank with a signed field that is not defined at some points, one that is the same everywhere, and one of vectors.
@@ -78,22 +64,63 @@ fn with_maps() -> Dataset {
 fn maps_say_what_they_show() {
     let shown: Vec<(usize, usize)> = (0..4).map(|field| (0, field)).chain([(1, 0), (0, 9)]).collect();
     let picture = field_maps(&with_maps(), "sensitivity", &shown, "what is held", &PictureOptions::default());
-    let svg = picture.svg();
-    let pixels = Pixmap::decode_png(&picture.png().unwrap()).unwrap();
-    std::fs::write(kept("maps.svg"), &svg).unwrap();
-    pixels.save_png(kept("maps.png")).unwrap();
+    let drawn = Drawn::of(&picture, "maps");
+    drawn.is_the_same_in_both();
+    drawn.has_no_text_over_text();
+    let svg = drawn.svg;
     let labels = labels(&svg);
-    let axes = "um/mm; up: z, right: root \u{2192} tip";
-    for wanted in
-        ["sensitivity", "d_normal/d_wave", "d_normal/d_constant", "none", "no point has a value", axes, "what is held"]
-    {
+    let about = "right flank, \u{b5}m/mm; in the axial plane, upwards 2 times larger";
+    let words = ["root", "tip", "lower face", "upper face", "z, mm", "radius, mm", "0.25 everywhere"];
+    let titles =
+        ["sensitivity", "d_normal/d_wave", "d_normal/d_constant", "none", "no point has a value", "what is held"];
+    for wanted in titles.into_iter().chain(words).chain([about]) {
         assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
     }
     assert!(!labels.contains(&"vectors".to_string()) && labels.contains(&"0".to_string()));
     assert!(svg.contains("stroke=\"#be0000\""), "points without a value have a cross");
-    same(&svg, &pixels, "maps");
     let nothing = field_maps(&with_maps(), "", &[], "", &PictureOptions::default()).svg();
     assert!(nothing.contains("nothing to draw"));
+}
+
+/// A bevel flank has the words of its labels, whichever way its grid runs; a surface that turns about the axis is laid by rows and
+/// columns.
+#[test]
+fn sides_are_named_in_words() {
+    let words = |patch: Patch| {
+        let count = patch.points.len();
+        let values = Values::Scalars((0..count).map(|at| Some(at as f64)).collect());
+        let field = Field { name: "number".into(), unit: "1".into(), meaning: "test".into(), values };
+        let dataset = synthetic::dataset("job", vec![Patch { fields: vec![field], ..patch }]);
+        labels(&field_maps(&dataset, "", &[(0, 0)], "", &PictureOptions::default()).svg())
+    };
+    let all = |found: &[String], wanted: &[&str]| wanted.iter().all(|word| found.iter().any(|label| label == word));
+    assert!(all(&words(synthetic::bevel([11, 9])), &["toe", "heel", "root", "tip", "z, mm"]));
+    let spur = synthetic::Gear { helix: 0.0, width: 20.0 };
+    assert!(all(&words(spur.flank("flank", [11, 9])), &["root", "tip", "lower face", "upper face"]));
+    let cylinder = synthetic::grid("root land", ["z", "angle"], [5, 7], |s, t| {
+        let (sin, cos) = (0.1 * t).sin_cos();
+        synthetic::point([30.0 * cos, 30.0 * sin, 10.0 * s], [cos, sin, 0.0], [s, t])
+    });
+    let found = words(cylinder);
+    assert!(all(&found, &["angle \u{2192}", "up: z \u{2192}"]), "{found:?}");
+    assert!(!found.iter().any(|label| label == "root" || label == "tip"));
+}
+
+#[test]
+fn the_profile_is_found() {
+    assert_eq!(rows_follow_profile(&synthetic::bevel([11, 9])), Some(false));
+    for helix in [0.0, 0.4, -0.4] {
+        let gear = synthetic::Gear { helix, width: 30.0 };
+        assert_eq!(rows_follow_profile(&gear.flank("flank", [11, 9])), Some(false));
+        // a flank without words in its labels leans to its tip
+        let mut patch = gear.flank("flank", [11, 9]);
+        patch.columns.label = "rho".into();
+        assert_eq!(rows_follow_profile(&patch), Some(false), "{helix}");
+        let narrow = synthetic::Gear { helix: 0.0, width: 3.0 };
+        let mut patch = narrow.flank("flank", [11, 9]);
+        patch.columns.label = "rho".into();
+        assert_eq!(rows_follow_profile(&patch), Some(false));
+    }
 }
 
 #[test]
@@ -112,13 +139,6 @@ fn patches_have_their_own_colours() {
     assert_eq!(colours("helical"), BTreeSet::from(["blue", "grey"]));
     assert!(colours("spur").is_superset(&BTreeSet::from(["blue", "grey", "orange"])));
     assert!(colours("tooth").is_superset(&BTreeSet::from(["blue", "grey", "orange", "yellow"])));
-}
-
-/// Texts of the picture, as a screen reader finds them.
-fn labels(svg: &str) -> Vec<String> {
-    let document = roxmltree::Document::parse(svg).expect("well-formed XML");
-    let labels = document.descendants().filter_map(|node| node.attribute("aria-label"));
-    labels.map(str::to_owned).collect()
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::camera::View;
 use super::occupancy::Occupancy;
-use super::paint::{Anchor, Item, Place, Rect, Sheet, text_rect};
+use super::paint::{Anchor, Item, Place, Rect, Sheet, clipped, text_rect};
 use super::palette::{GREY, INK};
 use super::surface::Layers;
 
@@ -129,38 +129,6 @@ fn corners(rect: Rect) -> [Place; 4] {
     [[right, bottom], [left, bottom], [right, top], [left, top]]
 }
 
-/// The part of a segment inside a rectangle, as two shares of its length.
-fn clipped(from: Place, to: Place, rect: Rect) -> Option<(f64, f64)> {
-    let (mut start, mut end) = (0.0_f64, 1.0_f64);
-    let sides = [(0, rect.left, rect.right), (1, rect.top, rect.bottom)];
-    for (k, low, high) in sides {
-        let step = to[k] - from[k];
-        if step.abs() < 1e-9 {
-            if from[k] < low || from[k] > high {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((low - from[k]) / step, (high - from[k]) / step);
-        start = start.max(a.min(b));
-        end = end.min(a.max(b));
-    }
-    (start < end).then_some((start, end))
-}
-
 fn distance(a: Place, b: Place) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_segment_is_clipped_to_a_rectangle() {
-        let rect = Rect { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
-        assert_eq!(clipped([-10.0, 5.0], [10.0, 5.0], rect), Some((0.5, 1.0)));
-        assert_eq!(clipped([-10.0, 11.0], [10.0, 11.0], rect), None);
-        assert_eq!(clipped([-10.0, 0.0], [0.0, 30.0], rect), None);
-    }
 }

@@ -51,7 +51,22 @@ impl Camera {
         best.1
     }
 
+    /// Cameras that look down on the xy plane a little from aside, from minus y, then from plus y.
+    pub(super) fn over() -> [Self; 4] {
+        [[-0.24, -0.74], [0.24, -0.74], [0.24, 0.74], [-0.24, 0.74]].map(|[x, y]| {
+            let towards = [x, y, 0.63];
+            Camera::with_up(towards, across(Z, towards))
+        })
+    }
+
+    /// A camera that sees x, y and z about equally long, z upwards.
+    pub(super) fn isometric() -> Self {
+        let towards = [0.62, -0.58, 0.53];
+        Camera::with_up(towards, across(Z, towards))
+    }
+
     fn with_up(towards: Vector, up: Vector) -> Self {
+        let towards = unit(towards).unwrap_or(Z);
         let up = unit(up).or_else(|| unit(across([0.0, 1.0, 0.0], towards))).unwrap_or([1.0, 0.0, 0.0]);
         Camera { right: cross(up, towards), up, towards }
     }

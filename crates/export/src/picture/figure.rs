@@ -14,7 +14,7 @@ use super::paint::{Anchor, Item, Rect, Sheet};
 use super::palette::{self, GREY, INK};
 use super::surface::{Detail, Layers, add_mesh};
 use crate::conventions::one_line;
-use crate::dataset::{Dataset, Patch};
+use crate::dataset::{Dataset, Header, Patch};
 use crate::number;
 use crate::tally::Tally;
 use crate::vector::Vector;
@@ -53,11 +53,11 @@ pub(super) fn compose(dataset: &Dataset, width: f64, height: f64) -> Figure {
     let nodes: Vec<Node> = drawn.iter().flat_map(|drawn| drawn.mesh.nodes.iter().flatten().copied()).collect();
     let title = one_line(if dataset.header.job.is_empty() { "surfaces" } else { &dataset.header.job });
     let mut sheet = Sheet::default();
-    write_title(&title, dataset, width - 2.0 * MARGIN, &mut sheet);
+    write_heading(&title, &dataset.header, width - 2.0 * MARGIN, &mut sheet);
     legend::draw(&drawn, regions.legend, &mut sheet);
     let room = regions.surfaces.shrunk(60.0);
     let camera = Camera::facing(&nodes, room.width(), room.height());
-    let caption = caption(dataset, &nodes, &camera);
+    let caption = caption(dataset, &drawn, &nodes, &camera);
     write_caption(&caption, [width, height], &mut sheet);
     if nodes.is_empty() {
         let why = if dataset.patches.is_empty() { "no surface was asked for" } else { "no point was solved" };
@@ -90,15 +90,18 @@ fn meshes(dataset: &Dataset) -> Vec<Drawn<'_>> {
     dataset.patches.iter().enumerate().map(mesh).collect()
 }
 
-pub(super) fn write_title(title: &str, dataset: &Dataset, room: f64, sheet: &mut Sheet) {
-    let header = &dataset.header;
+/// The title and where everything comes from.
+pub(super) fn write_heading(title: &str, header: &Header, room: f64, sheet: &mut Sheet) {
     sheet.text([MARGIN, 66.0], Anchor::Start, 26.0, INK, &font::fitted(title, 26.0, room));
+    if header.spec.is_empty() {
+        return;
+    }
     let hash: String = header.spec_hash.chars().take(16).collect();
     let origin = one_line(&format!("{} \u{b7} hash {hash} \u{b7} {}", header.spec, header.program));
     sheet.text([MARGIN, 94.0], Anchor::Start, 15.0, GREY, &font::fitted(&origin, 15.0, room));
 }
 
-fn caption(dataset: &Dataset, nodes: &[Node], camera: &Camera) -> String {
+fn caption(dataset: &Dataset, drawn: &[Drawn<'_>], nodes: &[Node], camera: &Camera) -> String {
     let tally = Tally::of(&dataset.patches);
     let mut text = format!("Solved {} of {} points asked for", tally.solved, tally.asked);
     if let Some(worst) = tally.worst_residual {
@@ -109,6 +112,8 @@ fn caption(dataset: &Dataset, nodes: &[Node], camera: &Camera) -> String {
         let crosses = if nodes.is_empty() { "" } else { " (red crosses beside solved ones)" };
         text += &format!(" Not solved{crosses}: {}.", one_line(&tally.reasons()));
     }
+    let all_points = |drawn: &Drawn<'_>| drawn.mesh.thinned_from(drawn.patch);
+    text.extend(drawn.iter().find_map(all_points).map(|sentence| format!(" {sentence}")));
     let from_inside = |node: &Node| node.normal.is_some_and(|normal| camera.seen(normal)[2] < 0.0);
     if nodes.iter().any(from_inside) {
         text += " Greyer where seen from inside the body, against the normal.";

@@ -7,13 +7,16 @@ use super::mesh::Mesh;
 use super::occupancy::Occupancy;
 use super::paint::{Anchor, Place, Rect, Sheet, text_rect};
 use super::palette::{GREY, INK};
+use super::projection::middle;
 use crate::conventions::one_line;
 
 const SIZE: f64 = 16.0;
+/// Of words beside maps.
+pub(super) const WORD: f64 = 14.0;
 const ARROW: f64 = 46.0;
 
 /// A border of a patch on the sheet, in the direction of growing index.
-struct Border {
+pub(super) struct Border {
     points: Vec<Place>,
     /// The middle of the patch.
     inside: Place,
@@ -58,12 +61,9 @@ fn borders_named(drawn: &Drawn<'_>, label: &str, view: &View) -> Vec<Border> {
         lines.extend([0, rows - 1].map(|i| (0..columns).map(|j| i * columns + j).collect()));
     }
     let all: Vec<Place> = nodes.iter().flatten().map(|node| view.place(node.position)).collect();
-    let share = 1.0 / all.len().max(1) as f64;
-    let inside = all.iter().fold([0.0; 2], |sum, place| [sum[0] + share * place[0], sum[1] + share * place[1]]);
     let on_sheet = |line: Vec<usize>| {
-        let points: Vec<Place> =
-            line.into_iter().filter_map(|at| nodes[at]).map(|node| view.place(node.position)).collect();
-        (points.len() > 1).then_some(Border { points, inside, patch: drawn.number })
+        let points = line.into_iter().filter_map(|at| nodes[at]).map(|node| view.place(node.position)).collect();
+        Some(Border { patch: drawn.number, ..Border::new(points, &all)? })
     };
     lines.into_iter().filter_map(on_sheet).collect()
 }
@@ -143,7 +143,26 @@ fn moved(place: Place, direction: Place, by: f64) -> Place {
     [place[0] + by * direction[0], place[1] + by * direction[1]]
 }
 
+/// Writes a word beside the middle of a border, or where else along it the rectangle has room.
+pub(super) fn word_beside(border: &Border, word: &str, rect: Rect, sheet: &mut Sheet) {
+    let place = |share: f64| {
+        let (place, _, outward) = border.at(share);
+        let half = 0.5 * font::width(word, WORD);
+        let [x, y] = moved(place, outward, 8.0 + half * outward[0].abs() + 0.5 * WORD * outward[1].abs());
+        [x, y + 0.27 * WORD]
+    };
+    let fits = |base: &Place| rect.contains(&text_rect(*base, Anchor::Middle, WORD, word));
+    if let Some(base) = [0.5, 0.35, 0.65, 0.2, 0.8].map(place).into_iter().find(fits) {
+        sheet.text(base, Anchor::Middle, WORD, INK, word);
+    }
+}
+
 impl Border {
+    /// A border along some points of a patch, all of whose points are given; `None` for a single point.
+    pub(super) fn new(points: Vec<Place>, all: &[Place]) -> Option<Border> {
+        (points.len() > 1).then(|| Border { points, inside: middle(all), patch: 0 })
+    }
+
     /// The place at a share of the border's length, the direction along it there, and the one away from the patch.
     fn at(&self, t: f64) -> (Place, Place, Place) {
         let lengths = self.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));

@@ -44,6 +44,21 @@ impl Mesh {
         Mesh { rows: rows.len(), columns: columns.len(), nodes }
     }
 
+    /// The numbers of the patch's points that the nodes are, in the order of the nodes.
+    pub(super) fn picked(&self, patch: &Patch) -> impl Iterator<Item = usize> {
+        let rows = thinned(patch.rows.count, self.rows.saturating_sub(1));
+        let columns = thinned(patch.columns.count, self.columns.saturating_sub(1));
+        let across = patch.columns.count;
+        rows.into_iter().flat_map(move |i| columns.clone().into_iter().map(move |j| i * across + j))
+    }
+
+    /// A sentence on what is not drawn of a patch; nothing if all of it is.
+    pub(super) fn thinned_from(&self, patch: &Patch) -> Option<String> {
+        let (rows, columns) = (patch.rows.count, patch.columns.count);
+        let thinned = self.rows < rows || self.columns < columns;
+        thinned.then(|| format!("Drawn from {} x {} of {rows} x {columns} points.", self.rows, self.columns))
+    }
+
     /// Node numbers of each face, in order around it: four, or three where one corner is missing.
     pub(super) fn faces(&self) -> Vec<Vec<usize>> {
         let mut faces = Vec::new();

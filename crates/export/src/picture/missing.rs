@@ -13,32 +13,38 @@ const ARM: f64 = 4.0;
 
 /// Marks unsolved points by red crosses; where they are dense, some of them stand for all.
 pub(super) fn draw<'a>(patches: impl Iterator<Item = &'a Patch>, view: &View, sheet: &mut Sheet) {
-    let mut marked = BTreeSet::new();
+    let mut crosses = Crosses::default();
     for patch in patches {
         for (i, j, point) in patch.indexed_points() {
             if point.is_solved() {
                 continue;
             }
             if let Some(position) = likely_position(patch, i, j) {
-                let [x, y] = view.place(position);
-                if marked.insert(((x / (2.5 * ARM)) as i64, (y / (2.5 * ARM)) as i64)) {
-                    draw_cross([x, y], sheet);
-                }
+                crosses.draw(view.place(position), sheet);
             }
         }
     }
 }
 
-fn draw_cross([x, y]: Place, sheet: &mut Sheet) {
-    for (colour, width) in [(WHITE, 4.0), (RED, 1.8)] {
-        sheet.line(&[[x - ARM, y - ARM], [x + ARM, y + ARM]], colour, width);
-        sheet.line(&[[x - ARM, y + ARM], [x + ARM, y - ARM]], colour, width);
+/// Where crosses stand already.
+#[derive(Default)]
+pub(super) struct Crosses(BTreeSet<(i64, i64)>);
+
+impl Crosses {
+    /// Draws a cross unless one is there.
+    pub(super) fn draw(&mut self, [x, y]: Place, sheet: &mut Sheet) {
+        if self.0.insert(((x / (2.5 * ARM)) as i64, (y / (2.5 * ARM)) as i64)) {
+            for (colour, width) in [(WHITE, 4.0), (RED, 1.8)] {
+                sheet.line(&[[x - ARM, y - ARM], [x + ARM, y + ARM]], colour, width);
+                sheet.line(&[[x - ARM, y + ARM], [x + ARM, y - ARM]], colour, width);
+            }
+        }
     }
 }
 
 /// Where a cross for the point belongs: between solved neighbours on both sides, else one step beyond two in a row; no
 /// place where the grid around is empty.
-fn likely_position(patch: &Patch, i: usize, j: usize) -> Option<Vector> {
+pub(super) fn likely_position(patch: &Patch, i: usize, j: usize) -> Option<Vector> {
     let at = |di: isize, dj: isize| {
         let point = patch.point(i.checked_add_signed(di)?, j.checked_add_signed(dj)?)?;
         node(point).map(|node| node.position)

@@ -1,17 +1,23 @@
-//! Pictures as SVG and as PNG: all patches, shaded; or fields of theirs as maps.
+//! Pictures as SVG and as PNG: all patches, shaded; fields of theirs as maps, lines or a relief; sections; machines; axes over
+//! motions.
 //!
 //! A dataset becomes a display list once; SVG and PNG are two ways to write that list, so they show the same. Order of
-//! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines,
-//! `figure` arranges them with labels, legend and inset, `maps` arranges fields, `svg` and `png` write.
+//! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines, `projection`
+//! lays them flat, `contours` turns values into bands and lines. `figure` arranges surfaces with labels, legend and inset, `maps`
+//! arranges fields (`relief` those that are heights), `section`, `machine` and `positions` the rest, on the axes of `chart` where
+//! there are some. `svg` and `png` write.
 
 mod axis;
 mod camera;
+mod chart;
+mod contours;
 mod figure;
 mod font;
 mod inset;
 mod labels;
 mod legend;
 mod levels;
+mod machine;
 mod maps;
 mod marks;
 mod mesh;
@@ -20,14 +26,22 @@ mod occupancy;
 mod paint;
 mod palette;
 mod png;
+mod positions;
+mod projection;
+mod relief;
+mod section;
 mod surface;
 mod svg;
 
 pub(crate) use palette::{patch_colours, scale_colours};
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, Patch};
 use crate::error::PictureError;
+use crate::motion::MotionTable;
+pub use machine::{DrawnFrame, LinkKind, MachineDrawing, MachineLink};
+use maps::Style;
 use paint::Item;
+pub use section::{Section, SectionLine, ToolPosition};
 
 /// Size of the sheet that line widths and letters are made for.
 const SHEET: [f64; 2] = [1200.0, 900.0];
@@ -93,9 +107,12 @@ pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
 /// Draws fields of numbers as maps over their grids, side by side: `shown` names each by the index of its patch and its own
 /// index among the patch's fields, `note` is written below.
 ///
-/// Rows go up, columns to the right. Values are in bands with round bounds, the lower the darker, from blue to yellow: in
-/// grey and for colour-blind readers the order is the same. A line divides minus from plus; a point without a value has a
-/// red cross. What is not there, or has vectors, is left out.
+/// A flank is turned into the axial plane, the longer of z and radius across, and its sides are named: root and tip by the way
+/// it leans, toe and heel, or the faces. A surface that the axial plane does not show is laid by rows and columns.
+///
+/// Values are in bands with round bounds, the lower the darker, from blue to yellow: in grey and for colour-blind readers the
+/// order is the same. Where there are both signs, blue is minus and orange plus, and lines between bands are dashed below zero,
+/// thick at zero. A point without a value has a red cross. What is not there, or has vectors, is left out.
 ///
 /// ```
 /// # use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, PictureOptions, Point, Values, field_maps};
@@ -141,7 +158,93 @@ pub fn field_maps(
     note: &str,
     options: &PictureOptions,
 ) -> Picture {
-    on_sheet(options, |size| maps::compose(dataset, title, shown, note, size))
+    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Bands, size)))
+}
+
+/// Draws fields of numbers as lines of equal values over their flanks, each with its number: contact lines are those of equal
+/// values of a motion. The rest is as for [`field_maps`].
+#[must_use]
+pub fn field_lines(
+    dataset: &Dataset,
+    title: &str,
+    shown: &[(usize, usize)],
+    note: &str,
+    options: &PictureOptions,
+) -> Picture {
+    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Lines, size)))
+}
+
+/// Draws fields of numbers as heights above their flanks, seen from aside: a topography. What is a micrometre high is drawn as
+/// high as a fifth of the flank's length. The rest is as for [`field_maps`].
+#[must_use]
+pub fn topography(
+    dataset: &Dataset,
+    title: &str,
+    shown: &[(usize, usize)],
+    note: &str,
+    options: &PictureOptions,
+) -> Picture {
+    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Relief, size)))
+}
+
+/// Draws a section through a tooth space: the work with strokes on its side of the steel, the tool in each of its positions,
+/// dots where they touch, and a detail of it.
+///
+/// ```
+/// use flank_export::{Header, PictureOptions, Section, SectionLine, ToolPosition, section};
+///
+/// let header = Header {
+///     program: "flank 0.1.0".into(),
+///     spec: "groove.flank".into(),
+///     spec_hash: "5e1f".into(),
+///     job: "groove".into(),
+///     conventions: Vec::new(),
+/// };
+/// let parabola = |x: f64| [x, x * x];
+/// let tangent = |at: f64| vec![[at - 1.0, at * at - 2.0 * at], [at + 1.0, at * at + 2.0 * at]];
+/// let drawn = section(
+///     &Section {
+///         header,
+///         note: "across the groove".into(),
+///         surfaces: vec![SectionLine {
+///             name: "bottom".into(),
+///             points: (-10..=10).map(|k| parabola(0.1 * f64::from(k))).collect(),
+///             normals: (-10..=10).map(|k| [-0.2 * f64::from(k), 1.0]).collect(),
+///         }],
+///         tools: vec![ToolPosition {
+///             label: "turn 3 deg".into(),
+///             lines: vec![tangent(0.5)],
+///             contacts: vec![parabola(0.5)],
+///         }],
+///     },
+///     &PictureOptions::default(),
+/// );
+/// assert!(drawn.svg().contains("aria-label=\"turn 3 deg\""));
+/// ```
+#[must_use]
+pub fn section(section: &Section, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| section::compose(section, size))
+}
+
+/// Whether the rows of a flank's grid follow each other from root to tip (or back), and not along the tooth; `None` where the grid
+/// does not tell. By the labels of rows and columns, else by the way the flank leans.
+#[must_use]
+pub fn rows_follow_profile(patch: &Patch) -> Option<bool> {
+    projection::rows_follow_profile(patch)
+}
+
+/// Draws a machine as a kinematic diagram: on the left its frames, links and axes where they are in space, an arrow along what
+/// slides and a ring about what turns; on the right what leads to each frame, with numbers.
+#[must_use]
+pub fn machine(machine: &MachineDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| machine::compose(machine, size))
+}
+
+/// Draws the positions of axes over motions: a chart for each axis that moves with each of the motions, and how far it is off a
+/// straight line; the others are named below.
+#[must_use]
+pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| positions::compose(tables, size))
 }
 
 /// A figure on a sheet of the size that is asked for.

@@ -44,6 +44,14 @@ pub(super) struct Sheet {
 }
 
 impl Item {
+    /// What a polygon covers, square sheet units; nothing for lines and text.
+    #[cfg(test)]
+    pub(super) fn area(&self) -> f64 {
+        let Item::Polygon { points, .. } = self else { return 0.0 };
+        let next = points.iter().cycle().skip(1);
+        0.5 * points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
+    }
+
     fn is_finite(&self) -> bool {
         match self {
             Item::Polygon { points, .. } | Item::Line { points, .. } => {
@@ -57,13 +65,44 @@ impl Item {
 impl Sheet {
     /// Paints one more item. What has no place on paper (numbers without end) is left out.
     pub(super) fn push(&mut self, item: Item) {
-        if item.is_finite() {
+        let is_empty = matches!(&item, Item::Polygon { points, .. } | Item::Line { points, .. } if points.is_empty());
+        if item.is_finite() && !is_empty {
             self.items.push(item);
         }
     }
 
     pub(super) fn line(&mut self, points: &[Place], colour: Colour, width: f64) {
         self.push(Item::Line { points: points.to_vec(), colour, width });
+    }
+
+    /// A line of dashes: `pattern` is how long one is and the gap behind it, sheet units.
+    pub(super) fn dashes(&mut self, points: &[Place], pattern: [f64; 2], colour: Colour, width: f64) {
+        let mut dash: Vec<Place> = Vec::new();
+        let (mut stroke, mut left) = (0, pattern[0]);
+        for pair in points.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let at = |along: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * along / length);
+            let mut along = 0.0;
+            // a line that long has no place on paper
+            while length > 0.0 && length < 1e5 && along < length {
+                let step = left.min(length - along);
+                if stroke == 0 {
+                    if dash.is_empty() {
+                        dash.push(at(along));
+                    }
+                    dash.push(at(along + step));
+                }
+                along += step;
+                left -= step;
+                if left <= 1e-9 {
+                    self.line(&std::mem::take(&mut dash), colour, width);
+                    stroke = 1 - stroke;
+                    left = pattern[stroke];
+                }
+            }
+        }
+        self.line(&dash, colour, width);
     }
 
     pub(super) fn polygon(&mut self, points: &[Place], fill: Colour, outline: Colour, width: f64) {
@@ -100,6 +139,15 @@ impl Rect {
         [0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom)]
     }
 
+    /// The rectangle without so much on its left, top, right and bottom.
+    pub(super) fn inside(&self, [left, top, right, bottom]: [f64; 4]) -> Rect {
+        Rect { left: self.left + left, top: self.top + top, right: self.right - right, bottom: self.bottom - bottom }
+    }
+
+    pub(super) fn corners(&self) -> [Place; 4] {
+        [[self.left, self.top], [self.right, self.top], [self.right, self.bottom], [self.left, self.bottom]]
+    }
+
     pub(super) fn shrunk(&self, by: f64) -> Rect {
         Rect { left: self.left + by, top: self.top + by, right: self.right - by, bottom: self.bottom - by }
     }
@@ -118,4 +166,36 @@ pub(super) fn text_rect(at: Place, anchor: Anchor, size: f64, text: &str) -> Rec
         Anchor::End => at[0] - width,
     };
     Rect { left, top: at[1] - 0.78 * size, right: left + width, bottom: at[1] + 0.24 * size }
+}
+
+/// The part of a segment inside a rectangle, as two shares of its length.
+pub(super) fn clipped(from: Place, to: Place, rect: Rect) -> Option<(f64, f64)> {
+    let (mut start, mut end) = (0.0_f64, 1.0_f64);
+    let sides = [(0, rect.left, rect.right), (1, rect.top, rect.bottom)];
+    for (k, low, high) in sides {
+        let step = to[k] - from[k];
+        if step.abs() < 1e-9 {
+            if from[k] < low || from[k] > high {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((low - from[k]) / step, (high - from[k]) / step);
+        start = start.max(a.min(b));
+        end = end.min(a.max(b));
+    }
+    (start < end).then_some((start, end))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_is_clipped_to_a_rectangle() {
+        let rect = Rect { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+        assert_eq!(clipped([-10.0, 5.0], [10.0, 5.0], rect), Some((0.5, 1.0)));
+        assert_eq!(clipped([-10.0, 11.0], [10.0, 11.0], rect), None);
+        assert_eq!(clipped([-10.0, 0.0], [0.0, 30.0], rect), None);
+    }
 }

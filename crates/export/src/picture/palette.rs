@@ -7,6 +7,8 @@ pub(super) const WHITE: Colour = Colour([255, 255, 255]);
 pub(super) const INK: Colour = Colour([26, 26, 26]);
 pub(super) const GREY: Colour = Colour([96, 96, 96]);
 pub(super) const FAINT: Colour = Colour([200, 200, 200]);
+/// The ground of a flank that only lines are drawn on.
+pub(super) const PALE: Colour = Colour([229, 236, 242]);
 pub(super) const RED: Colour = Colour([190, 0, 0]);
 
 /// CIE lightness in this order: 70, 54, 89, 46, 71, 58, 61.
@@ -39,12 +41,33 @@ pub(crate) fn scale_colours() -> Vec<String> {
     SCALE.iter().map(|colour| colour.hex()).collect()
 }
 
+/// From minus by zero to plus: blue against orange, as light on the one side as on the other.
+const SIGNED: [Colour; 5] = [
+    Colour([0, 62, 128]),
+    Colour([112, 163, 208]),
+    Colour([246, 246, 244]),
+    Colour([231, 150, 74]),
+    Colour([138, 52, 0]),
+];
+
 /// The colour of a share from 0 to 1 of the way from the lowest to the highest value.
 pub(super) fn of_share(share: f64) -> Colour {
-    let along = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
-    let from = (along.floor() as usize).min(SCALE.len() - 2);
-    SCALE[from].towards(SCALE[from + 1], along - from as f64)
+    along(SCALE, share)
 }
+
+/// The colour of a signed share, from -1 to 1.
+pub(super) fn of_signed(share: f64) -> Colour {
+    along(SIGNED, 0.5 * (share + 1.0))
+}
+
+fn along(scale: [Colour; 5], share: f64) -> Colour {
+    let along = share.clamp(0.0, 1.0) * (scale.len() - 1) as f64;
+    let from = (along.floor() as usize).min(scale.len() - 2);
+    scale[from].towards(scale[from + 1], along - from as f64)
+}
+
+/// Steps of brightness in a shading.
+const STEPS: f64 = 40.0;
 
 /// Where the light comes from, in the eye's frame (right, up, towards the eye); a unit vector.
 const LIGHT: Vector = [-0.55, 0.62, 0.56];
@@ -62,7 +85,8 @@ pub(super) fn of_patch(number: usize) -> Colour {
 pub(super) fn shaded(base: Colour, normal: Vector) -> Colour {
     let from_behind = normal[2] < 0.0;
     let (base, normal) = if from_behind { (base.towards(GREY, 0.4), normal.map(|x| -x)) } else { (base, normal) };
-    let gain = dot(normal, LIGHT) - LIGHT[2];
+    // in steps that are hardly seen, so that files are small
+    let gain = ((dot(normal, LIGHT) - LIGHT[2]) * STEPS).round() / STEPS;
     if gain > 0.0 { base.towards(WHITE, 0.95 * gain) } else { base.times(1.0 / (1.0 - 0.8 * gain)) }
 }
 
@@ -101,5 +125,15 @@ mod tests {
     fn the_scale_is_a_scale_in_grey() {
         let greys: Vec<f64> = (0..=10).map(|k| luma(of_share(f64::from(k) / 10.0))).collect();
         assert!(greys.windows(2).all(|pair| pair[1] > pair[0] + 10.0), "{greys:?}");
+    }
+    #[test]
+    fn signs_differ_by_colour_and_are_equally_light() {
+        for k in 1..=10 {
+            let share = f64::from(k) / 10.0;
+            let (minus, plus) = (of_signed(-share), of_signed(share));
+            assert!((luma(minus) - luma(plus)).abs() < 12.0, "{share}: {} {}", luma(minus), luma(plus));
+            assert!(minus.0[2] > minus.0[0] && plus.0[0] > plus.0[2]);
+            assert!(luma(plus) < luma(of_signed(share - 0.1)) && luma(minus) < luma(of_signed(0.1 - share)));
+        }
     }
 }

@@ -6,6 +6,9 @@ use super::paint::{Colour, Item, Place};
 use super::palette;
 use crate::vector::{Vector, add, length, scale, sub, unit};
 
+/// Pieces overlap their neighbours by half of this, so much that no ground shines through where their edges are smoothed.
+pub(super) const SEAM: f64 = 2.4;
+
 /// A cell is drawn in at most this many pieces in each direction.
 const FINEST: usize = 64;
 
@@ -92,7 +95,7 @@ fn add_piece(corners: &[Node], base: Colour, view: &View, layers: &mut Layers) {
         None => base,
     };
     let points = corners.iter().map(|node| view.place(node.position)).collect();
-    layers.push(view.depth(centre), Item::Polygon { points, fill, outline: fill, width: 1.0 });
+    layers.push(view.depth(centre), Item::Polygon { points, fill, outline: fill, width: SEAM });
 }
 
 fn add_lines(mesh: &Mesh, base: Colour, view: &View, detail: Detail, parts: [usize; 2], layers: &mut Layers) {

@@ -1,0 +1,128 @@
+//! A job with its solved surfaces: what pictures are drawn of.
+
+use flank_chain_dsl::{Bounded, Job, Machine};
+use flank_export::{Dataset, Header};
+use flank_expr::Expr;
+use flank_solver::{Outcome, SurfacePoint};
+
+use crate::arguments::{Plot, What};
+use crate::solve::{self, Wanted};
+use crate::table::Solved;
+
+pub(super) struct Subject<'j, 'g> {
+    pub(super) job: &'j Job<'g>,
+    pub(super) solved: Vec<Solved<'j, 'g>>,
+    /// All surfaces with their fields, in the order of `solved`.
+    pub(super) dataset: Dataset,
+    /// The surfaces that maps show, as indices of `solved`; there is one at least.
+    pub(super) chosen: Vec<usize>,
+}
+
+impl<'j, 'g> Subject<'j, 'g> {
+    /// # Errors
+    /// In words, if a surface that is named is not sampled.
+    pub(super) fn new(
+        job: &'j Job<'g>,
+        names: &[&str],
+        header: Header,
+        arguments: &Plot,
+    ) -> Result<Subject<'j, 'g>, String> {
+        let first = job.surfaces.iter().find(|surface| surface.sample.is_some());
+        let first: Vec<&str> = first.map(|surface| surface.name.as_str()).into_iter().collect();
+        let names = if names.is_empty() { &first[..] } else { names };
+        let is_asked = |what: What| arguments.what.contains(&what);
+        let wanted = Wanted {
+            geometry: is_asked(What::Curvature) || arguments.what.is_empty(),
+            sensitivity: is_asked(What::Sensitivity),
+            certificates: false,
+        };
+        let solve_one = |surface: usize| {
+            let is_chosen = names.contains(&&*job.surfaces[surface].name);
+            solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { Wanted::default() })
+        };
+        let solved: Vec<Solved<'j, 'g>> = (0..job.surfaces.len()).filter_map(solve_one).collect();
+        let place = |name: &&str| {
+            let found = solved.iter().position(|solved| solved.surface.name == *name);
+            found.ok_or(format!("`{name}` is not sampled: add `sample {name} {{ … }}`, which says at which points"))
+        };
+        let chosen = names.iter().map(place).collect::<Result<Vec<usize>, String>>()?;
+        let dataset = solve::dataset(job, &solved, &[], header);
+        Ok(Subject { job, solved, dataset, chosen })
+    }
+
+    /// The first of the surfaces that maps show.
+    pub(super) fn first(&self) -> &Solved<'j, 'g> {
+        &self.solved[self.chosen[0]]
+    }
+
+    /// Its solved point that is nearest to the middle of its grid.
+    ///
+    /// # Errors
+    /// In words, if none is solved.
+    pub(super) fn middle(&self) -> Result<(usize, &SurfacePoint), String> {
+        let solved = self.first();
+        let [rows, columns] = solved.sample.counts;
+        let off = |at: usize| {
+            let [i, j] = [at / columns, at % columns];
+            (2 * i).abs_diff(rows - 1) * columns + (2 * j).abs_diff(columns - 1) * rows
+        };
+        let points = solved.points.iter().enumerate().filter(|(_, point)| point.outcome == Outcome::Solved);
+        points.min_by_key(|(at, _)| off(*at)).ok_or(format!("no point of `{}` is solved", solved.surface.name))
+    }
+
+    /// The surfaces that the tool of the first one leaves in the same work with the same motions.
+    pub(super) fn mates(&self) -> Vec<usize> {
+        let first = self.first().surface;
+        let is_mate = |&at: &usize| {
+            let surface = self.solved[at].surface;
+            surface.frame == first.frame
+                && surface.generation.tool_frame() == first.generation.tool_frame()
+                && surface.generation.motions == first.generation.motions
+        };
+        (0..self.solved.len()).filter(is_mate).collect()
+    }
+
+    /// The motions over which the first surface is made.
+    pub(super) fn motions(&self) -> Vec<&'j Bounded<'g>> {
+        let motions = &self.first().surface.generation.motions;
+        self.job.motions.iter().filter(|motion| motions.contains(&motion.variable)).collect()
+    }
+
+    /// The machine that the first surface stands in.
+    pub(super) fn machine(&self) -> Option<&'j Machine<'g>> {
+        let (machine, _) = self.first().surface.frame.split_once('.')?;
+        self.job.machines.iter().find(|other| other.name == machine)
+    }
+
+    /// Numbers for all parameters, for the motions as in a point of the first surface, and for the axes that follow.
+    pub(super) fn posture(&self, point: &SurfacePoint) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let surface = self.first().surface;
+        let mut bindings = self.job.bindings();
+        let at = |(unknown, value): (&Bounded<'g>, &f64)| (unknown.variable, unknown.variable.graph().constant(*value));
+        bindings.extend(surface.unknowns.iter().zip(&point.unknowns).map(at));
+        let known: Vec<Expr<'g>> = bindings.iter().map(|(variable, _)| *variable).collect();
+        // motions of other tools stand in the middle of their ranges
+        let others = self.job.motions.iter().filter(|motion| !known.contains(&motion.variable));
+        bindings.extend(
+            others.map(|motion| (motion.variable, motion.variable.graph().constant(0.5 * (motion.low + motion.high)))),
+        );
+        let laws: Vec<(Expr<'g>, Expr<'g>)> = self
+            .machine()
+            .into_iter()
+            .flat_map(|machine| &machine.axes)
+            .map(|axis| (axis.variable, axis.law))
+            .collect();
+        bindings.extend(laws.into_iter().map(|(variable, law)| (variable, bound(law, &bindings))).collect::<Vec<_>>());
+        bindings
+    }
+}
+
+/// An expression with numbers for its variables.
+pub(super) fn bound<'g>(of: Expr<'g>, bindings: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
+    of.graph().substitute(&[of], bindings)[0]
+}
+
+/// The same as a number; NaN where it is none.
+pub(super) fn number<'g>(of: Expr<'g>, bindings: &[(Expr<'g>, Expr<'g>)]) -> f64 {
+    bound(of, bindings).as_constant().unwrap_or(f64::NAN)
+}

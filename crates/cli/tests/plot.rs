@@ -1,0 +1,168 @@
+//! `flank plot` as a user runs it: which pictures there are, what they show, and what is said of those that do not fit.
+
+mod support;
+
+use support::{flank, folder, text};
+
+/// Texts of an SVG, as a screen reader finds them.
+fn labels(path: &std::path::Path) -> Vec<String> {
+    let svg = std::fs::read_to_string(path).expect("the picture is there");
+    let document = roxmltree::Document::parse(&svg).expect("well-formed XML");
+    document.descendants().filter_map(|node| node.attribute("aria-label")).map(str::to_owned).collect()
+}
+
+/// Draws into a folder of its own and gives the texts of one picture.
+fn plotted(name: &str, arguments: &[&str], file: &str) -> Vec<String> {
+    let out = folder(name);
+    let path = out.to_str().expect("a plain path");
+    let run = flank(&[&["plot"], arguments, &["--format", "svg", "--out", path]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    labels(&out.join(file))
+}
+
+fn has(labels: &[String], wanted: &[&str]) {
+    for wanted in wanted {
+        assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
+    }
+}
+
+#[test]
+fn without_a_wish_there_are_the_three_that_matter() {
+    let out = folder("plot_defaults");
+    let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--json", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!((&table["schema"], &table["job"]), (&"flank.plot/1".into(), &"spur_gear".into()));
+    let pictures = table["pictures"].as_array().expect("pictures");
+    let kinds: Vec<&str> = pictures.iter().map(|one| one["what"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["surface", "section", "contact-lines"]);
+    for picture in pictures {
+        assert!(picture["shows"].as_str().unwrap().len() > 5);
+        let files = picture["files"].as_array().unwrap();
+        assert_eq!(files.len(), 2);
+        for file in files {
+            assert!(std::fs::metadata(file.as_str().unwrap()).unwrap().len() > 1000, "{file}");
+        }
+    }
+}
+
+#[test]
+fn each_kind_says_what_it_shows() {
+    let out = folder("plot_kinds");
+    let kinds = "surface,topography,curvature,sensitivity,residual,contact-lines,section,machine,motion";
+    let run = flank(&[
+        "plot",
+        "specs/bevel/pinion_19x62.chain",
+        "--what",
+        kinds,
+        "--of",
+        "m.radial_distance",
+        "--format",
+        "svg",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let of = |kind: &str| labels(&out.join(format!("pinion_19x62.{kind}.svg")));
+    has(&of("surface"), &["concave", "convex", "root", "tip", "toe", "heel", "z (gear axis)"]);
+    has(&of("topography"), &["height over the plane", "root", "tip", "toe", "heel", "mm"]);
+    has(&of("curvature"), &["k1", "k2", "Gaussian curvature", "mean curvature", "1/mm\u{b2}", "toe", "heel"]);
+    has(&of("sensitivity"), &["d_normal/d_m.radial_distance", "\u{b5}m/mm", "root", "tip"]);
+    has(&of("residual"), &["residual", "mm", "z, mm", "radius, mm"]);
+    has(&of("contact-lines"), &["roll", "concave, deg; in the axial plane", "0", "toe", "heel"]);
+    has(&of("section"), &["concave", "root", "convex_fillet", "mm, towards the tip"]);
+    has(&of("machine"), &["cradle in bed", "cutter in swivel", "work", "97.959 mm", "about \u{2212}x"]);
+    has(&of("motion"), &["cradle, rotary", "work, rotary", "roll, deg", "a straight line, 3.3397 deg per deg"]);
+}
+
+/// The radial distance moves the flank as `flank solve --sensitivity` says; of others there is a list.
+#[test]
+fn sensitivity_is_to_what_is_named() {
+    let arguments = ["specs/bevel/pinion_19x62.chain", "--what", "sensitivity"];
+    let found = plotted("plot_most", &arguments, "pinion_19x62.sensitivity.svg");
+    has(&found, &["d_normal/d_c.outside_point_radius", "d_normal/d_m.work_offset"]);
+    let run = flank(&[&["plot"], &arguments[..], &["--of", "m.nothing"]].concat());
+    assert_eq!(run.status.code(), Some(1));
+    let told = text(&run.stderr);
+    assert!(told.contains("no parameter or setting `m.nothing`") && told.contains("m.radial_distance"), "{told}");
+}
+
+#[test]
+fn surfaces_are_chosen_by_name() {
+    let arguments = [
+        "specs/hobbing/spur_gear.chain",
+        "--what",
+        "contact-lines",
+        "--surface",
+        "flank_minus,flank_plus",
+        "--no-origin",
+    ];
+    let found = plotted("plot_surfaces", &arguments, "spur_gear.contact-lines.svg");
+    assert!(!found.iter().any(|label| label.contains("hash")), "{found:?}");
+    has(&found, &["flank_minus, deg; in the axial plane, upwards 5 times larger", "lower face", "upper face"]);
+    let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--surface", "flank"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("there is no surface `flank`"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn a_comparison_is_a_map_and_a_topography() {
+    let out = folder("plot_comparison");
+    let arguments =
+        ["plot", "specs/bevel/ease_off_19x62.chain", "--surface", "pinion.concave", "--from", "conjugate.concave"];
+    let run = flank(&[&arguments[..], &["--format", "svg", "--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    for kind in ["deviation", "topography"] {
+        let found = labels(&out.join(format!("pinion.concave.{kind}.svg")));
+        has(&found, &["pinion.concave from conjugate.concave", "deviation of concave", "toe", "heel", "\u{b5}m"]);
+    }
+    let run = flank(&[&arguments[..], &["--what", "section"]].concat());
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("what fits with --from: deviation, topography"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn what_does_not_fit_says_why_and_what_does() {
+    let cases = [
+        ("specs/hobbing/spur_gear.chain", "left", "the job does not say with `cut … by …` which edges"),
+        ("specs/hobbing/spur_gear.chain", "deviation", "it takes a second surface: --surface NAME --from OTHER"),
+        ("specs/bevel/formate_gear.chain", "contact-lines", "stands still while it makes"),
+        ("specs/bevel/formate_gear.chain", "section", "stands still while it makes"),
+        ("specs/bevel/formate_gear.chain", "motion", "nothing moves while"),
+        ("specs/double_envelope/shaped_ring_gear.chain", "section", "is an envelope itself"),
+    ];
+    for (spec, kind, why) in cases {
+        let run = flank(&["plot", spec, "--what", kind]);
+        assert_eq!(run.status.code(), Some(1), "{spec} {kind}");
+        let told = text(&run.stderr);
+        assert!(told.contains(&format!("--what {kind} does not fit job")) && told.contains(why), "{told}");
+        assert!(told.contains("what fits: surface") && told.contains("machine"), "{told}");
+    }
+    let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--size", "12"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("for example 2400x1800"), "{}", text(&run.stderr));
+}
+
+/// The same picture at each run, to the byte.
+#[test]
+fn pictures_are_the_same_at_each_run() {
+    let files = ["first", "second"].map(|name| {
+        let out = folder(&format!("plot_{name}"));
+        let run = flank(&[
+            "plot",
+            "specs/hobbing/helical_gear.chain",
+            "--what",
+            "section,machine,contact-lines",
+            "--size",
+            "800x600",
+            "--format",
+            "png",
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        ["section", "machine", "contact-lines"]
+            .map(|kind| std::fs::read(out.join(format!("helical_gear.{kind}.png"))).unwrap())
+    });
+    assert!(files[0] == files[1]);
+}
