@@ -115,7 +115,7 @@ fn everything() {
       frame bed
       frame slide in bed (translate! X 0_mm half) (rotate_x! 5_deg) (rotate! about: [0 0 1] by_angle: C)
       nc B1 (- C) by 0.001_deg
-      nc nc X
+      nc X1 X
       fix X (- half)
       couple C (/ (* (^ 2 (- (^ 3 2))) X) feed)
     machine variant < α_machine
