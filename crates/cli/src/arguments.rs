@@ -181,7 +181,7 @@ pub(crate) struct Plot {
     /// Pixels across and down; lines and letters grow with them
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", value_parser = pixels)]
     pub(crate) size: (u32, u32),
-    /// Leave out the line with spec, hash and program, as a paper wants it
+    /// Leave out the line with spec, hash and program, and residuals, as a paper wants it
     #[arg(long)]
     pub(crate) no_origin: bool,
     /// Print what the files show as JSON

@@ -18,7 +18,7 @@ pub struct Dataset {
 pub struct Header {
     /// Program and version, such as `flank 0.1.0`.
     pub program: String,
-    /// The spec file, as the user gave it. A picture of an empty one says nothing of where it comes from.
+    /// The spec file, as the user gave it. A picture of an empty one says nothing of where it comes from, nor of residuals.
     pub spec: String,
     /// Hash of what the spec says.
     pub spec_hash: String,

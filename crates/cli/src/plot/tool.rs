@@ -114,9 +114,8 @@ impl<'t> Sheet<'t> {
 
     /// Position and normal at shares of both ranges.
     fn at(&mut self, shares: [f64; 2]) -> [[f64; 3]; 2] {
-        for k in 0..2 {
-            let range = self.ranges[k];
-            self.inputs[k] = range.low + shares[k] * (range.high - range.low);
+        for ((input, range), share) in self.inputs.iter_mut().zip(self.ranges).zip(shares) {
+            *input = range.low + share * (range.high - range.low);
         }
         let mut out = [0.0; 6];
         self.evaluator.run(&self.inputs, &mut out);

@@ -104,7 +104,8 @@ pub(super) fn write_heading(title: &str, header: &Header, room: f64, sheet: &mut
 fn caption(dataset: &Dataset, drawn: &[Drawn<'_>], nodes: &[Node], camera: &Camera) -> String {
     let tally = Tally::of(&dataset.patches);
     let mut text = format!("Solved {} of {} points asked for", tally.solved, tally.asked);
-    if let Some(worst) = tally.worst_residual {
+    // how it was computed goes with where it comes from: a book's picture stays the same when rounding changes
+    if let Some(worst) = tally.worst_residual.filter(|_| !dataset.header.spec.is_empty()) {
         text += &format!("; worst residual {}", number::residual(worst));
     }
     text.push('.');
