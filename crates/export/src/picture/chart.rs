@@ -155,7 +155,8 @@ mod tests {
     fn numbers_are_round_and_apart() {
         let chart = Chart::filling(RECT, [[-0.31, 0.42], [1000.0, 1001.0]]);
         let texts: Vec<String> = chart.ticks(0).into_iter().map(|(_, text)| text).collect();
-        assert_eq!(texts, ["\u{2212}0.2", "0.0", "0.2", "0.4"]);
+        let tenths = ["\u{2212}0.3", "\u{2212}0.2", "\u{2212}0.1", "0.0", "0.1", "0.2", "0.3", "0.4"];
+        assert_eq!(texts, tenths, "55 units apart, as the widest of them is not");
         assert!(chart.ticks(1).len() >= 5);
     }
 
