@@ -55,9 +55,7 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        let bound = surface.bound(bindings);
-        let conditions = bound.clearance_minors();
-        SurfaceProblem::of(&bound, (coordinates, false), ranges, bindings, &conditions, Several::Refuse)
+        SurfaceProblem::clear_of_tool(surface, (coordinates, false), ranges, bindings)
     }
 
     /// The same, with the principal curvatures at each point of a grid
@@ -74,9 +72,19 @@ impl SurfaceProblem {
         ranges: Vec<Range>,
         bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
+        SurfaceProblem::clear_of_tool(surface, (coordinates, true), ranges, bindings)
+    }
+
+    /// A surface whose points the tool does not cut away again, with curvatures or without.
+    fn clear_of_tool<'g>(
+        surface: &Surface<'g>,
+        coordinates: ([Expr<'g>; 2], bool),
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SurfaceProblem, TapeError> {
         let bound = surface.bound(bindings);
         let conditions = bound.clearance_minors();
-        SurfaceProblem::of(&bound, (coordinates, true), ranges, bindings, &conditions, Several::Refuse)
+        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions, Several::Refuse)
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with

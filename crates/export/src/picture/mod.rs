@@ -174,8 +174,8 @@ pub fn field_lines(
     on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Lines, size)))
 }
 
-/// Draws fields of numbers as heights above their flanks, seen from aside: a topography. What is a micrometre high is drawn as
-/// high as a fifth of the flank's length. The rest is as for [`field_maps`].
+/// Draws fields of numbers as heights above their flanks, seen from aside: a topography. The largest of them is
+/// drawn as high as a fifth of the flank's length. The rest is as for [`field_maps`].
 #[must_use]
 pub fn topography(
     dataset: &Dataset,

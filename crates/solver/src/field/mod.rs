@@ -6,11 +6,15 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
+mod strip;
+
 use flank_expr::LANES;
 
 use crate::lanes::{LaneNewton, Lanes, VITAL};
 use crate::line::{Midpoint, STENCIL};
 use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
+
+pub(crate) use strip::{OnLine, Strip};
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
 const ASTRAY: f64 = 0.25;
@@ -396,210 +400,6 @@ impl Field {
             Strip { shape: *shape, ranges, first, width: LANES.min(shape.length - first), values, marks }
         };
         values.zip(marks.chunks_mut(shape.count.max(1))).enumerate().map(strip).collect()
-    }
-}
-
-/// What solves lines whose points follow from the targets of line and lane.
-pub(crate) struct OnLine<'n, 's> {
-    pub(crate) newton: &'n mut LaneNewton<'s>,
-    /// The second targets of the lanes.
-    second: Lanes,
-    /// What follows from the first targets, line by line.
-    prepared: &'n [f64],
-}
-
-impl<'n, 's> OnLine<'n, 's> {
-    pub(crate) fn new(newton: &'n mut LaneNewton<'s>, prepared: &'n [f64]) -> OnLine<'n, 's> {
-        OnLine { newton, second: [0.0; LANES], prepared }
-    }
-}
-
-/// The same part of all lines of a field.
-pub(crate) struct Strip<'f> {
-    shape: Shape,
-    ranges: &'f [Range],
-    /// Where the lanes are on the lines.
-    first: usize,
-    width: usize,
-    values: &'f mut [f64],
-    marks: &'f mut [[Mark; LANES]],
-}
-
-impl Strip<'_> {
-    /// Solves what follows from the known lines; what fails stays unknown, for the careful path. Gives the number of
-    /// evaluations.
-    pub(crate) fn refine(
-        &mut self,
-        newton: &mut LaneNewton<'_>,
-        mut on_line: Option<OnLine<'_, '_>>,
-        levels: &[Vec<Midpoint>],
-        targets: &[[f64; 2]],
-    ) -> u64 {
-        let (mut evaluations, mut rough) = (0, true);
-        if let Some(on_line) = &mut on_line {
-            self.set_second_targets(on_line, targets);
-        }
-        let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
-        let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
-        for midpoint in levels.iter().flatten() {
-            let is_free = empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]);
-            empty[midpoint.at] = false;
-            if let Some(on_line) = on_line.as_mut().filter(|_| is_free) {
-                evaluations += self.width as u64;
-                *on_line.newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
-                if self.take_at_once(midpoint.at, on_line, targets) {
-                    full[midpoint.at] = true;
-                    continue;
-                }
-            }
-            self.set_targets(midpoint.at, newton, targets);
-            if is_free {
-                if newton.has_all_given() {
-                    *newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
-                } else {
-                    self.interpolate_line(midpoint, newton, rough);
-                }
-                evaluations += newton.run(&[true; LANES][..self.width], rough);
-            } else {
-                let mut active = [false; LANES];
-                for lane in 0..self.width {
-                    active[lane] = self.interpolate_lane(midpoint, newton, lane);
-                }
-                let Some(first) = active.iter().position(|active| *active) else { continue };
-                repeat_lane(self.shape, newton, first, &active[..self.width]);
-                evaluations += newton.run(&active[..self.width], rough);
-            }
-            rough = newton.were_rough();
-            full[midpoint.at] = self.take_line(midpoint, newton);
-        }
-        evaluations
-    }
-
-    fn set_second_targets(&self, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) {
-        let second = on_line.newton.input(self.shape.size + 1);
-        second.iter_mut().zip(self.targets_on(0, targets)).for_each(|(value, target)| *value = target[1]);
-        on_line.second = *second;
-    }
-
-    /// Solves a line whose first targets are the same and whose second targets are those of the first line; false if they are not, or
-    /// if some point is no plain root on the side of the determinants that are given.
-    fn take_at_once(&mut self, line: usize, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) -> bool {
-        let OnLine { newton, second, prepared } = on_line;
-        if self.shape.lines == Lines::Columns {
-            return false;
-        }
-        let first = targets[self.shape.point(line, 0)][0];
-        let targets = &targets[self.shape.point(line, self.first)..][..self.width];
-        let differs = |(target, second): (&[f64; 2], &f64)| u64::from((target[0] != first) | (target[1] != *second));
-        let differ = newton.instructions().dispatch(
-            #[inline(always)]
-            || targets.iter().zip(second.iter()).map(differs).fold(0, |all, differs| all | differs),
-        );
-        let length = prepared.len() / self.shape.count;
-        differ == 0
-            && newton.run_prepared(&prepared[line * length..][..length], self.width)
-            && self.take_plain(line, newton)
-    }
-
-    fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {
-        for k in 0..2 {
-            let values = newton.input(self.shape.size + k);
-            for (value, target) in values.iter_mut().zip(self.targets_on(line, targets)) {
-                *value = target[k];
-            }
-        }
-    }
-
-    fn targets_on<'t>(&self, line: usize, targets: &'t [[f64; 2]]) -> impl Iterator<Item = &'t [f64; 2]> + use<'t> {
-        let next = self.shape.point(line, 1) - self.shape.point(line, 0);
-        targets[self.shape.point(line, self.first)..].iter().step_by(next).take(self.width)
-    }
-
-    fn is_line_of_roots(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| mark.is_root())
-    }
-
-    fn is_untouched(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| *mark == Mark::Unknown)
-    }
-
-    fn plane(&self, line: usize, plane: usize) -> &Lanes {
-        &self.values.as_chunks::<LANES>().0[line * self.shape.planes + plane]
-    }
-
-    /// The starts of a whole line, from whole lines. What is given needs none, but for a step from rough starts.
-    fn interpolate_line(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, rough: bool) {
-        let size = self.shape.size;
-        newton.instructions().dispatch(
-            #[inline(always)]
-            || {
-                for plane in 0..=size {
-                    if newton.is_given(plane) && !rough {
-                        continue;
-                    }
-                    let mut sums = [0.0; LANES];
-                    for (line, weight) in midpoint.known() {
-                        let values = self.plane(*line, plane);
-                        for lane in 0..LANES {
-                            sums[lane] += weight * values[lane];
-                        }
-                    }
-                    if plane < size {
-                        *newton.input(plane) = sums;
-                    } else {
-                        *newton.determinant() = sums;
-                    }
-                }
-                let [before, behind] = midpoint.beside.map(|line| self.plane(line, size));
-                let determinant = newton.determinant();
-                for lane in 0..LANES {
-                    let is_known = keeps_sign(before[lane], determinant[lane], behind[lane]);
-                    determinant[lane] = if is_known { determinant[lane] } else { f64::NAN };
-                }
-            },
-        );
-    }
-
-    /// The start of one point; false if the point is known, or does not follow.
-    fn interpolate_lane(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, lane: usize) -> bool {
-        interpolate(self.shape, midpoint, (self.values, self.marks), |line| (line, lane), newton, lane)
-    }
-
-    /// Takes what the lanes have come to if all are plain roots.
-    fn take_plain(&mut self, line: usize, newton: &mut LaneNewton<'_>) -> bool {
-        let (shape, width) = (self.shape, self.width);
-        let are_plain = newton.all_plain(width, NEAR);
-        if are_plain {
-            let values = &mut self.values.as_chunks_mut::<LANES>().0[line * shape.planes..][..shape.planes];
-            for (k, values) in values.iter_mut().enumerate() {
-                *values = *number(shape, newton, k);
-            }
-            self.marks[line][..width].fill(Mark::Solved);
-        }
-        are_plain
-    }
-
-    /// Takes what the lanes have come to; whether all of them are roots now.
-    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
-        let line = midpoint.at;
-        let (shape, width) = (self.shape, self.width);
-        if self.take_plain(line, newton) {
-            return true;
-        }
-        for lane in 0..width {
-            let [before, behind] = midpoint.beside;
-            let apart = || {
-                let share = |(k, range): (usize, &Range)| {
-                    (self.plane(before, k)[lane] - self.plane(behind, k)[lane]).abs() / range.width()
-                };
-                self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
-            };
-            if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
-                let values = block_of(shape, self.values, line);
-                take(shape, values, &mut self.marks[line], lane, newton, lane);
-            }
-        }
-        self.is_line_of_roots(line)
     }
 }
 

@@ -1,0 +1,141 @@
+//! The arguments of `flank convert`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use flank_export::Dialect;
+use flank_expr::Language;
+
+use super::{Which, length};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The tool stands to the work on the target machine as it does on the job's own, up to what the tool does not see: a cutter of
+revolution may turn about its axis.
+
+Examples:
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --tolerance 0.1um
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --nc linuxcnc --time 20 --emit c
+  flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain --emit c,rust --emit-form exact
+  flank convert specs/bevel/tilted_pinion.chain --surface convex --to specs/machines/free_form.chain --json
+  flank convert specs/bevel/thesis_gear.chain --to specs/machines/cradle.chain --fit work_offset    settings that do the same")]
+pub(crate) struct Convert {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// The file of the target machine; of several in it the last one
+    #[arg(long, value_name = "FILE")]
+    pub(crate) to: PathBuf,
+    #[command(flatten)]
+    pub(crate) onto: Onto,
+    /// Settings of the target that are looked for beside those without a value: tilt,swivel
+    #[arg(long, value_delimiter = ',', value_name = "SETTING")]
+    pub(crate) fit: Vec<String>,
+    /// How many positions, over the motion as far as the sampled points need it
+    #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) positions: u32,
+    /// The order of the polynomials
+    #[arg(long, value_name = "ORDER", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=30), conflicts_with = "tolerance")]
+    pub(crate) order: u32,
+    /// Take the smallest order that keeps the flank this near, for example 0.1um or 0.002mm
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Files with positions and polynomials: csv, json, or both with a comma
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<MotionFormat>,
+    /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
+    #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
+    pub(crate) nc: Vec<NcDialect>,
+    /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) time: Option<f64>,
+    /// Write a function of the motion that returns the axes and their first derivatives: c, rust, javascript
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) emit: Vec<EmitLanguage>,
+    /// What the function computes: the polynomials, or the exact axes in closed form
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "polynomials", requires = "emit")]
+    pub(crate) emit_form: Vec<EmitForm>,
+    /// Print everything as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What is carried over, and which frames of the target stand for the job's.
+#[derive(Args, Debug)]
+pub(crate) struct Onto {
+    /// The surface whose tool is carried over, where the job has several tools
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) surface: Option<String>,
+    /// The target's frame that the tool stands in, if it has another name there
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) tool_frame: Option<String>,
+    /// The target's frame that the work stands in, if it has another name there
+    #[arg(long, value_name = "NAME", requires = "to")]
+    pub(crate) work_frame: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MotionFormat {
+    Csv,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NcDialect {
+    Fanuc,
+    Siemens,
+    #[value(name = "linuxcnc")]
+    LinuxCnc,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EmitLanguage {
+    C,
+    Rust,
+    #[value(name = "javascript")]
+    JavaScript,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EmitForm {
+    Polynomials,
+    Exact,
+}
+
+impl From<NcDialect> for Dialect {
+    fn from(dialect: NcDialect) -> Dialect {
+        match dialect {
+            NcDialect::Fanuc => Dialect::Fanuc,
+            NcDialect::Siemens => Dialect::Siemens840D,
+            NcDialect::LinuxCnc => Dialect::LinuxCnc,
+        }
+    }
+}
+
+impl From<EmitLanguage> for Language {
+    fn from(language: EmitLanguage) -> Language {
+        match language {
+            EmitLanguage::C => Language::C,
+            EmitLanguage::Rust => Language::Rust,
+            EmitLanguage::JavaScript => Language::JavaScript,
+        }
+    }
+}
+
+impl EmitLanguage {
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            EmitLanguage::C => "c",
+            EmitLanguage::Rust => "rs",
+            EmitLanguage::JavaScript => "mjs",
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let found = text.trim().trim_end_matches('s').trim().parse::<f64>().ok();
+    found.filter(|x| x.is_finite() && *x > 0.0).ok_or("write a number of seconds, for example 30".to_string())
+}
