@@ -262,3 +262,32 @@ fn a_singular_pose_is_told_with_its_place() {
     let run = flank(&[&job[..], &["--to", &fixed, "--tool-frame", "cutter", "--work-frame", "work"]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
 }
+
+/// The rates that are printed, from the circle on which the cutter goes: without tilt, X and Y turn evenly about the machine's centre.
+#[test]
+fn printed_rates_are_those_of_an_even_turn() {
+    let out = folder("convert-rates");
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain", "--time", "20"];
+    let run = flank(&[&spec[..], &["--out", out.to_str().unwrap()]].concat());
+    let told = text(&run.stdout);
+    let (positions, rates) = told.split_once("velocity").expect("rates are printed");
+    let numbers = |part: &str, axis: &str| -> Vec<f64> {
+        let line = part.lines().find(|line| line.trim_start().starts_with(axis)).expect("it is printed");
+        line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    };
+    let near = |found: &[f64], expected: [f64; 3]| {
+        // printed to 1e-6
+        let is_near = found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 2e-6);
+        assert!(is_near && found.len() == 3, "{found:?} instead of {expected:?}: {told}");
+    };
+    let cutter = numbers(positions, "C ");
+    let turn = (cutter[1] - cutter[0]) / 20.0;
+    near(&numbers(rates, "C "), [turn, 0.0, 0.0]);
+    near(&numbers(rates, "A "), [3.339685914944047 * turn, 0.0, 0.0]);
+    let per_second = turn.to_radians();
+    let centre = 0.001306176586991889 * 15.64096727073747_f64.to_radians().cos();
+    // both run one way, through positive values: the largest are at the end
+    let (x, y) = (numbers(positions, "X ")[1] - centre, numbers(positions, "Y ")[1]);
+    near(&numbers(rates, "X "), [y * per_second, x * per_second.powi(2), y * per_second.powi(3)]);
+    near(&numbers(rates, "Y "), [x * per_second, y * per_second.powi(2), x * per_second.powi(3)]);
+}
