@@ -50,6 +50,14 @@ pub(crate) enum Several {
     TakeWidest,
 }
 
+/// Where a step may lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sides {
+    /// Not across where the Jacobian has no inverse.
+    Same,
+    Both,
+}
+
 /// Which branch is meant.
 pub(crate) struct Choice<'c> {
     /// All branches at given targets.
@@ -343,8 +351,9 @@ impl<'s> Grid<'s> {
         (0..self.targets.len()).filter(is_edge).collect()
     }
 
-    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns.
-    /// Gives the points it has solved.
+    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns. Where
+    /// the Jacobian has no inverse a sheet ends at a fold, with another sheet behind it, or crosses another one: steps
+    /// across are taken when nothing else is left. Gives the points it has solved.
     fn spread(
         &mut self,
         field: &mut Field,
@@ -352,9 +361,11 @@ impl<'s> Grid<'s> {
         rows: &[usize],
         columns: &[usize],
     ) -> Vec<usize> {
-        let mut solved = Vec::new();
+        let (mut solved, mut across) = (Vec::new(), VecDeque::new());
         let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
-        while let Some(point) = queue.pop_front() {
+        loop {
+            let sides = if queue.is_empty() { Sides::Both } else { Sides::Same };
+            let Some(point) = queue.pop_front().or_else(|| across.pop_front()) else { break };
             let (i, j) = (point / self.columns, point % self.columns);
             let (at_row, at_column) = (place(rows, i), place(columns, j));
             for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
@@ -377,7 +388,10 @@ impl<'s> Grid<'s> {
                         extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
                     },
                 );
-                let mut solution = self.step(point, next, &near, &start);
+                let (mut solution, leads_across) = self.step(point, next, [&near, &start], sides);
+                if leads_across {
+                    across.push_back(point);
+                }
                 if let Some(earlier) = field.solution(next) {
                     solution = earlier.better(solution);
                 }
@@ -391,10 +405,15 @@ impl<'s> Grid<'s> {
         solved
     }
 
-    /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way.
-    fn step(&mut self, from: usize, to: usize, near: &[f64], start: &[f64]) -> Solution {
+    /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way. Also whether
+    /// there is a way to the other side of where the Jacobian has no inverse that was not taken.
+    fn step(&mut self, from: usize, to: usize, [near, start]: [&[f64]; 2], sides: Sides) -> (Solution, bool) {
         let (a, b) = (self.targets[from], self.targets[to]);
-        let mut last = None;
+        self.evaluation.set_parameters(&a);
+        self.evaluation.at(near);
+        self.effort.evaluations += 1;
+        let orientation = self.evaluation.orientation(self.ranges);
+        let (mut last, mut leads_across) = (None, false);
         for parts in SUBSTEPS {
             let (mut at, mut reached) = (near.to_vec(), a);
             // straight on as before: where branches cross, the way leads across
@@ -407,7 +426,11 @@ impl<'s> Grid<'s> {
                 self.evaluation.set_parameters(&target);
                 let solution = solve_with(&mut self.evaluation, self.ranges, &first);
                 self.effort.evaluations += u64::from(solution.iterations);
-                let stays = solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target]);
+                let is_across = self.evaluation.orientation(self.ranges) * orientation < 0.0;
+                let is_near =
+                    solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target], is_across);
+                let stays = is_near && (!is_across || sides == Sides::Both);
+                leads_across |= is_near && !stays;
                 first = extrapolated(&solution.unknowns, at.iter().copied(), 1.0);
                 at.clone_from(&solution.unknowns);
                 reached = target;
@@ -417,7 +440,7 @@ impl<'s> Grid<'s> {
                 }
             }
             match stepped {
-                Some((solution, true)) => return solution,
+                Some((solution, true)) => return (solution, false),
                 Some((solution, false)) => last = Some(solution),
                 None => {}
             }
@@ -428,21 +451,31 @@ impl<'s> Grid<'s> {
             lost.outcome = Outcome::NotConverged { iterations: lost.iterations };
             lost.residual = f64::NAN;
         }
-        lost
+        (lost, leads_across)
     }
 
-    /// Whether the tangents at both of two solved points lead to the other one. One tangent is not enough: where branches
-    /// cross or turn back it allows any step.
-    fn stays_near(&mut self, points: [&[f64]; 2], targets: [&[f64; 2]; 2]) -> bool {
-        distance(points[0], points[1], self.ranges) <= NEAR
-            || (0..2).all(|k| {
-                self.evaluation.set_parameters(targets[1 - k]);
-                self.evaluation.at(points[k]);
-                self.effort.evaluations += 1;
-                let led = self.evaluation.tangent_point(self.ranges);
-                let allowed = ASTRAY * distance(points[k], &led, self.ranges) + NEAR;
-                distance(&led, points[1 - k], self.ranges) <= allowed
-            })
+    /// Whether the tangents at two solved points lead from one to the other. Across a place without an inverse both must: one
+    /// of them allows any step where branches cross or turn back. Else the shorter one tells; the other one leads far away
+    /// where a fold is near.
+    fn stays_near(&mut self, points: [&[f64]; 2], targets: [&[f64; 2]; 2], is_across: bool) -> bool {
+        if distance(points[0], points[1], self.ranges) <= NEAR {
+            return true;
+        }
+        let [there, back] = [0, 1].map(|k| {
+            self.evaluation.set_parameters(targets[1 - k]);
+            self.evaluation.at(points[k]);
+            self.effort.evaluations += 1;
+            let led = self.evaluation.tangent_point(self.ranges);
+            let length = distance(points[k], &led, self.ranges);
+            (length, distance(&led, points[1 - k], self.ranges) <= ASTRAY * length + NEAR)
+        });
+        if is_across {
+            there.1 && back.1
+        } else if there.0 <= back.0 {
+            there.1
+        } else {
+            back.1
+        }
     }
 }
 

@@ -154,3 +154,30 @@ fn a_very_long_equation() {
     assert!(points.iter().all(|point| point.outcome == Outcome::Solved));
     assert_careful_agrees(&system, &ranges, &targets, &points);
 }
+
+/// A grid over the edge of a fold: v and -v have the same targets, and the second of them is outside. However coarse the grid, no
+/// point is taken from the sheet behind the fold, which shows in the sign of the determinant, and none is missed.
+#[test]
+fn the_sheet_behind_a_fold_is_not_taken() {
+    let graph = Graph::new();
+    let [u, v, a, b] = ["u", "v", "a", "b"].map(|name| graph.variable(name));
+    let ranges = [range(-2.5, 2.5), range(0.0, 2.0)];
+    for bent in [0.0, 0.1] {
+        let residuals = [v * v + 0.3 * (3.0 * u).sin() - a, u + bent * v * u.sin() - b];
+        let system = System::new(&residuals, &[u, v], &[a, b]).expect("nothing is unbound");
+        let determinant =
+            |p: &[f64]| 0.9 * (3.0 * p[0]).cos() * bent * p[0].sin() - 2.0 * p[1] * (1.0 + bent * p[1] * p[0].cos());
+        for counts in [[150, 40], [40, 150], [31, 31], [12, 90], [90, 12], [300, 300]] {
+            let targets = targets([(-0.1, 1.5), (-2.0, 2.0)], counts);
+            let (points, _) = solve_grid(&system, &ranges, &targets, counts);
+            for (target, point) in targets.iter().zip(&points) {
+                let is_root = matches!(point.outcome, Outcome::Solved | Outcome::Outside { .. });
+                assert!(!is_root || determinant(&point.unknowns) < 1e-9, "{bent} {counts:?} {target:?}: {point:?}");
+                if bent == 0.0 {
+                    let height = target[0] - 0.3 * (3.0 * target[1]).sin();
+                    assert_eq!(point.outcome == Outcome::Solved, height > 0.0, "{counts:?} {target:?}: {point:?}");
+                }
+            }
+        }
+    }
+}
