@@ -25,16 +25,16 @@ fn random_programs_in_different_lanes() {
         let outputs = program.build(&variables, &graph);
         let tape = LaneTape::new(&Tape::new(&outputs, &variables).expect("every variable is an input"));
         let mut plain = LaneEvaluator::new(&tape, InstructionSet::widest());
-        let mut native = LaneEvaluator::new(&tape, InstructionSet::fastest());
-        for k in 0..variables.len() {
-            let values: [f64; LANES] = std::array::from_fn(|_| random.between(-3.0, 3.0));
-            *plain.input(k) = values;
-            *native.input(k) = values;
-        }
+        let values: [[f64; LANES]; 5] = std::array::from_fn(|_| std::array::from_fn(|_| random.between(-3.0, 3.0)));
+        values.iter().enumerate().for_each(|(k, values)| *plain.input(k) = *values);
         plain.run();
-        for count in [1, 4, 5, LANES - 1, LANES, LANES + 1] {
-            native.run_first(count);
-            assert_same_bits(&plain, &native, outputs.len(), count.min(LANES));
+        for instructions in InstructionSet::available() {
+            let mut evaluator = LaneEvaluator::new(&tape, instructions);
+            values.iter().enumerate().for_each(|(k, values)| *evaluator.input(k) = *values);
+            for count in [1, 4, 5, 8, 9, LANES - 1, LANES, LANES + 1] {
+                evaluator.run_first(count);
+                assert_same_bits(&plain, &evaluator, outputs.len(), count.min(LANES));
+            }
         }
     }
 }
@@ -46,10 +46,10 @@ fn far_angles_in_one_lane() {
     let (x, y) = (graph.variable("x"), graph.variable("y"));
     let outputs = [y.sin(), x.cos() * y, x.sin() + y.sin(), (x * y).cos()];
     let tape = LaneTape::new(&Tape::new(&outputs, &[x, y]).expect("x and y are the inputs"));
-    let mut plain = LaneEvaluator::new(&tape, InstructionSet::widest());
-    let mut native = LaneEvaluator::new(&tape, InstructionSet::fastest());
+    let mut all: Vec<_> =
+        InstructionSet::available().into_iter().map(|instructions| LaneEvaluator::new(&tape, instructions)).collect();
     for far in [1e6, -4e15, 1e300, f64::INFINITY] {
-        for evaluator in [&mut plain, &mut native] {
+        for evaluator in &mut all {
             *evaluator.input(0) = std::array::from_fn(|lane| 0.1 * lane as f64);
             *evaluator.input(1) = std::array::from_fn(|lane| -0.3 * lane as f64);
             evaluator.input(0)[7] = far;
@@ -57,6 +57,6 @@ fn far_angles_in_one_lane() {
             evaluator.input(1)[9] = far;
             evaluator.run();
         }
-        assert_same_bits(&plain, &native, outputs.len(), LANES);
+        all.iter().for_each(|evaluator| assert_same_bits(&all[0], evaluator, outputs.len(), LANES));
     }
 }

@@ -13,7 +13,7 @@ use pulp::Arch;
 use crate::evaluate::execute;
 use block::Block;
 pub use block::LANES;
-use native::{Native, Part, WIDTH, Wide};
+use native::{Native, Part, Vectors, Wide};
 use program::LaneInstruction;
 pub use program::{LaneTape, Varies};
 
@@ -21,28 +21,30 @@ pub use program::{LaneTape, Varies};
 #[derive(Clone, Copy, Debug)]
 pub struct InstructionSet {
     loops: Arch,
-    /// Tapes become machine code.
-    is_native: bool,
+    /// Tapes become machine code for these.
+    native: Option<Vectors>,
 }
 
 impl InstructionSet {
     /// What is fastest on this machine: tapes as machine code where it can be made, else the widest.
     pub fn fastest() -> InstructionSet {
-        InstructionSet { is_native: native::is_available(), ..InstructionSet::widest() }
+        InstructionSet { native: Vectors::available().last(), ..InstructionSet::widest() }
     }
 
     /// The widest vectors that this machine has, with tapes gone through instruction by instruction.
     pub fn widest() -> InstructionSet {
-        InstructionSet { loops: Arch::new(), is_native: false }
+        InstructionSet { loops: Arch::new(), native: None }
     }
 
     /// All that this machine has, the plain one first.
     pub fn available() -> Vec<InstructionSet> {
-        let loops = |loops| InstructionSet { loops, is_native: false };
+        let loops = |loops| InstructionSet { loops, native: None };
         let mut found = vec![loops(Arch::Scalar)];
         #[cfg(target_arch = "x86_64")]
         found.extend(pulp::x86::V3::try_new().map(|avx2| loops(Arch::V3(avx2))));
-        found.extend([InstructionSet::widest(), InstructionSet::fastest()]);
+        found.push(InstructionSet::widest());
+        let native = |vectors| InstructionSet { native: Some(vectors), ..InstructionSet::widest() };
+        found.extend(Vectors::available().map(native));
         found
     }
 
@@ -61,12 +63,13 @@ pub struct LaneEvaluator<'t> {
     tape: &'t LaneTape,
     instructions: InstructionSet,
     native: Option<&'t Native>,
+    /// Those of the tape; for machine code its constants follow.
     scalars: Vec<f64>,
-    /// The same for machine code, with its own after them: each as often as a register has lanes.
+    /// The same for machine code that reads them as wide as a register.
     wide: Vec<Wide>,
     /// Those of the tape; for machine code the outputs follow.
     blocks: Vec<Block>,
-    scratch: Vec<Wide>,
+    scratch: Vec<Block>,
     /// A uniform input changed since the last run.
     is_stale: bool,
     /// So did what varies by lane alone.
@@ -76,16 +79,18 @@ pub struct LaneEvaluator<'t> {
 impl<'t> LaneEvaluator<'t> {
     /// An evaluator for one tape.
     pub fn new(tape: &'t LaneTape, instructions: InstructionSet) -> LaneEvaluator<'t> {
-        let native = instructions.is_native.then(|| tape.native()).flatten();
-        let constants = native.map(|native| tape.scalars.iter().chain(native.constants()));
+        let native = instructions.native.and_then(|vectors| tape.native(vectors));
+        let constants = native.map_or(&[][..], Native::constants);
+        let scalars = [tape.scalars.as_slice(), constants].concat();
+        let is_wide = native.is_some_and(Native::reads_wide);
         LaneEvaluator {
             tape,
             instructions,
             native,
-            scalars: tape.scalars.clone(),
-            wide: constants.into_iter().flatten().map(|number| Wide([*number; WIDTH])).collect(),
+            wide: scalars.iter().filter(|_| is_wide).map(|number| Wide([*number; _])).collect(),
+            scalars,
             blocks: vec![Block::default(); native.map_or(tape.block_count, Native::block_count)],
-            scratch: vec![Wide::default(); native.map_or(0, Native::scratch_len)],
+            scratch: vec![Block::default(); native.map_or(0, Native::scratch_len)],
             is_stale: true,
             is_kept_stale: true,
         }
@@ -119,7 +124,7 @@ impl<'t> LaneEvaluator<'t> {
     pub fn prepare(&mut self, prepared: &mut Vec<f64>) {
         self.execute_once();
         prepared.extend_from_slice(&self.scalars[..self.tape.inputs.len()]);
-        prepared.extend_from_slice(&self.scalars[self.tape.first_result()..]);
+        prepared.extend_from_slice(&self.scalars[self.tape.results()]);
     }
 
     /// Gives all uniform inputs the values that they had for [`LaneEvaluator::prepare`] of an evaluator of the same tape, without
@@ -130,19 +135,19 @@ impl<'t> LaneEvaluator<'t> {
     pub fn set_prepared(&mut self, prepared: &[f64]) {
         let inputs = self.tape.inputs.len();
         self.scalars[..inputs].copy_from_slice(&prepared[..inputs]);
-        self.scalars[self.tape.first_result()..].copy_from_slice(&prepared[inputs..]);
+        self.scalars[self.tape.results()].copy_from_slice(&prepared[inputs..]);
         self.widen(0..inputs);
-        self.widen(self.tape.first_result()..self.scalars.len());
+        self.widen(self.tape.results());
         self.is_stale = false;
     }
 
     /// Gives machine code the scalars of a range.
     fn widen(&mut self, range: std::ops::Range<usize>) {
-        if self.native.is_some() {
+        if self.native.is_some_and(Native::reads_wide) {
             let pairs = self.wide[range.clone()].iter_mut().zip(&self.scalars[range]);
             self.instructions.dispatch(
                 #[inline(always)]
-                || pairs.for_each(|(wide, number)| *wide = Wide([*number; WIDTH])),
+                || pairs.for_each(|(wide, number)| *wide = Wide([*number; _])),
             );
         }
     }
@@ -150,7 +155,7 @@ impl<'t> LaneEvaluator<'t> {
     fn execute_once(&mut self) {
         if self.is_stale {
             execute(&self.tape.once, &self.tape.curves, &mut self.scalars);
-            self.widen(0..self.scalars.len());
+            self.widen(0..self.tape.scalars.len());
             self.is_stale = false;
         }
     }
@@ -165,7 +170,7 @@ impl<'t> LaneEvaluator<'t> {
         self.execute_once();
         let LaneEvaluator { tape, instructions, native, scalars, wide, blocks, scratch, .. } = self;
         let mut is_done = |part, count: usize, steps: &[LaneInstruction], blocks: &mut [Block]| {
-            let is_native = native.is_some_and(|native| native.run(part, count, wide, blocks, scratch));
+            let is_native = native.is_some_and(|native| native.run(part, count, (scalars, wide), blocks, scratch));
             if !is_native {
                 instructions.dispatch(
                     #[inline(always)]

@@ -3,11 +3,23 @@
 use super::block::Block;
 use super::program::LaneTape;
 
-/// What fills a vector register.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wide(pub(super) [f64; WIDTH]);
+/// Vector registers that code is made for: none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Vectors {}
 
-pub(super) const WIDTH: usize = 1;
+impl Vectors {
+    pub(super) fn available() -> impl DoubleEndedIterator<Item = Vectors> {
+        std::iter::empty()
+    }
+
+    pub(super) fn index(self) -> usize {
+        match self {}
+    }
+}
+
+/// A scalar as wide as a register.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wide(#[expect(dead_code, reason = "there is no machine code to read it")] pub(super) [f64; 1]);
 
 /// Which of a tape's instructions.
 #[derive(Clone, Copy)]
@@ -21,8 +33,8 @@ pub(super) enum Part {
 pub(super) enum Native {}
 
 impl Native {
-    pub(super) fn translate(_: &LaneTape) -> Option<Native> {
-        None
+    pub(super) fn translate(_: &LaneTape, vectors: Vectors) -> Option<Native> {
+        match vectors {}
     }
 
     pub(super) fn block_count(&self) -> usize {
@@ -37,11 +49,11 @@ impl Native {
         match *self {}
     }
 
-    pub(super) fn run(&self, _: Part, _: usize, _: &[Wide], _: &mut [Block], _: &mut [Wide]) -> bool {
+    pub(super) fn reads_wide(&self) -> bool {
         match *self {}
     }
-}
 
-pub(super) fn is_available() -> bool {
-    false
+    pub(super) fn run(&self, _: Part, _: usize, _: (&[f64], &[Wide]), _: &mut [Block], _: &mut [Block]) -> bool {
+        match *self {}
+    }
 }

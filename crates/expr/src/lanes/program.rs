@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::native::Native;
+use super::native::{Native, Vectors};
 use crate::curve::Curve;
 use crate::op::{Binary, Unary};
 use crate::tape::{Instruction, Operation, Tape};
@@ -81,7 +81,8 @@ pub struct LaneTape {
     pub(super) varies: Vec<Varies>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
-    native: OnceLock<Option<Native>>,
+    /// For four lanes and for eight.
+    native: [OnceLock<Option<Native>>; 2],
 }
 
 /// Where the value lives that a register of the tape holds at some step.
@@ -124,13 +125,13 @@ impl LaneTape {
             inputs,
             varies: varies.to_vec(),
             outputs,
-            native: OnceLock::new(),
+            native: Default::default(),
         }
     }
 
     /// Its machine code, made when it is asked for first.
-    pub(super) fn native(&self) -> Option<&Native> {
-        self.native.get_or_init(|| Native::translate(self)).as_ref()
+    pub(super) fn native(&self, vectors: Vectors) -> Option<&Native> {
+        self.native[vectors.index()].get_or_init(|| Native::translate(self, vectors)).as_ref()
     }
 
     /// Number of outputs.
@@ -139,8 +140,8 @@ impl LaneTape {
     }
 
     /// Results of the first stage follow inputs and constants.
-    pub(super) fn first_result(&self) -> usize {
-        self.scalars.len() - self.result_count
+    pub(super) fn results(&self) -> std::ops::Range<usize> {
+        self.scalars.len() - self.result_count..self.scalars.len()
     }
 
     /// Numbers of a [`LaneEvaluator::prepare`](crate::LaneEvaluator::prepare).

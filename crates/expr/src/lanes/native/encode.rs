@@ -1,7 +1,9 @@
-//! The bytes of the few x86-64 instructions that tapes need (Intel SDM, volume 2: VEX prefix and ModRM).
+//! The bytes of the few x86-64 instructions that tapes need (Intel SDM, volume 2: VEX and EVEX prefixes, ModRM).
 
-/// A vector register of four lanes, 0 to 15.
-pub(super) type Ymm = u8;
+use super::Vectors;
+
+/// The number of a vector register.
+pub(super) type Register = u8;
 
 /// General registers by number.
 const RBX: u8 = 3;
@@ -27,7 +29,7 @@ pub(super) struct Place {
 /// The second operand of most instructions.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Operand {
-    Register(Ymm),
+    Register(Register),
     Memory(Place),
 }
 
@@ -52,48 +54,105 @@ impl Packed {
     }
 }
 
-const SQUARE_ROOT: u8 = 0x51;
-const COMPARE: u8 = 0xc2;
-const SHIFT: u8 = 0x73;
-const LOAD: u8 = 0x10;
-const STORE: u8 = 0x11;
-const SELECT: u8 = 0x4b;
+/// Opcodes with their map and prefix, by the numbers that these have in VEX and EVEX.
+#[derive(Clone, Copy)]
+struct Opcode {
+    map: u8,
+    prefix: u8,
+    code: u8,
+}
 
-/// Opcode maps by their number in the prefix.
-const MAP_0F: u8 = 1;
-const MAP_0F3A: u8 = 3;
+impl Opcode {
+    /// Of the map 0F with prefix 66, to which most belong.
+    const fn plain(code: u8) -> Opcode {
+        Opcode { map: 1, prefix: 1, code }
+    }
+}
+
+const SQUARE_ROOT: Opcode = Opcode::plain(0x51);
+const COMPARE: Opcode = Opcode::plain(0xc2);
+const SHIFT: Opcode = Opcode::plain(0x73);
+const LOAD: Opcode = Opcode::plain(0x10);
+const STORE: Opcode = Opcode::plain(0x11);
+/// By the highest bits of a register; four lanes alone.
+const SELECT: Opcode = Opcode { map: 3, prefix: 1, code: 0x4b };
+/// By a mask; eight lanes alone, as all that follow.
+const BLEND: Opcode = Opcode { map: 2, prefix: 1, code: 0x65 };
+const SPREAD: Opcode = Opcode { map: 2, prefix: 1, code: 0x19 };
+const HIGHEST_BITS: Opcode = Opcode { map: 2, prefix: 2, code: 0x39 };
+const FROM_MASK: Opcode = Opcode { map: 2, prefix: 2, code: 0x38 };
+/// The one mask register in use; 0 would mean that there is none.
+const MASK: u8 = 1;
+/// What is compared: whether one of two is NaN.
+const UNORDERED: u8 = 3;
 
 /// Machine code as it grows.
-#[derive(Debug, Default)]
-pub(super) struct Code(pub(super) Vec<u8>);
+#[derive(Debug)]
+pub(super) struct Code {
+    pub(super) bytes: Vec<u8>,
+    vectors: Vectors,
+}
 
 impl Code {
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.0.extend_from_slice(bytes);
+    pub(super) fn new(vectors: Vectors) -> Code {
+        Code { bytes: Vec::new(), vectors }
     }
 
-    /// Four lanes, prefix 66; `first` is the register operand that the prefix holds.
-    fn vector(&mut self, map: u8, opcode: u8, to: u8, first: u8, second: Operand) {
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// All lanes; `first` is the register operand that the prefix holds.
+    fn vector(&mut self, opcode: Opcode, to: u8, first: u8, second: Operand) {
+        match self.vectors {
+            Vectors::Four => self.vex(opcode, to, first, second),
+            Vectors::Eight => self.evex(opcode, 0, to, first, second),
+        }
+    }
+
+    fn vex(&mut self, opcode: Opcode, to: u8, first: u8, second: Operand) {
         let is_high = match second {
             Operand::Register(register) => register >= 8,
             Operand::Memory(place) => number(place.base) >= 8,
         };
-        let inverted = |set: bool, bit: u8| if set { 0 } else { 1 << bit };
-        let length_and_prefix = (!first & 15) << 3 | 0b101;
-        if map == MAP_0F && !is_high {
-            self.bytes(&[0xc5, inverted(to >= 8, 7) | length_and_prefix, opcode]);
+        let length_and_prefix = (!first & 15) << 3 | 1 << 2 | opcode.prefix;
+        if opcode.map == 1 && !is_high {
+            self.bytes(&[0xc5, inverted(to >= 8, 7) | length_and_prefix, opcode.code]);
         } else {
-            let map = inverted(to >= 8, 7) | 1 << 6 | inverted(is_high, 5) | map;
-            self.bytes(&[0xc4, map, length_and_prefix, opcode]);
+            let map = inverted(to >= 8, 7) | 1 << 6 | inverted(is_high, 5) | opcode.map;
+            self.bytes(&[0xc4, map, length_and_prefix, opcode.code]);
         }
+        self.operands(to, second, 1);
+    }
+
+    /// Eight lanes; a number of the scalars is read into all of them. `mask` is a mask register, or 0.
+    fn evex(&mut self, opcode: Opcode, mask: u8, to: u8, first: u8, second: Operand) {
+        let bit = |register: u8, k: u8| register >> k & 1 == 1;
+        let (fourth, fifth, is_spread) = match second {
+            Operand::Register(register) => (bit(register, 3), bit(register, 4), false),
+            Operand::Memory(place) => (bit(number(place.base), 3), false, place.base == Base::Scalars),
+        };
+        let high = inverted(bit(to, 3), 7) | inverted(fifth, 6) | inverted(fourth, 5) | inverted(bit(to, 4), 4);
+        let wide = 1 << 7 | (!first & 15) << 3 | 1 << 2 | opcode.prefix;
+        // what spreads a number by itself needs no bit for it
+        let spreads = u8::from(is_spread && opcode.code != SPREAD.code) << 4;
+        let last = 2 << 5 | spreads | inverted(bit(first, 4), 3) | mask;
+        self.bytes(&[0x62, high | opcode.map, wide, last, opcode.code]);
+        self.operands(to, second, if is_spread { 8 } else { 64 });
+    }
+
+    /// `unit` is what small offsets are counted in.
+    fn operands(&mut self, to: u8, second: Operand, unit: i32) {
         let middle = (to & 7) << 3;
         match second {
             Operand::Register(register) => self.bytes(&[0b1100_0000 | middle | register & 7]),
             Operand::Memory(place) => {
                 let base = number(place.base) & 7;
-                match i8::try_from(place.offset) {
-                    Ok(offset) => self.bytes(&[0b0100_0000 | middle | base, offset as u8]),
-                    Err(_) => {
+                match i8::try_from(place.offset / unit) {
+                    Ok(offset) if place.offset % unit == 0 => {
+                        self.bytes(&[0b0100_0000 | middle | base, offset as u8]);
+                    }
+                    _ => {
                         self.bytes(&[0b1000_0000 | middle | base]);
                         self.bytes(&place.offset.to_le_bytes());
                     }
@@ -102,39 +161,57 @@ impl Code {
         }
     }
 
-    pub(super) fn packed(&mut self, op: Packed, to: Ymm, a: Ymm, b: Operand) {
-        self.vector(MAP_0F, op as u8, to, a, b);
+    pub(super) fn packed(&mut self, op: Packed, to: Register, a: Register, b: Operand) {
+        self.vector(Opcode::plain(op as u8), to, a, b);
     }
 
-    pub(super) fn square_root(&mut self, to: Ymm, a: Operand) {
-        self.vector(MAP_0F, SQUARE_ROOT, to, 0, a);
+    pub(super) fn square_root(&mut self, to: Register, a: Operand) {
+        self.vector(SQUARE_ROOT, to, 0, a);
     }
 
     /// All bits of a lane where one of the two is NaN.
-    pub(super) fn unordered(&mut self, to: Ymm, a: Ymm, b: Operand) {
-        self.vector(MAP_0F, COMPARE, to, a, b);
-        self.bytes(&[3]);
+    pub(super) fn unordered(&mut self, to: Register, a: Register, b: Operand) {
+        match self.vectors {
+            Vectors::Four => {
+                self.vex(COMPARE, to, a, b);
+                self.bytes(&[UNORDERED]);
+            }
+            Vectors::Eight => {
+                self.evex(COMPARE, 0, MASK, a, b);
+                self.bytes(&[UNORDERED]);
+                self.evex(FROM_MASK, 0, to, 0, Operand::Register(MASK));
+            }
+        }
     }
 
     /// The bits of each lane, moved up.
-    pub(super) fn shift(&mut self, to: Ymm, a: Ymm, by: u8) {
+    pub(super) fn shift(&mut self, to: Register, a: Register, by: u8) {
         // the destination is in the prefix, 6 is a part of the opcode
-        self.vector(MAP_0F, SHIFT, 6, to, Operand::Register(a));
+        self.vector(SHIFT, 6, to, Operand::Register(a));
         self.bytes(&[by]);
     }
 
     /// `set` where the highest bit of the mask is set, else `clear`.
-    pub(super) fn select(&mut self, to: Ymm, mask: Ymm, set: Ymm, clear: Ymm) {
-        self.vector(MAP_0F3A, SELECT, to, clear, Operand::Register(set));
-        self.bytes(&[mask << 4]);
+    pub(super) fn select(&mut self, to: Register, mask: Register, set: Register, clear: Register) {
+        match self.vectors {
+            Vectors::Four => {
+                self.vex(SELECT, to, clear, Operand::Register(set));
+                self.bytes(&[mask << 4]);
+            }
+            Vectors::Eight => {
+                self.evex(HIGHEST_BITS, 0, MASK, 0, Operand::Register(mask));
+                self.evex(BLEND, MASK, to, clear, Operand::Register(set));
+            }
+        }
     }
 
-    pub(super) fn load(&mut self, to: Ymm, from: Place) {
-        self.vector(MAP_0F, LOAD, to, 0, Operand::Memory(from));
+    pub(super) fn load(&mut self, to: Register, from: Place) {
+        let is_spread = self.vectors == Vectors::Eight && from.base == Base::Scalars;
+        self.vector(if is_spread { SPREAD } else { LOAD }, to, 0, Operand::Memory(from));
     }
 
-    pub(super) fn store(&mut self, to: Place, from: Ymm) {
-        self.vector(MAP_0F, STORE, from, 0, Operand::Memory(to));
+    pub(super) fn store(&mut self, to: Place, from: Register) {
+        self.vector(STORE, from, 0, Operand::Memory(to));
     }
 
     /// Saves what a function has to preserve and keeps its four arguments (System V).
@@ -147,11 +224,11 @@ impl Code {
         self.bytes(&[0x49, 0x89, 0xce]); // mov r14, rcx
     }
 
-    /// Back to `start` for the next four lanes as long as there are some, then back to the caller.
+    /// Back to `start` for the next lanes as long as there are some, then back to the caller.
     pub(super) fn epilogue(&mut self, start: usize) {
-        self.bytes(&[0x48, 0x83, 0xc3, 32]); // add rbx, 32
+        self.bytes(&[0x48, 0x83, 0xc3, 8 * self.vectors.lanes() as u8]); // add rbx, …
         self.bytes(&[0x49, 0xff, 0xce]); // dec r14
-        let back = start as i64 - (self.0.len() as i64 + 6);
+        let back = start as i64 - (self.bytes.len() as i64 + 6);
         self.bytes(&[0x0f, 0x85]); // jnz
         self.bytes(&(back as i32).to_le_bytes());
         self.bytes(&[0xc5, 0xf8, 0x77]); // vzeroupper
@@ -169,6 +246,11 @@ impl Code {
         self.bytes(&(function as u64).to_le_bytes());
         self.bytes(&[0xff, 0xd0]); // call rax
     }
+}
+
+/// A bit that says no when it is set.
+fn inverted(set: bool, bit: u8) -> u8 {
+    if set { 0 } else { 1 << bit }
 }
 
 fn number(base: Base) -> u8 {

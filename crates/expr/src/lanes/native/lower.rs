@@ -1,4 +1,4 @@
-//! From instructions on blocks to steps on four lanes, each of which gives one value.
+//! From instructions on blocks to steps on the lanes of a register, each of which gives one value.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Tapes as machine code: AVX2 on x86-64, four lanes at a time, registers instead of blocks.
+//! Tapes as machine code on x86-64: four lanes at a time (AVX2) or eight (AVX-512), registers instead of blocks.
 //!
 //! The code does what the instructions of the tape say, in their order, so its results have the same bits. Where an angle is
 //! too large for the short reduction it says so, and the tape runs again, instruction by instruction. This module
@@ -22,17 +22,59 @@ use crate::kernel;
 use crate::kernel::trigonometric::FARTHEST;
 use crate::op::Unary;
 
-/// Lanes of a vector register.
-pub(super) const WIDTH: usize = 4;
 /// Longer tapes are not translated: their code would not stay in a cache.
 const MOST_INSTRUCTIONS: usize = 20_000;
 
-type Vector = [f64; WIDTH];
+/// Vector registers of the machine, by their lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Vectors {
+    /// AVX2.
+    Four,
+    /// AVX-512, with its instructions on masks and bits of doubles (DQ).
+    Eight,
+}
 
-/// What fills a vector register.
+impl Vectors {
+    /// Those that this machine has, the widest last.
+    pub(super) fn available() -> impl DoubleEndedIterator<Item = Vectors> {
+        let four = std::arch::is_x86_feature_detected!("avx2").then_some(Vectors::Four);
+        let has_eight =
+            std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512dq");
+        four.into_iter().chain(has_eight.then_some(Vectors::Eight))
+    }
+
+    /// For tables with a place for each.
+    pub(super) fn index(self) -> usize {
+        self as usize
+    }
+
+    fn lanes(self) -> usize {
+        match self {
+            Vectors::Four => 4,
+            Vectors::Eight => 8,
+        }
+    }
+
+    fn registers(self) -> usize {
+        match self {
+            Vectors::Four => 16,
+            Vectors::Eight => 32,
+        }
+    }
+
+    /// How often a scalar lies in memory: as wide as a register, or once where instructions can spread it.
+    fn spread(self) -> usize {
+        match self {
+            Vectors::Four => 4,
+            Vectors::Eight => 1,
+        }
+    }
+}
+
+/// A scalar as wide as a register of four lanes.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(32))]
-pub(super) struct Wide(pub(super) Vector);
+pub(super) struct Wide(#[expect(dead_code, reason = "machine code reads it")] pub(super) [f64; 4]);
 
 /// The code of a tape.
 #[derive(Clone, Debug)]
@@ -41,6 +83,7 @@ pub(super) struct Native(Arc<Translation>);
 #[derive(Debug)]
 struct Translation {
     memory: Mmap,
+    vectors: Vectors,
     /// Numbers that follow the scalars of the tape.
     constants: Vec<f64>,
     /// What the code has the program do; it holds their addresses.
@@ -63,9 +106,9 @@ pub(super) enum Part {
 }
 
 impl Native {
-    /// None where the machine lacks the instructions or forbids such memory, and for tapes too long for it.
-    pub(super) fn translate(tape: &LaneTape) -> Option<Native> {
-        if !is_available() || tape.by_lane.len() + tape.each.len() > MOST_INSTRUCTIONS {
+    /// None where the machine forbids such memory, and for tapes too long for it.
+    pub(super) fn translate(tape: &LaneTape, vectors: Vectors) -> Option<Native> {
+        if tape.by_lane.len() + tape.each.len() > MOST_INSTRUCTIONS {
             return None;
         }
         let angles = tape.block_count + tape.outputs.len();
@@ -75,7 +118,11 @@ impl Native {
         let each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
         let assembled = |lowered: &Lowered| {
             let addresses: Vec<usize> = lowered.calls.iter().map(|call| std::ptr::from_ref(call).addr()).collect();
-            assemble(lowered, (called as *const ()).addr(), &addresses)
+            let function = match vectors {
+                Vectors::Four => (called::<4> as *const ()).addr(),
+                Vectors::Eight => (called::<8> as *const ()).addr(),
+            };
+            assemble(lowered, vectors, function, &addresses)
         };
         let [kept_code, each_code] = [&kept, &each].map(assembled);
         let code = [kept_code.code.as_slice(), &each_code.code].concat();
@@ -83,12 +130,13 @@ impl Native {
         memory.copy_from_slice(&code);
         Some(Native(Arc::new(Translation {
             memory: memory.make_exec().ok()?,
+            vectors,
             each: kept_code.code.len(),
             scalars: tape.scalars.len() + each.constants.len(),
             constants: each.constants,
             _calls: [kept.calls, each.calls],
             blocks: angles + 1,
-            scratch: kept_code.scratch.max(each_code.scratch),
+            scratch: (kept_code.scratch.max(each_code.scratch) * vectors.lanes()).div_ceil(LANES),
             angles,
             has_angles: [kept.has_angles, each.has_angles],
         })))
@@ -99,7 +147,7 @@ impl Native {
         self.0.blocks
     }
 
-    /// Vectors of scratch memory.
+    /// Blocks of scratch memory.
     pub(super) fn scratch_len(&self) -> usize {
         self.0.scratch
     }
@@ -109,56 +157,68 @@ impl Native {
         &self.0.constants
     }
 
+    /// Whether it reads scalars as wide as a register, or the numbers themselves.
+    pub(super) fn reads_wide(&self) -> bool {
+        self.0.vectors.spread() > 1
+    }
+
     /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large.
     pub(super) fn run(
         &self,
         part: Part,
         count: usize,
-        scalars: &[Wide],
+        scalars: (&[f64], &[Wide]),
         blocks: &mut [Block],
-        scratch: &mut [Wide],
+        scratch: &mut [Block],
     ) -> bool {
-        let vectors = count.clamp(1, LANES).div_ceil(WIDTH);
+        let lanes = self.0.vectors.lanes();
+        let vectors = count.clamp(1, LANES).div_ceil(lanes);
         self.enter(part, vectors, scalars, blocks, scratch);
-        let angles = &blocks[self.0.angles].0[..vectors * WIDTH];
+        let angles = &blocks[self.0.angles].0[..vectors * lanes];
         !self.0.has_angles[part as usize] || angles.iter().all(|angle| *angle <= FARTHEST)
     }
 
     #[allow(unsafe_code)]
-    fn enter(&self, part: Part, vectors: usize, scalars: &[Wide], blocks: &mut [Block], scratch: &mut [Wide]) {
+    fn enter(
+        &self,
+        part: Part,
+        vectors: usize,
+        (scalars, wide): (&[f64], &[Wide]),
+        blocks: &mut [Block],
+        scratch: &mut [Block],
+    ) {
         let code = &self.0;
-        assert!(blocks.len() >= code.blocks && scalars.len() >= code.scalars && scratch.len() >= code.scratch);
+        let (length, scalars) = match code.vectors {
+            Vectors::Four => (wide.len(), wide.as_ptr().cast()),
+            Vectors::Eight => (scalars.len(), scalars.as_ptr()),
+        };
+        assert!(blocks.len() >= code.blocks && length >= code.scalars && scratch.len() >= code.scratch);
         let start = match part {
             Part::ByLane => 0,
             Part::Each => code.each,
         };
-        // SAFETY: the memory holds two whole functions of this type, one after the other, made by `assemble` for a machine that has
-        // AVX2, and `start` is where one of them begins. They read and write blocks, scalars and scratch memory only up to the
+        // SAFETY: the memory holds two whole functions of this type, one after the other, made by `assemble` for vectors that
+        // this machine has, and `start` is where one of them begins. They read and write blocks, scalars and scratch memory only up to the
         // lengths that were just compared, and of each block the first `vectors` vectors, which it has.
         unsafe {
-            let function: extern "sysv64" fn(*mut Block, *const Wide, *mut Wide, usize) =
+            let function: extern "sysv64" fn(*mut Block, *const f64, *mut Block, usize) =
                 std::mem::transmute(code.memory.as_ptr().add(start));
-            function(blocks.as_mut_ptr(), scalars.as_ptr(), scratch.as_mut_ptr(), vectors);
+            function(blocks.as_mut_ptr(), scalars, scratch.as_mut_ptr(), vectors);
         }
     }
 }
 
-/// Whether this machine can run such code.
-pub(super) fn is_available() -> bool {
-    std::arch::is_x86_feature_detected!("avx2")
-}
-
-/// What the code calls: an operation on four lanes of the scratch memory.
+/// What the code calls: an operation on as many lanes of the scratch memory as a register has.
 #[allow(unsafe_code)]
-extern "sysv64" fn called(call: *const Call, scratch: *mut Wide) {
+extern "sysv64" fn called<const WIDTH: usize>(call: *const Call, scratch: *mut [f64; WIDTH]) {
     // SAFETY: only code that `assemble` made calls this, with an address of a `Call` that lives as long as the code and its own
     // scratch memory, of which the places for operands and result are always a part.
     let (call, places) = unsafe { (&*call, std::slice::from_raw_parts_mut(scratch, RESULT + 1)) };
-    places[RESULT] = Wide(call.apply(OPERANDS.map(|place| places[place].0)));
+    places[RESULT] = call.apply(OPERANDS.map(|place| places[place]));
 }
 
 impl Call {
-    fn apply(&self, [a, b]: [Vector; 2]) -> Vector {
+    fn apply<const WIDTH: usize>(&self, [a, b]: [[f64; WIDTH]; 2]) -> [f64; WIDTH] {
         Arch::new().dispatch(
             #[inline(always)]
             || match self {

@@ -2,13 +2,12 @@
 //!
 //! Of straight code it is known when each value is used next, so the register that is needed last is given up (Belady).
 
-use super::encode::{Base, Code, Operand, Place, Ymm};
+use super::Vectors;
+use super::encode::{Base, Code, Operand, Place, Register};
 use super::lower::{Lowered, Step, Value};
 use crate::lanes::LANES;
 
-const REGISTERS: usize = 16;
-/// Bytes of four lanes, and of a block.
-const VECTOR: usize = 32;
+/// Bytes of a block.
 const BLOCK: usize = 8 * LANES;
 /// A step after the last one.
 const NEVER: u32 = u32::MAX;
@@ -23,10 +22,10 @@ pub(super) struct Assembled {
 }
 
 /// `call` is a function that takes one of the addresses in `arguments` (one for each call) and the scratch memory.
-pub(super) fn assemble(lowered: &Lowered, call: usize, arguments: &[usize]) -> Assembled {
-    let mut allocation = Allocation::new(&lowered.steps);
+pub(super) fn assemble(lowered: &Lowered, vectors: Vectors, call: usize, arguments: &[usize]) -> Assembled {
+    let mut allocation = Allocation::new(&lowered.steps, vectors);
     allocation.code.prologue();
-    let start = allocation.code.0.len();
+    let start = allocation.code.bytes.len();
     for (k, step) in lowered.steps.iter().enumerate() {
         let is_used = allocation.next_use[k] != NEVER;
         match *step {
@@ -40,16 +39,17 @@ pub(super) fn assemble(lowered: &Lowered, call: usize, arguments: &[usize]) -> A
         }
     }
     allocation.code.epilogue(start);
-    Assembled { code: allocation.code.0, scratch: allocation.slots }
+    Assembled { code: allocation.code.bytes, scratch: allocation.slots }
 }
 
 struct Allocation<'s> {
     steps: &'s [Step],
     code: Code,
+    vectors: Vectors,
     /// The value in each register.
-    registers: [Option<Value>; REGISTERS],
+    registers: Vec<Option<Value>>,
     /// The register of each value.
-    place: Vec<Option<Ymm>>,
+    place: Vec<Option<Register>>,
     /// The scratch slot of each value that has been put there.
     slot: Vec<Option<u32>>,
     free_slots: Vec<u32>,
@@ -63,7 +63,7 @@ struct Allocation<'s> {
 }
 
 impl<'s> Allocation<'s> {
-    fn new(steps: &'s [Step]) -> Allocation<'s> {
+    fn new(steps: &'s [Step], vectors: Vectors) -> Allocation<'s> {
         let mut next_use = vec![NEVER; steps.len()];
         let mut use_after = vec![[NEVER; 3]; steps.len()];
         for (k, step) in steps.iter().enumerate().rev() {
@@ -77,8 +77,9 @@ impl<'s> Allocation<'s> {
         }
         Allocation {
             steps,
-            code: Code::default(),
-            registers: [None; REGISTERS],
+            code: Code::new(vectors),
+            vectors,
+            registers: vec![None; vectors.registers()],
             place: vec![None; steps.len()],
             slot: vec![None; steps.len()],
             free_slots: Vec::new(),
@@ -133,18 +134,20 @@ impl<'s> Allocation<'s> {
         }
     }
 
-    /// Four lanes in memory that a value can be read from.
+    /// The lanes in memory that a value can be read from.
     fn home(&self, value: Value) -> Option<Place> {
         match (self.steps[value as usize], self.slot[value as usize]) {
             (Step::Input(block), _) => Some(block_place(block)),
-            (Step::Scalar(index), _) => Some(Place { base: Base::Scalars, offset: (index as usize * VECTOR) as i32 }),
-            (_, Some(slot)) => Some(slot_place(slot as usize)),
+            (Step::Scalar(index), _) => {
+                Some(Place { base: Base::Scalars, offset: (index as usize * 8 * self.vectors.spread()) as i32 })
+            }
+            (_, Some(slot)) => Some(self.slot_place(slot as usize)),
             _ => None,
         }
     }
 
     /// The register of a value, loaded if it is in none; registers of `others` stay.
-    fn load(&mut self, value: Value, others: &[Value]) -> Ymm {
+    fn load(&mut self, value: Value, others: &[Value]) -> Register {
         if let Some(register) = self.place[value as usize] {
             return register;
         }
@@ -154,32 +157,32 @@ impl<'s> Allocation<'s> {
         register
     }
 
-    fn put(&mut self, value: Value, register: Ymm) {
+    fn put(&mut self, value: Value, register: Register) {
         self.registers[register as usize] = Some(value);
         self.place[value as usize] = Some(register);
     }
 
     /// A register that holds nothing needed; what it held is in memory if it is needed again.
-    fn free_register(&mut self, keep: &[Value]) -> Ymm {
+    fn free_register(&mut self, keep: &[Value]) -> Register {
         if let Some(free) = self.registers.iter().position(Option::is_none) {
-            return free as Ymm;
+            return free as Register;
         }
         let last = |register: &usize| match self.registers[*register] {
             Some(value) if keep.contains(&value) => None,
             Some(value) => Some(self.next_use[value as usize]),
             None => None,
         };
-        let register = (0..REGISTERS).filter(|r| last(r).is_some()).max_by_key(|r| last(r));
+        let register = (0..self.registers.len()).filter(|r| last(r).is_some()).max_by_key(|r| last(r));
         let register = register.expect("a step has three operands at most");
         let value = self.registers[register].expect("no register is free");
-        self.save(value, register as Ymm);
+        self.save(value, register as Register);
         self.registers[register] = None;
         self.place[value as usize] = None;
-        register as Ymm
+        register as Register
     }
 
     /// Writes a value to the scratch memory unless it can be read from memory as it is.
-    fn save(&mut self, value: Value, register: Ymm) {
+    fn save(&mut self, value: Value, register: Register) {
         if self.home(value).is_some() || self.next_use[value as usize] == NEVER {
             return;
         }
@@ -188,7 +191,7 @@ impl<'s> Allocation<'s> {
             (self.slots - 1) as u32
         });
         self.slot[value as usize] = Some(slot);
-        self.code.store(slot_place(slot as usize), register);
+        self.code.store(self.slot_place(slot as usize), register);
     }
 
     /// After the operands of step `k` have been read: gives up those that are not used again.
@@ -208,11 +211,15 @@ impl<'s> Allocation<'s> {
     }
 
     /// The register that step `k` writes, which may be one of an operand's.
-    fn define(&mut self, k: usize) -> Ymm {
+    fn define(&mut self, k: usize) -> Register {
         self.release(k);
         let register = self.free_register(&[]);
         self.put(k as Value, register);
         register
+    }
+
+    fn slot_place(&self, slot: usize) -> Place {
+        Place { base: Base::Scratch, offset: (slot * 8 * self.vectors.lanes()) as i32 }
     }
 
     fn output(&mut self, k: usize, block: u32, value: Value) {
@@ -224,26 +231,22 @@ impl<'s> Allocation<'s> {
     fn call(&mut self, k: usize, operands: [Value; 2], function: usize, argument: usize) {
         for (operand, slot) in operands.into_iter().zip(OPERANDS) {
             let register = self.load(operand, &[]);
-            self.code.store(slot_place(slot), register);
+            self.code.store(self.slot_place(slot), register);
         }
         self.release(k);
-        for register in 0..REGISTERS {
+        for register in 0..self.registers.len() {
             if let Some(value) = self.registers[register].take() {
-                self.save(value, register as Ymm);
+                self.save(value, register as Register);
                 self.place[value as usize] = None;
             }
         }
         self.code.call(function, argument);
         let register = self.free_register(&[]);
-        self.code.load(register, slot_place(RESULT));
+        self.code.load(register, self.slot_place(RESULT));
         self.put(k as Value, register);
     }
 }
 
 fn block_place(block: u32) -> Place {
     Place { base: Base::Blocks, offset: (block as usize * BLOCK) as i32 }
-}
-
-fn slot_place(slot: usize) -> Place {
-    Place { base: Base::Scratch, offset: (slot * VECTOR) as i32 }
 }
