@@ -1,10 +1,11 @@
 //! `flank check`
 
-use flank_chain_dsl::{Diagnostic, Severity, Sources, compile_file};
+use flank_chain_dsl::compile_file;
 use flank_expr::Graph;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
+use crate::failure::as_json;
 use crate::spec::{shown, tell};
 use crate::{Ending, print};
 
@@ -31,21 +32,4 @@ pub(crate) fn run(arguments: &Check) -> Ending {
         print(&format!("{:#}\n", json!({ "schema": "flank.check/1", "files": files })));
     }
     ending
-}
-
-fn as_json(finding: &Diagnostic, sources: &Sources) -> Value {
-    let place = |span| {
-        let (path, line, column) = sources.place(span);
-        json!({ "file": shown(path), "line": line, "column": column, "text": sources.text(span) })
-    };
-    let notes: Vec<Value> =
-        finding.notes.iter().map(|note| json!({ "place": place(note.span), "text": note.text })).collect();
-    json!({
-        "code": finding.code.as_str(),
-        "severity": if finding.severity() == Severity::Error { "error" } else { "warning" },
-        "message": finding.message,
-        "place": place(finding.span),
-        "notes": notes,
-        "help": finding.help,
-    })
 }

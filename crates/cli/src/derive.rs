@@ -11,53 +11,53 @@ use serde_json::{Value, json};
 use crate::arguments::Derive;
 use crate::convert::{self, Carried};
 use crate::cost::SurfaceCost;
+use crate::failure::Failure;
 use crate::{Ending, print, spec};
 
-pub(crate) fn run(arguments: &Derive) -> Ending {
+pub(crate) fn run(arguments: &Derive) -> Result<Ending, Failure> {
     let graph = Graph::new();
     if let Some(to) = &arguments.to {
         return carried(&graph, to, arguments);
     }
-    let (_, jobs) = match spec::jobs(&graph, &arguments.which) {
-        Ok(found) => found,
-        Err(ending) => return ending,
-    };
+    let (_, jobs) = spec::jobs(&graph, &arguments.which)?;
     if arguments.cost {
         return cost(&jobs, arguments.json);
     }
-    let style = if arguments.latex { Style::Latex } else { Style::Text };
-    for job in &jobs {
-        print(&derivation(job, style));
+    let pages = jobs.iter().map(|job| (job.name.as_str(), derivation(job, style(arguments))));
+    show(&pages.collect::<Vec<_>>(), arguments);
+    Ok(Ending::Done)
+}
+
+fn style(arguments: &Derive) -> Style {
+    if arguments.latex { Style::Latex } else { Style::Text }
+}
+
+/// Prints the page of each job.
+fn show(pages: &[(&str, String)], arguments: &Derive) {
+    if !arguments.json {
+        return pages.iter().for_each(|(_, page)| print(page));
     }
-    Ending::Done
+    let style = if arguments.latex { "latex" } else { "text" };
+    let jobs: Vec<Value> = pages.iter().map(|(job, page)| json!({ "job": job, "page": page })).collect();
+    print(&format!("{:#}\n", json!({ "schema": "flank.derivation/1", "style": style, "jobs": jobs })));
 }
 
 /// Postures from which the elbow of a closed form is taken.
 const POSITIONS: u32 = 101;
 
 /// Prints the axes of another machine in closed form.
-fn carried(graph: &Graph, to: &Path, arguments: &Derive) -> Ending {
-    let style = if arguments.latex { Style::Latex } else { Style::Text };
+fn carried(graph: &Graph, to: &Path, arguments: &Derive) -> Result<Ending, Failure> {
     let carry = |job: &Job<'_>, target: &Job<'_>| {
         let carried = Carried::new(graph, job, target, &arguments.onto, POSITIONS)?;
         match carried.failures() {
-            told if told.is_empty() => Ok(explicit_page(job, &carried, &carried.explicit(true)?, style)),
+            told if told.is_empty() => Ok(explicit_page(job, &carried, &carried.explicit(true)?, style(arguments))),
             told => Err(told.trim_end().to_string()),
         }
     };
-    match convert::compiled(graph, &arguments.which, to) {
-        Ok((_, job, target)) => match carry(&job, &target) {
-            Ok(page) => {
-                print(&page);
-                Ending::Done
-            }
-            Err(reason) => {
-                anstream::eprintln!("error: {reason}");
-                Ending::Unsolved
-            }
-        },
-        Err(ending) => ending,
-    }
+    let (_, job, target) = convert::compiled(graph, &arguments.which, to)?;
+    let page = carry(&job, &target).map_err(|reason| Failure::from(reason).unsolved())?;
+    show(&[(&job.name, page)], arguments);
+    Ok(Ending::Done)
 }
 
 /// The given vectors, then the axes from them.
@@ -89,14 +89,13 @@ fn explicit_page<'g>(job: &Job<'g>, carried: &Carried<'_, 'g>, explicit: &Explic
 }
 
 /// Prints how many operations the points of each sampled surface take.
-fn cost(jobs: &[Job<'_>], as_json: bool) -> Ending {
+fn cost(jobs: &[Job<'_>], as_json: bool) -> Result<Ending, Failure> {
     let mut told: Vec<Value> = Vec::new();
     for job in jobs {
         let costs: Vec<SurfaceCost<'_>> =
             job.surfaces.iter().filter_map(|surface| SurfaceCost::of(job, surface)).collect();
         if costs.is_empty() {
-            anstream::eprintln!("error: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
-            return Ending::Wrong;
+            return Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into());
         }
         if as_json {
             let surfaces: Vec<Value> = costs.iter().map(SurfaceCost::json).collect();
@@ -109,5 +108,5 @@ fn cost(jobs: &[Job<'_>], as_json: bool) -> Ending {
     if as_json {
         print(&format!("{:#}\n", json!({ "schema": "flank.cost/1", "jobs": told })));
     }
-    Ending::Done
+    Ok(Ending::Done)
 }

@@ -10,6 +10,7 @@ use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::{Deviation, Which};
+use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::solve::{header, patch, problem, ranges};
 use crate::{Ending, print, spec};
@@ -43,31 +44,18 @@ pub(crate) struct Measured<'j, 'g> {
     deviations: Vec<Option<f64>>,
 }
 
-pub(crate) fn run(arguments: &Deviation) -> Ending {
+pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     let start = Instant::now();
     let graph = Graph::new();
-    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
-        Ok(found) => found,
-        Err(ending) => return ending,
-    };
-    let told = |reason: String| {
-        anstream::eprintln!("error: {reason}");
-        Ending::Wrong
-    };
-    let both = find(&jobs, &arguments.surface).and_then(|surface| Ok([surface, find(&jobs, &arguments.from)?]));
-    let measured = match both.and_then(|both| measure(both, arguments.as_it_lies)) {
-        Ok(measured) => measured,
-        Err(reason) => return told(reason),
-    };
-    let written = match measured.write(arguments, &spec::hash(&compilation)) {
-        Ok(written) => written,
-        Err(reason) => return told(reason),
-    };
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
+    let both = [find(&jobs, &arguments.surface)?, find(&jobs, &arguments.from)?];
+    let measured = measure(both, arguments.as_it_lies)?;
+    let written = measured.write(arguments, &spec::hash(&compilation))?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
     anstream::eprintln!("{} points in {:.0} ms", measured.points.len(), start.elapsed().as_secs_f64() * 1e3);
     let missing = measured.missing();
     anstream::eprint!("{missing}");
-    if missing.is_empty() { Ending::Done } else { Ending::Unsolved }
+    Ok(if missing.is_empty() { Ending::Done } else { Ending::Unsolved })
 }
 
 /// A surface by its name, with that of its job where several have it.
@@ -221,6 +209,7 @@ impl Measured<'_, '_> {
             })
         };
         let value: Value = json!({
+            "schema": "flank.deviation/1",
             "surface": self.surface.surface.name, "frame": self.surface.surface.frame,
             "from": self.from.surface.name, "from_frame": self.from.surface.frame,
             "asked": self.points.len(), "known": self.known().count(),
@@ -229,7 +218,7 @@ impl Measured<'_, '_> {
             "lowest_um": self.known().reduce(f64::min), "highest_um": self.known().reduce(f64::max),
             "middle_um": self.in_the_middle(),
             "directions": [direction(0), direction(1)], "bias_um": ease_off.map(|of| of.bias),
-            "written": written,
+            "files": written, "not_done": not_done(&self.missing()),
         });
         format!("{value:#}\n")
     }

@@ -4,70 +4,92 @@ use std::io::Read;
 use std::path::Path;
 
 use flank_chain_dsl::limits::FILE_BYTES;
-use flank_chain_dsl::{Diagnostic, Sources, format, read_file};
+use flank_chain_dsl::{FileId, Sources, format, read_file};
 use flank_export::write_atomically;
+use serde_json::{Value, json};
 
 use crate::arguments::Fmt;
-use crate::spec::{shown, tell};
+use crate::failure::Failure;
+use crate::spec::shown;
 use crate::{Ending, print};
 
 pub(crate) fn run(arguments: &Fmt) -> Ending {
     let mut ending = Ending::Done;
-    for file in &arguments.files {
-        let done = if file.as_os_str() == "-" { stream(arguments.check) } else { in_place(file, arguments.check) };
-        if done == Ending::Wrong {
-            ending = done;
+    let mut told = Vec::new();
+    for path in &arguments.files {
+        let to_stdout = path.as_os_str() == "-" && !arguments.check;
+        let done = if path.as_os_str() == "-" { stream() } else { in_place(path, arguments.check) };
+        if arguments.json {
+            told.push(as_json(path, to_stdout, &done));
         }
+        match done {
+            Ok(done) => {
+                if arguments.check && done.is_changed {
+                    ending = Ending::Wrong;
+                }
+                if !arguments.json {
+                    print(&shown_change(path, to_stdout, &done));
+                }
+            }
+            Err(failure) => ending = failure.tell(false),
+        }
+    }
+    if arguments.json {
+        print(&format!("{:#}\n", json!({ "schema": "flank.fmt/1", "files": told })));
     }
     ending
 }
 
-/// Lays out a file and says so if that changes it.
-fn in_place(path: &Path, check: bool) -> Ending {
+/// A text as it is laid out.
+struct LaidOut {
+    text: String,
+    is_changed: bool,
+}
+
+fn shown_change(path: &Path, to_stdout: bool, done: &LaidOut) -> String {
+    match (to_stdout, done.is_changed) {
+        (true, _) => done.text.clone(),
+        (false, true) => format!("{}\n", shown(path)),
+        (false, false) => String::new(),
+    }
+}
+
+fn as_json(path: &Path, to_stdout: bool, done: &Result<LaidOut, Failure>) -> Value {
+    let failure = done.as_ref().err();
+    let done = done.as_ref().ok();
+    json!({
+        "file": shown(path),
+        "changed": done.map(|done| done.is_changed),
+        "text": done.filter(|_| to_stdout).map(|done| &done.text),
+        "message": failure.map(Failure::message),
+        "findings": failure.map_or(&[][..], Failure::findings),
+    })
+}
+
+/// Lays out a file, and writes it if that changes it and it may be written.
+fn in_place(path: &Path, check: bool) -> Result<LaidOut, Failure> {
     let mut sources = Sources::default();
-    let laid_out = read_file(&mut sources, path)
-        .map_err(|finding| vec![finding])
-        .and_then(|file| Ok((file, format(&sources.file(file).text, file)?)));
-    let (file, laid_out) = match laid_out {
-        Ok(laid_out) => laid_out,
-        Err(findings) => return refuse(&findings, &sources),
-    };
-    if laid_out == sources.file(file).text {
-        return Ending::Done;
+    let file = read_file(&mut sources, path).map_err(|finding| Failure::of_spec(&[finding], &sources))?;
+    let done = laid_out(&sources, file)?;
+    if done.is_changed && !check {
+        write_atomically(path, |out| Ok(out.write_all(done.text.as_bytes())?)).map_err(|error| error.to_string())?;
     }
-    if !check && let Err(error) = write_atomically(path, |out| Ok(out.write_all(laid_out.as_bytes())?)) {
-        anstream::eprintln!("error: {error}");
-        return Ending::Wrong;
-    }
-    print(&format!("{}\n", shown(path)));
-    if check { Ending::Wrong } else { Ending::Done }
+    Ok(done)
 }
 
 /// Lays out what comes from stdin.
-fn stream(check: bool) -> Ending {
+fn stream() -> Result<LaidOut, Failure> {
     let mut sources = Sources::default();
     let mut text = String::new();
     // one byte more than a file may have, so that a longer text is refused and not cut
-    if let Err(error) = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text) {
-        anstream::eprintln!("error: cannot read the standard input: {error}");
-        return Ending::Wrong;
-    }
+    let read = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text);
+    read.map_err(|error| format!("cannot read the standard input: {error}"))?;
     let file = sources.add("-", text);
-    match format(&sources.file(file).text, file) {
-        Err(findings) => refuse(&findings, &sources),
-        Ok(laid_out) if !check => {
-            print(&laid_out);
-            Ending::Done
-        }
-        Ok(laid_out) if laid_out == sources.file(file).text => Ending::Done,
-        Ok(_) => {
-            print("-\n");
-            Ending::Wrong
-        }
-    }
+    laid_out(&sources, file)
 }
 
-fn refuse(findings: &[Diagnostic], sources: &Sources) -> Ending {
-    tell(findings, sources);
-    Ending::Wrong
+fn laid_out(sources: &Sources, file: FileId) -> Result<LaidOut, Failure> {
+    let before = &sources.file(file).text;
+    let text = format(before, file).map_err(|findings| Failure::of_spec(&findings, sources))?;
+    Ok(LaidOut { is_changed: text != *before, text })
 }

@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use roxmltree::{Document, Node};
+use serde_json::json;
 
 use crate::arguments::{Coefficients, Import, Signs};
+use crate::failure::Failure;
 use crate::{Ending, print, spec};
 
 const SETTINGS: &str = "bevel_gear_manufacturing_settings";
@@ -74,21 +76,17 @@ mod orders {
     ];
 }
 
-pub(crate) fn run(arguments: &Import) -> Ending {
+pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let file = spec::shown(&arguments.file);
-    let imported = std::fs::read_to_string(&arguments.file)
-        .map_err(|error| format!("cannot read {file}: {error}"))
-        .and_then(|text| job(&text, &file, arguments));
-    match imported {
-        Ok(job) => {
-            print(&job);
-            Ending::Done
-        }
-        Err(reason) => {
-            anstream::eprintln!("error: {reason}");
-            Ending::Wrong
-        }
+    let text = std::fs::read_to_string(&arguments.file).map_err(|error| format!("cannot read {file}: {error}"))?;
+    let spec = job(&text, &file, arguments)?;
+    if arguments.json {
+        let imported = json!({ "schema": "flank.import/1", "file": file, "job": arguments.name, "spec": spec });
+        print(&format!("{imported:#}\n"));
+    } else {
+        print(&spec);
     }
+    Ok(Ending::Done)
 }
 
 /// The job that a REXS file describes, as text.

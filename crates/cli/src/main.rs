@@ -10,6 +10,7 @@ mod cut;
 mod derive;
 mod deviation;
 mod explain;
+mod failure;
 mod fields;
 mod files;
 mod fmt;
@@ -21,6 +22,7 @@ mod plot;
 mod reach;
 mod reasons;
 mod required;
+mod schema;
 mod sensitivity;
 mod shell;
 mod solve;
@@ -37,39 +39,64 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
+use failure::Failure;
 
-/// How a command ended, as the exit codes say it; 2, a wrong command line, is told by the argument parser.
+/// How a command ended, as the exit codes say it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     /// 0
     Done,
     /// 1: the spec is wrong, or a file cannot be read or written.
     Wrong,
+    /// 2: the command line is wrong.
+    Usage,
     /// 3: done, but something asked for could not be solved, and it is listed.
     Unsolved,
 }
 
+impl Ending {
+    fn code(self) -> u8 {
+        match self {
+            Ending::Done => 0,
+            Ending::Wrong => 1,
+            Ending::Usage => 2,
+            Ending::Unsolved => 3,
+        }
+    }
+}
+
 fn main() -> ExitCode {
-    let ending = match Arguments::parse().command {
-        Command::Solve(arguments) => solve::run(&arguments),
-        Command::Check(arguments) => check::run(&arguments),
-        Command::Convert(arguments) => convert::run(&arguments),
-        Command::Derive(arguments) => derive::run(&arguments),
-        Command::Deviation(arguments) => deviation::run(&arguments),
-        Command::Plot(arguments) => plot::run(&arguments),
-        Command::Explain(arguments) => explain::run(&arguments),
-        Command::Import(arguments) => import::run(&arguments),
-        Command::Fmt(arguments) => fmt::run(&arguments),
-        Command::View(arguments) => view::run(&arguments),
-        Command::New(arguments) => new::run(&arguments),
-        Command::Completions(arguments) => shell::completions(&arguments),
-        Command::Man(arguments) => shell::man(&arguments),
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) => {
+            if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
+                let told = error.to_string();
+                Failure::of_usage(told.trim().trim_start_matches("error: ").to_string()).tell(true);
+            }
+            error.exit()
+        }
     };
-    ExitCode::from(match ending {
-        Ending::Done => 0,
-        Ending::Wrong => 1,
-        Ending::Unsolved => 3,
-    })
+    let ending = run(&command).unwrap_or_else(|failure| failure.tell(command.is_json()));
+    ExitCode::from(ending.code())
+}
+
+fn run(command: &Command) -> Result<Ending, Failure> {
+    match command {
+        Command::Solve(arguments) => solve::run(arguments),
+        Command::Check(arguments) => Ok(check::run(arguments)),
+        Command::Convert(arguments) => convert::run(arguments),
+        Command::Derive(arguments) => derive::run(arguments),
+        Command::Deviation(arguments) => deviation::run(arguments),
+        Command::Plot(arguments) => plot::run(arguments),
+        Command::Explain(arguments) => Ok(explain::run(arguments)),
+        Command::Import(arguments) => import::run(arguments),
+        Command::Fmt(arguments) => Ok(fmt::run(arguments)),
+        Command::View(arguments) => view::run(arguments),
+        Command::New(arguments) => new::run(arguments),
+        Command::Schema(arguments) => schema::run(arguments),
+        Command::Completions(arguments) => Ok(shell::completions(arguments)),
+        Command::Man(arguments) => shell::man(arguments),
+    }
 }
 
 /// Writes to stdout; a reader that has gone away is not an error.

@@ -10,30 +10,28 @@ use flank_chain_dsl::{FileId, Span, compile_file};
 use flank_export::write_atomically;
 use flank_expr::Graph;
 use include_dir::{Dir, include_dir};
+use serde_json::{Value, json};
 
 use crate::arguments::New;
+use crate::failure::Failure;
 use crate::{Ending, print, spec};
 
 /// The library as it was when the program was built.
 static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 
-pub(crate) fn run(arguments: &New) -> Ending {
+pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     let Some(template) = &arguments.template else {
-        print(&list());
-        return Ending::Done;
+        print(&if arguments.json { list_as_json() } else { list() });
+        return Ok(Ending::Done);
     };
-    let made = find(template).and_then(|template| template.named(arguments)).and_then(|files| write(&files, arguments));
-    match made {
-        Ok(told) => {
-            print(&told);
-            Ending::Done
-        }
-        Err(reason) if reason.is_empty() => Ending::Wrong,
-        Err(reason) => {
-            anstream::eprintln!("error: {reason}");
-            Ending::Wrong
-        }
-    }
+    let files = find(template)?.named(arguments)?;
+    let written = write(&files, arguments)?;
+    print(&if arguments.json {
+        format!("{:#}\n", json!({ "schema": "flank.new/1", "job": written[0], "files": written }))
+    } else {
+        format!("wrote {}\n\nnow: flank solve {}\n", written.join(", "), written[0])
+    });
+    Ok(Ending::Done)
 }
 
 /// A job of the library.
@@ -68,6 +66,12 @@ fn list() -> String {
     let width = templates.keys().map(String::len).max().unwrap_or(0);
     let lines = templates.iter().map(|(name, template)| format!("  {name:width$}  {}\n", template.doc));
     format!("Jobs to start from, as in `flank new {}`:\n{}", "helical_gear --name my_gear", lines.collect::<String>())
+}
+
+fn list_as_json() -> String {
+    let all: Vec<Value> =
+        templates().iter().map(|(name, template)| json!({ "name": name, "about": template.doc })).collect();
+    format!("{:#}\n", json!({ "schema": "flank.templates/1", "templates": all }))
 }
 
 fn find(name: &str) -> Result<Template, String> {
@@ -162,15 +166,14 @@ fn plain(path: &Path) -> PathBuf {
     })
 }
 
-/// Writes what compiles, and says what to do next. Nothing that stands there is changed.
-fn write(files: &[(PathBuf, String)], arguments: &New) -> Result<String, String> {
+/// Writes what compiles, and names it: the job's own file first. Nothing that stands there is changed.
+fn write(files: &[(PathBuf, String)], arguments: &New) -> Result<Vec<String>, Failure> {
     let trial = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"))?;
     put(trial.path(), files)?;
     let graph = Graph::new();
     let compilation = compile_file(&graph, &trial.path().join(&files[0].0), &[]);
     if compilation.has_errors() {
-        spec::tell(&compilation.diagnostics, &compilation.sources);
-        return Err(String::new());
+        return Err(Failure::of_spec(&compilation.diagnostics, &compilation.sources));
     }
     for (path, text) in files {
         let there = std::fs::read_to_string(arguments.out.join(path)).ok();
@@ -178,12 +181,12 @@ fn write(files: &[(PathBuf, String)], arguments: &New) -> Result<String, String>
             let path = spec::shown(&arguments.out.join(path));
             return Err(format!(
                 "{path} is there already and says something else; --out names another folder, --name another job"
-            ));
+            )
+            .into());
         }
     }
     put(&arguments.out, files)?;
-    let shown: Vec<String> = files.iter().map(|(path, _)| spec::shown(&arguments.out.join(path))).collect();
-    Ok(format!("wrote {}\n\nnow: flank solve {}\n", shown.join(", "), shown[0]))
+    Ok(files.iter().map(|(path, _)| spec::shown(&arguments.out.join(path))).collect())
 }
 
 fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), String> {

@@ -1,8 +1,10 @@
 //! `flank completions`, `flank man`
 
 use clap::CommandFactory;
+use serde_json::json;
 
 use crate::arguments::{Arguments, Completions, Man};
+use crate::failure::Failure;
 use crate::files::Folder;
 use crate::{Ending, print};
 
@@ -10,34 +12,35 @@ use crate::{Ending, print};
 pub(crate) fn completions(arguments: &Completions) -> Ending {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), "flank", &mut script);
-    print(&String::from_utf8_lossy(&script));
+    let script = String::from_utf8_lossy(&script);
+    if arguments.json {
+        let shell = arguments.shell.to_string();
+        print(&format!("{:#}\n", json!({ "schema": "flank.completions/1", "shell": shell, "script": script })));
+    } else {
+        print(&script);
+    }
     Ending::Done
 }
 
 /// Writes a page for the program and one for each command.
-pub(crate) fn man(arguments: &Man) -> Ending {
+pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
     let mut program = Arguments::command();
     program.build();
     let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
     let pages: Vec<clap::Command> = std::iter::once(&program).chain(commands).cloned().collect();
-    let written = Folder::at(&arguments.out).and_then(|mut folder| {
-        for page in pages {
-            let page = clap_mangen::Man::new(page).date("");
-            let name = page.get_filename();
-            let mut text = Vec::new();
-            page.render(&mut text).map_err(|error| format!("the page {name} cannot be made: {error}"))?;
-            folder.text(&name, &String::from_utf8_lossy(&text))?;
-        }
-        Ok(folder.written)
-    });
-    match written {
-        Ok(files) => {
-            print(&format!("wrote {}\n", files.join(", ")));
-            Ending::Done
-        }
-        Err(reason) => {
-            anstream::eprintln!("error: {reason}");
-            Ending::Wrong
-        }
+    let mut folder = Folder::at(&arguments.out)?;
+    for page in pages {
+        let page = clap_mangen::Man::new(page).date("");
+        let name = page.get_filename();
+        let mut text = Vec::new();
+        page.render(&mut text).map_err(|error| format!("the page {name} cannot be made: {error}"))?;
+        folder.text(&name, &String::from_utf8_lossy(&text))?;
     }
+    let files = folder.written;
+    print(&if arguments.json {
+        format!("{:#}\n", json!({ "schema": "flank.man/1", "files": files }))
+    } else {
+        format!("wrote {}\n", files.join(", "))
+    });
+    Ok(Ending::Done)
 }

@@ -9,6 +9,7 @@ use flank_solver::{Effort, Range, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Solve, Which};
 use crate::cut::Cut;
+use crate::failure::Failure;
 use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
@@ -17,22 +18,15 @@ use crate::table::{self, Solved, Table};
 use crate::{Ending, cut, print, spec, travel, trims};
 use crate::{branches, certify, geometry, reach, reasons, required};
 
-pub(crate) fn run(arguments: &Solve) -> Ending {
+pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
     let start = Instant::now();
     let graph = Graph::new();
-    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
-        Ok(found) => found,
-        Err(ending) => return ending,
-    };
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
     let wanted =
         Wanted { geometry: arguments.geometry, sensitivity: arguments.sensitivity, certificates: arguments.certify };
     let mut ending = Ending::Done;
-    let asked = asked(&jobs);
-    if asked.is_empty() {
-        return Ending::Wrong;
-    }
-    for job in asked {
+    for job in asked(&jobs)? {
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted)).collect();
         let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
@@ -46,18 +40,7 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
             .iter()
             .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance)))
             .collect();
-        let written = match write_files(&dataset, &solved, &faces, &job.name, arguments) {
-            Ok(written) => written,
-            Err(reason) => {
-                anstream::eprintln!("error: {reason}");
-                return Ending::Wrong;
-            }
-        };
-        let spec = spec::shown(&arguments.which.file);
-        let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
-        print(&if arguments.json { table.json() } else { table.text() });
-        anstream::eprintln!("{}", table.time());
-        anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
+        let written = write_files(&dataset, &solved, &faces, &job.name, arguments)?;
         let told = branches::ambiguous(&solved)
             + &required::text(&solved)
             + &table::unsolved(job, &solved)
@@ -65,23 +48,32 @@ pub(crate) fn run(arguments: &Solve) -> Ending {
             + &certify::failed(&solved)
             + &travel::beyond(job, &solved)
             + &step::missed(&faces, arguments.step.unwrap_or_default());
+        let spec = spec::shown(&arguments.which.file);
+        let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
+        print(&if arguments.json { table.json(&told) } else { table.text() });
+        anstream::eprintln!("{}", table.time());
+        anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
         if !told.is_empty() {
             anstream::eprint!("{told}");
             ending = Ending::Unsolved;
         }
     }
-    ending
+    Ok(ending)
 }
 
 /// The jobs that ask for points; of the others it is told that they do not.
-pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Vec<&'j Job<'g>> {
+///
+/// # Errors
+/// If none does.
+pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>>, Failure> {
     let (asked, idle): (Vec<&Job<'g>>, Vec<&Job<'g>>) =
         jobs.iter().partition(|job| job.surfaces.iter().any(|surface| surface.sample.is_some()));
-    for job in &idle {
-        let kind = if asked.is_empty() { "error" } else { "note" };
-        anstream::eprintln!("{kind}: job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
+    let told = |job: &Job<'_>| format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
+    if asked.is_empty() {
+        return Err(idle.iter().map(|job| told(job)).collect::<Vec<String>>().join("\n").into());
     }
-    asked
+    idle.iter().for_each(|job| anstream::eprintln!("note: {}", told(job)));
+    Ok(asked)
 }
 
 /// What is wanted of a surface beside its points.

@@ -2,47 +2,47 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{Compilation, Diagnostic, Job, Severity, Sources, compile_file, render};
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Sources, compile_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
-use crate::Ending;
 use crate::arguments::Which;
+use crate::failure::{Failure, in_full};
 
-/// The jobs that are asked for; what is wrong has been told.
-pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'g>, Vec<Job<'g>>), Ending> {
-    let mut compilation = compile_file(graph, &which.file, &which.set);
-    tell(&compilation.diagnostics, &compilation.sources);
+/// The jobs that are asked for. Warnings are told.
+///
+/// # Errors
+/// What is wrong with the spec.
+pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
+    let mut compilation = sound(compile_file(graph, &which.file, &which.set))?;
+    let jobs = asked_for(&mut compilation, which)?;
+    Ok((compilation, jobs))
+}
+
+/// A compilation without errors, whose warnings are told.
+///
+/// # Errors
+/// All findings, if one is an error.
+pub(crate) fn sound(compilation: Compilation<'_>) -> Result<Compilation<'_>, Failure> {
     if compilation.has_errors() {
-        return Err(Ending::Wrong);
+        return Err(Failure::of_spec(&compilation.diagnostics, &compilation.sources));
     }
-    match compilation.take_jobs(which.job.as_deref()) {
-        Ok(jobs) => Ok((compilation, jobs)),
-        Err(finding) => {
-            tell(&[finding], &compilation.sources);
-            Err(Ending::Wrong)
-        }
-    }
+    tell(&compilation.diagnostics, &compilation.sources);
+    Ok(compilation)
+}
+
+/// The jobs of a compilation that are asked for.
+///
+/// # Errors
+/// Which there are, if there is none of that name, or none at all.
+pub(crate) fn asked_for<'g>(compilation: &mut Compilation<'g>, which: &Which) -> Result<Vec<Job<'g>>, Failure> {
+    let jobs = compilation.take_jobs(which.job.as_deref());
+    jobs.map_err(|finding| Failure::of_spec(&[finding], &compilation.sources))
 }
 
 /// Shows findings with the source underlined, and where to read more about the first error.
 pub(crate) fn tell(diagnostics: &[Diagnostic], sources: &Sources) {
-    if diagnostics.is_empty() {
-        return;
-    }
-    anstream::eprint!("{}", render(diagnostics, sources, true));
-    let count = |severity| diagnostics.iter().filter(|finding| finding.severity() == severity).count();
-    let of = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    match (count(Severity::Error), count(Severity::Warning)) {
-        (0, warnings) => anstream::eprintln!("{}", of(warnings, "warning")),
-        (errors, 0) => anstream::eprintln!("{}", of(errors, "error")),
-        (errors, warnings) => {
-            anstream::eprintln!("{}, {}", of(errors, "error"), of(warnings, "warning"))
-        }
-    }
-    if let Some(first) = diagnostics.iter().find(|finding| finding.severity() == Severity::Error) {
-        anstream::eprintln!("`flank explain {}` tells more", first.code.as_str());
-    }
+    anstream::eprint!("{}", in_full(diagnostics, sources));
 }
 
 /// SHA-256 of all texts that a compilation read, in its order.

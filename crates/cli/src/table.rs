@@ -10,6 +10,7 @@ use flank_solver::{Effort, Outcome, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::cut::Cut;
+use crate::failure::not_done;
 use crate::limits::Line;
 use crate::reach::Needed;
 use crate::sensitivity::{self, Sensitivity};
@@ -171,7 +172,8 @@ impl Table<'_, '_, '_> {
         format!("{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3)
     }
 
-    pub(crate) fn json(&self) -> String {
+    /// With what was not done, as told.
+    pub(crate) fn json(&self, told: &str) -> String {
         let surfaces: Vec<Value> = self.solved.iter().map(surface_json).collect();
         let table = json!({
             "schema": "flank.solve/2",
@@ -180,6 +182,7 @@ impl Table<'_, '_, '_> {
             "surfaces": surfaces,
             "lines": self.lines.iter().map(|line| line.row().json()).collect::<Vec<_>>(),
             "files": self.written,
+            "not_done": not_done(told),
         });
         format!("{table:#}\n")
     }

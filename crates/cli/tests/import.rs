@@ -2,30 +2,7 @@
 
 mod support;
 
-use support::{flank, folder, text, top, written};
-
-/// The pinion of the library as a REXS file; `COEFFICIENTS` and further tools are put in by the tests.
-const REXS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<model version="1.4" applicationId="test" date="2026-01-01T00:00:00+01:00">
-  <components>
-    <component id="12" type="bevel_gear_manufacturing_settings" name="pinion">
-      <attribute id="radial_distance" unit="mm">97.95940290780507</attribute>
-      <attribute id="center_roll_position" unit="deg">52.79674678267486</attribute>
-      <attribute id="cutter_tilt" unit="deg">2.5</attribute>
-      <attribute id="machine_root_angle" unit="deg">15.64096727073747</attribute>
-      <attribute id="machine_center_to_crossing_point" unit="mm">-0.001306176586991889</attribute>
-      <attribute id="ratio_of_roll" unit="none">3.339685914944047</attribute>
-      <attribute id="helical_motion_coefficients" unit="none"><array><c>1.2</c><c>-1.5</c></array></attribute>
-    </component>
-    <component id="21" type="bevel_gear_tool" name="outside">
-      <attribute id="blade_point_radius" unit="mm">95.9517390193892</attribute>
-      <attribute id="blade_pressure_angle" unit="deg">20.0</attribute>
-      <attribute id="blade_spheric_radius" unit="mm">2000000</attribute>
-      <attribute id="tool_edge_radius_bevel_gear_tool" unit="mm">0.20845</attribute>
-    </component>
-  </components>
-</model>
-"#;
+use support::{REXS, flank, folder, text, top, written};
 
 #[test]
 fn a_rexs_file_becomes_a_job() {

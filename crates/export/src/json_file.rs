@@ -1,4 +1,4 @@
-//! Points as JSON, by the schema `schema/surfaces-2.schema.json`.
+//! Points as JSON, by the schema `schemas/surfaces-2.schema.json`.
 
 use std::io::Write;
 

@@ -1,4 +1,4 @@
-//! JSON: by the schema shipped with the crate, and with the numbers that were given.
+//! JSON: by the schema shipped with the program, and with the numbers that were given.
 
 mod schema;
 mod synthetic;
@@ -8,7 +8,7 @@ use schema::faults_of;
 use serde_json::Value;
 use synthetic::{Gear, bevel, dataset, gallery, holes, with_fields, without};
 
-const SCHEMA_FILE: &str = include_str!("../schema/surfaces-2.schema.json");
+const SCHEMA_FILE: &str = include_str!("../../../schemas/surfaces-2.schema.json");
 
 fn text_of(dataset: &Dataset) -> String {
     let mut bytes = Vec::new();
@@ -32,11 +32,11 @@ fn the_check_of_the_schema_can_fail() {
     type Spoil = fn(&mut Value);
     let spoilers: [(Spoil, &str); 6] = [
         (|d| d["schema"] = "flank.surfaces/3".into(), "/schema: const"),
-        (|d| d["more"] = 1.into(), ": extra more"),
+        (|d| d["more"] = 1.into(), ": additionalProperties"),
         (|d| d["surfaces"][0]["points"][1]["normal"] = vec![1.0, 0.0].into(), "/surfaces/0/points/1/normal: minItems"),
         (|d| d["surfaces"][0]["unknowns"][0]["unit"] = "rad".into(), "/surfaces/0/unknowns/0/unit: enum"),
-        (|d| d["asked"] = (-1).into(), "/asked: type"),
-        (|d| drop(d.as_object_mut().unwrap().remove("spec_hash")), ": no spec_hash"),
+        (|d| d["asked"] = (-1).into(), "/asked: minimum"),
+        (|d| drop(d.as_object_mut().unwrap().remove("spec_hash")), ": required"),
     ];
     for (spoil, fault) in spoilers {
         let mut document = sound.clone();

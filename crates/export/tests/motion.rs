@@ -13,7 +13,7 @@ use flank_export::{
 use schema::faults_of;
 use serde_json::Value;
 
-const SCHEMA_FILE: &str = include_str!("../schema/motion-1.schema.json");
+const SCHEMA_FILE: &str = include_str!("../../../schemas/motion-1.schema.json");
 /// Seconds.
 const CUTTING_TIME: f64 = 12.0;
 const ROWS: usize = 101;

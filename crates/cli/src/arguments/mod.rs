@@ -56,10 +56,34 @@ pub(crate) enum Command {
     View(View),
     /// Make a job of one in the library, with all that it uses
     New(New),
+    /// The JSON schemas of all that the program prints and writes as JSON
+    Schema(Schema),
     /// Print a script that completes arguments in a shell
     Completions(Completions),
     /// Write manual pages
     Man(Man),
+}
+
+impl Command {
+    /// Whether documents are asked for.
+    pub(crate) fn is_json(&self) -> bool {
+        match self {
+            Command::Solve(arguments) => arguments.json,
+            Command::Check(arguments) => arguments.json,
+            Command::Convert(arguments) => arguments.json,
+            Command::Derive(arguments) => arguments.json,
+            Command::Plot(arguments) => arguments.json,
+            Command::Deviation(arguments) => arguments.json,
+            Command::Explain(arguments) => arguments.json,
+            Command::Import(arguments) => arguments.json,
+            Command::Fmt(arguments) => arguments.json,
+            Command::View(arguments) => arguments.json,
+            Command::New(arguments) => arguments.json,
+            Command::Schema(arguments) => arguments.json,
+            Command::Completions(arguments) => arguments.json,
+            Command::Man(arguments) => arguments.json,
+        }
+    }
 }
 
 /// Which job of which file, with which values.
@@ -280,8 +304,8 @@ pub(crate) struct Derive {
     /// Print the number of operations that the equations for a point take, with their Jacobian
     #[arg(long, conflicts_with = "latex")]
     pub(crate) cost: bool,
-    /// Print the numbers of operations as JSON
-    #[arg(long, requires = "cost")]
+    /// Print JSON: the pages, or the numbers of operations
+    #[arg(long)]
     pub(crate) json: bool,
 }
 
@@ -368,6 +392,9 @@ pub(crate) struct Import {
     /// Where the library lies, seen from the job's file
     #[arg(long, value_name = "DIR", default_value = "specs")]
     pub(crate) library: String,
+    /// Print the job within JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -398,6 +425,9 @@ pub(crate) struct Fmt {
     /// Change nothing, list the files that would change
     #[arg(long)]
     pub(crate) check: bool,
+    /// Print as JSON what became of each file
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -422,6 +452,23 @@ pub(crate) struct View {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
+Every command takes --json and then prints documents on stdout, each with a `schema` that names its kind and version: one for
+each job where a file holds several, and flank.failure/1 where the command fails.
+
+Examples:
+  flank schema                  all schemas
+  flank schema flank.solve/2    one of them, JSON Schema 2020-12
+  flank schema solve            the same")]
+pub(crate) struct Schema {
+    /// The schema, with or without `flank.` and version; without one, all are listed
+    pub(crate) name: Option<String>,
+    /// List as JSON; a schema is JSON anyway
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
 Examples:
   flank completions bash > ~/.local/share/bash-completion/completions/flank
   flank completions fish > ~/.config/fish/completions/flank.fish
@@ -429,6 +476,9 @@ Examples:
 pub(crate) struct Completions {
     /// The shell
     pub(crate) shell: clap_complete::Shell,
+    /// Print the script within JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -440,6 +490,9 @@ pub(crate) struct Man {
     /// Folder for the pages; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build")]
     pub(crate) out: PathBuf,
+    /// Print the files as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -463,6 +516,9 @@ pub(crate) struct New {
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub(crate) out: PathBuf,
+    /// Print the jobs to start from, or the files, as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 fn job_name(text: &str) -> Result<String, String> {

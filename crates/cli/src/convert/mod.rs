@@ -17,6 +17,7 @@ use flank_expr::{Expr, Graph};
 use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis};
 
 use crate::arguments::{Convert, Onto, Which};
+use crate::failure::Failure;
 use crate::{Ending, print, spec, units};
 use blocks::Blocks;
 use rates::Rates;
@@ -27,52 +28,36 @@ use table::Table;
 /// No linear axis without travel goes farther, mm.
 const REACH: f64 = 10_000.0;
 
-pub(crate) fn run(arguments: &Convert) -> Ending {
+pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
     let graph = Graph::new();
-    let (hash, job, target) = match compiled(&graph, &arguments.which, &arguments.to) {
-        Ok(compiled) => compiled,
-        Err(ending) => return ending,
-    };
-    let carried = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit).and_then(|target| {
-        if !target.settings.is_empty() {
-            return settings::find(&job, &target, arguments);
-        }
+    let (hash, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
+    let target = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
+    let (shown, told) = if target.settings.is_empty() {
         let (table, told) = carry(&job, target, &hash, arguments)?;
-        Ok((if arguments.json { table.json() } else { table.text() }, told))
-    });
-    match carried {
-        Ok((shown, told)) => {
-            print(&shown);
-            anstream::eprint!("{told}");
-            if told.is_empty() { Ending::Done } else { Ending::Unsolved }
-        }
-        Err(reason) => {
-            anstream::eprintln!("error: {reason}");
-            Ending::Wrong
-        }
-    }
+        (if arguments.json { table.json(&told) } else { table.text() }, told)
+    } else {
+        settings::find(&job, &target, arguments)?
+    };
+    print(&shown);
+    anstream::eprint!("{told}");
+    Ok(if told.is_empty() { Ending::Done } else { Ending::Unsolved })
 }
 
-/// The hash of the text, the one job and the machine as a job without tool; what is wrong has been told.
-pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(String, Job<'g>, Job<'g>), Ending> {
-    let mut compilation = compile_with_machine(graph, &which.file, to, &which.set);
-    spec::tell(&compilation.diagnostics, &compilation.sources);
-    if compilation.has_errors() {
-        return Err(Ending::Wrong);
-    }
+/// The hash of the text, the one job and the machine as a job without tool.
+///
+/// # Errors
+/// What is wrong with the texts, or that it is not clear which job is meant.
+pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(String, Job<'g>, Job<'g>), Failure> {
+    let mut compilation = spec::sound(compile_with_machine(graph, &which.file, to, &which.set))?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
-    let mut jobs = compilation.take_jobs(which.job.as_deref()).map_err(|finding| {
-        spec::tell(&[finding], &compilation.sources);
-        Ending::Wrong
-    })?;
+    let mut jobs = spec::asked_for(&mut compilation, which)?;
     let hash = spec::hash(&compilation);
     match jobs.len() {
         1 => Ok((hash, jobs.remove(0), target)),
         _ => {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
             let names = names.join(" or ");
-            anstream::eprintln!("error: the file holds several jobs, and one is carried over at a time: --job {names}");
-            Err(Ending::Wrong)
+            Err(format!("the file holds several jobs, and one is carried over at a time: --job {names}").into())
         }
     }
 }

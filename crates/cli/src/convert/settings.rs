@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::Target;
 use super::source::{Flank, Source};
 use crate::arguments::Convert;
+use crate::failure::not_done;
 use crate::table::aligned;
 use crate::{spec, units};
 
@@ -221,6 +222,7 @@ impl Found<'_, '_, '_> {
             "displacement_mm": fit.displacement,
             "turn_deg": fit.turn.to_degrees(),
             "deviation_um": self.deviation.map(|mm| mm * 1e3),
+            "not_done": not_done(&self.told()),
         });
         format!("{found:#}\n")
     }

@@ -11,6 +11,7 @@ use super::blocks::Blocks;
 use super::rates::Rates;
 use super::series::Series;
 use crate::arguments::Convert;
+use crate::failure::not_done;
 use crate::table::aligned;
 use crate::{spec, units};
 
@@ -200,7 +201,8 @@ impl Table {
         self.axes.iter().zip(values).map(|(axis, x)| (axis.name.clone(), json!(x))).collect()
     }
 
-    pub(crate) fn json(&self) -> String {
+    /// With what the target cannot do, as told.
+    pub(crate) fn json(&self, told: &str) -> String {
         let named = |named: &Named| json!({ "name": named.name, "unit": units::symbol(named.dimension) });
         let axes = self.axes.iter().enumerate().map(|(k, axis)| {
             let (low, high) = self.ends(k);
@@ -268,6 +270,7 @@ impl Table {
             "rates": rates,
             "nc_deviation": self.blocks.map(|b| json!({ "straight_mm": b.straight, "rounding_mm": b.rounding })),
             "files": self.written,
+            "not_done": not_done(told),
         });
         format!("{table:#}\n")
     }

@@ -17,6 +17,7 @@ use flank_expr::Graph;
 use serde_json::json;
 
 use crate::arguments::{Plot, What};
+use crate::failure::Failure;
 use crate::files::Folder;
 use crate::table::aligned;
 use crate::{Ending, deviation, print, solve, spec};
@@ -43,27 +44,16 @@ struct Written {
 /// Why a kind of picture cannot be drawn.
 type Unfit = String;
 
-pub(crate) fn run(arguments: &Plot) -> Ending {
+pub(crate) fn run(arguments: &Plot) -> Result<Ending, Failure> {
     let graph = Graph::new();
-    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
-        Ok(found) => found,
-        Err(ending) => return ending,
-    };
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
-    let plotted = match &arguments.from {
-        Some(from) => comparison::plot(&jobs, from, arguments, &hash).map(|told| vec![told]),
-        None => plot_jobs(&jobs, arguments, &hash),
+    let told = match &arguments.from {
+        Some(from) => vec![comparison::plot(&jobs, from, arguments, &hash)?],
+        None => plot_jobs(&jobs, arguments, &hash)?,
     };
-    match plotted {
-        Ok(told) => {
-            told.iter().for_each(|text| print(text));
-            Ending::Done
-        }
-        Err(reason) => {
-            anstream::eprintln!("error: {reason}");
-            Ending::Wrong
-        }
-    }
+    told.iter().for_each(|text| print(text));
+    Ok(Ending::Done)
 }
 
 fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<String>, String> {

@@ -13,6 +13,7 @@ use flank_expr::Graph;
 use serde_json::{Value, json};
 
 use crate::arguments::View;
+use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::limits::Line;
 use crate::solve::{self, Wanted};
@@ -25,19 +26,12 @@ const WANTED: Wanted = Wanted { geometry: true, sensitivity: true, certificates:
 /// Share of what a motion passes over that its slider goes beyond.
 const BEYOND: f64 = 0.15;
 
-pub(crate) fn run(arguments: &View) -> Ending {
+pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
     let graph = Graph::new();
-    let (compilation, jobs) = match spec::jobs(&graph, &arguments.which) {
-        Ok(found) => found,
-        Err(ending) => return ending,
-    };
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
-    let asked = solve::asked(&jobs);
-    if asked.is_empty() {
-        return Ending::Wrong;
-    }
     let mut ending = Ending::Done;
-    for job in asked {
+    for job in solve::asked(&jobs)? {
         let solved: Vec<Solved<'_, '_>> =
             job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED)).collect();
         let trims = solved.iter().flat_map(|solved| &solved.trims);
@@ -45,25 +39,32 @@ pub(crate) fn run(arguments: &View) -> Ending {
         let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&job.name, &arguments.which, &hash));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = Tally::of(&dataset.patches);
-        let told = branches::ambiguous(&solved) + &required::text(&solved) + &table::unsolved(job, &solved);
+        let mut told = branches::ambiguous(&solved) + &required::text(&solved) + &table::unsolved(job, &solved);
+        let written = if tally.solved == 0 {
+            told += &format!("no page: job `{}` has no point to show\n", job.name);
+            None
+        } else {
+            Some(write(&graph, job, &solved, &dataset, arguments)?)
+        };
+        if arguments.json {
+            print(&as_json(job, &tally, written.as_ref(), &told));
+        } else if let Some(written) = &written {
+            print(&written.text(job, &tally));
+        }
         if !told.is_empty() {
             anstream::eprint!("{told}");
             ending = Ending::Unsolved;
         }
-        if tally.solved == 0 {
-            anstream::eprintln!("error: job `{}` has no point to show", job.name);
-            continue;
-        }
-        let written = match write(&graph, job, &solved, &dataset, arguments) {
-            Ok(written) => written,
-            Err(reason) => {
-                anstream::eprintln!("error: {reason}");
-                return Ending::Wrong;
-            }
-        };
-        print(&if arguments.json { written.json(&tally) } else { written.text(&tally) });
     }
-    ending
+    Ok(ending)
+}
+
+fn as_json(job: &Job<'_>, tally: &Tally, written: Option<&Written>, told: &str) -> String {
+    let value: Value = json!({
+        "schema": "flank.view/1", "job": job.name, "asked": tally.asked, "solved": tally.solved,
+        "file": written.map(|page| &page.file), "bytes": written.map(|page| page.bytes), "not_done": not_done(told),
+    });
+    format!("{value:#}\n")
 }
 
 /// Whether a field is not zero everywhere, as is that of a parameter without influence.
@@ -75,19 +76,18 @@ fn is_something(field: &Field) -> bool {
 }
 
 /// A page that stands in its folder.
-struct Written<'j> {
-    job: &'j str,
+struct Written {
     file: String,
     bytes: u64,
 }
 
-fn write<'j, 'g>(
+fn write<'g>(
     graph: &'g Graph,
-    job: &'j Job<'g>,
+    job: &Job<'g>,
     solved: &[Solved<'_, 'g>],
     dataset: &Dataset,
     arguments: &View,
-) -> Result<Written<'j>, String> {
+) -> Result<Written, String> {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
     let mut scene = scene(graph, job, solved);
@@ -104,7 +104,7 @@ fn write<'j, 'g>(
     folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
     let path = arguments.out.join(format!("{}.html", job.name));
     let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
-    Ok(Written { job: &job.name, file: folder.written.remove(0), bytes })
+    Ok(Written { file: folder.written.remove(0), bytes })
 }
 
 /// What the page shows beside the points.
@@ -154,17 +154,9 @@ fn page_motion(motion: &Bounded<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
     }
 }
 
-impl Written<'_> {
-    fn text(&self, tally: &Tally) -> String {
+impl Written {
+    fn text(&self, job: &Job<'_>, tally: &Tally) -> String {
         let kilobytes = self.bytes.div_ceil(1000);
-        format!("job {}: {} of {} points\nwrote {}, {kilobytes} kB\n", self.job, tally.solved, tally.asked, self.file)
-    }
-
-    fn json(&self, tally: &Tally) -> String {
-        let value: Value = json!({
-            "schema": "flank.view/1", "job": self.job, "asked": tally.asked, "solved": tally.solved,
-            "file": self.file, "bytes": self.bytes,
-        });
-        format!("{value:#}\n")
+        format!("job {}: {} of {} points\nwrote {}, {kilobytes} kB\n", job.name, tally.solved, tally.asked, self.file)
     }
 }

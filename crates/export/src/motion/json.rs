@@ -1,4 +1,4 @@
-//! A motion table as JSON, by the schema `schema/motion-1.schema.json`.
+//! A motion table as JSON, by the schema `schemas/motion-1.schema.json`.
 
 use std::io::Write;
 
