@@ -39,6 +39,33 @@ fn random_programs_in_different_lanes() {
     }
 }
 
+/// Outputs in memory of the caller are those that are kept otherwise, however they are computed.
+#[test]
+fn outputs_go_to_memory_of_the_caller() {
+    let graph = Graph::new();
+    let (x, y) = (graph.variable("x"), graph.variable("y"));
+    // one of them in memory as it is, one the same in all lanes
+    let outputs = [x * y, x, graph.constant(2.5), y.sin(), x + y.cos()];
+    let laid_out = || LaneTape::new(&Tape::new(&outputs, &[x, y]).expect("x and y are the inputs"));
+    let (kept, written) = (laid_out(), laid_out().writing(4));
+    let values = |scale: f64| std::array::from_fn(|lane| scale * (lane as f64 - 9.5));
+    for instructions in InstructionSet::available() {
+        let [mut expected, mut found] = [&kept, &written].map(|tape| LaneEvaluator::new(tape, instructions));
+        // an angle of the second ones takes the long reduction
+        for scale in [0.3, 1e6] {
+            for evaluator in [&mut expected, &mut found] {
+                *evaluator.input(0) = values(0.7);
+                *evaluator.input(1) = values(scale);
+            }
+            let mut out = [[f64::NAN; LANES]; 4];
+            expected.run();
+            found.run_into(LANES, &mut out);
+            (0..4).for_each(|k| assert_eq!(expected.output(k), &out[k], "{instructions:?}"));
+            assert_eq!(expected.output(4), found.output(4));
+        }
+    }
+}
+
 /// One lane with an angle for the long reduction, beside one that is no number.
 #[test]
 fn far_angles_in_one_lane() {

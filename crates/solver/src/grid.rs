@@ -256,15 +256,13 @@ impl<'s> Grid<'s> {
         field.divide(lines, &points);
         let (count, length) = ((self.rows, &rows), (self.columns, &columns));
         let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
-        let has_all_given = newton.has_all_given();
-        let mut on_lines = LaneNewton::on_lines(self.system, self.ranges).filter(|_| has_all_given);
-        let prepared = on_lines.as_mut().map_or_else(Vec::new, |on_lines| field.prepare(on_lines, self.targets));
-        if let Some(on_lines) = &mut on_lines {
-            let mut on_line = OnLine::new(on_lines, &prepared);
-            self.effort.evaluations += field.take_lines(&mut on_line, count.1, length.1, self.targets);
+        if newton.has_all_given() {
+            self.compute_strips(&mut field, count.1, length.1);
         }
-        self.effort.evaluations += field.refine_lines(newton, count.1, &levels(length.0, length.1), self.targets);
-        self.refine_strips(&mut field, (newton, on_lines), &prepared, &levels(count.0, count.1));
+        if !field.is_complete() {
+            self.effort.evaluations += field.refine_lines(newton, count.1, &levels(length.0, length.1), self.targets);
+            self.refine_strips(&mut field, newton, &levels(count.0, count.1));
+        }
         if !field.is_complete() {
             let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
             let unfinished = self.edge_of_roots(&field);
@@ -313,30 +311,42 @@ impl<'s> Grid<'s> {
         }
     }
 
-    /// All rows, from those that are known; on as many threads as there are.
-    fn refine_strips(
-        &mut self,
-        field: &mut Field,
-        (newton, mut on_lines): (&mut LaneNewton<'s>, Option<LaneNewton<'s>>),
-        prepared: &[f64],
-        levels: &[Vec<Midpoint>],
-    ) {
+    /// All lines whose points are given by their targets, from those that are known at some places.
+    fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
-        let refine = |newton: &mut LaneNewton<'s>, on_lines: &mut Option<LaneNewton<'s>>, mut strip: Strip<'_>| {
-            let on_line = on_lines.as_mut().map(|on_lines| OnLine::new(on_lines, prepared));
-            strip.refine(newton, on_line, levels, targets)
+        let new = || OnLine::new(system, ranges);
+        let Some(mut on_line) = new() else { return };
+        let (prepared, known) = (field.prepare(&mut on_line, targets), field.known_lines(lines, places));
+        let compute = |on_line: &mut Option<OnLine<'s>>, mut strip: Strip<'_>| {
+            on_line.as_mut().map_or(0, |on_line| strip.compute(on_line, &known, &prepared, targets))
         };
+        self.effort.evaluations += self.on_strips(field, &mut Some(on_line), new, compute);
+    }
+
+    /// All lines, from those that are known.
+    fn refine_strips(&mut self, field: &mut Field, newton: &mut LaneNewton<'s>, levels: &[Vec<Midpoint>]) {
+        let (system, ranges, targets) = (self.system, self.ranges, self.targets);
+        let given = newton.has_given();
+        let new = || LaneNewton::with_given(system, ranges).filter(|_| given);
+        let new = || new().unwrap_or_else(|| LaneNewton::new(system, ranges));
+        let refine = |newton: &mut LaneNewton<'s>, mut strip: Strip<'_>| strip.refine(newton, levels, targets);
+        self.effort.evaluations += self.on_strips(field, newton, new, refine);
+    }
+
+    /// Work on each strip, on as many threads as there are; each has a tool of its own if there are several.
+    fn on_strips<T>(
+        &self,
+        field: &mut Field,
+        tool: &mut T,
+        new: impl Fn() -> T + Sync + Send,
+        work: impl Fn(&mut T, Strip<'_>) -> u64 + Sync + Send,
+    ) -> u64 {
         let strips = field.strips();
-        self.effort.evaluations += if targets.len() < SHARED || rayon::current_num_threads() == 1 {
-            strips.into_iter().map(|strip| refine(newton, &mut on_lines, strip)).sum::<u64>()
+        if self.targets.len() < SHARED || rayon::current_num_threads() == 1 {
+            strips.into_iter().map(|strip| work(tool, strip)).sum()
         } else {
-            let (has_given, is_on_lines) = (newton.has_given(), on_lines.is_some());
-            let given = || LaneNewton::with_given(system, ranges).filter(|_| has_given);
-            let on_lines = || LaneNewton::on_lines(system, ranges).filter(|_| is_on_lines);
-            let another = || (given().unwrap_or_else(|| LaneNewton::new(system, ranges)), on_lines());
-            let strips = strips.into_par_iter();
-            strips.map_init(another, |(newton, on_lines), strip| refine(newton, on_lines, strip)).sum::<u64>()
-        };
+            strips.into_par_iter().map_init(new, work).sum()
+        }
     }
 
     /// Roots beside points that are not known to be roots.

@@ -13,12 +13,12 @@ use crate::system::{System, side_of};
 const MOST_STEPS: usize = 5;
 /// A start is a root as it is if its residuals are below this share of the tolerance, so that what its prediction lacks stays
 /// well below what the tolerance allows.
-const PREDICTED: f64 = 0.25;
+pub(crate) const PREDICTED: f64 = 0.25;
 /// Newton stops below this share of the tolerance, or at the tolerance when a step no longer pays.
 const POLISHED: f64 = 0.1;
 /// With a smaller determinant (unknowns scaled by their ranges, equations by their largest entry) a lane is left to the careful
 /// path, which says what is singular.
-const CLEAR: f64 = 1e-6;
+pub(crate) const CLEAR: f64 = 1e-6;
 
 /// Of what else is wanted at a root (position, normal, …), as much must be finite.
 pub(crate) const VITAL: usize = 6;
@@ -74,13 +74,6 @@ impl<'s> LaneNewton<'s> {
     pub(crate) fn with_given(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
         let given = system.lanes.given.as_ref()?;
         Some(LaneNewton::of(system, ranges, (&given.checked, &given.unknowns)))
-    }
-
-    /// The same for lines of points whose first parameter is that of the line, and the second one that of the lane; none if
-    /// equations do not give all unknowns.
-    pub(crate) fn on_lines(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
-        let given = system.lanes.given.as_ref()?;
-        Some(LaneNewton::of(system, ranges, (given.on_lines.as_ref()?, &given.unknowns)))
     }
 
     fn of(system: &'s System, ranges: &'s [Range], (checked, given): (&'s LaneTape, &'s [usize])) -> LaneNewton<'s> {
@@ -221,22 +214,6 @@ impl<'s> LaneNewton<'s> {
             }
         }
         evaluations
-    }
-
-    /// The same for points of one line without a step, by what [`LaneNewton::prepare`] has found for it; whether all of the
-    /// first lanes have come to a root.
-    pub(crate) fn run_prepared(&mut self, prepared: &[f64], count: usize) -> bool {
-        self.checked.set_prepared(prepared);
-        self.measure(count);
-        let are_roots = self.are_predicted()[..count].iter().all(|is_root| *is_root);
-        self.ends[..count].fill(if are_roots { End::Root } else { End::Lost });
-        are_roots
-    }
-
-    /// Adds what depends on the first parameter alone.
-    pub(crate) fn prepare(&mut self, parameter: f64, prepared: &mut Vec<f64>) {
-        self.checked.set_uniform(self.ranges.len(), parameter);
-        self.checked.prepare(prepared);
     }
 
     /// Where what was measured is a root, so that no step is needed.

@@ -3,7 +3,9 @@
 use flank_expr::geometry::cofactors;
 use flank_expr::{Expr, LaneTape, Tape, TapeError, Varies};
 
+use crate::field;
 use crate::given::given_unknowns;
+use crate::lanes::VITAL;
 use crate::newton::{LARGEST_TOLERANCE, OF_SIZE, TOLERANCE};
 
 /// Equations up to which the step is written out.
@@ -37,14 +39,32 @@ pub(crate) fn written_out<'g>(
     Ok(LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len())))
 }
 
+/// What is wanted at a root.
+pub(crate) struct Wanted<'a, 'g> {
+    pub(crate) residuals: &'a [Expr<'g>],
+    pub(crate) conditions: &'a [Expr<'g>],
+    pub(crate) extras: &'a [Expr<'g>],
+}
+
+impl<'g> Wanted<'_, 'g> {
+    /// The sum of what must be finite, if anything is: it is so only if all of that is.
+    pub(crate) fn vital(&self) -> Option<Expr<'g>> {
+        self.extras.iter().take(VITAL).copied().reduce(|a, b| a + b)
+    }
+
+    /// All of it, then the sum of what must be finite.
+    pub(crate) fn all(&self) -> Vec<Expr<'g>> {
+        [self.residuals, self.conditions, self.extras, self.vital().as_slice()].concat()
+    }
+}
+
 /// What is wanted at a root, with some unknowns in closed form.
 #[derive(Clone, Debug)]
 pub(crate) struct GivenTapes {
     /// What is wanted, then the unknowns that equations give, and the determinant as in [`written_out`] if they give all of them.
     /// Inputs are those of [`written_out`]; the given unknowns among them have no effect.
     pub(crate) checked: LaneTape,
-    /// The same for points of which the first parameter is the same in all lanes and the second one stays in its lane, if all
-    /// unknowns are given by two parameters.
+    /// For lines of points, if all unknowns are given by two parameters: see [`field::laid_out`].
     pub(crate) on_lines: Option<LaneTape>,
     /// The numbers of the given unknowns.
     pub(crate) unknowns: Vec<usize>,
@@ -56,29 +76,26 @@ impl GivenTapes {
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor a parameter.
     pub(crate) fn new<'g>(
-        wanted: &[Expr<'g>],
-        residuals: &[Expr<'g>],
+        wanted: &Wanted<'_, 'g>,
         unknowns: &[Expr<'g>],
         parameters: &[Expr<'g>],
     ) -> Result<Option<GivenTapes>, TapeError> {
-        let given = given_unknowns(residuals, unknowns);
+        let given = given_unknowns(wanted.residuals, unknowns);
         if given.is_empty() {
             return Ok(None);
         }
         let has_all = given.len() == unknowns.len();
-        let linear = Linear::new(residuals, unknowns);
+        let linear = Linear::new(wanted.residuals, unknowns);
         let determinant = has_all.then(|| linear.scaled_determinant());
         let found = given.iter().map(|given| unknowns[given.unknown]);
-        let outputs: Vec<Expr<'g>> = wanted.iter().copied().chain(found).chain(determinant).collect();
+        let outputs: Vec<Expr<'g>> = wanted.all().into_iter().chain(found).chain(determinant).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&linear.widths).copied().collect();
         let definitions: Vec<_> = given.iter().map(|given| (unknowns[given.unknown], given.form)).collect();
         let tape = Tape::with_definitions(&outputs, &inputs, &definitions)?;
-        let mut varies = freely(unknowns.len(), parameters.len());
-        let checked = LaneTape::with_inputs(&tape, &varies);
-        let on_lines = (has_all && parameters.len() == 2).then(|| {
-            varies[unknowns.len()..][..2].copy_from_slice(&[Varies::ByRun, Varies::ByLane]);
-            LaneTape::with_inputs(&tape, &varies)
-        });
+        let checked = LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len()));
+        let is_on_lines = has_all && parameters.len() == 2;
+        let on_lines = || field::laid_out(wanted, &given, &linear, [unknowns, parameters]);
+        let on_lines = is_on_lines.then(on_lines).transpose()?;
         Ok(Some(GivenTapes { checked, on_lines, unknowns: given.iter().map(|given| given.unknown).collect() }))
     }
 }
@@ -89,13 +106,13 @@ fn freely(unknowns: usize, parameters: usize) -> Vec<Varies> {
 }
 
 /// Derivatives of equations.
-struct Linear<'g> {
+pub(crate) struct Linear<'g> {
     /// Row by row, with the cofactors.
     jacobian: Vec<Vec<Expr<'g>>>,
     cofactors: Vec<Vec<Expr<'g>>>,
     determinant: Expr<'g>,
     /// Variables for the widths of the ranges.
-    widths: Vec<Expr<'g>>,
+    pub(crate) widths: Vec<Expr<'g>>,
 }
 
 impl<'g> Linear<'g> {
@@ -120,7 +137,7 @@ impl<'g> Linear<'g> {
     }
 
     /// The determinant, with unknowns scaled by their ranges and each equation by its largest entry.
-    fn scaled_determinant(&self) -> Expr<'g> {
+    pub(crate) fn scaled_determinant(&self) -> Expr<'g> {
         let graph = self.determinant.graph();
         let product = |factors: &mut dyn Iterator<Item = Expr<'g>>| factors.reduce(|a, b| a * b);
         let largest = self.entries().map(|row| {

@@ -2,10 +2,9 @@
 
 use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
-use crate::lanes::VITAL;
 use crate::newton::Linearized;
 use crate::solution::{CutBy, Outcome};
-use crate::step::{GivenTapes, MOST_EQUATIONS, written_out};
+use crate::step::{GivenTapes, MOST_EQUATIONS, Wanted, written_out};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -91,13 +90,11 @@ impl System {
         extras: &[Expr<'g>],
         inputs: &[Expr<'g>],
     ) -> Result<System, TapeError> {
-        // finite only if all of what must be finite is
-        let vital = extras.iter().take(VITAL).copied().reduce(|a, b| a + b);
-        let wanted = [residuals, conditions, extras, vital.as_slice()].concat();
+        let wanted = Wanted { residuals, conditions, extras };
         let (unknowns, parameters) = inputs.split_at(self.size);
-        let checked = LaneTape::new(&Tape::new(&wanted, inputs)?);
+        let checked = LaneTape::new(&Tape::new(&wanted.all(), inputs)?);
         let is_written_out = self.lanes.is_written_out;
-        let given = || GivenTapes::new(&wanted, residuals, unknowns, parameters);
+        let given = || GivenTapes::new(&wanted, unknowns, parameters);
         let given = if is_written_out { given()? } else { None };
         let conditions = Tape::new(conditions, inputs)?;
         let lanes = LaneTapes { checked, given, ..self.lanes };

@@ -167,10 +167,19 @@ impl<'t> LaneEvaluator<'t> {
 
     /// The same for the first `count` lanes alone; outputs of the others mean nothing.
     pub fn run_first(&mut self, count: usize) {
+        self.run_into(count, &mut []);
+    }
+
+    /// The same for a tape whose first outputs go to memory of the caller ([`LaneTape::writing`]).
+    ///
+    /// # Panics
+    /// If `out` has not one entry for each of these.
+    pub fn run_into(&mut self, count: usize, out: &mut [[f64; LANES]]) {
+        assert_eq!(out.len(), self.tape.written, "one entry for each output that goes there");
         self.execute_once();
         let LaneEvaluator { tape, instructions, native, scalars, wide, blocks, scratch, .. } = self;
-        let mut is_done = |part, count: usize, steps: &[LaneInstruction], blocks: &mut [Block]| {
-            let is_native = native.is_some_and(|native| native.run(part, count, (scalars, wide), blocks, scratch));
+        let mut is_done = |work, steps: &[LaneInstruction], blocks: &mut [Block], out: &mut [[f64; LANES]]| {
+            let is_native = native.is_some_and(|native| native.run(work, (scalars, wide), blocks, scratch, out));
             if !is_native {
                 instructions.dispatch(
                     #[inline(always)]
@@ -180,12 +189,18 @@ impl<'t> LaneEvaluator<'t> {
             is_native
         };
         if self.is_kept_stale && !tape.by_lane.is_empty() {
-            is_done(Part::ByLane, LANES, &tape.by_lane, blocks);
+            is_done((Part::ByLane, LANES), &tape.by_lane, blocks, &mut []);
         }
         self.is_kept_stale = false;
-        if !is_done(Part::Each, count, &tape.each, blocks) && native.is_some() {
-            for (k, &output) in tape.outputs.iter().enumerate() {
-                blocks[tape.block_count + k] = blocks[output as usize];
+        if is_done((Part::Each, count), &tape.each, blocks, out) {
+            return;
+        }
+        for (k, &output) in tape.outputs.iter().enumerate() {
+            let values = blocks[output as usize];
+            match out.get_mut(k) {
+                Some(out) => *out = values.0,
+                None if native.is_some() => blocks[tape.block_count + k] = values,
+                None => {}
             }
         }
     }
@@ -195,12 +210,13 @@ impl<'t> LaneEvaluator<'t> {
         self.tape.outputs.len()
     }
 
-    /// An output after a run.
+    /// An output after a run; not one that goes to memory of the caller.
     ///
     /// # Panics
     /// If there is no such output.
     #[inline]
     pub fn output(&self, index: usize) -> &[f64; LANES] {
+        debug_assert!(index >= self.tape.written, "outputs that are kept");
         let of_tape = self.tape.outputs[index] as usize;
         let block = if self.native.is_some() { self.tape.block_count + index } else { of_tape };
         &self.blocks[block].0

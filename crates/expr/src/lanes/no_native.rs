@@ -1,6 +1,6 @@
 //! Machines that tapes are not translated for.
 
-use super::block::Block;
+use super::block::{Block, LANES};
 use super::program::LaneTape;
 
 /// Vector registers that code is made for: none.
@@ -53,7 +53,14 @@ impl Native {
         match *self {}
     }
 
-    pub(super) fn run(&self, _: Part, _: usize, _: (&[f64], &[Wide]), _: &mut [Block], _: &mut [Block]) -> bool {
+    pub(super) fn run(
+        &self,
+        _: (Part, usize),
+        _: (&[f64], &[Wide]),
+        _: &mut [Block],
+        _: &mut [Block],
+        _: &mut [[f64; LANES]],
+    ) -> bool {
         match *self {}
     }
 }

@@ -81,6 +81,8 @@ pub struct LaneTape {
     pub(super) varies: Vec<Varies>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
+    /// How many outputs go to memory of the caller.
+    pub(super) written: usize,
     /// For four lanes and for eight.
     native: [OnceLock<Option<Native>>; 2],
 }
@@ -125,8 +127,19 @@ impl LaneTape {
             inputs,
             varies: varies.to_vec(),
             outputs,
+            written: 0,
             native: Default::default(),
         }
+    }
+
+    /// The same, but its first `count` outputs go to memory of the caller
+    /// ([`LaneEvaluator::run_into`](crate::LaneEvaluator::run_into)).
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn writing(self, count: usize) -> LaneTape {
+        assert!(count <= self.outputs.len(), "as many outputs");
+        LaneTape { written: count, native: Default::default(), ..self }
     }
 
     /// Its machine code, made when it is asked for first.

@@ -6,6 +6,7 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
+mod on_line;
 mod strip;
 
 use flank_expr::LANES;
@@ -14,7 +15,8 @@ use crate::lanes::{LaneNewton, Lanes, VITAL};
 use crate::line::{Midpoint, STENCIL};
 use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
 
-pub(crate) use strip::{OnLine, Strip};
+pub(crate) use on_line::{OnLine, laid_out};
+pub(crate) use strip::Strip;
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
 const ASTRAY: f64 = 0.25;
@@ -358,37 +360,18 @@ impl Field {
         self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
     }
 
-    /// What follows from the first target of each line, if `newton` solves such lines.
-    pub(crate) fn prepare(&self, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) -> Vec<f64> {
+    /// What follows from the first target of each line.
+    pub(crate) fn prepare(&self, on_line: &mut OnLine<'_>, targets: &[[f64; 2]]) -> Vec<f64> {
         let mut prepared = Vec::new();
-        (0..self.shape.count).for_each(|line| newton.prepare(targets[self.shape.point(line, 0)][0], &mut prepared));
+        (0..self.shape.count).for_each(|line| on_line.prepare(targets[self.shape.point(line, 0)][0], &mut prepared));
         prepared
     }
 
-    /// Solves lines with known points at some `places`, along these, as far as whole parts of them are plain roots. Gives the number
-    /// of evaluations.
-    pub(crate) fn take_lines(
-        &mut self,
-        on_line: &mut OnLine<'_, '_>,
-        lines: &[usize],
-        places: &[usize],
-        targets: &[[f64; 2]],
-    ) -> u64 {
-        let points = |line: usize| places.iter().map(move |place| (line, *place));
-        let is_known = |(line, place): (usize, usize)| self.is_root(self.shape.point(line, place));
-        let known = lines.iter().filter(|line| points(**line).all(is_known));
-        let determinant = |line: &usize| self.determinant(self.shape.point(*line, places[0]));
-        let known: Vec<(usize, f64)> = known.map(|line| (*line, determinant(line))).collect();
-        let mut evaluations = 0;
-        for mut strip in self.strips() {
-            strip.set_second_targets(on_line, targets);
-            for (line, determinant) in &known {
-                on_line.newton.determinant().fill(*determinant);
-                strip.take_at_once(*line, on_line, targets);
-                evaluations += strip.width as u64;
-            }
-        }
-        evaluations
+    /// Those of some lines that are known at some `places`, with a determinant there.
+    pub(crate) fn known_lines(&self, lines: &[usize], places: &[usize]) -> Vec<(usize, f64)> {
+        let is_known = |line: usize| places.iter().all(|place| self.is_root(self.shape.point(line, *place)));
+        let determinant = |line: usize| self.determinant(self.shape.point(line, places[0]));
+        lines.iter().filter(|line| is_known(**line)).map(|line| (*line, determinant(*line))).collect()
     }
 
     /// The strips, one beside the other.

@@ -4,25 +4,10 @@
 
 use flank_expr::LANES;
 
-use super::{Lines, Mark, NEAR, Shape, block_of, interpolate, is_astray, keeps_sign, number, repeat_lane, take};
+use super::{Mark, NEAR, OnLine, Shape, block_of, interpolate, is_astray, keeps_sign, number, repeat_lane, take};
 use crate::lanes::{LaneNewton, Lanes};
 use crate::line::Midpoint;
 use crate::solution::Range;
-
-/// What solves lines whose points follow from the targets of line and lane.
-pub(crate) struct OnLine<'n, 's> {
-    pub(crate) newton: &'n mut LaneNewton<'s>,
-    /// The second targets of the lanes.
-    second: Lanes,
-    /// What follows from the first targets, line by line.
-    prepared: &'n [f64],
-}
-
-impl<'n, 's> OnLine<'n, 's> {
-    pub(crate) fn new(newton: &'n mut LaneNewton<'s>, prepared: &'n [f64]) -> OnLine<'n, 's> {
-        OnLine { newton, second: [0.0; LANES], prepared }
-    }
-}
 
 /// The same part of all lines of a field.
 pub(crate) struct Strip<'f> {
@@ -41,27 +26,15 @@ impl Strip<'_> {
     pub(crate) fn refine(
         &mut self,
         newton: &mut LaneNewton<'_>,
-        mut on_line: Option<OnLine<'_, '_>>,
         levels: &[Vec<Midpoint>],
         targets: &[[f64; 2]],
     ) -> u64 {
         let (mut evaluations, mut rough) = (0, true);
-        if let Some(on_line) = &mut on_line {
-            self.set_second_targets(on_line, targets);
-        }
         let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
         let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for midpoint in levels.iter().flatten() {
             let is_free = empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]);
             empty[midpoint.at] = false;
-            if let Some(on_line) = on_line.as_mut().filter(|_| is_free) {
-                evaluations += self.width as u64;
-                *on_line.newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
-                if self.take_at_once(midpoint.at, on_line, targets) {
-                    full[midpoint.at] = true;
-                    continue;
-                }
-            }
             self.set_targets(midpoint.at, newton, targets);
             if is_free {
                 if newton.has_all_given() {
@@ -85,30 +58,53 @@ impl Strip<'_> {
         evaluations
     }
 
-    pub(super) fn set_second_targets(&self, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) {
-        let second = on_line.newton.input(self.shape.size + 1);
+    /// Computes lines one after the other whose points are given by the first target of the line and the second targets of the first
+    /// line. `known` are lines with a determinant on them; from one to the next each line follows from the one before if all of that
+    /// are plain roots with determinants of that sign. What fails stays as it was. `prepared` is what [`OnLine::prepare`] has found
+    /// for each line. Gives the number of evaluations.
+    pub(crate) fn compute(
+        &mut self,
+        on_line: &mut OnLine<'_>,
+        known: &[(usize, f64)],
+        prepared: &[f64],
+        targets: &[[f64; 2]],
+    ) -> u64 {
+        let (mut second, mut evaluations) = ([0.0; LANES], 0);
         second.iter_mut().zip(self.targets_on(0, targets)).for_each(|(value, target)| *value = target[1]);
-        on_line.second = *second;
+        on_line.set_second_targets(&second);
+        let mut known = known.iter().peekable();
+        let mut follows = false;
+        let mut spare = vec![[0.0; LANES]; self.shape.planes];
+        for (line, prepared) in prepared.chunks_exact(prepared.len() / self.shape.count).enumerate() {
+            let beside = known.next_if(|(known, _)| *known == line);
+            if let Some((_, determinant)) = beside {
+                on_line.set_determinant(*determinant);
+            }
+            let is_free = self.is_untouched(line);
+            if beside.is_none() && !(follows && is_free) || !self.has_targets(line, &second, targets) {
+                follows = false;
+                continue;
+            }
+            evaluations += self.width as u64;
+            let values = &mut self.values.as_chunks_mut::<LANES>().0[line * self.shape.planes..][..self.shape.planes];
+            let out = if is_free { &mut *values } else { &mut spare };
+            follows = on_line.run(prepared, self.width, out);
+            if follows {
+                self.marks[line][..self.width].fill(Mark::Solved);
+                if !is_free {
+                    values.copy_from_slice(&spare);
+                }
+            }
+        }
+        evaluations
     }
 
-    /// Solves a line whose first targets are the same and whose second targets are those of the first line; false if they are not, or
-    /// if some point is no plain root on the side of the determinants that are given.
-    pub(super) fn take_at_once(&mut self, line: usize, on_line: &mut OnLine<'_, '_>, targets: &[[f64; 2]]) -> bool {
-        let OnLine { newton, second, prepared } = on_line;
-        if self.shape.lines == Lines::Columns {
-            return false;
-        }
+    /// Whether all points of a line have one first target, and these second targets.
+    fn has_targets(&self, line: usize, second: &Lanes, targets: &[[f64; 2]]) -> bool {
         let first = targets[self.shape.point(line, 0)][0];
         let targets = &targets[self.shape.point(line, self.first)..][..self.width];
         let differs = |(target, second): (&[f64; 2], &f64)| u64::from((target[0] != first) | (target[1] != *second));
-        let differ = newton.instructions().dispatch(
-            #[inline(always)]
-            || targets.iter().zip(second.iter()).map(differs).fold(0, |all, differs| all | differs),
-        );
-        let length = prepared.len() / self.shape.count;
-        differ == 0
-            && newton.run_prepared(&prepared[line * length..][..length], self.width)
-            && self.take_plain(line, newton)
+        targets.iter().zip(second).map(differs).fold(0, |all, differs| all | differs) == 0
     }
 
     fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {

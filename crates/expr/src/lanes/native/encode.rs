@@ -9,6 +9,7 @@ pub(super) type Register = u8;
 const RBX: u8 = 3;
 const RBP: u8 = 5;
 const R13: u8 = 13;
+const R15: u8 = 15;
 
 /// Where a function's arguments stay while it runs: registers that calls preserve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub(super) enum Base {
     Blocks,
     Scalars,
     Scratch,
+    /// The lanes at work of the first output.
+    Outputs,
 }
 
 /// A place in memory: a base and bytes beyond it.
@@ -214,26 +217,27 @@ impl Code {
         self.vector(STORE, from, 0, Operand::Memory(to));
     }
 
-    /// Saves what a function has to preserve and keeps its four arguments (System V).
+    /// Saves what a function has to preserve and keeps its five arguments (System V). Calls find the stack at a multiple of 16.
     pub(super) fn prologue(&mut self) {
-        self.bytes(&[0x53, 0x55, 0x41, 0x55, 0x41, 0x56]); // push rbx, rbp, r13, r14
-        self.bytes(&[0x48, 0x83, 0xec, 8]); // sub rsp, 8: calls find the stack at a multiple of 16
+        self.bytes(&[0x53, 0x55, 0x41, 0x55, 0x41, 0x56, 0x41, 0x57]); // push rbx, rbp, r13, r14, r15
         self.bytes(&[0x48, 0x89, 0xfb]); // mov rbx, rdi
         self.bytes(&[0x48, 0x89, 0xf5]); // mov rbp, rsi
         self.bytes(&[0x49, 0x89, 0xd5]); // mov r13, rdx
-        self.bytes(&[0x49, 0x89, 0xce]); // mov r14, rcx
+        self.bytes(&[0x49, 0x89, 0xcf]); // mov r15, rcx
+        self.bytes(&[0x4d, 0x89, 0xc6]); // mov r14, r8
     }
 
     /// Back to `start` for the next lanes as long as there are some, then back to the caller.
     pub(super) fn epilogue(&mut self, start: usize) {
-        self.bytes(&[0x48, 0x83, 0xc3, 8 * self.vectors.lanes() as u8]); // add rbx, …
+        let bytes = 8 * self.vectors.lanes() as u8;
+        self.bytes(&[0x48, 0x83, 0xc3, bytes]); // add rbx, …
+        self.bytes(&[0x49, 0x83, 0xc7, bytes]); // add r15, …
         self.bytes(&[0x49, 0xff, 0xce]); // dec r14
         let back = start as i64 - (self.bytes.len() as i64 + 6);
         self.bytes(&[0x0f, 0x85]); // jnz
         self.bytes(&(back as i32).to_le_bytes());
         self.bytes(&[0xc5, 0xf8, 0x77]); // vzeroupper
-        self.bytes(&[0x48, 0x83, 0xc4, 8]); // add rsp, 8
-        self.bytes(&[0x41, 0x5e, 0x41, 0x5d, 0x5d, 0x5b, 0xc3]); // pop r14, r13, rbp, rbx; ret
+        self.bytes(&[0x41, 0x5f, 0x41, 0x5e, 0x41, 0x5d, 0x5d, 0x5b, 0xc3]); // pop r15, r14, r13, rbp, rbx; ret
     }
 
     /// Calls a function with one number and the scratch memory as its arguments. No vector register survives.
@@ -258,5 +262,6 @@ fn number(base: Base) -> u8 {
         Base::Blocks => RBX,
         Base::Scalars => RBP,
         Base::Scratch => R13,
+        Base::Outputs => R15,
     }
 }

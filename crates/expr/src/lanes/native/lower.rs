@@ -28,8 +28,16 @@ pub(super) enum Step {
     },
     /// The operation of this number, which is a function of the program.
     Call(u32, Value, Value),
-    /// Puts a value into a block.
-    Store(u32, Value),
+    /// Puts a value where it is wanted.
+    Store(Target, Value),
+}
+
+/// Where a value goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Target {
+    Block(u32),
+    /// An output in memory of the caller.
+    Output(u32),
 }
 
 impl Step {
@@ -61,12 +69,12 @@ pub(super) struct Lowered {
     pub(super) has_angles: bool,
 }
 
-/// Lays out instructions of a tape; `stores` are blocks with those that they go to. The largest angle of each lane goes to `angles`.
+/// Lays out instructions of a tape; `stores` are blocks with where they go. The largest angle of each lane goes to `angles`.
 /// `constants` are those that follow the numbers of the tape already.
 pub(super) fn lower(
     tape: &LaneTape,
     instructions: &[LaneInstruction],
-    stores: impl Iterator<Item = (u32, u32)>,
+    stores: impl Iterator<Item = (u32, Target)>,
     angles: u32,
     constants: Vec<f64>,
 ) -> Lowered {
@@ -86,7 +94,7 @@ pub(super) fn lower(
     }
     let has_angles = lowering.largest_angle.is_some();
     if let Some(angle) = lowering.largest_angle {
-        lowering.push(Step::Store(angles, angle));
+        lowering.push(Step::Store(Target::Block(angles), angle));
     }
     Lowered { steps: lowering.steps, constants: lowering.constants, calls: lowering.calls, has_angles }
 }

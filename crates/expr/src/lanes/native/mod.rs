@@ -14,7 +14,7 @@ use std::sync::Arc;
 use memmap2::{Mmap, MmapMut};
 use pulp::Arch;
 
-use self::lower::{Call, Lowered, lower};
+use self::lower::{Call, Lowered, Target, lower};
 use self::registers::{OPERANDS, RESULT, assemble};
 use super::block::{Block, LANES};
 use super::program::LaneTape;
@@ -93,6 +93,8 @@ struct Translation {
     blocks: usize,
     scalars: usize,
     scratch: usize,
+    /// Outputs that go to memory of the caller.
+    written: usize,
     /// The block of the largest angles, and whether the two functions write it.
     angles: usize,
     has_angles: [bool; 2],
@@ -112,9 +114,14 @@ impl Native {
             return None;
         }
         let angles = tape.block_count + tape.outputs.len();
-        let kept = tape.kept.iter().map(|block| (*block, *block));
+        let kept = tape.kept.iter().map(|block| (*block, Target::Block(*block)));
         let kept = lower(tape, &tape.by_lane, kept, angles as u32, Vec::new());
-        let outputs = tape.outputs.iter().zip(tape.block_count as u32..).map(|(block, output)| (*block, output));
+        let outputs = tape.outputs.iter().enumerate().map(|(k, block)| {
+            let is_written = k < tape.written;
+            let target =
+                if is_written { Target::Output(k as u32) } else { Target::Block((tape.block_count + k) as u32) };
+            (*block, target)
+        });
         let each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
         let assembled = |lowered: &Lowered| {
             let addresses: Vec<usize> = lowered.calls.iter().map(|call| std::ptr::from_ref(call).addr()).collect();
@@ -137,6 +144,7 @@ impl Native {
             _calls: [kept.calls, each.calls],
             blocks: angles + 1,
             scratch: (kept_code.scratch.max(each_code.scratch) * vectors.lanes()).div_ceil(LANES),
+            written: tape.written,
             angles,
             has_angles: [kept.has_angles, each.has_angles],
         })))
@@ -162,18 +170,19 @@ impl Native {
         self.0.vectors.spread() > 1
     }
 
-    /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large.
+    /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large. Outputs that go to memory of
+    /// the caller, those of [`Part::Each`], go to `out`.
     pub(super) fn run(
         &self,
-        part: Part,
-        count: usize,
+        (part, count): (Part, usize),
         scalars: (&[f64], &[Wide]),
         blocks: &mut [Block],
         scratch: &mut [Block],
+        out: &mut [[f64; LANES]],
     ) -> bool {
         let lanes = self.0.vectors.lanes();
         let vectors = count.clamp(1, LANES).div_ceil(lanes);
-        self.enter(part, vectors, scalars, blocks, scratch);
+        self.enter((part, vectors), scalars, blocks, scratch, out);
         let angles = &blocks[self.0.angles].0[..vectors * lanes];
         !self.0.has_angles[part as usize] || angles.iter().all(|angle| *angle <= FARTHEST)
     }
@@ -181,29 +190,30 @@ impl Native {
     #[allow(unsafe_code)]
     fn enter(
         &self,
-        part: Part,
-        vectors: usize,
+        (part, vectors): (Part, usize),
         (scalars, wide): (&[f64], &[Wide]),
         blocks: &mut [Block],
         scratch: &mut [Block],
+        out: &mut [[f64; LANES]],
     ) {
         let code = &self.0;
         let (length, scalars) = match code.vectors {
             Vectors::Four => (wide.len(), wide.as_ptr().cast()),
             Vectors::Eight => (scalars.len(), scalars.as_ptr()),
         };
-        assert!(blocks.len() >= code.blocks && length >= code.scalars && scratch.len() >= code.scratch);
-        let start = match part {
-            Part::ByLane => 0,
-            Part::Each => code.each,
+        let (start, written) = match part {
+            Part::ByLane => (0, 0),
+            Part::Each => (code.each, code.written),
         };
+        assert!(blocks.len() >= code.blocks && length >= code.scalars && scratch.len() >= code.scratch);
+        assert!(out.len() >= written);
         // SAFETY: the memory holds two whole functions of this type, one after the other, made by `assemble` for vectors that
-        // this machine has, and `start` is where one of them begins. They read and write blocks, scalars and scratch memory only up to the
-        // lengths that were just compared, and of each block the first `vectors` vectors, which it has.
+        // this machine has, and `start` is where one of them begins. They read and write blocks, scalars, scratch memory and outputs only
+        // up to the lengths that were just compared, and of each block the first `vectors` vectors, which it has.
         unsafe {
-            let function: extern "sysv64" fn(*mut Block, *const f64, *mut Block, usize) =
+            let function: extern "sysv64" fn(*mut Block, *const f64, *mut Block, *mut [f64; LANES], usize) =
                 std::mem::transmute(code.memory.as_ptr().add(start));
-            function(blocks.as_mut_ptr(), scalars, scratch.as_mut_ptr(), vectors);
+            function(blocks.as_mut_ptr(), scalars, scratch.as_mut_ptr(), out.as_mut_ptr(), vectors);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::Vectors;
 use super::encode::{Base, Code, Operand, Place, Register};
-use super::lower::{Lowered, Step, Value};
+use super::lower::{Lowered, Step, Target, Value};
 use crate::lanes::LANES;
 
 /// Bytes of a block.
@@ -29,7 +29,7 @@ pub(super) fn assemble(lowered: &Lowered, vectors: Vectors, call: usize, argumen
     for (k, step) in lowered.steps.iter().enumerate() {
         let is_used = allocation.next_use[k] != NEVER;
         match *step {
-            Step::Store(block, value) => allocation.output(k, block, value),
+            Step::Store(target, value) => allocation.output(k, target, value),
             Step::Call(number, a, b) if is_used => {
                 allocation.call(k, [a, b], call, arguments[number as usize]);
             }
@@ -222,9 +222,13 @@ impl<'s> Allocation<'s> {
         Place { base: Base::Scratch, offset: (slot * 8 * self.vectors.lanes()) as i32 }
     }
 
-    fn output(&mut self, k: usize, block: u32, value: Value) {
+    fn output(&mut self, k: usize, target: Target, value: Value) {
         let register = self.load(value, &[]);
-        self.code.store(block_place(block), register);
+        let place = match target {
+            Target::Block(block) => block_place(block),
+            Target::Output(index) => Place { base: Base::Outputs, offset: (index as usize * BLOCK) as i32 },
+        };
+        self.code.store(place, register);
         self.release(k);
     }
 
