@@ -350,6 +350,16 @@ fn files_that_cannot_be_written_are_told() {
 
 /// What a user gets wrong at a hobbing machine, and what is told.
 #[test]
+fn a_folder_is_not_named_like_a_file() {
+    let folder = folder("named");
+    let named = folder.join("pinion.csv");
+    let run = flank(&["solve", "specs/hobbing/spur_gear.chain", "--out", named.to_str().expect("a plain path")]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("--out takes a folder"), "{}", text(&run.stderr));
+    assert!(!named.exists());
+}
+
+#[test]
 fn wrong_settings_of_hobbing_machines_are_told() {
     let out = folder("wrong_settings");
     let out = out.to_str().expect("a plain path");
