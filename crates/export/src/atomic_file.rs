@@ -8,6 +8,9 @@ use tempfile::NamedTempFile;
 
 use crate::error::{FileError, WriteError};
 
+/// Bytes that go to the system at once.
+const BUFFER: usize = 1 << 16;
+
 /// Writes a file so that a reader sees the old one or the new one, never half of it.
 ///
 /// The content goes to a temporary file in the same folder, is forced to the disk, and takes the name at the end. On any
@@ -72,7 +75,7 @@ fn fill(
     file: File,
     content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
 ) -> Result<File, WriteError> {
-    let mut buffer = BufWriter::new(file);
+    let mut buffer = BufWriter::with_capacity(BUFFER, file);
     content(&mut buffer)?;
     buffer.into_inner().map_err(|error| error.into_error().into())
 }

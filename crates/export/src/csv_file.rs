@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use crate::columns::{titles, union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Field, Patch, Point, Unit};
+use crate::dataset::{Dataset, Field, Patch, Point};
 use crate::error::WriteError;
-use crate::number::shortest;
+use crate::number::push_shortest;
 use crate::tally::Tally;
 
 /// Writes all points as CSV.
@@ -25,24 +25,43 @@ pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     write_head(dataset, out)?;
     let unknowns = union_of_unknowns(&dataset.patches);
     let fields = union_of_fields(&dataset.patches);
-    let mut table = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(out);
     let told = dataset.has_reasons();
-    table.write_record(titles(&unknowns, told, &fields)).map_err(io::Error::from)?;
+    let titles: Vec<String> = titles(&unknowns, told, &fields).iter().map(|title| quoted(title)).collect();
+    writeln!(out, "{}", titles.join(","))?;
+    let mut line = Vec::new();
     for patch in &dataset.patches {
+        let name = quoted(&patch.name);
         let places: Vec<Option<usize>> =
             unknowns.iter().map(|wanted| patch.unknowns.iter().position(|unknown| unknown == *wanted)).collect();
         let own: Vec<Option<&Field>> =
             fields.iter().map(|wanted| patch.fields.iter().find(|field| field.shares_columns(wanted))).collect();
         for (i, j, point) in patch.indexed_points() {
-            let mut cells = record(patch, i, j, point, &places);
+            line.clear();
+            write!(line, "{name},{i},{j}")?;
+            push_point(&mut line, patch, point, &places);
+            write!(line, ",{}", point.outcome.word())?;
+            if told {
+                write!(line, ",{}", quoted(&one_line(&point.reason)))?;
+            }
             let at = i * patch.columns.count + j;
-            cells.extend(told.then(|| one_line(&point.reason)));
-            cells.extend(fields.iter().zip(&own).flat_map(|(wanted, own)| field_cells(wanted, *own, at, point)));
-            table.write_record(cells).map_err(io::Error::from)?;
+            fields.iter().zip(&own).for_each(|(wanted, own)| push_field(&mut line, wanted, *own, at, point));
+            line.push(b'\n');
+            out.write_all(&line)?;
         }
     }
-    table.flush()?;
     Ok(())
+}
+
+/// A text as a cell.
+fn quoted(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let mut table = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
+    table.write_record([text]).expect("memory takes a text");
+    let mut cell = String::from_utf8(table.into_inner().expect("memory takes a text")).expect("it was a text before");
+    cell.truncate(cell.len() - 1); // the end of the line
+    cell
 }
 
 fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
@@ -67,26 +86,30 @@ fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// What a point has in the columns of a field; empty cells if the point's patch has no such field.
-fn field_cells(wanted: &Field, own: Option<&Field>, at: usize, point: &Point) -> Vec<String> {
+fn push_field(line: &mut Vec<u8>, wanted: &Field, own: Option<&Field>, at: usize, point: &Point) {
     match own.map(|field| field.values.at(at)) {
-        Some(numbers) if point.is_solved() && !numbers.is_empty() => numbers.iter().copied().map(shortest).collect(),
-        _ => vec![String::new(); wanted.columns().len()],
+        Some(numbers) if point.is_solved() && !numbers.is_empty() => {
+            numbers.iter().for_each(|number| push_cell(line, Some(*number)));
+        }
+        _ => wanted.columns().iter().for_each(|_| push_cell(line, None)),
     }
 }
 
-fn record(patch: &Patch, i: usize, j: usize, point: &Point, places: &[Option<usize>]) -> Vec<String> {
-    let mut cells = vec![patch.name.clone(), i.to_string(), j.to_string()];
-    let number = |unit: Unit, value: Option<&f64>| match value {
-        Some(&value) if point.is_solved() => shortest(unit.written(value)),
-        _ => String::new(),
-    };
-    cells.extend(point.position.iter().map(|x| number(Unit::Millimetre, Some(x))));
-    cells.extend(point.normal.iter().map(|x| number(Unit::One, Some(x))));
-    cells.extend(places.iter().map(|place| match *place {
-        Some(k) => number(patch.unknowns[k].unit, point.unknowns.get(k)),
-        None => String::new(),
-    }));
-    cells.push(point.known_residual().map_or_else(String::new, shortest));
-    cells.push(point.outcome.word().to_owned());
-    cells
+/// Position, normal, the unknowns at their `places` among those of all patches, and the residual.
+fn push_point(line: &mut Vec<u8>, patch: &Patch, point: &Point, places: &[Option<usize>]) {
+    let is_solved = point.is_solved();
+    let of_point = point.position.iter().chain(&point.normal);
+    of_point.for_each(|number| push_cell(line, Some(*number).filter(|_| is_solved)));
+    for place in places {
+        let value = place.and_then(|k| Some(patch.unknowns[k].unit.written(*point.unknowns.get(k)?)));
+        push_cell(line, value.filter(|_| is_solved));
+    }
+    push_cell(line, point.known_residual());
+}
+
+fn push_cell(line: &mut Vec<u8>, number: Option<f64>) {
+    line.push(b',');
+    if let Some(number) = number {
+        push_shortest(number, line);
+    }
 }

@@ -1,10 +1,11 @@
 //! How far one surface lies off another one, along the other's normals.
 
 use flank_expr::geometry::{Surface, Vector3};
-use flank_expr::{Expr, TapeError};
+use flank_expr::{Expr, LANES, TapeError};
 use rayon::prelude::*;
 
-use crate::newton::solve;
+use crate::lanes::LaneNewton;
+use crate::newton::{LONGEST_STEP, solve};
 use crate::solution::{Outcome, Range};
 use crate::surface::SurfacePoint;
 use crate::system::System;
@@ -13,6 +14,8 @@ use crate::system::System;
 const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
 /// Turns about the axis are looked for in here.
 const A_TURN: Range = Range { low: -2.0 * std::f64::consts::PI, high: 2.0 * std::f64::consts::PI };
+/// Points that a thread takes at a time.
+const TILE: usize = 16 * LANES;
 
 /// A surface that is held against points of another one: of the same body in the same frame, but for a turn about its z axis.
 #[derive(Clone, Debug)]
@@ -45,16 +48,13 @@ impl Deviation {
         let (distance, turn) = (graph.variable("distance"), graph.variable("turn"));
         let [x, y, z] = bound.position.0;
         let turned = Vector3([x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos(), z]);
-        let system = |apart: Vector3<'g>, unknown: Expr<'g>, parameters: &[Expr<'g>]| {
-            let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(apart.0).collect();
-            let unknowns: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain([unknown]).collect();
-            System::one_by_one(&residuals, &unknowns, parameters)
-        };
+        let residuals = |apart: Vector3<'g>| [bound.constraints.as_slice(), &apart.0].concat();
+        let unknowns = |last: Expr<'g>| [bound.unknowns.as_slice(), &[last]].concat();
         let reached = point + normal.map(|part| part * distance);
         let parameters: Vec<Expr<'g>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();
         Ok(Deviation {
-            along_normal: system(turned - reached, distance, &parameters)?,
-            around_axis: system(turned - point, turn, &point.0)?,
+            along_normal: System::new(&residuals(turned - reached), &unknowns(distance), &parameters)?,
+            around_axis: System::one_by_one(&residuals(turned - point), &unknowns(turn), &point.0)?,
             ranges,
         })
     }
@@ -73,27 +73,46 @@ impl Deviation {
     /// on the side to which it points, which is out of the body. `near` is as in [`Deviation::turn_to`]. `None` if the normal
     /// does not meet the surface within its ranges.
     pub fn along_normal(&self, from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> Option<f64> {
-        let (sine, cosine) = turn.sin_cos();
-        let [x, y, z] = near.position;
-        let turned = [x * cosine - y * sine, x * sine + y * cosine, z];
-        let start: f64 = (0..3).map(|k| (turned[k] - from.position[k]) * from.normal[k]).sum();
-        let parameters = [&from.position[..], &from.normal, &[turn]].concat();
+        let (start, parameters) = asked(from, near, turn);
         self.last_unknown(&self.along_normal, FARTHEST, &parameters, near, start)
     }
 
-    /// [`Deviation::along_normal`] at many points; `None` also where one of the two points is not solved.
+    /// [`Deviation::along_normal`] at many points, many at once; `None` also where one of the two points is not solved. What needs
+    /// care is solved alone.
     ///
     /// # Panics
     /// If there are not as many points of the one as of the other.
     pub fn map(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
         assert_eq!(from.len(), near.len(), "one start for each point");
-        let pairs = from.par_iter().zip(near);
-        let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
-        pairs
-            .map(|(from, near)| {
-                (is_solved(from) && is_solved(near)).then(|| self.along_normal(from, near, turn)).flatten()
-            })
-            .collect()
+        let tiles = from.par_chunks(TILE).zip(near.par_chunks(TILE));
+        tiles.flat_map_iter(|(from, near)| self.tile(from, near, turn)).collect()
+    }
+
+    fn tile(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+        let ranges = [&self.ranges[..], &[FARTHEST]].concat();
+        let mut newton = LaneNewton::new(&self.along_normal, &ranges);
+        let mut found = Vec::with_capacity(from.len());
+        for (from, near) in from.chunks(LANES).zip(near.chunks(LANES)) {
+            let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
+            let active: Vec<bool> =
+                from.iter().zip(near).map(|(from, near)| is_solved(from) && is_solved(near)).collect();
+            for lane in (0..active.len()).filter(|lane| active[*lane]) {
+                let (start, parameters) = asked(&from[lane], &near[lane], turn);
+                newton.put(lane, near[lane].unknowns.iter().copied().chain([start]), &parameters);
+            }
+            newton.run(&active, true);
+            found.extend((0..active.len()).map(|lane| {
+                let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
+                match active[lane] {
+                    false => None,
+                    true if is_near && newton.outcome(lane) == Outcome::Solved => {
+                        Some(newton.input(self.ranges.len())[lane])
+                    }
+                    true => self.along_normal(&from[lane], &near[lane], turn),
+                }
+            }));
+        }
+        found
     }
 
     fn last_unknown(
@@ -109,6 +128,16 @@ impl Deviation {
         let solution = solve(system, &ranges, parameters, &start);
         (solution.outcome == Outcome::Solved).then(|| solution.unknowns[self.ranges.len()])
     }
+}
+
+/// Where the distance along the normal of a point to a surface, turned about z, is looked for first, and the parameters of the
+/// system that says so.
+fn asked(from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> (f64, [f64; 7]) {
+    let (sine, cosine) = turn.sin_cos();
+    let ([x, y, z], [nx, ny, nz]) = (near.position, from.normal);
+    let [px, py, pz] = from.position;
+    let start = (x * cosine - y * sine - px) * nx + (x * sine + y * cosine - py) * ny + (z - pz) * nz;
+    (start, [px, py, pz, nx, ny, nz, turn])
 }
 
 /// What a map of deviations is like: the parabola in both directions of the grid that fits it best, each direction running from

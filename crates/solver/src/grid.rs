@@ -122,9 +122,8 @@ pub(crate) fn solve_field(
         grid.effort.branches = vec![root];
         return (filling, grid.effort);
     }
-    let order = grid.middle_first();
     let mut failures = grid.field();
-    for &anchor in order.iter().step_by((order.len() / MOST_ANCHORS).max(1)) {
+    for anchor in anchors(counts) {
         if !grid.look_for(anchor, choice.roots, choice.keeps) {
             failures.put(anchor, &grid.failure(anchor));
             continue;
@@ -142,6 +141,22 @@ pub(crate) fn solve_field(
     (failures, grid.effort)
 }
 
+/// The points that a grid may begin at, the one nearest the middle first.
+fn anchors([rows, columns]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let all = rows * columns;
+    let from_middle = move |point: &usize| {
+        let across = |k: usize, count: usize| (2 * k).abs_diff(count - 1) * 1000 / count.max(2);
+        across(point / columns, rows).max(across(point % columns, columns))
+    };
+    // hardly ever are there others to look at
+    let others = move || {
+        let mut order: Vec<usize> = (0..all).collect();
+        order.sort_by_cached_key(from_middle);
+        order.into_iter().step_by((all / MOST_ANCHORS).max(1)).skip(1)
+    };
+    (0..all).min_by_key(from_middle).into_iter().chain(std::iter::once_with(others).flatten())
+}
+
 pub(crate) struct Grid<'s> {
     pub(crate) system: &'s System,
     pub(crate) evaluation: Evaluation<'s>,
@@ -155,18 +170,6 @@ pub(crate) struct Grid<'s> {
 }
 
 impl<'s> Grid<'s> {
-    /// All points, the ones near the middle first.
-    fn middle_first(&self) -> Vec<usize> {
-        let distance = |point: usize| {
-            let (i, j) = (point / self.columns, point % self.columns);
-            let across = |k: usize, count: usize| (2 * k).abs_diff(count - 1) * 1000 / count.max(2);
-            (across(i, self.rows).max(across(j, self.columns)), point)
-        };
-        let mut order: Vec<usize> = (0..self.targets.len()).collect();
-        order.sort_by_key(|&point| distance(point));
-        order
-    }
-
     /// Finds all branches at a point; whether there are any.
     fn look_for(
         &mut self,
