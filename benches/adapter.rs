@@ -3,11 +3,12 @@
 //! `adapter --job flank|grid --n1 501 --n2 501 --threads 1 --reps 15 --out points.bin`
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use flank_benches::peak_memory;
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
 use flank_solver::{Range, SurfaceProblem};
@@ -77,10 +78,11 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let problem = new(&surface.surface, coordinates, ranges, &job.bindings()).map_err(|error| error.to_string())?;
     let setup = start.elapsed().as_secs_f64();
 
+    let targets = sample.targets();
     let (mut times, mut evaluations, mut memory) = (Vec::new(), 0, None);
     for _ in 0..arguments.repetitions {
         let start = Instant::now();
-        let (points, effort) = problem.solve_points(&sample.targets, sample.counts, Some(&START), memory.take());
+        let (points, effort) = problem.solve_points(&targets, sample.counts, Some(&START), memory.take());
         if points.solved() < points.len() {
             return Err(format!("{} of {} points are solved", points.solved(), points.len()));
         }
@@ -116,12 +118,4 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         times.join(",")
     );
     Ok(report)
-}
-
-/// The largest resident memory so far, MiB; zero where the system does not tell.
-fn peak_memory() -> f64 {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kibibytes = line.and_then(|line| line.trim().split(' ').next()?.parse::<f64>().ok());
-    kibibytes.unwrap_or(0.0) / 1024.0
 }

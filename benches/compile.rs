@@ -91,14 +91,10 @@ fn print_growth() {
                 })
                 .fold(f64::INFINITY, f64::min);
             println!("{frames:5} frames: {:8.3} ms, {} instructions", best * 1e3, tape_of(&text));
-            ((frames as f64).ln(), best.ln())
+            (frames as f64, best)
         })
         .collect();
-    let mean = |pick: fn(&(f64, f64)) -> f64| points.iter().map(pick).sum::<f64>() / points.len() as f64;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let above: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    let below: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
-    println!("time grows as frames^{:.2}", above / below);
+    println!("time grows as frames^{:.2}", flank_benches::slope(&points));
 }
 
 #[divan::bench]

@@ -129,7 +129,7 @@ fn the_language_stands_alone() {
 fn solved(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec<SurfacePoint> {
     let Some(sample) = &surface.sample else { return Vec::new() };
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    problem(job, surface, coordinates).solve(&sample.targets, sample.counts).0
+    problem(job, surface, coordinates).solve(&sample.targets(), sample.counts).0
 }
 
 /// All surfaces of a job on a page with their points.

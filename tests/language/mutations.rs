@@ -53,7 +53,7 @@ fn survive(text: &str) -> bool {
             };
             let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
             let problem = problem(job, surface, coordinates);
-            let few = &sample.targets[..sample.targets.len().min(3)];
+            let few = &sample.targets()[..sample.targets().len().min(3)];
             let (points, _) = problem.solve(few, [few.len(), 1]);
             assert_eq!(points.len(), few.len());
         }

@@ -160,7 +160,7 @@ pub fn sampled(job: &Job<'_>, surface: &str) -> Vec<SurfacePoint> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    problem(job, surface, coordinates).solve(&sample.targets, sample.counts).0
+    problem(job, surface, coordinates).solve(&sample.targets(), sample.counts).0
 }
 
 /// A vector turned about z.

@@ -13,7 +13,7 @@ fn sampled(job: &Job<'_>, surface: &str) -> Vec<SurfacePoint> {
     let generated = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = generated.sample.as_ref().expect("it is sampled");
     let names = [0, 1].map(|k| sample.coordinates[k].name.as_str());
-    let solved = points(job, surface, names, &sample.targets);
+    let solved = points(job, surface, names, &sample.targets());
     assert!(solved.iter().all(|point| point.outcome == Outcome::Solved), "{} {surface}", job.name);
     solved
 }

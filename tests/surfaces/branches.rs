@@ -11,7 +11,7 @@ fn anchors(job: &Job<'_>) -> Vec<(String, Roots)> {
     let anchor = sampled.map(|(surface, sample)| {
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
-        (surface.name.clone(), problem(job, surface, coordinates).all_points(sample.targets[middle]))
+        (surface.name.clone(), problem(job, surface, coordinates).all_points(sample.targets()[middle]))
     });
     anchor.collect()
 }
@@ -36,7 +36,7 @@ fn a_root_is_alone_where_it_is_said_to_be() {
     let job = job(&graph, "specs/hobbing/helical_gear.chain", &[]);
     let (surface, root) = (&job.surfaces[0], &anchors(&job)[0].1.isolated[0]);
     let sample = surface.sample.as_ref().expect("it is sampled");
-    let target = sample.targets[(sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2];
+    let target = sample.targets()[(sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2];
     let around = root.solution.unknowns.iter().zip(&root.alone_within);
     let ranges = around.map(|(x, radius)| Range { low: x - radius, high: x + radius }).collect();
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
@@ -56,7 +56,7 @@ fn several_branches_are_listed_and_none_is_taken() {
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let unsaid = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
-    let (points, effort) = unsaid.solve(&sample.targets, sample.counts);
+    let (points, effort) = unsaid.solve(&sample.targets(), sample.counts);
     assert!(points.iter().all(|point| point.outcome == Outcome::Ambiguous));
     assert!(effort.branches.len() > 1);
     let spindles: Vec<f64> = effort.branches.iter().map(|branch| branch.unknowns[2].to_degrees()).collect();
@@ -64,7 +64,7 @@ fn several_branches_are_listed_and_none_is_taken() {
         let turns = (pair[0] - pair[1]) / 360.0;
         assert!((turns - turns.round()).abs() < 1e-6, "{spindles:?}");
     }
-    let (kept, effort) = problem(&job, surface, coordinates).solve(&sample.targets, sample.counts);
+    let (kept, effort) = problem(&job, surface, coordinates).solve(&sample.targets(), sample.counts);
     assert_eq!(effort.branches.len(), 1);
     assert!(kept.iter().all(|point| point.outcome == Outcome::Solved));
 }
@@ -75,7 +75,7 @@ fn pinion_points(graph: &Graph) -> (SurfaceProblem, Vec<[f64; 2]>, Vec<SurfacePo
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("it is sampled");
     let problem = problem(&job, surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
-    let corner = |i: usize, j: usize| sample.targets[i * sample.counts[1] + j];
+    let corner = |i: usize, j: usize| sample.targets()[i * sample.counts[1] + j];
     let (last, end) = (sample.counts[0] - 1, sample.counts[1] - 1);
     let [a, b, c, d] = [corner(0, 0), corner(0, end), corner(last, 0), corner(last, end)];
     let target = |k: usize| {

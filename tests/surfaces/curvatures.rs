@@ -310,7 +310,7 @@ fn many_points_at_once_bend_as_one_by_one() {
             let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
             let problem = SurfaceProblem::with_curvatures(&surface.surface, coordinates, ranges, &job.bindings());
             let problem = problem.expect("nothing is unbound");
-            let (points, _) = problem.solve_points(&sample.targets, sample.counts, None, None);
+            let (points, _) = problem.solve_points(&sample.targets(), sample.counts, None, None);
             let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
             let motions: Vec<_> = motions.into_iter().filter(|m| surface.surface.unknowns.contains(m)).collect();
             let geometry = SurfaceGeometry::new(&surface.surface, &motions, coordinates, &job.bindings());

@@ -26,8 +26,8 @@ fn the_ease_off_ends_on_the_flank() {
     let (pinion, conjugate) = (job_named(&one, SPEC, "pinion", &[]), job_named(&other, SPEC, "conjugate", &[]));
     let sample = conjugate.surfaces.iter().find_map(|surface| surface.sample.as_ref()).expect("it is sampled");
     let (from, near): (Vec<SurfacePoint>, Vec<SurfacePoint>) = (
-        points(&conjugate, "concave", ["z", "rho"], &sample.targets),
-        points(&pinion, "concave", ["z", "rho"], &sample.targets),
+        points(&conjugate, "concave", ["z", "rho"], &sample.targets()),
+        points(&pinion, "concave", ["z", "rho"], &sample.targets()),
     );
     let deviation = held_against(&pinion, "concave");
     let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;

@@ -60,7 +60,7 @@ fn share_solved(spec: &str, set: &BTreeMap<&str, String>) -> f64 {
         };
         let names = sample.coordinates.each_ref().map(|coordinate| coordinate.name.as_str());
         // every third point: the rest is between them
-        let targets: Vec<[f64; 2]> = sample.targets.iter().step_by(3).copied().collect();
+        let targets: Vec<[f64; 2]> = sample.targets().iter().step_by(3).copied().collect();
         let points = points(&job, &surface.name, names, &targets);
         let found = targets.iter().zip(&points).filter(|(_, point)| point.outcome == Outcome::Solved);
         found.clone().for_each(|(target, point)| check(&graph, &job, surface, *target, point));

@@ -89,7 +89,7 @@ fn line_contact_has_no_gap_along_the_line_and_point_contact_has_one_all_round() 
     let conjugate = job(&one, CONJUGATE, &[]);
     let sample =
         conjugate.surfaces.iter().find(|s| s.name == "concave").and_then(|s| s.sample.clone()).expect("sampled");
-    let solved = points(&conjugate, "concave", ["z", "rho"], &sample.targets);
+    let solved = points(&conjugate, "concave", ["z", "rho"], &sample.targets());
     let unknowns: Vec<Vec<f64>> = solved.iter().map(|point| point.unknowns.clone()).collect();
     let on_conjugate = evaluated(&conjugate, "concave", &unknowns);
     for point in &on_conjugate {
@@ -101,7 +101,7 @@ fn line_contact_has_no_gap_along_the_line_and_point_contact_has_one_all_round() 
 
     let middle = on_conjugate.len() / 2;
     let local = job(&other, PINION, &EASE_OFF);
-    let at_mean = points(&local, "concave", ["z", "rho"], &[sample.targets[middle]]);
+    let at_mean = points(&local, "concave", ["z", "rho"], &[sample.targets()[middle]]);
     let local = evaluated(&local, "concave", &[at_mean[0].unknowns.clone()]).remove(0);
     let mate = &on_conjugate[middle];
     let line = mate.geometry.contact.line.expect("one motion");

@@ -8,7 +8,7 @@ use flank_tests::{job, points};
 /// Up to seven of a surface's sampled points, spread over the grid.
 fn targets(job: &Job<'_>, surface: &str) -> Vec<[f64; 2]> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
-    let all = &surface.sample.as_ref().expect("points are asked for").targets;
+    let all = &surface.sample.as_ref().expect("points are asked for").targets();
     (0..7).map(|k| all[(all.len() - 1) * k / 6]).collect()
 }
 

@@ -28,7 +28,7 @@ fn sampled(job: &Job<'_>, name: &str) -> Vec<SurfacePoint> {
     let asked = surface(job, name);
     let sample = asked.sample.as_ref().expect("it is sampled");
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-    problem(job, asked, coordinates).solve(&sample.targets, sample.counts).0
+    problem(job, asked, coordinates).solve(&sample.targets(), sample.counts).0
 }
 
 /// Height and counts where every point is known.

@@ -34,7 +34,7 @@ fn described_job(job: &Job<'_>) -> String {
         };
         let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
         let problem = problem(job, surface, coordinates);
-        let (points, effort) = problem.solve(&sample.targets, sample.counts);
+        let (points, effort) = problem.solve(&sample.targets(), sample.counts);
         let graph = surface.surface.position.0[0].graph();
         let constraints = graph.count(&surface.surface.constraints);
         let tape = problem.system().tape();

@@ -394,7 +394,7 @@ fn a_cradle_pinion_is_cut_under_along_its_root() {
     }
     let ranges = surface(&job, "flank").unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&surface(&job, "flank").surface, [along, height], ranges, &job.bindings());
-    let (asked, _) = problem.expect("nothing is unbound").solve(&sample.targets, sample.counts);
+    let (asked, _) = problem.expect("nothing is unbound").solve(&sample.targets(), sample.counts);
     assert!(asked.iter().all(|point| point.outcome == Outcome::Solved));
 }
 

@@ -71,7 +71,7 @@ pub use format::format;
 pub use load::read_file;
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Limit, Machine, NcWord, Parameter,
-    Process, Sample, ToolShape,
+    Process, Sample, SampleGrid, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

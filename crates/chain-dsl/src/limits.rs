@@ -101,7 +101,7 @@ limits! {
         "a job of more than {} motions", "what depends on another motion is a `let`, not a motion";
     SURFACE_UNKNOWNS = 8, Pieces, "unknowns of a surface: parameters of its tool and motions",
         "a surface of more than {} unknowns", "let some axes follow one motion: `drive m.X = 2 mm/rad * roll`";
-    SAMPLE_POINTS = 10_000_000, Pieces, "points of all samples together",
+    SAMPLE_POINTS = 20_000_000, Pieces, "points of all samples together",
         "samples of more than {} points", "`by` is followed by a number of points, not by a distance";
     TABLE_BYTES = 16 << 20, Bytes, "size of all tables that curves are read from, each reading counted",
         "the tables are more than {} together", "keep only the columns and rows that are needed";

@@ -214,8 +214,8 @@ pub struct Sample<'g> {
     pub labels: [String; 2],
     /// Number of rows and of columns.
     pub counts: [usize; 2],
-    /// Values of the coordinates, row by row.
-    pub targets: Vec<[f64; 2]>,
+    /// Where its points are.
+    pub grid: SampleGrid,
     /// Functions of the unknowns, and the ends between which they lie on the branch that is meant.
     pub keep: Vec<(Coordinate<'g>, (f64, f64))>,
     /// What every point must fulfil.
@@ -231,6 +231,65 @@ pub struct Limit<'g> {
     pub ends: (f64, f64),
     /// What is told where it does not, in the words of the spec.
     pub message: String,
+}
+
+/// Values of two coordinates in rows and columns, told one by one: there may be millions.
+#[derive(Clone, Debug)]
+pub enum SampleGrid {
+    /// Those of the first coordinate in the rows, and of the second in the columns.
+    Values([Vec<f64>; 2]),
+    /// Shares of the way from root to tip, and from toe to heel.
+    Shares {
+        /// Of the rows, and of the columns.
+        shares: [Vec<f64>; 2],
+        /// Both coordinates at toe root, heel root, toe tip, heel tip.
+        corners: [[f64; 2]; 4],
+    },
+}
+
+impl SampleGrid {
+    /// The values of the coordinates in a row and a column.
+    ///
+    /// # Panics
+    /// If there is no such row or column.
+    pub fn at(&self, row: usize, column: usize) -> [f64; 2] {
+        match self {
+            SampleGrid::Values([rows, columns]) => [rows[row], columns[column]],
+            SampleGrid::Shares { shares: [rows, columns], corners: [toe_root, heel_root, toe_tip, heel_tip] } => {
+                let (v, u) = (rows[row], columns[column]);
+                std::array::from_fn(|k| {
+                    (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k])
+                        + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
+                })
+            }
+        }
+    }
+
+    /// With one more row between any two and one more column between any two, half-way.
+    pub fn halved(&self) -> SampleGrid {
+        let between = |values: &[f64]| {
+            (1..2 * values.len()).map(|at| 0.5 * (values[(at - 1) / 2] + values[at / 2])).collect::<Vec<f64>>()
+        };
+        match self {
+            SampleGrid::Values(values) => SampleGrid::Values(values.each_ref().map(|values| between(values))),
+            SampleGrid::Shares { shares, corners } => {
+                SampleGrid::Shares { shares: shares.each_ref().map(|shares| between(shares)), corners: *corners }
+            }
+        }
+    }
+}
+
+impl Sample<'_> {
+    /// Values of the coordinates at all points, row by row.
+    pub fn targets(&self) -> Vec<[f64; 2]> {
+        self.each_target().collect()
+    }
+
+    /// The same one by one.
+    pub fn each_target(&self) -> impl Iterator<Item = [f64; 2]> {
+        let [rows, columns] = self.counts;
+        (0..rows).flat_map(move |row| (0..columns).map(move |column| self.grid.at(row, column)))
+    }
 }
 
 /// A function of the unknowns that a sample gives values to.

@@ -5,7 +5,7 @@ use crate::context::{Context, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::limits;
-use crate::model::{Coordinate, GeneratedSurface, Limit, Sample};
+use crate::model::{Coordinate, GeneratedSurface, Limit, Sample, SampleGrid};
 use crate::source::Name;
 use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 
@@ -91,7 +91,7 @@ fn grid<'g>(
         labels: [row_coordinate.name.clone(), column_coordinate.name.clone()],
         coordinates: [row_coordinate, column_coordinate],
         counts: [row_values.len(), column_values.len()],
-        targets: row_values.iter().flat_map(|&row| column_values.iter().map(move |&column| [row, column])).collect(),
+        grid: SampleGrid::Values([row_values, column_values]),
         keep: Vec::new(),
         limits: Vec::new(),
     })
@@ -274,17 +274,11 @@ fn outline<'g>(
         return None;
     };
     check_size(context, written, profile.len(), length.len())?;
-    let [toe_root, heel_root, toe_tip, heel_tip] = corners;
-    let point = |v: f64, u: f64| {
-        std::array::from_fn(|k| {
-            (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k]) + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
-        })
-    };
     Some(Sample {
         coordinates: [surface.coordinate("z")?, surface.coordinate("rho")?],
         labels: ["root -> tip".to_string(), "toe -> heel".to_string()],
         counts: [profile.len(), length.len()],
-        targets: profile.iter().flat_map(|&v| length.iter().map(move |&u| (v, u))).map(|(v, u)| point(v, u)).collect(),
+        grid: SampleGrid::Shares { shares: [profile, length], corners },
         keep: Vec::new(),
         limits: Vec::new(),
     })

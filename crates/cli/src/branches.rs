@@ -14,7 +14,7 @@ const DECIMALS: usize = 4;
 
 /// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
 pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
-    let refused = |solved: &&Solved<'_, '_>| solved.points.iter().any(|point| point.outcome == Outcome::Ambiguous);
+    let refused = |solved: &&Solved<'_, '_>| solved.summary.count(Outcome::Ambiguous) > 0;
     solved.iter().filter(refused).map(listed).collect()
 }
 

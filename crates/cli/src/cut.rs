@@ -7,6 +7,7 @@ use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
 use flank_solver::{CuttingEdges, Left, SurfacePoint};
 use serde_json::{Value, json};
 
+use crate::arguments::Means;
 use crate::solve::ranges;
 use crate::table::Solved;
 
@@ -23,10 +24,16 @@ pub(crate) struct Cut {
 }
 
 /// Nothing if the job does not ask for it.
-pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Option<Cut> {
+pub(crate) fn of<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    points: &[SurfacePoint],
+    means: Means,
+) -> Option<Cut> {
     let by = &job.surfaces[surface.cut_by?];
     let edges = CuttingEdges::new(&surface.surface, &by.surface, &ranges(by), &job.bindings())
-        .expect("a job without errors leaves nothing unbound");
+        .expect("a job without errors leaves nothing unbound")
+        .on(means.instructions());
     let counts = by.unknowns[2..].iter().map(|count| count.name.clone()).collect();
     Some(Cut { by: by.name.clone(), counts, left: edges.left(points) })
 }

@@ -9,7 +9,7 @@ use flank_expr::Graph;
 use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
 
-use crate::arguments::{Deviation, Which};
+use crate::arguments::{Deviation, Means, Which};
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::solve::{header, patch, problem, ranges};
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let both = [find(&jobs, &arguments.surface)?, find(&jobs, &arguments.from)?];
-    let measured = measure(both, arguments.as_it_lies)?;
+    let measured = measure(both, arguments.as_it_lies, arguments.means)?;
     let written = measured.write(arguments, &spec::hash(&compilation))?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
     anstream::eprintln!("{} points in {:.0} ms", measured.points.len(), start.elapsed().as_secs_f64() * 1e3);
@@ -78,6 +78,7 @@ pub(crate) fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 
 pub(crate) fn measure<'j, 'g>(
     [surface, from]: [Named<'j, 'g>; 2],
     as_it_lies: bool,
+    means: Means,
 ) -> Result<Measured<'j, 'g>, String> {
     let of = &from.surface.name;
     let sample = from.surface.sample.as_ref().ok_or(format!(
@@ -91,10 +92,11 @@ pub(crate) fn measure<'j, 'g>(
             surface.surface.name
         ))
     };
-    let near = problem(surface.job, surface.surface, [same(0)?, same(1)?]);
-    let points = problem(from.job, from.surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
-    let (targets, counts) = (sample.targets.as_slice(), sample.counts);
-    let solved = |of: &SurfaceProblem| of.solve(targets, counts).0;
+    let near = problem(surface.job, surface.surface, [same(0)?, same(1)?], means);
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let points = problem(from.job, from.surface, coordinates, means);
+    let (targets, counts) = (sample.targets(), sample.counts);
+    let solved = |of: &SurfaceProblem| of.solve(&targets, counts).0;
     let (near, points) = std::thread::scope(|scope| {
         let near = scope.spawn(|| solved(&near));
         let points = solved(&points);
@@ -271,7 +273,7 @@ impl Measured<'_, '_> {
     fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
         let dataset = self.dataset(&arguments.which, hash);
         let mut folder = Folder::at(&arguments.out)?;
-        folder.data(&self.name(), &dataset, &arguments.format)?;
+        folder.data(&self.name(), &dataset, &[&dataset.patches[0]], &arguments.format)?;
         if !arguments.no_picture {
             let map = field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
             folder.picture(&self.name(), &map)?;

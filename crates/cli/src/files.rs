@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Dataset, Dialect, Face, Header, MotionTable, Picture, Scene, WriteError, write_3mf, write_atomically, write_csv,
-    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_page, write_parquet, write_step,
-    write_stl, write_vtp,
+    Banded, Dataset, Dialect, Face, Header, MotionTable, Picture, Scene, WriteError, write_3mf, write_atomically,
+    write_csv_in_bands, write_json_in_bands, write_motion_csv, write_motion_json, write_nc, write_obj, write_page,
+    write_parquet, write_step, write_stl_in_bands, write_vtp,
 };
 
 use crate::arguments::{Format, PictureFormat};
@@ -37,13 +37,23 @@ impl<'a> Folder<'a> {
         Ok(Folder { path, written: Vec::new() })
     }
 
-    /// The points in the formats that are asked for.
-    pub(crate) fn data(&mut self, name: &str, dataset: &Dataset, formats: &[Format]) -> Result<(), String> {
+    /// The points in the formats that are asked for. `surfaces` hand over those of the formats that need not hold all of them
+    /// together: CSV, JSON, STL.
+    pub(crate) fn data(
+        &mut self,
+        name: &str,
+        dataset: &Dataset,
+        surfaces: &[&dyn Banded],
+        formats: &[Format],
+    ) -> Result<(), String> {
+        let header = &dataset.header;
         for format in formats {
             match format {
-                Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv(dataset, out))?,
-                Format::Json => self.write(&format!("{name}.json"), |out| write_json(dataset, out))?,
-                Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(dataset, out))?,
+                Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv_in_bands(header, surfaces, out))?,
+                Format::Json => {
+                    self.write(&format!("{name}.json"), |out| write_json_in_bands(header, surfaces, out))?
+                }
+                Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl_in_bands(header, surfaces, out))?,
                 Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(dataset, out))?,
                 Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(dataset, out))?,
                 Format::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(dataset, out))?,

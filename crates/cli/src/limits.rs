@@ -3,9 +3,11 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
-use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
+use flank_solver::{SurfacePoint, SurfaceProblem};
 
+use crate::arguments::Means;
 use crate::solve;
+use crate::summary::Summary;
 
 /// A line on a surface.
 pub(crate) struct Line<'j, 'g> {
@@ -15,6 +17,7 @@ pub(crate) struct Line<'j, 'g> {
     pub(crate) kind: &'static str,
     /// What changes along it.
     pub(crate) along: String,
+    pub(crate) summary: Summary,
     pub(crate) points: Vec<SurfacePoint>,
     /// Lines of this kind that cross the place at which they were looked for; `points` are those of the longest.
     pub(crate) several: usize,
@@ -33,7 +36,7 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
 }
 
 /// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
-pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) -> Vec<Line<'j, 'g>> {
+pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Vec<Line<'j, 'g>> {
     let Some(sample) = &surface.sample else { return Vec::new() };
     let singular = surface.surface.clearance_minors().pop();
     [("singular line", singular), ("contact limit", surface.surface.contact_limit())]
@@ -41,8 +44,8 @@ pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>) ->
         .filter_map(|(kind, quantity)| {
             let quantity = quantity?;
             // along the coordinate that follows the line farther: it may run across the other one
-            let [first, second] = [0, 1].map(|k| line(job, surface, sample, kind, quantity, k));
-            Some(if second.count() > first.count() { second } else { first })
+            let [first, second] = [0, 1].map(|k| line(job, surface, sample, (kind, quantity), k, means));
+            Some(if second.summary.solved() > first.summary.solved() { second } else { first })
         })
         .collect()
 }
@@ -51,11 +54,11 @@ fn line<'j, 'g>(
     job: &Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &Sample<'g>,
-    kind: &'static str,
-    quantity: Expr<'g>,
+    (kind, quantity): (&'static str, Expr<'g>),
     k: usize,
+    means: Means,
 ) -> Line<'j, 'g> {
-    let ends = sample.targets.iter().map(|target| target[k]);
+    let ends = sample.each_target().map(|target| target[k]);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let steps = sample.counts.into_iter().max().unwrap_or(1).max(2) - 1;
     let share = |step: usize| step as f64 / steps as f64;
@@ -65,20 +68,17 @@ fn line<'j, 'g>(
     let problem =
         SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())
             .expect("a job without errors leaves nothing unbound");
-    let (points, effort) = problem.solve(&targets, [1, targets.len()]);
+    let (points, effort) = problem.on(means.instructions()).solve(&targets, [1, targets.len()]);
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
-    Line { surface, name, kind, along: along.name.clone(), points, several: effort.branches.len() }
+    let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
+    Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len() }
 }
 
 impl Line<'_, '_> {
-    fn count(&self) -> usize {
-        self.points.iter().filter(|point| point.outcome == Outcome::Solved).count()
-    }
-
     /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
     pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
         let rows = Axis { label: self.kind.to_string(), count: 1 };
         let columns = Axis { label: self.along.clone(), count: self.points.len() };
-        (self.count() > 0).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
+        (self.summary.solved() > 0).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
     }
 }

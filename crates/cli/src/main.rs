@@ -28,6 +28,8 @@ mod shell;
 mod solve;
 mod spec;
 mod step;
+mod stream;
+mod summary;
 mod table;
 mod travel;
 mod trims;

@@ -3,6 +3,7 @@
 use flank_chain_dsl::{Bounded, GeneratedSurface, Job, Sample};
 use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
 
+use crate::arguments::Means;
 use crate::solve::ranges;
 use crate::units;
 
@@ -25,6 +26,7 @@ pub(crate) fn beyond(
     surface: &GeneratedSurface<'_>,
     sample: &Sample<'_>,
     points: &mut [SurfacePoint],
+    means: Means,
 ) -> Vec<Needed> {
     let is_open =
         |point: &SurfacePoint| matches!(point.outcome, Outcome::Outside { .. } | Outcome::NotConverged { .. });
@@ -36,12 +38,14 @@ pub(crate) fn beyond(
         surface.unknowns.iter().zip(&narrow).map(|(unknown, range)| wider(unknown, *range)).collect();
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let problem = SurfaceProblem::new(&surface.surface, coordinates, wide, &job.bindings())
-        .expect("a job without errors leaves nothing unbound");
+        .expect("a job without errors leaves nothing unbound")
+        .on(means.instructions());
     let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
-    let Some(start) = start(&problem, sample.targets[middle], &points[middle], points, &narrow) else {
+    let targets = sample.targets();
+    let Some(start) = start(&problem, targets[middle], &points[middle], points, &narrow) else {
         return Vec::new();
     };
-    let (found, _) = problem.solve_points(&sample.targets, sample.counts, Some(&start), None);
+    let (found, _) = problem.solve_points(&targets, sample.counts, Some(&start), None);
     let mut reached = vec![Range { low: f64::INFINITY, high: f64::NEG_INFINITY }; narrow.len()];
     for (k, point) in points.iter_mut().enumerate() {
         let mut unknowns = point.unknowns.clone();

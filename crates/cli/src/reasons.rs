@@ -3,65 +3,55 @@
 use flank_chain_dsl::{Bounded, GeneratedSurface, Job};
 use flank_solver::{CutBy, Outcome};
 
+use crate::summary::Places;
 use crate::table::Solved;
 use crate::units;
 
 /// Why points of a surface were not solved, with the number of points for each reason.
 pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    let count = |outcome: Outcome| solved.points.iter().filter(|point| point.outcome == outcome).count();
+    let summary = &solved.summary;
     let mut reasons = Vec::new();
     let mut tell = |count: usize, text: String| {
         if count > 0 {
             reasons.push(format!("{count}: {text}"));
         }
     };
-    for (k, unknown) in solved.surface.unknowns.iter().enumerate() {
-        let excess = solved.points.iter().enumerate().filter_map(|(at, point)| match point.outcome {
-            Outcome::Outside { unknown, by } if unknown == k => Some((at, by)),
-            _ => None,
-        });
-        let (places, amounts): (Vec<usize>, Vec<f64>) = excess.unzip();
-        let most = amounts.into_iter().fold(0.0, f64::max);
-        let place = whereabouts(solved, &places);
-        tell(places.len(), format!("{} outside its range, by up to {}{place}", unknown.name, amount(unknown, most)));
+    for (unknown, outside) in solved.surface.unknowns.iter().zip(&summary.outside) {
+        let (most, place) = (amount(unknown, outside.most), whereabouts(solved, &outside.places));
+        tell(outside.places.count, format!("{} outside its range, by up to {most}{place}", unknown.name));
     }
-    let cutters = (0..solved.surface.trimmed_by.len()).map(CutBy::Other);
-    for cutter in [CutBy::ItsTool].into_iter().chain(cutters) {
-        tell(count(Outcome::CutAway(cutter)), format!("cut away {}", by_what(job, solved.surface, cutter)));
+    let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
+    for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(trims) {
+        tell(count, format!("cut away {}", by_what(job, solved.surface, cutter)));
     }
     tell(
-        count(Outcome::Undecided),
+        summary.count(Outcome::Undecided),
         "undecided, the lines of the grid disagree on what a trim leaves of them".to_string(),
     );
     let singular = "singular, the equations do not fix a single point there, or the surface has no normal";
-    tell(count(Outcome::Singular), singular.to_string());
-    let open = solved.points.iter().filter(|point| matches!(point.outcome, Outcome::NotConverged { .. }));
-    let (count, least) = open.fold((0, f64::NAN), |(count, least), point| (count + 1, least.min(point.residual)));
+    tell(summary.count(Outcome::Singular), singular.to_string());
+    let least = summary.least_residual;
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
     // the others may end where the surface turns back
-    let ends = if solved.points.iter().any(|point| point.outcome == Outcome::Solved) {
-        "; `--limits` shows where the surface ends"
-    } else {
-        ""
-    };
-    tell(count, format!("not converged{near}: no point of this branch was found there{ends}"));
+    let ends = if summary.solved() > 0 { "; `--limits` shows where the surface ends" } else { "" };
+    tell(
+        summary.count(Outcome::NotConverged { iterations: 0 }),
+        format!("not converged{near}: no point of this branch was found there{ends}"),
+    );
     reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
     reasons
 }
 
 /// At which ends of the grid points lie: `, at the toe and the tip`. An end has at least half of its line among them; where none
 /// has, all of them lie in the third of the grid next to it.
-pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &[usize]) -> String {
+pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &Places) -> String {
     let [rows, columns] = solved.sample.counts;
-    let index = |k: usize, at: usize| if k == 0 { at / columns } else { at % columns };
-    let on_lines =
-        |k: usize, from: usize, to: usize| places.iter().filter(|at| (from..to).contains(&index(k, **at))).count();
     let ends = [1, 0].into_iter().filter(|&k| solved.sample.counts[k] > 2).filter_map(|k| {
         let (first, last) = solved.sample.labels[k].split_once(" -> ")?;
         let (count, length) = (solved.sample.counts[k], [columns, rows][k]);
         let third = count / 3;
         let end = |name, line: usize, from: usize| {
-            (name, 2 * on_lines(k, line, line + 1) >= length, on_lines(k, from, from + third))
+            (name, 2 * places.on_lines(k, line..line + 1) >= length, places.on_lines(k, from..from + third))
         };
         Some([end(first, 0, 0), end(last, count - 1, count - third)])
     });
@@ -70,7 +60,7 @@ pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &[usize]) -> String {
     let names: Vec<&str> = if ends.iter().any(|end| end.1) {
         ends.iter().filter(has_most).map(|end| end.0).collect()
     } else {
-        ends.iter().filter(|end| end.2 == places.len()).map(|end| end.0).collect()
+        ends.iter().filter(|end| end.2 == places.count).map(|end| end.0).collect()
     };
     // all round is nowhere in particular
     if names.is_empty() || names.len() == 4 { String::new() } else { format!(", at the {}", names.join(" and the ")) }

@@ -5,14 +5,14 @@ use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::Outcome;
 use serde_json::{Value, json};
 
+use crate::summary::Places;
 use crate::table::Solved;
 use crate::{reasons, units};
 
 /// The solved points of a surface at which a requirement of its sample does not hold.
 pub(crate) struct Broken<'j, 'g> {
     limit: &'j Limit<'g>,
-    /// As indices into the sample.
-    places: Vec<usize>,
+    places: Places,
     /// The smallest and the largest value at them.
     ends: [f64; 2],
 }
@@ -29,16 +29,17 @@ fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j Limit<'g>) -> Option<Br
         Tape::new(&value, &solved.surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
     let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
     let (low, high) = limit.ends;
-    let mut found = Broken { limit, places: Vec::new(), ends: [f64::INFINITY, f64::NEG_INFINITY] };
+    let mut found =
+        Broken { limit, places: Places::new(solved.sample.counts), ends: [f64::INFINITY, f64::NEG_INFINITY] };
     for (at, point) in solved.points.iter().enumerate().filter(|(_, point)| point.outcome == Outcome::Solved) {
         evaluator.run(&point.unknowns, &mut out);
         // written so that what is no number does not hold either
         if !(low <= out[0] && out[0] <= high) {
-            found.places.push(at);
+            found.places.add(at);
             found.ends = [found.ends[0].min(out[0]), found.ends[1].max(out[0])];
         }
     }
-    (!found.places.is_empty()).then_some(found)
+    (found.places.count > 0).then_some(found)
 }
 
 /// The messages of all that does not hold; empty if everything does.
@@ -52,7 +53,7 @@ pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
             let unit = units::symbol(of.dimension);
             format!(
                 "not as required: {} of {} points of {}: {}\n  {}{} is {least:.4} .. {most:.4} {unit}, required is {low:.4} .. {high:.4} {unit}",
-                broken.places.len(),
+                broken.places.count,
                 solved.points.len(),
                 solved.surface.name,
                 broken.limit.message,
@@ -74,7 +75,7 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
         let of = &broken.limit.of;
         let [least, most] = broken.ends.map(|x| units::shown(of.dimension, x));
         json!({ "message": broken.limit.message, "name": of.name, "unit": units::symbol(of.dimension),
-            "points": broken.places.len(), "low": least, "high": most })
+            "points": broken.places.count, "low": least, "high": most })
     };
     broken(solved).into_iter().map(entry).collect()
 }

@@ -3,17 +3,21 @@
 use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
-use flank_export::{Axis, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture};
+use flank_export::{
+    Axis, Banded, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture,
+};
 use flank_expr::{Expr, Graph};
 use flank_solver::{Effort, Range, SurfacePoint, SurfaceProblem};
 
-use crate::arguments::{Solve, Which};
+use crate::arguments::{Format, Means, Solve, Which};
 use crate::cut::Cut;
 use crate::failure::Failure;
 use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::sensitivity::{self, Sensitivity};
 use crate::step::{self, Smooth};
+use crate::stream::{self, Kept, Streamed};
+use crate::summary::Summary;
 use crate::table::{self, Solved, Table};
 use crate::{Ending, cut, print, spec, travel, trims};
 use crate::{branches, certify, geometry, reach, reasons, required};
@@ -23,13 +27,21 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
-    let wanted =
-        Wanted { geometry: arguments.geometry, sensitivity: arguments.sensitivity, certificates: arguments.certify };
+    let meshes = [Format::Obj, Format::ThreeMf, Format::Vtp, Format::Parquet].into_iter();
+    let mesh = meshes.zip(["OBJ", "3MF", "VTK", "Parquet"]).find(|(format, _)| arguments.format.contains(format));
+    let wanted = Wanted {
+        geometry: arguments.geometry,
+        sensitivity: arguments.sensitivity,
+        certificates: arguments.certify,
+        together: arguments.step.map(|_| "--step").or(mesh.map(|(_, name)| name)),
+        means: arguments.means,
+    };
     let mut ending = Ending::Done;
     for job in asked(&jobs)? {
-        let solved: Vec<Solved<'_, '_>> =
-            job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted)).collect();
-        let limits = job.surfaces.iter().filter(|_| arguments.limits).flat_map(|surface| limits::lines(job, surface));
+        let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
+        let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
+        let limited = job.surfaces.iter().filter(|_| arguments.limits);
+        let limits = limited.flat_map(|surface| limits::lines(job, surface, arguments.means));
         let limits: Vec<Line<'_, '_>> = limits.collect();
         // a trim that takes nothing has no line
         let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
@@ -38,7 +50,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         let faces: Vec<Smooth> = arguments
             .step
             .iter()
-            .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance)))
+            .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
             .collect();
         let written = write_files(&dataset, &solved, &faces, &job.name, arguments)?;
         let told = branches::ambiguous(&solved)
@@ -77,11 +89,14 @@ pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>>, Fai
 }
 
 /// What is wanted of a surface beside its points.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
     pub(crate) geometry: bool,
     pub(crate) sensitivity: bool,
     pub(crate) certificates: bool,
+    /// What else needs all points together, if something does.
+    pub(crate) together: Option<&'static str>,
+    pub(crate) means: Means,
 }
 
 /// The points of one surface, if any are asked for.
@@ -89,25 +104,35 @@ pub(crate) fn solve_surface<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     wanted: Wanted,
-) -> Option<Solved<'j, 'g>> {
+) -> Option<Result<Solved<'j, 'g>, String>> {
     let sample = surface.sample.as_ref()?;
-    let Found { problem, mut points, effort, trims } = points(job, surface, sample);
+    match stream::is_streamed(job, surface, sample, wanted) {
+        Ok(true) => return Some(Ok(in_bands(job, surface, sample, Streamed::new(job, surface, sample, wanted.means)))),
+        Ok(false) => {}
+        Err(reason) => return Some(Err(reason)),
+    }
+    let Found { problem, mut points, effort, trims } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
-    let needed = reach::beyond(job, surface, sample, &mut points);
-    let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets, &points));
+    let needed = reach::beyond(job, surface, sample, &mut points, wanted.means);
+    let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets(), &points));
     let mut fields = Vec::new();
     if wanted.geometry {
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
     fields.extend(radii.as_deref().map(certify::field));
-    let cut = cut::of(job, surface, &points);
+    let cut = cut::of(job, surface, &points, wanted.means);
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
-    Some(Solved {
+    let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
+    let (counts, streamed) = (sample.counts, None);
+    Some(Ok(Solved {
         surface,
         sample,
         bindings: job.bindings(),
+        summary,
         points,
+        counts,
+        streamed,
         needed,
         effort,
         branches,
@@ -116,7 +141,34 @@ pub(crate) fn solve_surface<'j, 'g>(
         sensitivity,
         trims,
         cut,
-    })
+    }))
+}
+
+/// What is kept of the points of a surface that has too many of them.
+fn in_bands<'j, 'g>(
+    job: &Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &'j Sample<'g>,
+    streamed: Streamed<'j, 'g>,
+) -> Solved<'j, 'g> {
+    let Kept { summary, effort, drawn, counts } = streamed.look();
+    Solved {
+        surface,
+        sample,
+        bindings: job.bindings(),
+        needed: Vec::new(),
+        summary,
+        points: drawn,
+        counts,
+        branches: streamed.problem().points(&effort.branches),
+        streamed: Some(streamed),
+        effort,
+        radii: None,
+        fields: Vec::new(),
+        sensitivity: None,
+        trims: Vec::new(),
+        cut: None,
+    }
 }
 
 /// The points of a sample, with what it took to find them.
@@ -132,22 +184,32 @@ pub(crate) fn points<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &Sample<'g>,
+    wanted: Wanted,
 ) -> Found<'j, 'g> {
-    let problem = problem(job, surface, [sample.coordinates[0].value, sample.coordinates[1].value]);
-    let (mut points, effort) = problem.solve(&sample.targets, sample.counts);
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = problem(job, surface, coordinates, wanted.means);
+    let (mut points, effort) = problem.solve(&sample.targets(), sample.counts);
     let trims = surface.trimmed_by.iter().enumerate();
-    let trims = trims.map(|(number, &by)| trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, number));
+    let trims = trims.map(|(number, &by)| {
+        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.means))
+    });
     let trims = trims.collect();
     Found { problem, points, effort, trims }
 }
 
 /// Points of a surface at values of two coordinates, on the branch that its sample keeps.
-pub(crate) fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2]) -> SurfaceProblem {
+pub(crate) fn problem<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    coordinates: [Expr<'g>; 2],
+    means: Means,
+) -> SurfaceProblem {
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
         .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
         .expect("a job without errors leaves nothing unbound")
+        .on(means.instructions())
 }
 
 /// Where the unknowns of a surface are looked for.
@@ -158,8 +220,13 @@ pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
 /// The points of all surfaces, with all that is known of them, and lines on them.
 pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'_, '_>], header: Header) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
-        let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.sample.counts[k] };
-        let patch = patch(job, &solved.surface.name, solved.surface, [axis(0), axis(1)], &solved.points);
+        let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.counts[k] };
+        let asked = solved.summary.asked;
+        let name = match solved.streamed {
+            Some(_) => format!("{} ({} of {asked} points drawn)", solved.surface.name, solved.points.len()),
+            None => solved.surface.name.clone(),
+        };
+        let patch = patch(job, &name, solved.surface, [axis(0), axis(1)], &solved.points);
         let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
         Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
@@ -206,7 +273,7 @@ pub(crate) fn unit(dimension: Dimension) -> Unit {
     }
 }
 
-fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
+pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
     if solved.outcome != flank_solver::Outcome::Solved {
         return Point::unsolved(
             solved.outcome.word(),
@@ -233,7 +300,11 @@ fn write_files(
     arguments: &Solve,
 ) -> Result<Vec<String>, String> {
     let mut folder = Folder::at(&arguments.out)?;
-    folder.data(name, dataset, &arguments.format)?;
+    // the surfaces come first among the patches; of those with too many points a patch holds some
+    let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
+    let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));
+    let surfaces: Vec<&dyn Banded> = patches.map(|(patch, streamed)| streamed.unwrap_or(patch)).collect();
+    folder.data(name, dataset, &surfaces, &arguments.format)?;
     let faces: Vec<&Face> = faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
     if !faces.is_empty() {
         folder.step(name, &dataset.header, &faces)?;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
 
-use crate::solve;
+use crate::solve::{self, Wanted};
 use crate::table::Solved;
 
 /// A finer grid than this is not solved to make a face better.
@@ -20,7 +20,7 @@ pub(crate) struct Smooth {
 
 /// The face of a surface, through its sampled points or, where that leaves it off by more than `tolerance` (mm), through grids with twice
 /// the rows and columns.
-pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64) -> Smooth {
+pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: Wanted) -> Smooth {
     let surface = solved.surface;
     let mut coarse = patch(job, surface, solved.sample, &solved.points);
     let mut sample = solved.sample.clone();
@@ -28,7 +28,7 @@ pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64)
     while let Some(face) = Face::through(&coarse) {
         let Some(finer) = finer(&sample) else { break };
         sample = finer;
-        let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample).points);
+        let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample, wanted).points);
         let face = face.measured(&fine);
         let off = |face: &Face| {
             face.deviation.map_or(f64::INFINITY, |off| if off.missing == 0 { off.largest } else { f64::INFINITY })
@@ -61,14 +61,7 @@ fn finer<'g>(sample: &Sample<'g>) -> Option<Sample<'g>> {
     if rows.checked_mul(columns)? > MOST_POINTS {
         return None;
     }
-    let target = |i: usize, j: usize| sample.targets[i * sample.counts[1] + j];
-    let between = |at: usize| {
-        let (i, j) = (at / columns, at % columns);
-        let corners = [(i / 2, j / 2), (i.div_ceil(2), j / 2), (i / 2, j.div_ceil(2)), (i.div_ceil(2), j.div_ceil(2))];
-        let corners = corners.map(|(i, j)| target(i, j));
-        [0, 1].map(|k| corners.iter().map(|corner| corner[k]).sum::<f64>() / 4.0)
-    };
-    Some(Sample { counts: [rows, columns], targets: (0..rows * columns).map(between).collect(), ..sample.clone() })
+    Some(Sample { counts: [rows, columns], grid: sample.grid.halved(), ..sample.clone() })
 }
 
 /// What the faces are like, a line for each.

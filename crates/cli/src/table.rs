@@ -6,7 +6,7 @@ use std::time::Instant;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::Field;
 use flank_expr::Expr;
-use flank_solver::{Effort, Outcome, SurfacePoint};
+use flank_solver::{Effort, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::cut::Cut;
@@ -14,6 +14,8 @@ use crate::failure::not_done;
 use crate::limits::Line;
 use crate::reach::Needed;
 use crate::sensitivity::{self, Sensitivity};
+use crate::stream::Streamed;
+use crate::summary::{Ends, Summary};
 use crate::{branches, certify, cut, fields, reasons, required, units};
 
 /// One surface with its points.
@@ -22,9 +24,16 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) sample: &'j Sample<'g>,
     /// The job's parameters with their values.
     pub(crate) bindings: Vec<(Expr<'g>, Expr<'g>)>,
-    pub(crate) points: Vec<SurfacePoint>,
     /// Ranges that would reach the points that are outside.
     pub(crate) needed: Vec<Needed>,
+    /// What is told of its points.
+    pub(crate) summary: Summary,
+    /// All of them; some for a picture if there are too many to keep.
+    pub(crate) points: Vec<SurfacePoint>,
+    /// Rows and columns of these points.
+    pub(crate) counts: [usize; 2],
+    /// What hands over the points if they are too many to keep.
+    pub(crate) streamed: Option<Streamed<'j, 'g>>,
     pub(crate) effort: Effort,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
@@ -56,51 +65,36 @@ struct Reached {
     ends: Option<(f64, f64)>,
 }
 
-/// The points of one row of the table, whatever they are points of.
+/// One row of the table, whatever it is of.
 #[derive(Clone, Copy)]
 struct Row<'a, 'g> {
     name: &'a str,
     surface: &'a GeneratedSurface<'g>,
-    points: &'a [SurfacePoint],
+    summary: &'a Summary,
 }
 
 impl Row<'_, '_> {
-    fn count(&self) -> usize {
-        self.roots().count()
-    }
-
-    fn roots(&self) -> impl Iterator<Item = &SurfacePoint> {
-        self.points.iter().filter(|point| point.outcome == Outcome::Solved)
-    }
-
-    fn worst_residual(&self) -> Option<f64> {
-        self.roots().map(|point| point.residual).reduce(f64::max)
-    }
-
     /// Radius and z in the work's frame, then the unknowns.
     fn reached(&self) -> Vec<Reached> {
-        let of = |name: &str, unit: &'static str, value: &dyn Fn(&SurfacePoint) -> f64| {
-            let ends = self.roots().map(value).fold(None, |ends: Option<(f64, f64)>, x| {
-                Some(ends.map_or((x, x), |(low, high)| (low.min(x), high.max(x))))
+        let length = |name: &str, ends: Ends| Reached { name: name.to_string(), unit: "mm", ends: ends.0 };
+        let mut all = vec![length("rho", self.summary.rho), length("z", self.summary.z)];
+        for (unknown, ends) in self.surface.unknowns.iter().zip(&self.summary.unknowns) {
+            let shown = |x: f64| units::shown(unknown.dimension, x);
+            all.push(Reached {
+                name: unknown.name.clone(),
+                unit: units::symbol(unknown.dimension),
+                ends: ends.0.map(|(low, high)| (shown(low), shown(high))),
             });
-            Reached { name: name.to_string(), unit, ends }
-        };
-        let mut all = vec![
-            of("rho", "mm", &|point| point.position[0].hypot(point.position[1])),
-            of("z", "mm", &|point| point.position[2]),
-        ];
-        for (k, unknown) in self.surface.unknowns.iter().enumerate() {
-            let unit = units::symbol(unknown.dimension);
-            all.push(of(&unknown.name, unit, &|point| units::shown(unknown.dimension, point.unknowns[k])));
         }
         all
     }
 
     /// Cells of the table, two ranges to a line.
     fn cells(&self) -> Vec<[String; 5]> {
-        let residual = self.worst_residual().map_or("-".to_string(), |worst| format!("{worst:.1e}"));
-        let mut first = [self.name.to_string(), self.points.len().to_string(), self.count().to_string(), residual];
-        if self.count() == 0 {
+        let residual = self.summary.worst_residual.map_or("-".to_string(), |worst| format!("{worst:.1e}"));
+        let solved = self.summary.solved();
+        let mut first = [self.name.to_string(), self.summary.asked.to_string(), solved.to_string(), residual];
+        if solved == 0 {
             let [name, asked, found, worst] = first;
             return vec![[name, asked, found, worst, "none within the ranges".to_string()]];
         }
@@ -114,11 +108,6 @@ impl Row<'_, '_> {
     }
 
     fn json(&self) -> Map<String, Value> {
-        let mut outcomes = Map::new();
-        for point in self.points {
-            let count = outcomes.entry(point.outcome.word()).or_insert(json!(0));
-            *count = json!(count.as_u64().unwrap_or(0) + 1);
-        }
         let reached: Vec<Value> = self
             .reached()
             .iter()
@@ -130,10 +119,10 @@ impl Row<'_, '_> {
         let entries = [
             ("name", json!(self.name)),
             ("frame", json!(self.surface.frame)),
-            ("asked", json!(self.points.len())),
-            ("solved", json!(self.count())),
-            ("outcomes", Value::Object(outcomes)),
-            ("worst_residual", json!(self.worst_residual())),
+            ("asked", json!(self.summary.asked)),
+            ("solved", json!(self.summary.solved())),
+            ("outcomes", json!(self.summary.outcomes)),
+            ("worst_residual", json!(self.summary.worst_residual)),
             ("ranges_reached", json!(reached)),
         ];
         entries.map(|(key, value)| (key.to_string(), value)).into_iter().collect()
@@ -142,13 +131,13 @@ impl Row<'_, '_> {
 
 impl<'g> Solved<'_, 'g> {
     fn row(&self) -> Row<'_, 'g> {
-        Row { name: &self.surface.name, surface: self.surface, points: &self.points }
+        Row { name: &self.surface.name, surface: self.surface, summary: &self.summary }
     }
 }
 
 impl<'g> Line<'_, 'g> {
     fn row(&self) -> Row<'_, 'g> {
-        Row { name: &self.name, surface: self.surface, points: &self.points }
+        Row { name: &self.name, surface: self.surface, summary: &self.summary }
     }
 }
 
@@ -168,7 +157,7 @@ impl Table<'_, '_, '_> {
 
     /// What differs from run to run.
     pub(crate) fn time(&self) -> String {
-        let points: usize = self.solved.iter().map(|solved| solved.points.len()).sum();
+        let points: usize = self.solved.iter().map(|solved| solved.summary.asked).sum();
         format!("{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3)
     }
 
@@ -192,8 +181,8 @@ impl Table<'_, '_, '_> {
 pub(crate) fn unsolved(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
     for solved in solved {
-        let asked = solved.points.len();
-        let missing = asked - solved.row().count();
+        let asked = solved.summary.asked;
+        let missing = asked - solved.summary.solved();
         if missing > 0 {
             let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
             reasons::counted(job, solved).iter().for_each(|reason| {

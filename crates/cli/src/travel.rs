@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use flank_chain_dsl::Job;
 use flank_expr::{Expr, VariableId};
-use flank_solver::{Outcome, Range, extent};
+use flank_solver::{Range, extent};
 
 use crate::table::Solved;
 use crate::units;
@@ -42,11 +42,9 @@ pub(crate) fn reached<'g>(job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<(Expr
     let mut ends: HashMap<Option<VariableId>, Range> = HashMap::new();
     for surface in solved {
         for (k, unknown) in surface.surface.unknowns.iter().enumerate() {
-            for point in surface.points.iter().filter(|point| point.outcome == Outcome::Solved) {
-                let at = point.unknowns[k];
-                let range = ends.entry(unknown.variable.as_variable()).or_insert(Range { low: at, high: at });
-                *range = Range { low: range.low.min(at), high: range.high.max(at) };
-            }
+            let Some((low, high)) = surface.summary.unknowns[k].0 else { continue };
+            let range = ends.entry(unknown.variable.as_variable()).or_insert(Range { low, high });
+            *range = Range { low: range.low.min(low), high: range.high.max(high) };
         }
     }
     let range = |variable: Expr<'g>| ends.get(&variable.as_variable()).map(|range| (variable, *range));

@@ -78,7 +78,7 @@ fn flank_points(job: &Job<'_>) -> Vec<SurfacePoint> {
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let ranges: Vec<Range> = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
-    let points = problem.solve(&sample.targets, sample.counts).0;
+    let points = problem.solve(&sample.targets(), sample.counts).0;
     assert!(points.iter().all(|point| point.outcome == Outcome::Solved));
     points
 }

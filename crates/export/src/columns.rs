@@ -7,9 +7,9 @@ const LAST: [&str; 2] = ["residual", "status"];
 const REASON: &str = "reason";
 
 /// The unknowns of all patches in order of first appearance.
-pub(crate) fn union_of_unknowns(patches: &[Patch]) -> Vec<&Unknown> {
+pub(crate) fn union_of_unknowns<'p>(patches: impl IntoIterator<Item = &'p Patch>) -> Vec<&'p Unknown> {
     let mut union: Vec<&Unknown> = Vec::new();
-    for unknown in patches.iter().flat_map(|patch| &patch.unknowns) {
+    for unknown in patches.into_iter().flat_map(|patch| &patch.unknowns) {
         if !union.contains(&unknown) {
             union.push(unknown);
         }
@@ -18,9 +18,9 @@ pub(crate) fn union_of_unknowns(patches: &[Patch]) -> Vec<&Unknown> {
 }
 
 /// The fields of all patches in order of first appearance; those that share columns once.
-pub(crate) fn union_of_fields(patches: &[Patch]) -> Vec<&Field> {
+pub(crate) fn union_of_fields<'p>(patches: impl IntoIterator<Item = &'p Patch>) -> Vec<&'p Field> {
     let mut union: Vec<&Field> = Vec::new();
-    for field in patches.iter().flat_map(|patch| &patch.fields) {
+    for field in patches.into_iter().flat_map(|patch| &patch.fields) {
         if !union.iter().any(|known| known.shares_columns(field)) {
             union.push(field);
         }

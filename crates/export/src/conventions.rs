@@ -1,9 +1,9 @@
 //! The sentences that every file of data states about itself.
 
-use crate::dataset::Dataset;
+use crate::dataset::Header;
 
 /// What a reader must know to use the numbers, then the caller's own sentences.
-pub(crate) fn sentences(dataset: &Dataset) -> Vec<String> {
+pub(crate) fn sentences(header: &Header) -> Vec<String> {
     let fixed = [
         "lengths in mm, angles in degrees, not reduced to one turn",
         "positions and unit normals are in the frame named with their surface",
@@ -11,11 +11,7 @@ pub(crate) fn sentences(dataset: &Dataset) -> Vec<String> {
         "row i and column j count from 0; what each runs over is named with its surface",
         "a point that was not solved has a status that says why, the residual of the best attempt, and no other numbers",
     ];
-    fixed
-        .iter()
-        .map(|&sentence| sentence.to_owned())
-        .chain(dataset.header.conventions.iter().map(|s| one_line(s)))
-        .collect()
+    fixed.iter().map(|&sentence| sentence.to_owned()).chain(header.conventions.iter().map(|s| one_line(s))).collect()
 }
 
 /// Text that stays on its line, whatever a user has put into it.

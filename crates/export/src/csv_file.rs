@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
+use crate::bands::{Banded, Seen, in_one_piece};
 use crate::columns::{titles, union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Field, Patch, Point};
+use crate::dataset::{Dataset, Field, Header, Patch, Point};
 use crate::error::WriteError;
 use crate::number::push_shortest;
-use crate::tally::Tally;
 
 /// Writes all points as CSV.
 ///
@@ -21,33 +21,45 @@ use crate::tally::Tally;
 /// # Errors
 /// When the dataset is malformed, or the stream refuses.
 pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    dataset.check()?;
-    write_head(dataset, out)?;
-    let unknowns = union_of_unknowns(&dataset.patches);
-    let fields = union_of_fields(&dataset.patches);
-    let told = dataset.has_reasons();
-    let titles: Vec<String> = titles(&unknowns, told, &fields).iter().map(|title| quoted(title)).collect();
+    write_csv_in_bands(&dataset.header, &in_one_piece(dataset), out)
+}
+
+/// The same for surfaces that hand over their points in bands of rows; they are asked to twice.
+///
+/// # Errors
+/// When a surface is malformed or cannot hand over its points, or the stream refuses.
+pub fn write_csv_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut dyn Write) -> Result<(), WriteError> {
+    let seen = Seen::of(header, surfaces)?;
+    write_head(&seen, out)?;
+    let unknowns = union_of_unknowns(seen.outlines());
+    let fields = union_of_fields(seen.outlines());
+    let titles: Vec<String> = titles(&unknowns, seen.told, &fields).iter().map(|title| quoted(title)).collect();
     writeln!(out, "{}", titles.join(","))?;
     let mut line = Vec::new();
-    for patch in &dataset.patches {
+    for surface in surfaces {
+        let patch = surface.outline();
         let name = quoted(&patch.name);
         let places: Vec<Option<usize>> =
             unknowns.iter().map(|wanted| patch.unknowns.iter().position(|unknown| unknown == *wanted)).collect();
         let own: Vec<Option<&Field>> =
             fields.iter().map(|wanted| patch.fields.iter().find(|field| field.shares_columns(wanted))).collect();
-        for (i, j, point) in patch.indexed_points() {
-            line.clear();
-            write!(line, "{name},{i},{j}")?;
-            push_point(&mut line, patch, point, &places);
-            write!(line, ",{}", point.outcome.word())?;
-            if told {
-                write!(line, ",{}", quoted(&one_line(&point.reason)))?;
+        let mut first = 0;
+        surface.bands(&mut |points| {
+            for (at, (i, j, point)) in (first..).zip(patch.numbered(first, points)) {
+                line.clear();
+                write!(line, "{name},{i},{j}")?;
+                push_point(&mut line, patch, point, &places);
+                write!(line, ",{}", point.outcome.word())?;
+                if seen.told {
+                    write!(line, ",{}", quoted(&one_line(&point.reason)))?;
+                }
+                fields.iter().zip(&own).for_each(|(wanted, own)| push_field(&mut line, wanted, *own, at, point));
+                line.push(b'\n');
+                out.write_all(&line)?;
             }
-            let at = i * patch.columns.count + j;
-            fields.iter().zip(&own).for_each(|(wanted, own)| push_field(&mut line, wanted, *own, at, point));
-            line.push(b'\n');
-            out.write_all(&line)?;
-        }
+            first += points.len();
+            Ok(())
+        })?;
     }
     Ok(())
 }
@@ -64,25 +76,26 @@ fn quoted(text: &str) -> String {
     cell
 }
 
-fn write_head(dataset: &Dataset, out: &mut dyn Write) -> io::Result<()> {
-    let header = &dataset.header;
+fn write_head(seen: &Seen<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let header = seen.header;
     writeln!(out, "# {}", one_line(&header.program))?;
     writeln!(out, "# spec: {}, hash {}", one_line(&header.spec), one_line(&header.spec_hash))?;
     writeln!(out, "# job: {}", one_line(&header.job))?;
-    for sentence in sentences(dataset) {
+    for sentence in sentences(header) {
         writeln!(out, "# {sentence}")?;
     }
-    for unknown in union_of_unknowns(&dataset.patches) {
+    for unknown in union_of_unknowns(seen.outlines()) {
         writeln!(out, "# unknown `{}` in {}", one_line(&unknown.name), unknown.unit.symbol())?;
     }
-    for field in union_of_fields(&dataset.patches) {
+    for field in union_of_fields(seen.outlines()) {
         let [name, unit, meaning] = [&field.name, &field.unit, &field.meaning].map(|text| one_line(text));
         writeln!(out, "# field `{name}` in {unit}: {meaning}")?;
     }
-    for patch in &dataset.patches {
-        writeln!(out, "# surface `{}`: {}", one_line(&patch.name), patch.told())?;
+    for (surface, tally) in &seen.surfaces {
+        let patch = surface.outline();
+        writeln!(out, "# surface `{}`: {}", one_line(&patch.name), patch.told(tally))?;
     }
-    writeln!(out, "# all surfaces: {}", Tally::of(&dataset.patches).verdict())
+    writeln!(out, "# all surfaces: {}", seen.all.verdict())
 }
 
 /// What a point has in the columns of a field; empty cells if the point's patch has no such field.

@@ -226,14 +226,18 @@ impl Patch {
         self.points.get(i.checked_mul(self.columns.count)?.checked_add(j)?)
     }
 
-    /// The points with their row and column, in the order of files.
-    pub(crate) fn indexed_points(&self) -> impl Iterator<Item = (usize, usize, &Point)> {
+    /// Points with their row and column, in the order of files; `first` is the number of the first.
+    pub(crate) fn numbered<'p>(
+        &self,
+        first: usize,
+        points: &'p [Point],
+    ) -> impl Iterator<Item = (usize, usize, &'p Point)> {
         let columns = self.columns.count.max(1);
-        self.points.iter().enumerate().map(move |(at, point)| (at / columns, at % columns, point))
+        (first..).zip(points).map(move |(at, point)| (at / columns, at % columns, point))
     }
 
-    /// Its frame, what rows and columns run over, and how much of it is solved; one line.
-    pub(crate) fn told(&self) -> String {
+    /// Its frame, what rows and columns run over, and how much of it is solved by a tally of its points; one line.
+    pub(crate) fn told(&self, tally: &Tally) -> String {
         format!(
             "frame {}; {} rows i: {}; {} columns j: {}; {}",
             one_line(&self.frame),
@@ -241,28 +245,34 @@ impl Patch {
             one_line(&self.rows.label),
             self.columns.count,
             one_line(&self.columns.label),
-            Tally::of([self]).verdict(),
+            tally.verdict(),
         )
     }
 
     fn check(&self) -> Result<(), Malformed> {
         if self.rows.count.checked_mul(self.columns.count) != Some(self.points.len()) {
-            return Err(Malformed::PointCount {
-                surface: self.name.clone(),
-                rows: self.rows.count,
-                columns: self.columns.count,
-                points: self.points.len(),
-            });
+            return Err(miscounted(self, self.points.len()));
         }
-        if let Some(field) = self.fields.iter().find(|field| field.values.len() != self.points.len()) {
-            return Err(Malformed::FieldLength {
+        self.check_fields(self.points.len())?;
+        self.check_points(0, &self.points)
+    }
+
+    /// Whether each field has a value for each of so many points.
+    pub(crate) fn check_fields(&self, points: usize) -> Result<(), Malformed> {
+        match self.fields.iter().find(|field| field.values.len() != points) {
+            Some(field) => Err(Malformed::FieldLength {
                 surface: self.name.clone(),
                 field: field.name.clone(),
                 values: field.values.len(),
-                points: self.points.len(),
-            });
+                points,
+            }),
+            None => Ok(()),
         }
-        for (i, j, point) in self.indexed_points().filter(|(_, _, point)| point.is_solved()) {
+    }
+
+    /// Whether points, the first of them with this number, have all their numbers.
+    pub(crate) fn check_points(&self, first: usize, points: &[Point]) -> Result<(), Malformed> {
+        for (i, j, point) in self.numbered(first, points).filter(|(_, _, point)| point.is_solved()) {
             if point.unknowns.len() != self.unknowns.len() {
                 return Err(Malformed::UnknownCount {
                     surface: self.name.clone(),
@@ -280,6 +290,12 @@ impl Patch {
         }
         Ok(())
     }
+}
+
+/// A grid that has not as many points as it says.
+pub(crate) fn miscounted(patch: &Patch, points: usize) -> Malformed {
+    let (surface, rows, columns) = (patch.name.clone(), patch.rows.count, patch.columns.count);
+    Malformed::PointCount { surface, rows, columns, points }
 }
 
 impl Dataset {

@@ -3,16 +3,14 @@
 use crate::dataset::{Patch, Point};
 use crate::vector::{add, cross, dot, length, sub};
 
-/// The triangles of a patch as numbers of its points, wound so that they face where the points' normals do: out of the body.
+/// The triangles of rows of points as numbers of these, wound so that they face where the points' normals do: out of the body.
 ///
 /// A grid cell becomes two triangles along its shorter diagonal, or one where a single corner is not solved.
-pub(crate) fn facets(patch: &Patch) -> impl Iterator<Item = [usize; 3]> {
-    // A grid of many rows without columns has no points, but would take for ever.
-    let rows = if patch.points.is_empty() { 0 } else { patch.rows.count };
-    let columns = patch.columns.count;
+pub(crate) fn facets(points: &[Point], columns: usize) -> impl Iterator<Item = [usize; 3]> {
+    let rows = points.len().checked_div(columns).unwrap_or(0);
     let cells = (1..rows).flat_map(move |i| (1..columns).map(move |j| i * columns + j));
     cells.flat_map(move |at| {
-        let corners = [at - columns - 1, at - 1, at, at - columns].map(|at| (at, &patch.points[at]));
+        let corners = [at - columns - 1, at - 1, at, at - columns].map(|at| (at, &points[at]));
         split(corners.map(Some).map(|corner| corner.filter(|(_, point)| point.is_solved())))
             .into_iter()
             .flatten()

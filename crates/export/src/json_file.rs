@@ -1,11 +1,13 @@
 //! Points as JSON, by the schema `schemas/surfaces-2.schema.json`.
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use serde::Serialize;
+use serde::ser::{Error, SerializeSeq, Serializer};
 
+use crate::bands::{Banded, Seen, in_one_piece};
 use crate::conventions::sentences;
-use crate::dataset::{Axis, Dataset, Field, Patch, Point, Values};
+use crate::dataset::{Axis, Dataset, Field, Header, Patch, Point, Values};
 use crate::error::WriteError;
 use crate::json_layout::{UNITS, Units, write_document};
 use crate::number::plain;
@@ -22,20 +24,27 @@ pub const SCHEMA: &str = "flank.surfaces/2";
 /// # Errors
 /// When the dataset is malformed, or the stream refuses.
 pub fn write_json(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
+    write_json_in_bands(&dataset.header, &in_one_piece(dataset), out)
+}
+
+/// The same for surfaces that hand over their points in bands of rows; they are asked to twice.
+///
+/// # Errors
+/// When a surface is malformed or cannot hand over its points, or the stream refuses.
+pub fn write_json_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut dyn Write) -> Result<(), WriteError> {
     /// Document, list of surfaces, surface, list of points.
     const BROKEN: usize = 4;
-    dataset.check()?;
-    let header = &dataset.header;
+    let seen = Seen::of(header, surfaces)?;
     let document = Document {
         schema: SCHEMA,
         program: &header.program,
         spec: &header.spec,
         spec_hash: &header.spec_hash,
         job: &header.job,
-        conventions: sentences(dataset),
+        conventions: sentences(header),
         units: UNITS,
-        tally: TallyOut::of(&Tally::of(&dataset.patches)),
-        surfaces: dataset.patches.iter().map(surface).collect(),
+        tally: TallyOut::of(&seen.all),
+        surfaces: seen.surfaces.iter().map(|(surface, tally)| surface_out(*surface, tally)).collect(),
     };
     write_document(&document, BROKEN, out)
 }
@@ -71,7 +80,7 @@ struct SurfaceOut<'a> {
     fields: Vec<FieldOut<'a>>,
     #[serde(flatten)]
     tally: TallyOut,
-    points: Vec<PointOut<'a>>,
+    points: PointsOut<'a>,
 }
 
 #[derive(Serialize)]
@@ -116,7 +125,29 @@ impl TallyOut {
     }
 }
 
-fn surface<'a>(patch: &'a Patch) -> SurfaceOut<'a> {
+/// The points, one after the other as they are handed over.
+struct PointsOut<'a>(&'a dyn Banded);
+
+impl Serialize for PointsOut<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let patch = self.0.outline();
+        let mut list = serializer.serialize_seq(Some(patch.rows.count.saturating_mul(patch.columns.count)))?;
+        let mut first = 0;
+        let handed_over = self.0.bands(&mut |points| {
+            for (i, j, point) in patch.numbered(first, points) {
+                let point = point_out(patch, i, j, point);
+                list.serialize_element(&point).map_err(|error| io::Error::other(error.to_string()))?;
+            }
+            first += points.len();
+            Ok(())
+        });
+        handed_over.map_err(S::Error::custom)?;
+        list.end()
+    }
+}
+
+fn surface_out<'a>(surface: &'a dyn Banded, tally: &Tally) -> SurfaceOut<'a> {
+    let patch = surface.outline();
     SurfaceOut {
         name: &patch.name,
         frame: &patch.frame,
@@ -124,8 +155,8 @@ fn surface<'a>(patch: &'a Patch) -> SurfaceOut<'a> {
         columns: &patch.columns,
         unknowns: patch.unknowns.iter().map(|u| UnknownOut { name: &u.name, unit: u.unit.symbol() }).collect(),
         fields: patch.fields.iter().map(field).collect(),
-        tally: TallyOut::of(&Tally::of([patch])),
-        points: patch.indexed_points().map(|(i, j, point)| point_out(patch, i, j, point)).collect(),
+        tally: TallyOut::of(tally),
+        points: PointsOut(surface),
     }
 }
 

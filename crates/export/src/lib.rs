@@ -56,6 +56,7 @@
 //! The same dataset gives the same bytes, in every format.
 
 mod atomic_file;
+mod bands;
 mod columns;
 mod conventions;
 mod csv_file;
@@ -80,10 +81,11 @@ mod vtp_file;
 mod xml;
 
 pub use atomic_file::write_atomically;
-pub use csv_file::write_csv;
+pub use bands::{Banded, Taker};
+pub use csv_file::{write_csv, write_csv_in_bands};
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
-pub use json_file::{SCHEMA, write_json};
+pub use json_file::{SCHEMA, write_json, write_json_in_bands};
 pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,
@@ -100,7 +102,7 @@ pub use picture::{
     axis_positions, field_lines, field_maps, machine, picture, rows_follow_profile, section, topography,
 };
 pub use step::{Deviation, Face, write_step};
-pub use stl_file::write_stl;
+pub use stl_file::{write_stl, write_stl_in_bands};
 pub use tally::Tally;
 pub use threemf_file::write_3mf;
 pub use vtp_file::write_vtp;

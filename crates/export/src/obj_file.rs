@@ -17,7 +17,7 @@ pub fn write_obj(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     dataset.check()?;
     let header = &dataset.header;
     writeln!(out, "# {}; spec: {}; job: {}", one_line(&header.program), one_line(&header.spec), one_line(&header.job))?;
-    sentences(dataset).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
+    sentences(&dataset.header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
     let mut before = 0;
     for patch in &dataset.patches {
         writeln!(out, "# frame {}\no {}", one_line(&patch.frame), one_line(&patch.name))?;
@@ -30,7 +30,7 @@ pub fn write_obj(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
                 writeln!(out, "{letters} {x} {y} {z}")?;
             }
         }
-        for facet in facets(patch) {
+        for facet in facets(&patch.points, patch.columns.count) {
             // counted from 1, over all objects
             let [a, b, c] = facet.map(|at| before + places.of_point(at) + 1);
             writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;

@@ -16,6 +16,7 @@ use crate::conventions::sentences;
 use crate::dataset::{Dataset, Field, Patch, Point, Unknown};
 use crate::error::WriteError;
 use crate::number::plain;
+use crate::tally::Tally;
 
 /// Rows that are held in memory before they are written.
 const GROUP: usize = 1 << 16;
@@ -156,12 +157,14 @@ fn facts(dataset: &Dataset) -> Vec<(String, String)> {
     let mut facts = vec![
         ("spec".to_owned(), format!("{}, hash {}", header.spec, header.spec_hash)),
         ("job".to_owned(), header.job.clone()),
-        ("conventions".to_owned(), sentences(dataset).join("; ")),
+        ("conventions".to_owned(), sentences(&dataset.header).join("; ")),
     ];
     let unknowns = union_of_unknowns(&dataset.patches).into_iter();
     facts.extend(unknowns.map(|unknown| (format!("unknown {}", unknown.name), unknown.unit.symbol().to_owned())));
     let fields = union_of_fields(&dataset.patches).into_iter();
     facts.extend(fields.map(|field| (format!("field {}", field.name), format!("{}: {}", field.unit, field.meaning))));
-    facts.extend(dataset.patches.iter().map(|patch| (format!("surface {}", patch.name), patch.told())));
+    facts.extend(
+        dataset.patches.iter().map(|patch| (format!("surface {}", patch.name), patch.told(&Tally::of([patch])))),
+    );
     facts
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::conventions::one_line;
-use crate::dataset::{Outcome, Patch};
+use crate::dataset::{Outcome, Patch, Point};
 use crate::number::shortest;
 
 /// Counts over some points, and the largest residual among those solved.
@@ -23,18 +23,32 @@ impl Tally {
     /// Counts the points of one or more patches.
     pub fn of<'a>(patches: impl IntoIterator<Item = &'a Patch>) -> Self {
         let mut tally = Tally::default();
-        for point in patches.into_iter().flat_map(|patch| &patch.points) {
-            tally.asked += 1;
-            match point.outcome {
-                Outcome::Solved => {
-                    tally.solved += 1;
-                    let residual = point.residual.abs();
-                    tally.worst_residual = Some(tally.worst_residual.map_or(residual, |worst| worst.max(residual)));
-                }
-                Outcome::Unsolved(word) => *tally.unsolved.entry(word).or_default() += 1,
-            }
-        }
+        patches.into_iter().flat_map(|patch| &patch.points).for_each(|point| tally.count(point));
         tally
+    }
+
+    /// Counts one more point.
+    pub(crate) fn count(&mut self, point: &Point) {
+        self.asked += 1;
+        match point.outcome {
+            Outcome::Solved => {
+                self.solved += 1;
+                self.saw_residual(point.residual.abs());
+            }
+            Outcome::Unsolved(word) => *self.unsolved.entry(word).or_default() += 1,
+        }
+    }
+
+    /// Counts what another tally has counted.
+    pub(crate) fn add(&mut self, other: &Tally) {
+        self.asked += other.asked;
+        self.solved += other.solved;
+        other.worst_residual.into_iter().for_each(|residual| self.saw_residual(residual));
+        other.unsolved.iter().for_each(|(word, count)| *self.unsolved.entry(word).or_default() += count);
+    }
+
+    fn saw_residual(&mut self, residual: f64) {
+        self.worst_residual = Some(self.worst_residual.map_or(residual, |worst| worst.max(residual)));
     }
 
     /// Why points are missing, such as `outside 3, singular 1`; empty where none is.

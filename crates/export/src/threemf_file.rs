@@ -58,9 +58,15 @@ fn write_model(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError>
     writeln!(out, r#"<metadata name="Title">{}</metadata>"#, text(&header.job))?;
     writeln!(out, r#"<metadata name="Application">{}</metadata>"#, text(&header.program))?;
     let about = [format!("spec: {}, hash {}", header.spec, header.spec_hash)];
-    let about: Vec<String> = about.into_iter().chain(sentences(dataset)).collect();
+    let about: Vec<String> = about.into_iter().chain(sentences(&dataset.header)).collect();
     writeln!(out, r#"<metadata name="Description">{}</metadata>"#, text(&about.join("; ")))?;
-    let drawn = || dataset.patches.iter().enumerate().filter(|(_, patch)| facets(patch).next().is_some());
+    let drawn = || {
+        dataset
+            .patches
+            .iter()
+            .enumerate()
+            .filter(|(_, patch)| facets(&patch.points, patch.columns.count).next().is_some())
+    };
     writeln!(out, "<resources>")?;
     drawn().try_for_each(|(k, patch)| write_object(k + 1, patch, out))?;
     writeln!(out, "</resources>\n<build>")?;
@@ -79,7 +85,7 @@ fn write_object(id: usize, patch: &Patch, out: &mut dyn Write) -> Result<(), Wri
     }
     writeln!(out, "</vertices>\n<triangles>")?;
     let places = Places::of(patch);
-    for facet in facets(patch) {
+    for facet in facets(&patch.points, patch.columns.count) {
         let [a, b, c] = facet.map(|at| places.of_point(at));
         writeln!(out, r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#)?;
     }

@@ -123,7 +123,12 @@ impl Array<'_> {
 
 impl<'a> Piece<'a> {
     fn new(number: usize, patch: &'a Patch) -> Piece<'a> {
-        Piece { number, patch, places: Places::of(patch), triangles: facets(patch).count() }
+        Piece {
+            number,
+            patch,
+            places: Places::of(patch),
+            triangles: facets(&patch.points, patch.columns.count).count(),
+        }
     }
 
     /// How many bytes an array takes.
@@ -167,7 +172,7 @@ impl<'a> Piece<'a> {
     }
 
     fn write(&self, array: &Array<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-        let solved = || self.patch.indexed_points().filter(|(_, _, point)| point.is_solved());
+        let solved = || self.patch.numbered(0, &self.patch.points).filter(|(_, _, point)| point.is_solved());
         let columns = self.patch.columns.count;
         let mut float = |numbers: &[f64]| numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()));
         match array.what {
@@ -189,7 +194,9 @@ impl<'a> Piece<'a> {
             What::Column => solved().try_for_each(|(_, j, _)| out.write_all(&(j as i32).to_le_bytes()))?,
             What::Surface => solved().try_for_each(|_| out.write_all(&(self.number as i32).to_le_bytes()))?,
             What::Connectivity => {
-                let mut places = facets(self.patch).flatten().map(|at| self.places.of_point(at) as i64);
+                let mut places = facets(&self.patch.points, self.patch.columns.count)
+                    .flatten()
+                    .map(|at| self.places.of_point(at) as i64);
                 places.try_for_each(|place| out.write_all(&place.to_le_bytes()))?;
             }
             What::Offsets => {
@@ -207,7 +214,7 @@ fn head(dataset: &Dataset) -> String {
         format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job),
         "only solved points are in this file".to_owned(),
     ];
-    lines.extend(sentences(dataset));
+    lines.extend(sentences(&dataset.header));
     lines.extend(dataset.patches.iter().enumerate().map(|(k, patch)| {
         format!("surface {k} `{}`: frame {}; {}", patch.name, patch.frame, Tally::of([patch]).verdict())
     }));

@@ -1,7 +1,7 @@
 //! What single cutting edges leave over the surface that edges without end would generate.
 
 use flank_expr::geometry::{Surface, Vector3};
-use flank_expr::{Expr, LANES, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, LANES, ScalarEvaluator, Tape, TapeError};
 use rayon::prelude::*;
 
 use crate::lanes::LaneNewton;
@@ -98,6 +98,12 @@ impl CuttingEdges {
             counts: ranges[2..].to_vec(),
             same: ideal.position == real.position && ideal.unknowns == real.unknowns,
         })
+    }
+
+    /// The same edges, for which only these instructions are used; see [`System::on`].
+    pub fn on(self, instructions: InstructionSet) -> CuttingEdges {
+        let on = |edges: Edges| Edges { system: edges.system.on(instructions), ..edges };
+        CuttingEdges { ideal: on(self.ideal), real: on(self.real), ..self }
     }
 
     /// What the edges leave at points of the ideal surface, on as many threads as there are; `None` for a point that is not

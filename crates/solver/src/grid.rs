@@ -12,6 +12,7 @@ use crate::line::{Midpoint, divided_difference, lattice, levels};
 use crate::newton::{LONGEST_STEP, solve_with};
 use crate::roots::{MOST_BOXES, Roots, Undecided, all_roots};
 use crate::solution::{Range, Solution, distance};
+use crate::solvers::Solvers;
 use crate::start::{WIDELY, scan};
 use crate::system::{Evaluation, System};
 
@@ -87,7 +88,10 @@ pub fn solve_grid(
 ) -> (Vec<Solution>, Effort) {
     let roots = |targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
     let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::TakeWidest };
-    let (field, effort) = solve_field(system, ranges, (targets, counts), None, choice, None);
+    let (field, effort) = {
+        let grid = Grid::new(system, ranges, (targets, counts), None);
+        solve_field(grid, &mut Solvers::new(system, ranges), None, choice)
+    };
     let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
     ((0..targets.len()).map(solution).collect(), effort)
 }
@@ -95,29 +99,16 @@ pub fn solve_grid(
 /// The same without an allocation for each point, with a choice among several branches; the branch may be given by a start
 /// for the point in the middle, which is tried first.
 pub(crate) fn solve_field(
-    system: &System,
-    ranges: &[Range],
-    (targets, counts): (&[[f64; 2]], [usize; 2]),
+    mut grid: Grid<'_>,
+    solvers: &mut Solvers<'_>,
     start: Option<&[f64]>,
     choice: Choice<'_>,
-    memory: Option<Field>,
 ) -> (Field, Effort) {
-    assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
-    let mut grid = Grid {
-        system,
-        evaluation: system.evaluation(&[0.0; 2]),
-        ranges,
-        targets,
-        rows: counts[0],
-        columns: counts[1],
-        memory,
-        effort: Effort::default(),
-    };
-    let newton = &mut LaneNewton::new(system, ranges);
+    let (ranges, targets, counts) = (grid.ranges, grid.targets, [grid.rows, grid.columns]);
     let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
     let start = start.filter(|_| !targets.is_empty());
-    if let Some(root) = start.and_then(|start| grid.root_from(newton, middle, start)) {
-        let filling = grid.fill(newton, middle, &root);
+    if let Some(root) = start.and_then(|start| grid.root_from(&mut solvers.careful, middle, start)) {
+        let filling = grid.fill(solvers, middle, &root);
         grid.effort.anchor = targets[middle];
         grid.effort.branches = vec![root];
         return (filling, grid.effort);
@@ -131,13 +122,13 @@ pub(crate) fn solve_field(
         if grid.effort.branches.len() > 1 && choice.several == Several::Refuse {
             let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(ranges) };
             (0..targets.len()).for_each(|point| failures.put(point, &ambiguous));
-            failures.place_loose(newton);
+            failures.place_loose(&mut solvers.careful);
             return (failures, grid.effort);
         }
-        let filling = grid.best_filling(newton, anchor);
+        let filling = grid.best_filling(solvers, anchor);
         return (filling, grid.effort);
     }
-    failures.place_loose(newton);
+    failures.place_loose(&mut solvers.careful);
     (failures, grid.effort)
 }
 
@@ -164,12 +155,34 @@ pub(crate) struct Grid<'s> {
     pub(crate) targets: &'s [[f64; 2]],
     pub(crate) rows: usize,
     pub(crate) columns: usize,
+    /// The rows are too far apart to step from one to the next.
+    pub(crate) are_rows_apart: bool,
     /// Of a field that is not needed any more.
     memory: Option<Field>,
     pub(crate) effort: Effort,
 }
 
 impl<'s> Grid<'s> {
+    pub(crate) fn new(
+        system: &'s System,
+        ranges: &'s [Range],
+        (targets, counts): (&'s [[f64; 2]], [usize; 2]),
+        memory: Option<Field>,
+    ) -> Grid<'s> {
+        assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
+        Grid {
+            system,
+            evaluation: system.evaluation(&[0.0; 2]),
+            ranges,
+            targets,
+            rows: counts[0],
+            columns: counts[1],
+            are_rows_apart: false,
+            memory,
+            effort: Effort::default(),
+        }
+    }
+
     /// Finds all branches at a point; whether there are any.
     fn look_for(
         &mut self,
@@ -216,10 +229,10 @@ impl<'s> Grid<'s> {
 
     /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
     /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
-    fn best_filling(&mut self, newton: &mut LaneNewton<'s>, anchor: usize) -> Field {
+    fn best_filling(&mut self, solvers: &mut Solvers<'_>, anchor: usize) -> Field {
         let mut best: Option<Field> = None;
         for root in self.effort.branches.clone() {
-            let filling = self.fill(newton, anchor, &root);
+            let filling = self.fill(solvers, anchor, &root);
             let (most, solved) = (best.as_ref().map_or(0, Field::solved), filling.solved());
             if best.is_none() || solved > most {
                 best = Some(filling);
@@ -231,21 +244,18 @@ impl<'s> Grid<'s> {
         best.unwrap_or_else(|| self.field())
     }
 
-    fn field(&mut self) -> Field {
+    pub(crate) fn field(&mut self) -> Field {
         Field::new(self.ranges, [self.rows, self.columns], self.system.extra_count(), self.memory.take())
     }
 
     /// Everything that can be reached from the anchor.
-    fn fill(&mut self, careful: &mut LaneNewton<'s>, anchor: usize, root: &Solution) -> Field {
+    fn fill(&mut self, solvers: &mut Solvers<'_>, anchor: usize, root: &Solution) -> Field {
         let mut field = self.field();
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
         let columns = lattice(self.columns, anchor % self.columns);
-        let given = LaneNewton::with_given(self.system, self.ranges);
-        // an equation that hardly depends on an unknown does not give it
-        let leads = |newton: &mut LaneNewton<'_>| newton.leads_to(&root.unknowns, &self.targets[anchor]);
-        let mut given = given.and_then(|mut newton| leads(&mut newton).then_some(newton));
-        let newton = given.as_mut().unwrap_or(&mut *careful);
+        solvers.decide(&root.unknowns, &self.targets[anchor]);
+        let newton = solvers.newton();
         self.settle(&mut field, newton, &[anchor]);
         let by_hand = self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]);
         if !by_hand.is_empty() {
@@ -259,20 +269,31 @@ impl<'s> Grid<'s> {
         field.divide(lines, &points);
         let (count, length) = ((self.rows, &rows), (self.columns, &columns));
         let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
-        if newton.has_all_given() {
+        if solvers.newton().has_all_given() {
             self.compute_strips(&mut field, count.1, length.1);
         }
+        let levels = |(count, known): (usize, &[usize])| levels(&(0..count).collect::<Vec<_>>(), known);
         if !field.is_complete() {
-            self.effort.evaluations += field.refine_lines(newton, count.1, &levels(length.0, length.1), self.targets);
-            self.refine_strips(&mut field, newton, &levels(count.0, count.1));
+            let along = levels((length.0, length.1));
+            self.effort.evaluations += field.refine_lines(solvers.newton(), count.1, &along, self.targets);
+            self.refine_strips(&mut field, solvers, &levels((count.0, count.1)));
         }
-        if !field.is_complete() {
-            let all: [Vec<usize>; 2] = [self.rows, self.columns].map(|count| (0..count).collect());
-            let unfinished = self.edge_of_roots(&field);
-            self.spread(&mut field, unfinished, &all[0], &all[1]);
-        }
-        field.place_loose(careful);
+        self.finish(&mut field, solvers, 0..self.rows);
         field
+    }
+
+    /// What is left of some rows, by the careful path.
+    pub(crate) fn finish(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, rows: std::ops::Range<usize>) {
+        if !field.is_complete() {
+            let columns: Vec<usize> = (0..self.columns).collect();
+            let step = if self.are_rows_apart { 1 } else { rows.len().max(1) };
+            for first in rows.step_by(step) {
+                let beside = first..first + step;
+                let unfinished = self.edge_of_roots(field, beside.clone());
+                self.spread(field, unfinished, &beside.collect::<Vec<usize>>(), &columns);
+            }
+        }
+        field.place_loose(&mut solvers.careful);
     }
 
     /// The lines across which the unknowns change more smoothly, by the highest divided differences on the lattice.
@@ -315,7 +336,7 @@ impl<'s> Grid<'s> {
     }
 
     /// All lines whose points are given by their targets, from those that are known at some places.
-    fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
+    pub(crate) fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
         let new = || OnLine::new(system, ranges);
         let Some(mut on_line) = new() else { return };
@@ -327,13 +348,10 @@ impl<'s> Grid<'s> {
     }
 
     /// All lines, from those that are known.
-    fn refine_strips(&mut self, field: &mut Field, newton: &mut LaneNewton<'s>, levels: &[Vec<Midpoint>]) {
-        let (system, ranges, targets) = (self.system, self.ranges, self.targets);
-        let given = newton.has_given();
-        let new = || LaneNewton::with_given(system, ranges).filter(|_| given);
-        let new = || new().unwrap_or_else(|| LaneNewton::new(system, ranges));
-        let refine = |newton: &mut LaneNewton<'s>, mut strip: Strip<'_>| strip.refine(newton, levels, targets);
-        self.effort.evaluations += self.on_strips(field, newton, new, refine);
+    pub(crate) fn refine_strips(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, levels: &[Vec<Midpoint>]) {
+        let (targets, another) = (self.targets, solvers.another());
+        let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, levels, targets);
+        self.effort.evaluations += self.on_strips(field, solvers.newton(), another, refine);
     }
 
     /// Work on each strip, on as many threads as there are; each has a tool of its own if there are several.
@@ -352,16 +370,16 @@ impl<'s> Grid<'s> {
         }
     }
 
-    /// Roots beside points that are not known to be roots.
-    fn edge_of_roots(&self, field: &Field) -> VecDeque<usize> {
+    /// Roots beside points that are not known to be roots, both in some of the rows.
+    fn edge_of_roots(&self, field: &Field, rows: std::ops::Range<usize>) -> VecDeque<usize> {
         let beside = |point: usize| {
             let (i, j) = (point / self.columns, point % self.columns);
-            let vertical = [i.checked_sub(1), Some(i + 1).filter(|i| *i < self.rows)].map(|i| i.map(|i| (i, j)));
+            let vertical = [i.checked_sub(1), Some(i + 1)].map(|i| i.filter(|i| rows.contains(i)).map(|i| (i, j)));
             let across = [j.checked_sub(1), Some(j + 1).filter(|j| *j < self.columns)].map(|j| j.map(|j| (i, j)));
             vertical.into_iter().chain(across).flatten().map(|(i, j)| i * self.columns + j)
         };
         let is_edge = |&point: &usize| field.is_root(point) && beside(point).any(|other| !field.is_root(other));
-        (0..self.targets.len()).filter(is_edge).collect()
+        (rows.start * self.columns..rows.end * self.columns).filter(is_edge).collect()
     }
 
     /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns. Where

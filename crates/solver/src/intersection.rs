@@ -1,7 +1,7 @@
 //! Where two surfaces meet, along lines of the coordinates of the first.
 
 use flank_expr::geometry::{Surface, Vector3};
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::newton::{inverse_times, solve_with};
 use crate::solution::{Outcome, Range, Solution, distance};
@@ -186,7 +186,8 @@ impl Meeting {
 /// Points all over a surface that its tool leaves.
 fn seeds(surface: &Surface<'_>, ranges: &[Range]) -> Result<Vec<SurfacePoint>, TapeError> {
     let coordinates = [surface.unknowns[0], surface.unknowns[1]];
-    let problem = SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?;
+    // machine code does not pay for so few
+    let problem = SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?.on(InstructionSet::widest());
     let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
     let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
     let (points, _) = problem.solve(&targets, [SEEDS; 2]);

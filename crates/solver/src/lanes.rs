@@ -135,11 +135,6 @@ impl<'s> LaneNewton<'s> {
         self.given.contains(&unknown)
     }
 
-    /// Whether any is.
-    pub(crate) fn has_given(&self) -> bool {
-        !self.given.is_empty()
-    }
-
     /// Whether what is given at a root comes out near it, as a root.
     pub(crate) fn leads_to(&mut self, unknowns: &[f64], parameters: &[f64]) -> bool {
         self.put(0, unknowns.iter().copied(), parameters);

@@ -15,6 +15,7 @@
 //! ```
 
 mod angles;
+mod bands;
 mod certify;
 mod cutting;
 mod deviation;
@@ -36,6 +37,7 @@ mod roots;
 mod sensitivity;
 mod settings;
 mod solution;
+mod solvers;
 mod start;
 mod step;
 mod surface;
@@ -45,6 +47,7 @@ mod trim;
 mod tube;
 mod whole_numbers;
 
+pub use bands::Band;
 pub use certify::Certifier;
 pub use cutting::{CuttingEdges, Left};
 pub use deviation::{Deviation, EaseOff};
@@ -60,7 +63,7 @@ pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
 pub use sensitivity::{NormalSensitivity, Setting};
 pub use settings::{Adjustable, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
 pub use solution::{CutBy, Outcome, Range, Solution};
-pub use surface::{SurfacePoint, SurfaceProblem};
+pub use surface::{MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 pub use symmetry::{Screw, symmetries};
 pub use system::System;
 pub use trim::trim;

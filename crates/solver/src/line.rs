@@ -34,12 +34,13 @@ pub(crate) fn lattice(length: usize, anchor: usize) -> Vec<usize> {
 }
 
 /// The points of a line in the order in which they follow from the known ones: all of a level depend on earlier levels only.
-pub(crate) fn levels(length: usize, known: &[usize]) -> Vec<Vec<Midpoint>> {
+/// `places` tells where on the line each of them stands.
+pub(crate) fn levels(places: &[usize], known: &[usize]) -> Vec<Vec<Midpoint>> {
     let mut known = known.to_vec();
     let mut levels = Vec::new();
-    while known.len() < length {
+    while known.len() < places.len() {
         let gaps = known.windows(2).enumerate().filter(|(_, gap)| gap[1] - gap[0] > 1);
-        let level: Vec<Midpoint> = gaps.map(|(k, gap)| midpoint(&known, k, [gap[0], gap[1]])).collect();
+        let level: Vec<Midpoint> = gaps.map(|(k, gap)| midpoint(places, &known, k, [gap[0], gap[1]])).collect();
         known.extend(level.iter().map(|point| point.at));
         known.sort_unstable();
         levels.push(level);
@@ -48,16 +49,25 @@ pub(crate) fn levels(length: usize, known: &[usize]) -> Vec<Vec<Midpoint>> {
 }
 
 /// The point between `known[k]` and `known[k + 1]`.
-fn midpoint(known: &[usize], k: usize, beside: [usize; 2]) -> Midpoint {
+fn midpoint(places: &[usize], known: &[usize], k: usize, beside: [usize; 2]) -> Midpoint {
     let at = (beside[0] + beside[1]) / 2;
-    let count = STENCIL.min(known.len());
-    let first = (k + 1).saturating_sub(STENCIL / 2).min(known.len() - count);
-    let mut stencil = [(0, 0.0); STENCIL];
-    let weights = weights(&known[first..first + count], at);
-    for (k, (place, weight)) in known[first..first + count].iter().zip(weights).enumerate() {
-        stencil[k] = (*place, weight);
+    let known = &known[stencil(k, known.len())];
+    let (mut around, mut stencil) = ([0; STENCIL], [(0, 0.0); STENCIL]);
+    let around = &mut around[..known.len()];
+    for (place, point) in around.iter_mut().zip(known) {
+        *place = places[*point];
     }
-    Midpoint { at, beside, stencil, count }
+    for ((entry, point), weight) in stencil.iter_mut().zip(known).zip(weights(around, places[at])) {
+        *entry = (*point, weight);
+    }
+    Midpoint { at, beside, stencil, count: known.len() }
+}
+
+/// Which of some known points in a row a point between number `k` and the next one is interpolated from.
+pub(crate) fn stencil(k: usize, count: usize) -> std::ops::Range<usize> {
+    let width = STENCIL.min(count);
+    let first = (k + 1).saturating_sub(STENCIL / 2).min(count - width);
+    first..first + width
 }
 
 /// The weights of values at some places, [`STENCIL`] at most, in the coefficient of the highest power of the polynomial through them.
@@ -102,7 +112,7 @@ mod tests {
                 let start = lattice(length, anchor);
                 assert!(start.len() <= 8 && start.contains(&anchor) && start.contains(&(length - 1)));
                 let mut seen = start.clone();
-                for level in levels(length, &start) {
+                for level in levels(&(0..length).collect::<Vec<_>>(), &start) {
                     assert!(level.iter().all(|point| point.known().iter().all(|(place, _)| seen.contains(place))));
                     seen.extend(level.iter().map(|point| point.at));
                 }
@@ -115,10 +125,12 @@ mod tests {
     #[test]
     fn polynomials_of_the_fifth_degree_are_met() {
         let f = |x: usize| (x as f64 / 40.0 - 1.0).powi(5) + x as f64;
-        for level in levels(100, &lattice(100, 47)).iter().skip(1) {
-            for point in level {
-                let found: f64 = point.known().iter().map(|(place, weight)| weight * f(*place)).sum();
-                assert!((found - f(point.at)).abs() < 1e-9, "{point:?}");
+        let evenly: Vec<usize> = (0..100).collect();
+        let with_gaps: Vec<usize> = (0..100).map(|k| if k < 20 { k } else { k + 7 }).collect();
+        for places in [evenly, with_gaps] {
+            for point in levels(&places, &lattice(100, 47)).iter().skip(1).flatten() {
+                let found: f64 = point.known().iter().map(|(place, weight)| weight * f(places[*place])).sum();
+                assert!((found - f(places[point.at])).abs() < 1e-9, "{point:?}");
             }
         }
     }

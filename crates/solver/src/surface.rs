@@ -1,14 +1,24 @@
 //! Points of one surface at given values of two coordinates.
 
+use std::convert::Infallible;
+
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::angles::SearchSystem;
-use crate::grid::{Choice, Effort, Several, solve_field};
+use crate::bands::{Band, Wanted, solve_in_bands};
+use crate::field::Field;
+use crate::grid::{Choice, Effort, Grid, Several, solve_field};
 use crate::points::SurfacePoints;
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::solution::{Outcome, Range, Solution};
+use crate::solvers::Solvers;
 use crate::system::System;
+
+/// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
+pub const MOST_AT_ONCE: usize = 1 << 20;
+/// Bands that a grid which is just too large for one piece makes.
+const BANDS: usize = 4;
 
 /// A surface under constraint with two coordinates that points are asked for by.
 #[derive(Clone, Debug)]
@@ -23,6 +33,8 @@ pub struct SurfaceProblem {
     keep: (Tape, Vec<Range>),
     /// Where the unknowns of that branch are.
     kept_ranges: Vec<Range>,
+    /// Points of the largest grid that is solved in one piece.
+    at_once: usize,
 }
 
 /// A point that was asked for.
@@ -144,6 +156,7 @@ impl SurfaceProblem {
             kept_ranges: ranges.clone(),
             ranges,
             several,
+            at_once: MOST_AT_ONCE,
             keep: (Tape::new(&[], &bound.unknowns)?, Vec::new()),
         })
     }
@@ -151,6 +164,12 @@ impl SurfaceProblem {
     /// The same problem, for whose grids only these instructions are used; see [`System::on`].
     pub fn on(self, instructions: InstructionSet) -> SurfaceProblem {
         SurfaceProblem { system: self.system.on(instructions), ..self }
+    }
+
+    /// The same problem, where a grid is solved in bands of rows if it has more points than this. It sets how much memory a grid
+    /// takes that is handed over band by band, and which of its points are solved before which: their last digits may differ.
+    pub fn at_once(self, points: usize) -> SurfaceProblem {
+        SurfaceProblem { at_once: points, ..self }
     }
 
     /// The system that is solved for each point.
@@ -208,7 +227,7 @@ impl SurfaceProblem {
     }
 
     /// The same for very many points. `start`, if there is one, tells the branch: unknowns from which Newton reaches it at the
-    /// point in the middle of the grid. If it does not, the branch is looked for as without. `memory` may be points that are
+    /// point in the middle of the grid (near it, in a grid of more than [`MOST_AT_ONCE`] points). If it does not, the branch is looked for as without. `memory` may be points that are
     /// not needed any more: those of a grid of the same size give their memory to the new ones.
     ///
     /// # Panics
@@ -220,6 +239,80 @@ impl SurfaceProblem {
         start: Option<&[f64]>,
         memory: Option<SurfacePoints>,
     ) -> (SurfacePoints, Effort) {
+        assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
+        let memory = memory.map(|points| points.field);
+        let (field, effort) = if targets.len() <= self.at_once {
+            let grid = Grid::new(&self.system, &self.ranges, (targets, counts), memory);
+            self.choosing(|choice| solve_field(grid, &mut Solvers::new(&self.system, &self.ranges), start, choice))
+        } else {
+            self.assembled(targets, counts, start, memory)
+        };
+        (self.with_middle(field), effort)
+    }
+
+    /// A large grid in one piece, as its bands make it.
+    fn assembled(
+        &self,
+        targets: &[[f64; 2]],
+        counts: [usize; 2],
+        start: Option<&[f64]>,
+        memory: Option<Field>,
+    ) -> (Field, Effort) {
+        let mut whole = Field::new(&self.ranges, counts, self.system.extra_count(), memory);
+        let target = |i: usize, j: usize| targets[i * counts[1] + j];
+        let taken = self.fields(Wanted { target: &target, counts }, start, &mut |rows, field, line| {
+            let [first, from] = [rows.start, line].map(|row| row * counts[1]);
+            (0..rows.len() * counts[1]).for_each(|k| whole.copy(first + k, &field, from + k));
+            Ok::<_, Infallible>(field)
+        });
+        let Ok(effort) = taken;
+        (whole, effort)
+    }
+
+    /// Solves a grid of any size and hands its points over in bands of rows, in order; the memory it takes does not grow with the
+    /// number of rows, but for one in 64 of them (more of them where rows have more than 4,096 points). The points are those of
+    /// [`SurfaceProblem::solve_points`], bit for bit. `target` tells the values of the coordinates in a row and a column; `start`
+    /// is as there, for a point near the middle.
+    ///
+    /// # Errors
+    /// What `each` gives; nothing more is solved then.
+    ///
+    /// # Panics
+    /// If `start` has not one number for each unknown.
+    pub fn in_bands<E>(
+        &self,
+        target: impl Fn(usize, usize) -> [f64; 2],
+        counts: [usize; 2],
+        start: Option<&[f64]>,
+        mut each: impl FnMut(&Band<'_>) -> Result<(), E>,
+    ) -> Result<Effort, E> {
+        self.fields(Wanted { target: &target, counts }, start, &mut |rows, field, line| {
+            let points = self.with_middle(field);
+            each(&Band::new(&points, rows, counts[1], line * counts[1]))?;
+            Ok(points.field)
+        })
+    }
+
+    fn fields<E>(
+        &self,
+        wanted: Wanted<'_>,
+        start: Option<&[f64]>,
+        each: &mut dyn FnMut(std::ops::Range<usize>, Field, usize) -> Result<Field, E>,
+    ) -> Result<Effort, E> {
+        let (system, ranges) = (&self.system, &self.ranges);
+        self.choosing(|choice| {
+            if wanted.len() > self.at_once {
+                return solve_in_bands(system, ranges, wanted, start, choice, self.at_once / BANDS, each);
+            }
+            let targets = wanted.all();
+            let grid = Grid::new(system, ranges, (&targets, wanted.counts), None);
+            let (field, effort) = solve_field(grid, &mut Solvers::new(system, ranges), start, choice);
+            each(0..wanted.counts[0], field, 0).map(|_| effort)
+        })
+    }
+
+    /// Calls something with the choice among branches that this problem makes.
+    fn choosing<R>(&self, solve: impl FnOnce(Choice<'_>) -> R) -> R {
         let (tape, ranges) = &self.keep;
         let (mut keep, mut values) = (ScalarEvaluator::new(tape), vec![0.0; ranges.len()]);
         let mut keeps = |unknowns: &[f64]| {
@@ -227,10 +320,11 @@ impl SurfaceProblem {
             values.iter().zip(ranges).all(|(value, range)| range.low <= *value && *value <= range.high)
         };
         let roots = |target: &[f64; 2]| self.roots(&self.kept_ranges, target);
-        let choice = Choice { roots: &roots, keeps: &mut keeps, several: self.several };
-        let memory = memory.map(|points| points.field);
-        let (field, effort) = solve_field(&self.system, &self.ranges, (targets, counts), start, choice, memory);
-        (SurfacePoints { field, middle: self.ranges.iter().map(|range| range.middle()).collect() }, effort)
+        solve(Choice { roots: &roots, keeps: &mut keeps, several: self.several })
+    }
+
+    fn with_middle(&self, field: Field) -> SurfacePoints {
+        SurfacePoints { field, middle: self.ranges.iter().map(|range| range.middle()).collect() }
     }
 
     /// The points of the surface at solutions of its system.

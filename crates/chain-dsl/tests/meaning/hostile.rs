@@ -140,7 +140,7 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
         ),
         (
             "many large samples",
-            small_job(&lines(20, |k| {
+            small_job(&lines(25, |k| {
                 format!(
                     "surface s{k} in m.work = envelope(b.face, over: turn)\nsample s{k} {{ u: 0 deg .. 1 deg by 1000, turn: 1 deg .. 2 deg by 1000 }}"
                 )

@@ -274,8 +274,8 @@ fn an_edge_along_a_profile_sweeps_a_surface_for_each_segment() {
     let names: Vec<&str> = job.surfaces.iter().map(|surface| surface.name.as_str()).collect();
     assert_eq!(names, ["groove.left", "groove.right"]);
     let sample = job.surfaces[0].sample.as_ref().expect("a sample");
-    assert_eq!(sample.targets.len(), 15);
-    assert!((sample.targets[14][0] - 2f64.hypot(0.5)).abs() < 1e-15);
+    assert_eq!(sample.targets().len(), 15);
+    assert!((sample.targets()[14][0] - 2f64.hypot(0.5)).abs() < 1e-15);
     assert!(job.surfaces[1].sample.is_none());
 }
 

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use flank_export::Dialect;
 use flank_expr::Language;
 
-use super::{Which, length};
+use super::{Means, Which, length};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -75,6 +75,8 @@ pub(crate) struct Onto {
     /// The target's frame that the work stands in, if it has another name there
     #[arg(long, value_name = "NAME", requires = "to")]
     pub(crate) work_frame: Option<String>,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::Code;
+use flank_expr::InstructionSet;
 
 pub(crate) use convert::{Convert, EmitForm, MotionFormat, Onto};
 
@@ -99,6 +100,24 @@ pub(crate) struct Which {
     pub(crate) set: Vec<(String, String)>,
 }
 
+/// How the numbers are worked out; it changes no bit of them.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Means {
+    /// Make no machine code of the equations: they are gone through instruction by instruction, the results are the same bit
+    /// for bit. For systems that forbid such memory, and to rule it out as a cause
+    #[arg(long)]
+    no_machine_code: bool,
+}
+
+impl Means {
+    /// The fastest that there is.
+    pub(crate) const MACHINE_CODE: Means = Means { no_machine_code: false };
+
+    pub(crate) fn instructions(self) -> InstructionSet {
+        if self.no_machine_code { InstructionSet::widest() } else { InstructionSet::fastest() }
+    }
+}
+
 fn name_and_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
@@ -150,6 +169,8 @@ pub(crate) struct Solve {
     /// Print the table as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -341,6 +362,8 @@ pub(crate) struct Deviation {
     /// Print the numbers as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Args, Debug)]

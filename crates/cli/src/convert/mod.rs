@@ -110,7 +110,7 @@ impl<'t, 'g> Target<'t, 'g> {
         onto: &Onto,
         fit: &[String],
     ) -> Result<Target<'t, 'g>, String> {
-        let source = Source::of(job, onto.surface.as_deref())?;
+        let source = Source::of(job, onto.surface.as_deref(), onto.means)?;
         let machine = &target.machines[0];
         let [work, tool] = [
             frame(machine, &source.work, onto.work_frame.as_deref(), "--work-frame")?,

@@ -5,6 +5,7 @@ use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
+use crate::arguments::Means;
 use crate::{solve, units};
 
 /// Surfaces of a job that one tool makes in one work.
@@ -34,7 +35,7 @@ pub(crate) struct Flank<'j, 'g> {
 impl<'j, 'g> Source<'j, 'g> {
     /// # Errors
     /// In words, if it is not clear which tool is meant, or nothing moves.
-    pub(crate) fn of(job: &'j Job<'g>, asked: Option<&str>) -> Result<Source<'j, 'g>, String> {
+    pub(crate) fn of(job: &'j Job<'g>, asked: Option<&str>, means: Means) -> Result<Source<'j, 'g>, String> {
         let path =
             |surface: &GeneratedSurface<'g>| (surface.frame.clone(), surface.generation.tool_frame().to_string());
         let named = |surface: &&&GeneratedSurface<'g>| match asked {
@@ -66,7 +67,7 @@ impl<'j, 'g> Source<'j, 'g> {
         let mates = all
             .iter()
             .filter(|surface| path(surface) == path(first) && surface.generation.motions == generation.motions);
-        let flanks: Vec<Flank<'j, 'g>> = mates.filter_map(|&surface| flank(job, surface)).collect();
+        let flanks: Vec<Flank<'j, 'g>> = mates.filter_map(|&surface| flank(job, surface, means)).collect();
         let tools: Vec<(&Surface<'g>, Vec<Range>)> = flanks
             .iter()
             .filter(|flank| flank.tool.unknowns.len() == 2)
@@ -131,14 +132,14 @@ impl Flank<'_, '_> {
     }
 }
 
-fn flank<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>) -> Option<Flank<'j, 'g>> {
+fn flank<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Option<Flank<'j, 'g>> {
     let tool = match &surface.generation.tool {
         ToolShape::Surface(tool) => tool.bound(&job.bindings()),
         ToolShape::Edge(_) => return None,
     };
     let points = surface.sample.as_ref().map_or(Vec::new(), |sample| {
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-        solve::problem(job, surface, coordinates).solve(&sample.targets, sample.counts).0
+        solve::problem(job, surface, coordinates, means).solve(&sample.targets(), sample.counts).0
     });
     Some(Flank { surface, tool, points })
 }

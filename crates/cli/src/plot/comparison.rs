@@ -4,7 +4,7 @@ use flank_chain_dsl::Job;
 use flank_export::{Dataset, PictureOptions, field_maps, topography};
 
 use super::{Drawing, name, options, told, with_origin, write};
-use crate::arguments::{Plot, What};
+use crate::arguments::{Means, Plot, What};
 use crate::deviation::{self, Measured, NOTE};
 
 /// What there is to draw of a comparison.
@@ -20,7 +20,11 @@ pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -
         let kinds = KINDS.map(name).join(", ");
         return Err(format!("--what {} does not compare surfaces\nwhat fits with --from: {kinds}", name(*other)));
     }
-    let measured = deviation::measure([deviation::find(jobs, surface)?, deviation::find(jobs, from)?], false)?;
+    let measured = deviation::measure(
+        [deviation::find(jobs, surface)?, deviation::find(jobs, from)?],
+        false,
+        Means::MACHINE_CODE,
+    )?;
     let missing = measured.missing();
     anstream::eprint!("{missing}");
     let asked = if arguments.what.is_empty() { &KINDS[..] } else { &arguments.what };

@@ -5,7 +5,7 @@ use flank_export::{Dataset, Header};
 use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
-use crate::arguments::{Plot, What};
+use crate::arguments::{Means, Plot, What};
 use crate::solve::{self, Wanted};
 use crate::table::Solved;
 
@@ -35,12 +35,15 @@ impl<'j, 'g> Subject<'j, 'g> {
             geometry: is_asked(What::Curvature) || arguments.what.is_empty(),
             sensitivity: is_asked(What::Sensitivity),
             certificates: false,
+            together: Some("a picture"),
+            means: Means::MACHINE_CODE,
         };
         let solve_one = |surface: usize| {
             let is_chosen = names.contains(&&*job.surfaces[surface].name);
-            solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { Wanted::default() })
+            let points_only = Wanted { geometry: false, sensitivity: false, ..wanted };
+            solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
-        let solved: Vec<Solved<'j, 'g>> = (0..job.surfaces.len()).filter_map(solve_one).collect();
+        let solved: Vec<Solved<'j, 'g>> = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, _>>()?;
         let place = |name: &&str| {
             let found = solved.iter().position(|solved| solved.surface.name == *name);
             found.ok_or(format!("`{name}` is not sampled: add `sample {name} {{ … }}`, which says at which points"))

@@ -12,6 +12,7 @@ use flank_export::{Dataset, Field, PageMotion, Scene, Tally, Values};
 use flank_expr::Graph;
 use serde_json::{Value, json};
 
+use crate::arguments::Means;
 use crate::arguments::View;
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
@@ -22,7 +23,13 @@ use crate::{Ending, branches, print, required, spec};
 use functions::Functions;
 
 /// What a surface can be coloured by and what a click tells of a point.
-const WANTED: Wanted = Wanted { geometry: true, sensitivity: true, certificates: false };
+const WANTED: Wanted = Wanted {
+    geometry: true,
+    sensitivity: true,
+    certificates: false,
+    together: Some("a page"),
+    means: Means::MACHINE_CODE,
+};
 /// Share of what a motion passes over that its slider goes beyond.
 const BEYOND: f64 = 0.15;
 
@@ -32,8 +39,8 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
     let hash = spec::hash(&compilation);
     let mut ending = Ending::Done;
     for job in solve::asked(&jobs)? {
-        let solved: Vec<Solved<'_, '_>> =
-            job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED)).collect();
+        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED));
+        let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let trims = solved.iter().flat_map(|solved| &solved.trims);
         let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
         let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&job.name, &arguments.which, &hash));

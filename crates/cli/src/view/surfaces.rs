@@ -34,7 +34,7 @@ pub(super) fn of<'g>(
         tool_frame,
         contact: (0..made.unknowns.len()).filter(|k| surface.generation.motions.contains(&made.unknowns[*k])).collect(),
         coordinates: sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
-        targets: sample.targets.clone(),
+        targets: sample.targets(),
         ranges: surface.unknowns.iter().map(|unknown| [unknown.low, unknown.high]).collect(),
         motions: made.unknowns.iter().map(motion).collect(),
         equations: functions.add(

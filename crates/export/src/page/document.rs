@@ -94,7 +94,7 @@ impl<'a> Document<'a> {
             spec_hash: &header.spec_hash,
             job: &header.job,
             doc: &scene.doc,
-            conventions: sentences(dataset),
+            conventions: sentences(&dataset.header),
             notes: &scene.notes,
             asked: tally.asked,
             solved: tally.solved,

@@ -15,7 +15,7 @@ const ARM: f64 = 4.0;
 pub(super) fn draw<'a>(patches: impl Iterator<Item = &'a Patch>, view: &View, sheet: &mut Sheet) {
     let mut crosses = Crosses::default();
     for patch in patches {
-        for (i, j, point) in patch.indexed_points() {
+        for (i, j, point) in patch.numbered(0, &patch.points) {
             if point.is_solved() {
                 continue;
             }

@@ -58,7 +58,7 @@ impl Face {
     pub fn measured(self, finer: &Patch) -> Face {
         let mut deviation = Deviation { largest: 0.0, points: 0, missing: 0 };
         let end = self.spline.directions.each_ref().map(|direction| 2 * (direction.count - 1));
-        for (i, j, point) in finer.indexed_points() {
+        for (i, j, point) in finer.numbered(0, &finer.points) {
             let inside = [i.checked_sub(2 * self.first[0]), j.checked_sub(2 * self.first[1])];
             let [Some(i), Some(j)] = inside else { continue };
             if i > end[0] || j > end[1] || (i % 2 == 0 && j % 2 == 0) {

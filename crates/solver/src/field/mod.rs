@@ -159,6 +159,15 @@ impl Field {
         }
     }
 
+    /// Takes over all that another field of the same kind knows of a point.
+    pub(crate) fn copy(&mut self, point: usize, from: &Field, other: usize) {
+        for plane in 0..self.shape.planes {
+            self.set(point, plane, from.value(other, plane));
+        }
+        let (block, lane) = self.shape.place(point);
+        self.marks[block][lane] = from.mark(other);
+    }
+
     /// Number of points.
     pub(crate) fn len(&self) -> usize {
         self.shape.count * self.shape.length

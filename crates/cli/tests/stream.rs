@@ -1,0 +1,46 @@
+//! Surfaces of more points than are kept: solved and written band by band.
+
+mod support;
+
+use std::path::Path;
+
+use support::{flank, folder, text};
+
+const JOB: &str = "benches/spiral_bevel.chain";
+
+fn solve(job: &str, sides: [usize; 2], out: &Path, flags: &[&str]) -> std::process::Output {
+    let [rows, columns] = [format!("rows={}", sides[0]), format!("columns={}", sides[1])];
+    let start =
+        ["solve", JOB, "--job", job, "--set", &rows, "--set", &columns, "--out", out.to_str().expect("a plain path")];
+    flank(&[&start, flags].concat())
+}
+
+/// Kept for what it further computes, a grid has the same points, bit for bit.
+#[test]
+fn points_are_the_same_whether_they_are_kept_or_not() {
+    let csv = |flags: &[&str]| {
+        let out = folder(&format!("streamed-{}", flags.len()));
+        let done = solve("flank", [257, 256], &out, &[&["--no-picture"], flags].concat());
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        text(&std::fs::read(out.join("flank.csv")).unwrap())
+    };
+    let points = |csv: &str| {
+        let points = csv.lines().filter(|line| !line.starts_with('#')).skip(1);
+        points.map(|line| line.split(',').take(14).collect::<Vec<_>>().join(",")).collect::<Vec<String>>()
+    };
+    let [streamed, kept] = [csv(&[]), csv(&["--geometry"])].map(|csv| points(&csv));
+    assert_eq!(streamed.len(), 257 * 256);
+    assert!(streamed == kept);
+}
+
+#[test]
+fn what_needs_all_points_together_is_told() {
+    let out = folder("together");
+    for (flag, told) in [("--geometry", "--geometry needs all"), ("--certify", "--certify needs all")] {
+        let run = solve("flank", [1025, 1024], &out, &[flag]);
+        assert_eq!(run.status.code(), Some(1));
+        assert!(text(&run.stderr).contains(told), "{}", text(&run.stderr));
+        assert!(text(&run.stderr).contains("ask for 1048576 points or fewer"), "{}", text(&run.stderr));
+    }
+    assert_eq!(std::fs::read_dir(out).unwrap().count(), 0);
+}
