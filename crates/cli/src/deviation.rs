@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps};
 use flank_expr::Graph;
 use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
@@ -13,7 +13,7 @@ use crate::arguments::{Deviation, Means, Which};
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::solve::{header, patch, problem, ranges};
-use crate::{Ending, print, spec};
+use crate::{Ending, inspect, print, spec};
 
 pub(crate) const NOTE: &str = "along the normal, plus is material";
 
@@ -30,26 +30,64 @@ impl Named<'_, '_> {
     }
 }
 
-/// One surface held against another one.
+/// What is held against a surface.
+pub(crate) enum Held<'j, 'g> {
+    Surface(Named<'j, 'g>),
+    /// So many measured points of a file.
+    File {
+        name: String,
+        points: usize,
+    },
+}
+
+impl Held<'_, '_> {
+    fn name(&self) -> &str {
+        match self {
+            Held::Surface(of) => &of.surface.name,
+            Held::File { name, .. } => name,
+        }
+    }
+
+    fn whole_name(&self) -> String {
+        match self {
+            Held::Surface(of) => of.whole_name(),
+            Held::File { name, .. } => name.clone(),
+        }
+    }
+
+    fn frame(&self) -> Option<&str> {
+        match self {
+            Held::Surface(of) => Some(&of.surface.frame),
+            Held::File { .. } => None,
+        }
+    }
+}
+
+/// One surface, or what was measured of it, held against a surface.
 pub(crate) struct Measured<'j, 'g> {
-    pub(crate) surface: Named<'j, 'g>,
-    from: Named<'j, 'g>,
-    sample: &'j Sample<'g>,
-    points: Vec<SurfacePoint>,
-    /// About z, radians, until both meet in the middle of the grid.
-    turn: Option<f64>,
+    pub(crate) held: Held<'j, 'g>,
+    pub(crate) from: Named<'j, 'g>,
+    pub(crate) labels: [String; 2],
+    pub(crate) counts: [usize; 2],
+    pub(crate) points: Vec<SurfacePoint>,
+    /// About z, radians: until both meet in the middle of the grid, or measured points lie nearest.
+    pub(crate) turn: Option<f64>,
     /// Whether it was turned.
-    is_turned: bool,
+    pub(crate) is_turned: bool,
     /// um
-    deviations: Vec<Option<f64>>,
+    pub(crate) deviations: Vec<Option<f64>>,
 }
 
 pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     let start = Instant::now();
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let both = [find(&jobs, &arguments.surface)?, find(&jobs, &arguments.from)?];
-    let measured = measure(both, arguments.as_it_lies, arguments.means)?;
+    let surface = find(&jobs, &arguments.surface)?;
+    let measured = match (&arguments.measured, &arguments.from) {
+        (Some(file), _) => inspect::inspect(surface, file, arguments)?,
+        (None, Some(from)) => measure([surface, find(&jobs, from)?], arguments.as_it_lies, arguments.means)?,
+        (None, None) => return Err("say what it is held against: --from or --measured".to_string().into()),
+    };
     let written = measured.write(arguments, &spec::hash(&compilation))?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
     anstream::eprintln!("{} points in {:.0} ms", measured.points.len(), start.elapsed().as_secs_f64() * 1e3);
@@ -113,7 +151,16 @@ pub(crate) fn measure<'j, 'g>(
         Some(turn) => deviation.map(&points, &near, turn).into_iter().map(|off| Some(1e3 * off?)).collect(),
         None => vec![None; points.len()],
     };
-    Ok(Measured { surface, from, sample, points, turn, is_turned: !as_it_lies, deviations })
+    Ok(Measured {
+        held: Held::Surface(surface),
+        from,
+        labels: sample.labels.clone(),
+        counts,
+        points,
+        turn,
+        is_turned: !as_it_lies,
+        deviations,
+    })
 }
 
 fn is_solved(point: &SurfacePoint) -> bool {
@@ -121,16 +168,18 @@ fn is_solved(point: &SurfacePoint) -> bool {
 }
 
 impl Measured<'_, '_> {
+    fn middle(&self) -> usize {
+        (self.counts[0] / 2) * self.counts[1] + self.counts[1] / 2
+    }
+
     /// Distance of the middle of the grid from the z axis, mm.
     fn middle_radius(&self) -> f64 {
-        let middle = (self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2;
-        self.points.get(middle).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1]))
+        self.points.get(self.middle()).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1]))
     }
 
     /// The middle of the grid, um.
     fn in_the_middle(&self) -> Option<f64> {
-        let middle =
-            *self.deviations.get((self.sample.counts[0] / 2) * self.sample.counts[1] + self.sample.counts[1] / 2)?;
+        let middle = *self.deviations.get(self.middle())?;
         // rounding of a point that was turned onto the other one
         middle.map(|off| if off.abs() < 1e-6 { 0.0 } else { off })
     }
@@ -140,12 +189,12 @@ impl Measured<'_, '_> {
     }
 
     fn ease_off(&self) -> Option<EaseOff> {
-        EaseOff::of(&self.deviations, self.sample.counts)
+        EaseOff::of(&self.deviations, self.counts)
     }
 
     /// Way from the first to the last point of the middle column, and of the middle row, mm.
     fn lengths(&self) -> [Option<f64>; 2] {
-        let [rows, columns] = self.sample.counts;
+        let [rows, columns] = self.counts;
         let apart = |a: usize, b: usize| {
             let ends = [self.points.get(a)?, self.points.get(b)?];
             let [one, other] = ends.map(|point| is_solved(point).then_some(point.position));
@@ -159,18 +208,20 @@ impl Measured<'_, '_> {
     }
 
     fn name(&self) -> String {
-        format!("{}.deviation", self.surface.whole_name())
+        match &self.held {
+            Held::Surface(of) => format!("{}.deviation", of.whole_name()),
+            Held::File { .. } => format!("{}.measured", self.from.whole_name()),
+        }
     }
 
     fn text(&self, written: &[String]) -> String {
-        let (surface, from) = (self.surface.surface, self.from.surface);
+        let frame = self.held.frame().map_or(String::new(), |frame| format!(" ({frame})"));
         let known = self.known().count();
         let mut out = format!(
-            "deviation of {} ({}) from {} ({}), um along the normal of the latter, plus is material\n\n",
-            self.surface.whole_name(),
-            surface.frame,
+            "deviation of {}{frame} from {} ({}), um along the normal of the latter, plus is material\n\n",
+            self.held.whole_name(),
             self.from.whole_name(),
-            from.frame
+            self.from.surface.frame
         );
         let _ = writeln!(out, "  points       {known} of {}", self.points.len());
         if let Some(turn) = self.turn {
@@ -188,7 +239,7 @@ impl Measured<'_, '_> {
             let _ = writeln!(out, "  range        {low:.3} .. {high:.3} um, rms {rms:.3}, in the middle {middle:.3}");
         }
         if let Some(ease_off) = self.ease_off() {
-            for (k, label) in self.sample.labels.iter().enumerate() {
+            for (k, label) in self.labels.iter().enumerate() {
                 let rise = ease_off.slopes[k];
                 let angle = self.lengths()[k].map(|length| arcmin(rise, length));
                 let angle = angle.map_or(String::new(), |angle| format!(" ({angle:.3} arcmin)"));
@@ -206,13 +257,14 @@ impl Measured<'_, '_> {
         let direction = |k: usize| {
             ease_off.map(|of| {
                 let angle = self.lengths()[k].map(|length| arcmin(of.slopes[k], length));
-                json!({ "direction": self.sample.labels[k], "slope_um": of.slopes[k], "slope_arcmin": angle,
+                json!({ "direction": self.labels[k], "slope_um": of.slopes[k], "slope_arcmin": angle,
                     "crowning_um": of.crownings[k] })
             })
         };
         let value: Value = json!({
             "schema": "flank.deviation/1",
-            "surface": self.surface.surface.name, "frame": self.surface.surface.frame,
+            "surface": self.held.frame().map(|_| self.held.name()), "frame": self.held.frame(),
+            "measured": self.held.frame().is_none().then(|| self.held.name()),
             "from": self.from.surface.name, "from_frame": self.from.surface.frame,
             "asked": self.points.len(), "known": self.known().count(),
             "turn_deg": self.turn.map(f64::to_degrees), "turned": self.is_turned,
@@ -228,14 +280,17 @@ impl Measured<'_, '_> {
     /// Why numbers are missing, if some are.
     pub(crate) fn missing(&self) -> String {
         let (all, known) = (self.points.len(), self.known().count());
-        let [surface, from] = [&self.surface.surface.name, &self.from.surface.name];
+        let [surface, from] = [self.held.name(), &self.from.surface.name];
+        let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
+        if let Held::File { points, .. } = self.held {
+            return missing_of_file(self, [points, known, unsolved]);
+        }
         if self.turn.is_none() && self.is_turned {
             return format!(
                 "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` \
                  is turned about z\n"
             );
         }
-        let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
         let mut out = String::new();
         if unsolved > 0 {
             let _ = writeln!(out, "not solved: {unsolved} of {all} points of {from}");
@@ -252,22 +307,22 @@ impl Measured<'_, '_> {
 
     /// The points with their deviations as their one field.
     pub(crate) fn dataset(&self, which: &Which, hash: &str) -> Dataset {
-        let axis = |k: usize| Axis { label: self.sample.labels[k].clone(), count: self.sample.counts[k] };
+        let axis = |k: usize| Axis { label: self.labels[k].clone(), count: self.counts[k] };
         let patch = patch(self.from.job, &self.from.surface.name, self.from.surface, [axis(0), axis(1)], &self.points);
         let field = Field {
-            name: format!("deviation of {}", self.surface.surface.name),
+            name: format!("deviation of {}", self.held.name()),
             unit: "um".to_string(),
             meaning: NOTE.to_string(),
             values: Values::Scalars(self.deviations.clone()),
         };
         let mut header = header(&self.from.job.name, which, hash);
         let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
-        header.conventions.push(format!("{} turned about z by {turn:?} deg", self.surface.surface.name));
+        header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
         Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
     }
 
     pub(crate) fn title(&self) -> String {
-        format!("{} from {}", self.surface.whole_name(), self.from.whole_name())
+        format!("{} from {}", self.held.whole_name(), self.from.whole_name())
     }
 
     fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
@@ -280,6 +335,26 @@ impl Measured<'_, '_> {
         }
         Ok(folder.written)
     }
+}
+
+/// Why numbers are missing of a grid with so many measured points, known deviations and nominal points that are not solved.
+fn missing_of_file(of: &Measured<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> String {
+    let (all, from) = (of.points.len(), &of.from.surface.name);
+    let mut out = String::new();
+    if unsolved > 0 {
+        let _ = writeln!(out, "not solved: {unsolved} of {all} nominal points of {from}");
+    }
+    if measured < all {
+        let _ = writeln!(out, "not measured: {} of {all} points", all - measured);
+    }
+    if known < measured {
+        let _ = writeln!(
+            out,
+            "no deviation at {} of {measured} measured points: no normal of {from} within its ranges goes through them",
+            measured - known
+        );
+    }
+    out
 }
 
 /// The angle of a rise in um over a length in mm.

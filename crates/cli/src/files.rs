@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Banded, Dataset, Dialect, Face, Header, MotionTable, Picture, Scene, WriteError, write_3mf, write_atomically,
-    write_csv_in_bands, write_json_in_bands, write_motion_csv, write_motion_json, write_nc, write_obj, write_page,
-    write_parquet, write_step, write_stl_in_bands, write_vtp,
+    Banded, Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Scene, WriteError, write_3mf,
+    write_atomically, write_csv_in_bands, write_grid_csv, write_grid_json, write_json_in_bands, write_motion_csv,
+    write_motion_json, write_nc, write_obj, write_page, write_parquet, write_step, write_stl_in_bands, write_vtp,
 };
 
-use crate::arguments::{Format, PictureFormat};
+use crate::arguments::{Format, PictureFormat, TableFormat};
 use crate::spec;
 
 /// Extensions that no folder is made with.
@@ -86,13 +86,19 @@ impl<'a> Folder<'a> {
     }
 
     /// Axis positions over a motion.
-    pub(crate) fn motion_csv(&mut self, name: &str, motion: &MotionTable) -> Result<(), String> {
-        self.write(&format!("{name}.csv"), |out| write_motion_csv(motion, out))
+    pub(crate) fn motion(&mut self, name: &str, motion: &MotionTable, format: TableFormat) -> Result<(), String> {
+        match format {
+            TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_motion_csv(motion, out)),
+            TableFormat::Json => self.write(&format!("{name}.json"), |out| write_motion_json(motion, out)),
+        }
     }
 
-    /// The same with its series as JSON.
-    pub(crate) fn motion_json(&mut self, name: &str, motion: &MotionTable) -> Result<(), String> {
-        self.write(&format!("{name}.json"), |out| write_motion_json(motion, out))
+    /// Nominal points for a measuring machine.
+    pub(crate) fn grid(&mut self, name: &str, grid: &MeasuringGrid, format: TableFormat) -> Result<(), String> {
+        match format {
+            TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_grid_csv(grid, out)),
+            TableFormat::Json => self.write(&format!("{name}.json"), |out| write_grid_json(grid, out)),
+        }
     }
 
     /// A program that runs the motion in a number of seconds.

@@ -16,7 +16,9 @@ mod files;
 mod fmt;
 mod geometry;
 mod import;
+mod inspect;
 mod limits;
+mod measure;
 mod new;
 mod plot;
 mod reach;
@@ -89,6 +91,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Convert(arguments) => convert::run(arguments),
         Command::Derive(arguments) => derive::run(arguments),
         Command::Deviation(arguments) => deviation::run(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
         Command::Plot(arguments) => plot::run(arguments),
         Command::Explain(arguments) => Ok(explain::run(arguments)),
         Command::Import(arguments) => import::run(arguments),

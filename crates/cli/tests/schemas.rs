@@ -126,7 +126,14 @@ fn comparisons_and_pictures() {
     judge.run(&[&["plot", SPUR, "--what", "left"][..], &at].concat(), 1);
     judge.run(&[&["view", SPUR][..], &at].concat(), 0);
     judge.run(&[&["view", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
-    judge.has_met(&["flank.deviation/1", "flank.plot/1", "flank.view/1"]);
+    judge.run(&[&["measure", PINION, "--format", "csv,json", "--lines", "5"][..], &at].concat(), 0);
+    judge.file(&out.join("pinion_19x62.grid.json"));
+    judge.run(&[&["measure", "specs/hobbing/undercut_gear.chain", "--format", "json"][..], &at].concat(), 3);
+    judge.file(&out.join("undercut_gear.grid.json"));
+    let measured = out.join("pinion_19x62.grid.csv");
+    let back = ["deviation", PINION, "concave", "--no-picture", "--measured", measured.to_str().unwrap()];
+    judge.run(&[&back[..], &at].concat(), 0);
+    judge.has_met(&["flank.deviation/1", "flank.plot/1", "flank.view/1", "flank.measure/1", "flank.grid/1"]);
 }
 
 #[test]

@@ -249,7 +249,7 @@ impl Patch {
         )
     }
 
-    fn check(&self) -> Result<(), Malformed> {
+    pub(crate) fn check(&self) -> Result<(), Malformed> {
         if self.rows.count.checked_mul(self.columns.count) != Some(self.points.len()) {
             return Err(miscounted(self, self.points.len()));
         }

@@ -51,6 +51,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A [`MeasuringGrid`] holds the same points as measuring machines want them; [`read_measured`] reads what these measured.
+//!
 //! A [`MotionTable`] holds the positions of a machine's axes; `write_motion_csv`, `write_motion_json` and [`write_nc`] write it.
 //!
 //! The same dataset gives the same bytes, in every format.
@@ -65,6 +67,7 @@ mod error;
 mod facets;
 mod json_file;
 mod json_layout;
+mod measuring;
 mod motion;
 mod number;
 mod obj_file;
@@ -86,6 +89,10 @@ pub use csv_file::{write_csv, write_csv_in_bands};
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json, write_json_in_bands};
+pub use measuring::{
+    FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredPoint, MeasuringGrid, NominalFlank, Part,
+    read_measured, write_grid_csv, write_grid_json,
+};
 pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,

@@ -45,7 +45,7 @@ pub(crate) struct Convert {
     pub(crate) out: PathBuf,
     /// Files with positions and polynomials: csv, json, or both with a comma
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
-    pub(crate) format: Vec<MotionFormat>,
+    pub(crate) format: Vec<TableFormat>,
     /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
     #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
@@ -80,7 +80,7 @@ pub(crate) struct Onto {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MotionFormat {
+pub(crate) enum TableFormat {
     Csv,
     Json,
 }

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod convert;
+mod measuring;
 
 use std::path::PathBuf;
 
@@ -8,7 +9,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::Code;
 use flank_expr::InstructionSet;
 
-pub(crate) use convert::{Convert, EmitForm, MotionFormat, Onto};
+pub(crate) use convert::{Convert, EmitForm, Onto, TableFormat};
+pub(crate) use measuring::{Deviation, Measure};
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -45,8 +47,10 @@ pub(crate) enum Command {
     Derive(Derive),
     /// Draw surfaces, maps, contact lines, sections, the machine, its motion
     Plot(Plot),
-    /// How far one surface lies off another one of the same body: ease-off, tooth-space width
+    /// How far one surface lies off another one of the same body (ease-off, tooth-space width), or measured points off a surface
     Deviation(Deviation),
+    /// Write nominal points and normals for a gear measuring machine
+    Measure(Measure),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
     /// Make a job of a bevel gear's machine summary in a REXS file
@@ -73,6 +77,7 @@ impl Command {
             Command::Check(arguments) => arguments.json,
             Command::Convert(arguments) => arguments.json,
             Command::Derive(arguments) => arguments.json,
+            Command::Measure(arguments) => arguments.json,
             Command::Plot(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
@@ -328,42 +333,6 @@ pub(crate) struct Derive {
     /// Print JSON: the pages, or the numbers of operations
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Args, Debug)]
-#[command(after_help = "\
-The deviation is signed, in um, along the normal of the surface after --from, at the points of that one's sample; plus is
-material. A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are
-laid onto each other. Without --as-it-lies the surface is first turned about z until both meet in the middle of the grid.
-
-Examples:
-  flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave
-  flank deviation specs/bevel/gear_19x62.chain concave --from convex --as-it-lies    width of the tooth space")]
-pub(crate) struct Deviation {
-    #[command(flatten)]
-    pub(crate) which: Which,
-    /// The surface
-    pub(crate) surface: String,
-    /// The surface that it is held against; it is sampled in the spec
-    #[arg(long, value_name = "SURFACE")]
-    pub(crate) from: String,
-    /// Do not turn it
-    #[arg(long)]
-    pub(crate) as_it_lies: bool,
-    /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
-    pub(crate) out: PathBuf,
-    /// Files with the points, several with commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
-    pub(crate) format: Vec<Format>,
-    /// Write no picture (otherwise a PNG and an SVG)
-    #[arg(long)]
-    pub(crate) no_picture: bool,
-    /// Print the numbers as JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-    #[command(flatten)]
-    pub(crate) means: Means,
 }
 
 #[derive(Args, Debug)]

@@ -7,7 +7,7 @@ use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_poly
 use super::Carried;
 use super::blocks::Blocks;
 use super::table::{Named, Table};
-use crate::arguments::{Convert, EmitForm, MotionFormat};
+use crate::arguments::{Convert, EmitForm};
 use crate::files::Folder;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
@@ -32,10 +32,7 @@ pub(super) fn write(
     let mut folder = Folder::at(&arguments.out)?;
     let motion = motion_table(table, header);
     for format in &arguments.format {
-        match format {
-            MotionFormat::Csv => folder.motion_csv(&name, &motion)?,
-            MotionFormat::Json => folder.motion_json(&name, &motion)?,
-        }
+        folder.motion(&name, &motion, *format)?;
     }
     for dialect in &arguments.nc {
         let seconds = arguments.time.expect("an NC program is asked for with its cutting time");

@@ -20,18 +20,15 @@ pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -
         let kinds = KINDS.map(name).join(", ");
         return Err(format!("--what {} does not compare surfaces\nwhat fits with --from: {kinds}", name(*other)));
     }
-    let measured = deviation::measure(
-        [deviation::find(jobs, surface)?, deviation::find(jobs, from)?],
-        false,
-        Means::MACHINE_CODE,
-    )?;
+    let surface = deviation::find(jobs, surface)?;
+    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, Means::MACHINE_CODE)?;
     let missing = measured.missing();
     anstream::eprint!("{missing}");
     let asked = if arguments.what.is_empty() { &KINDS[..] } else { &arguments.what };
     let drawings: Vec<(What, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, arguments, hash, &options(arguments)))).collect();
-    let written = write(&drawings, &measured.surface.whole_name(), arguments)?;
-    Ok(told(&measured.surface.job.name, &written, arguments))
+    let written = write(&drawings, &surface.whole_name(), arguments)?;
+    Ok(told(&surface.job.name, &written, arguments))
 }
 
 fn draw(measured: &Measured<'_, '_>, what: What, arguments: &Plot, hash: &str, options: &PictureOptions) -> Drawing {

@@ -34,6 +34,7 @@ mod surface;
 mod svg;
 
 pub(crate) use palette::{patch_colours, scale_colours};
+pub(crate) use projection::{Sides, sides};
 
 use crate::dataset::{Dataset, Patch};
 use crate::error::PictureError;

@@ -197,6 +197,26 @@ pub(super) fn rows_follow_profile(patch: &Patch) -> Option<bool> {
     Some(leans_more(&rows?, &columns?))
 }
 
+/// What the sides of a flank's grid are called.
+pub(crate) struct Sides {
+    /// Of the first row and the last.
+    pub(crate) rows: [String; 2],
+    /// Of the first column and the last.
+    pub(crate) columns: [String; 2],
+    pub(crate) rows_are_profile: bool,
+}
+
+/// The names of all four sides; `None` where the grid does not tell them.
+pub(crate) fn sides(patch: &Patch) -> Option<Sides> {
+    let words = words(patch, &Mesh::of(patch, 40));
+    let word = |side: Side| words.iter().find(|(named, _)| *named == side).map(|(_, word)| word.clone());
+    Some(Sides {
+        rows: [word(Side::FirstRow)?, word(Side::LastRow)?],
+        columns: [word(Side::FirstColumn)?, word(Side::LastColumn)?],
+        rows_are_profile: rows_follow_profile(patch)?,
+    })
+}
+
 /// The same by the labels of rows and columns, where these name root and tip.
 fn labelled_profile(patch: &Patch) -> Option<bool> {
     let is_profile =

@@ -1,0 +1,117 @@
+//! The arguments of `flank measure` and `flank deviation`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Format, Means, TableFormat, Which};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Rows run from root to tip, columns along the tooth from toe to heel (from the lower to the upper face, from the inner to the outer
+end), both count from 1. The grid lies in the area that the job samples. Normals point out of the material: plus is material.
+
+Examples:
+  flank measure specs/bevel/pinion_19x62.chain
+  flank measure specs/bevel/pinion_19x62.chain --surface concave --rows 5 --columns 9 --margin 0.1,0.05 --format csv,json
+  flank measure specs/hobbing/helical_gear.chain --lines 101       profile and lead lines, too
+  flank deviation specs/bevel/pinion_19x62.chain concave --measured measured.csv    and back")]
+pub(crate) struct Measure {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// The surfaces, several with commas; all that are sampled otherwise
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) surface: Vec<String>,
+    /// Rows of the grid
+    #[arg(long, value_name = "COUNT", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) rows: u32,
+    /// Columns of the grid
+    #[arg(long, value_name = "COUNT", default_value_t = 9, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) columns: u32,
+    #[command(flatten)]
+    pub(crate) margin: Margin,
+    /// Also the profile line and the lead line through the middle, with so many points each
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub(crate) lines: Option<u32>,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// csv, json, or both with a comma
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<TableFormat>,
+    /// Print as JSON what the files hold
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
+}
+
+/// Where in the sampled area a measuring grid lies.
+#[derive(Args, Debug)]
+pub(crate) struct Margin {
+    /// What a measuring grid leaves out at each end of the sampled area, as a share of it: from root to tip and along the tooth
+    /// if there are two numbers
+    #[arg(long, value_name = "SHARE[,SHARE]", default_value = "0.05", value_parser = margins)]
+    margin: [f64; 2],
+}
+
+impl Margin {
+    /// From root to tip, along the tooth.
+    pub(crate) fn shares(&self) -> [f64; 2] {
+        self.margin
+    }
+}
+
+fn margins(text: &str) -> Result<[f64; 2], String> {
+    let share = |text: &str| text.trim().parse::<f64>().ok().filter(|share| (0.0..0.5).contains(share));
+    let both = match text.split_once(',') {
+        Some((profile, length)) => share(profile).zip(share(length)).map(Into::into),
+        None => share(text).map(|both| [both; 2]),
+    };
+    both.ok_or("write one share or two from 0 to below 0.5, for example 0.1,0.05".to_string())
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The deviation is signed, in um, plus is material: along the normal of the surface after --from, at the points of that one's sample.
+A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are laid onto each
+other. Without --as-it-lies the surface is first turned about z until both meet in the middle of the grid.
+
+With --measured, the points of a file are held against the surface: a CSV table with row and column as `flank measure` counts them,
+and x, y, z in mm or deviation_um. Without --as-it-lies they are first turned about z until the sum of the squares is least.
+
+Examples:
+  flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave
+  flank deviation specs/bevel/gear_19x62.chain concave --from convex --as-it-lies    width of the tooth space
+  flank deviation specs/bevel/pinion_19x62.chain concave --measured measured.csv")]
+pub(crate) struct Deviation {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// The surface
+    pub(crate) surface: String,
+    /// The surface that it is held against; it is sampled in the spec
+    #[arg(long, value_name = "SURFACE", required_unless_present = "measured", conflicts_with = "measured")]
+    pub(crate) from: Option<String>,
+    /// Measured points that are held against the surface, which is sampled in the spec
+    #[arg(long, value_name = "FILE")]
+    pub(crate) measured: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) margin: Margin,
+    /// Do not turn it
+    #[arg(long)]
+    pub(crate) as_it_lies: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// Files with the points, several with commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<Format>,
+    /// Write no picture (otherwise a PNG and an SVG)
+    #[arg(long)]
+    pub(crate) no_picture: bool,
+    /// Print the numbers as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
+}

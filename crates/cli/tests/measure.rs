@@ -1,0 +1,237 @@
+//! `flank measure` and `flank deviation --measured`: to the measuring machine and back.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{flank, folder, text, written};
+
+const PINION: &str = "specs/bevel/pinion_19x62.chain";
+
+/// A point of the concave flank's grid: row and column from 1, position and normal.
+type Nominal = ([usize; 2], [f64; 3], [f64; 3]);
+
+fn measure(out: &Path, arguments: &[&str]) -> Value {
+    let run = flank(
+        &[&["measure", "--json", "--out", out.to_str().expect("a plain path"), "--format", "csv,json"], arguments]
+            .concat(),
+    );
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    serde_json::from_slice(&run.stdout).expect("JSON")
+}
+
+/// The points of one part of a surface in a CSV file of `flank measure`, by the titles of its columns.
+fn nominal(file: &Path, surface: &str, part: &str) -> Vec<Nominal> {
+    let content = std::fs::read_to_string(file).expect("written");
+    let mut lines = content.lines().filter(|line| !line.starts_with('#'));
+    assert_eq!(lines.next(), Some("surface,flank,part,row,column,x,y,z,nx,ny,nz,status"));
+    let point = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |k: usize| cells[k].parse::<f64>().expect("a number");
+        let index = |k: usize| cells[k].parse::<usize>().expect("an index");
+        let is_meant = cells[0] == surface && cells[2] == part;
+        is_meant.then(|| ([index(3), index(4)], [5, 6, 7].map(number), [8, 9, 10].map(number)))
+    };
+    lines.filter_map(point).collect()
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * b[k]).sum()
+}
+
+/// Deviations in um, row by row, from the CSV file of `flank deviation`.
+fn deviations(out: &Path, name: &str) -> Vec<f64> {
+    let content = std::fs::read_to_string(out.join(name)).expect("written");
+    let lines = content.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.map(|line| line.rsplit(',').next().expect("cells").parse().expect("a number")).collect()
+}
+
+#[test]
+fn a_bevel_grid_runs_from_root_to_tip_and_toe_to_heel_on_the_flank_that_is_sampled() {
+    let out = folder("measure_bevel");
+    let told = measure(&out, &[PINION, "--surface", "concave,convex"]);
+    assert_eq!(told["flanks"][0]["rows"], serde_json::json!(["root", "tip"]));
+    assert_eq!(told["flanks"][0]["columns"], serde_json::json!(["toe", "heel"]));
+    let hands = [0, 1].map(|k| told["flanks"][k]["flank"].as_str().expect("a hand").to_string());
+    assert!(hands == ["left", "right"] || hands == ["right", "left"], "{hands:?}");
+    for (surface, hand) in [("concave", &hands[0]), ("convex", &hands[1])] {
+        let grid = nominal(&out.join("pinion_19x62.grid.csv"), surface, "grid");
+        assert_eq!(grid.len(), 45);
+        let at = |row: usize, column: usize| grid[(row - 1) * 9 + column - 1];
+        for (index, (place, position, normal)) in grid.iter().enumerate() {
+            assert_eq!(*place, [index / 9 + 1, index % 9 + 1]);
+            assert!((dot(*normal, *normal) - 1.0).abs() < 1e-12);
+            // out of the material: it leans to the tip, and the tooth lies behind a flank, seen along the tooth
+            let [x, y, _] = *position;
+            let around = (x * normal[1] - y * normal[0]) / x.hypot(y);
+            assert_eq!(around > 0.0, hand == "right", "{surface} {place:?}: {around}");
+        }
+        let rho = |(_, [x, y, _], _): Nominal| x.hypot(y);
+        assert!((1..=9).all(|column| (1..5).all(|row| rho(at(row + 1, column)) > rho(at(row, column)))));
+        assert!((1..=5).all(|row| (1..9).all(|column| rho(at(row, column + 1)) > rho(at(row, column)))));
+        let middle = nominal(&out.join("pinion_19x62.grid.csv"), surface, "middle");
+        assert!((0..3).all(|k| (middle[0].1[k] - at(3, 5).1[k]).abs() < 1e-9), "the middle of an odd grid");
+    }
+    let file: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("pinion_19x62.grid.json")).unwrap()).expect("JSON");
+    let first = &file["flanks"][0]["parts"][0]["points"][0];
+    assert_eq!(first["position"][0], nominal(&out.join("pinion_19x62.grid.csv"), "concave", "grid")[0].1[0]);
+}
+
+/// Without margins and with as many rows and columns, the grid's points are those of `flank solve`.
+#[test]
+fn the_grid_lies_on_the_solved_surface() {
+    let out = folder("measure_solved");
+    measure(&out, &[PINION, "--surface", "convex", "--rows", "15", "--columns", "31", "--margin", "0"]);
+    let grid = nominal(&out.join("pinion_19x62.grid.csv"), "convex", "grid");
+    let run = flank(&["solve", PINION, "--no-picture", "--format", "json", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0));
+    let solved: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("pinion_19x62.json")).unwrap()).expect("JSON");
+    let convex =
+        solved["surfaces"].as_array().unwrap().iter().find(|one| one["name"] == "convex").expect("it is solved");
+    let points = convex["points"].as_array().unwrap();
+    assert_eq!(points.len(), grid.len());
+    for (point, (place, position, normal)) in points.iter().zip(grid) {
+        assert_eq!(
+            [1, 1].map(|one| one as u64),
+            [place[0] as u64 - point["i"].as_u64().unwrap(), place[1] as u64 - point["j"].as_u64().unwrap()]
+        );
+        for k in 0..3 {
+            assert!((point["position"][k].as_f64().unwrap() - position[k]).abs() < 1e-9);
+            assert!((point["normal"][k].as_f64().unwrap() - normal[k]).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn cylindrical_gears_have_profile_and_lead_lines() {
+    let out = folder("measure_lines");
+    let told = measure(&out, &["specs/hobbing/helical_gear.chain", "--lines", "21", "--margin", "0.1,0.2"]);
+    assert_eq!(told["flanks"][0]["columns"], serde_json::json!(["lower face", "upper face"]));
+    let file = out.join("helical_gear.grid.csv");
+    let [profile, lead] = ["profile", "lead"].map(|part| nominal(&file, "lower_flank", part));
+    assert_eq!((profile.len(), lead.len()), (21, 21));
+    assert!(profile.iter().enumerate().all(|(k, point)| point.0 == [k + 1, 1] && point.1[2].abs() < 1e-9));
+    assert!(lead.windows(2).all(|pair| pair[1].1[2] > pair[0].1[2]));
+    let rho = |point: &Nominal| point.1[0].hypot(point.1[1]);
+    assert!(lead.iter().all(|point| (rho(point) - rho(&lead[0])).abs() < 1e-9), "a lead line has one diameter");
+    assert!((rho(&profile[10]) - rho(&lead[10])).abs() < 1e-9);
+}
+
+/// Known deviations along the normals, and a turn of the whole gear on the machine, come back.
+#[test]
+fn known_deviations_come_back() {
+    let out = folder("measure_back");
+    measure(&out, &[PINION, "--surface", "concave"]);
+    let grid = nominal(&out.join("pinion_19x62.grid.csv"), "concave", "grid");
+    let lever = |(_, [x, y, _], normal): &Nominal| x * normal[1] - y * normal[0];
+    // a bow with a bias in mm, without the part that a turn would take away
+    let raw = |at: usize| 0.02 * (at as f64).sin() + 0.001 * at as f64;
+    let share = grid.iter().enumerate().map(|(at, point)| raw(at) * lever(point)).sum::<f64>()
+        / grid.iter().map(|point| lever(point).powi(2)).sum::<f64>();
+    let off: Vec<f64> = grid.iter().enumerate().map(|(at, point)| raw(at) - share * lever(point)).collect();
+    let (sine, cosine) = 0.7f64.sin_cos();
+    let moved = |(point, off): (&Nominal, &f64)| -> [f64; 3] { [0, 1, 2].map(|k| point.1[k] + off * point.2[k]) };
+    let line = |point: &Nominal, cells: String| format!("concave,grid,{},{},{cells}\n", point.0[0], point.0[1]);
+    let mut tables = [
+        "surface,part,row,column,x,y,z\n",
+        "surface,part,row,column,x,y,z\n",
+        "surface,part,row,column,deviation_um\n",
+    ]
+    .map(str::to_string);
+    for both in grid.iter().zip(&off) {
+        let [x, y, z] = moved(both);
+        tables[0] += &line(both.0, format!("{x},{y},{z}"));
+        tables[1] += &line(both.0, format!("{},{},{z}", x * cosine - y * sine, x * sine + y * cosine));
+        tables[2] += &line(both.0, format!("{}", 1e3 * both.1));
+    }
+    for (table, turn, more) in [
+        (&tables[0], 0.0, &["--as-it-lies"][..]),
+        (&tables[0], 0.0, &[]),
+        (&tables[1], -0.7, &[]),
+        (&tables[2], 0.0, &[]),
+    ] {
+        let file = written(&out, "measured.csv", table);
+        let arguments = ["deviation", PINION, "concave", "--measured", &file, "--json", "--out", out.to_str().unwrap()];
+        let run = flank(&[&arguments[..], more].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        assert!((told["turn_deg"].as_f64().expect("a turn").to_radians() - turn).abs() < 1e-10, "{told}");
+        let found = deviations(&out, "pinion_19x62.concave.measured.csv");
+        for (found, off) in found.iter().zip(&off) {
+            assert!((1e-3 * found - off).abs() < 1e-9, "{found} um, {off} mm");
+        }
+        assert_eq!(found.len(), 45);
+        assert!(out.join("pinion_19x62.concave.measured.svg").exists());
+    }
+}
+
+/// What another setting leaves, measured against the nominal flank, is what the exact derivative says, to first order.
+#[test]
+fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
+    let out = folder("measure_neighbour");
+    let dense = ["--rows", "15", "--columns", "31", "--margin", "0"];
+    const STEP: f64 = 1e-3;
+    let sheet = flank(&["derive", PINION]);
+    let setting = text(&sheet.stdout)
+        .lines()
+        .find(|line| line.trim().starts_with("m.radial_distance = "))
+        .expect("a setting")
+        .to_string();
+    let value: f64 = setting.rsplit('=').next().unwrap().trim().trim_end_matches(" mm").parse().expect("mm");
+    let set = format!("m.radial_distance={} mm", value + STEP);
+    measure(&out, &[&[PINION, "--surface", "concave", "--set", &set][..], &dense].concat());
+    let file = out.join("pinion_19x62.grid.csv");
+    let arguments =
+        ["deviation", PINION, "concave", "--measured", file.to_str().unwrap(), "--margin", "0", "--as-it-lies"];
+    let run = flank(&[&arguments[..], &["--no-picture", "--out", out.to_str().unwrap()]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let found = deviations(&out, "pinion_19x62.concave.measured.csv");
+    let run =
+        flank(&["solve", PINION, "--sensitivity", "--no-picture", "--format", "json", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0));
+    let solved: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("pinion_19x62.json")).unwrap()).expect("JSON");
+    let concave = &solved["surfaces"][0];
+    let fields = concave["fields"].as_array().unwrap();
+    let field = fields.iter().position(|field| field["name"] == "d_normal/d_m.radial_distance").expect("a field");
+    assert_eq!((&concave["name"], &fields[field]["unit"]), (&"concave".into(), &"um/mm".into()));
+    let points = concave["points"].as_array().unwrap();
+    assert_eq!(points.len(), found.len());
+    let largest = found.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    assert!(largest > 0.1, "{largest} um");
+    for (point, found) in points.iter().zip(found) {
+        let expected = point["fields"][field].as_f64().unwrap() * STEP;
+        // the second order of a thousandth of a mm, with curvatures below 0.1 per mm
+        assert!((found - expected).abs() < 1e-3 * largest, "{found} um, {expected} um");
+    }
+}
+
+#[test]
+fn what_is_missing_or_wrong_is_told() {
+    let out = folder("measure_wrong");
+    let at = out.to_str().unwrap();
+    let undercut = flank(&["measure", "specs/hobbing/undercut_gear.chain", "--out", at]);
+    assert_eq!(undercut.status.code(), Some(3));
+    let told = text(&undercut.stderr);
+    assert!(told.contains("not solved: 18 of 45 points of flank_plus, grid (row, column)"), "{told}");
+    assert!(told.contains("(undercut): (1, 1) (1, 2)"), "{told}");
+    let content = std::fs::read_to_string(out.join("undercut_gear.grid.csv")).expect("written");
+    assert!(content.contains("flank_plus,left,grid,1,1,,,,,,,cut away"), "{content}");
+    let partial = written(&out, "partial.csv", "row,column,deviation_um\n1,1,3\n2,2,4\n3,3,5\n");
+    for (arguments, code, words) in [
+        (&["measure", PINION, "--surface", "flank"][..], 1, "there is no surface `flank`"),
+        (&["measure", PINION, "--rows", "1"], 2, "1 is not in 2..=1000"),
+        (&["measure", PINION, "--margin", "0.5"], 2, "from 0 to below 0.5"),
+        (&["deviation", PINION, "concave"], 2, "--from"),
+        (&["deviation", PINION, "concave", "--measured", "none.csv"], 1, "cannot read none.csv"),
+        (&["deviation", PINION, "concave", "--measured", PINION], 1, "there is no column `row`"),
+        (&["deviation", PINION, "concave", "--measured", &partial], 3, "not measured: 6 of 9 points"),
+    ] {
+        let run = flank(&[arguments, &["--out", at]].concat());
+        assert_eq!(run.status.code(), Some(code), "{arguments:?}: {}", text(&run.stderr));
+        assert!(text(&run.stderr).contains(words), "{arguments:?}: {}", text(&run.stderr));
+    }
+}

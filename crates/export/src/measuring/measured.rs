@@ -1,0 +1,138 @@
+//! What a machine measured at the points of a grid, read from CSV.
+
+use std::collections::BTreeSet;
+
+/// A point of the grid with what was measured there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPoint {
+    /// From 0 at the root.
+    pub row: usize,
+    /// From 0 at the first end of the tooth's length.
+    pub column: usize,
+    /// What was measured.
+    pub measured: Measured,
+}
+
+/// What was measured at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Measured {
+    /// Where the surface is, mm, in the frame of the nominal points.
+    Position([f64; 3]),
+    /// How far it lies off the nominal point along the normal, mm; plus is material.
+    Deviation(f64),
+}
+
+/// Why a file of measured points cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MeasuredFault {
+    /// The table is no CSV.
+    #[error("{0}")]
+    NoTable(String),
+    /// A column is missing.
+    #[error("there is no column `{0}`; needed are row, column, and x, y, z (mm) or deviation_um")]
+    NoColumn(&'static str),
+    /// A cell is no number.
+    #[error("line {line}: `{text}` is no {wanted}")]
+    NoNumber {
+        /// From 1.
+        line: u64,
+        /// What stands there.
+        text: String,
+        /// What should.
+        wanted: &'static str,
+    },
+    /// Two lines speak of the same point.
+    #[error("line {line}: row {row}, column {column} is there already")]
+    Twice {
+        /// From 1.
+        line: u64,
+        /// From 1.
+        row: usize,
+        /// From 1.
+        column: usize,
+    },
+    /// No line speaks of the surface.
+    #[error("no line is about the grid of `{0}`")]
+    Nothing(String),
+}
+
+/// Reads measured points of a surface's grid from CSV with a line of titles. `row` and `column` count from 1, as in the file of the nominal
+/// points; `x, y, z` are mm, `deviation_um` is along the normal and stands for them where there is such a column. Lines that begin with
+/// `#` are passed over; lines of other surfaces (`surface`) and parts (`part`), too, and lines whose cells for the measured values
+/// are empty.
+///
+/// # Errors
+/// What is wrong with the file, and where.
+pub fn read_measured(text: &str, surface: &str) -> Result<Vec<MeasuredPoint>, MeasuredFault> {
+    let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let titles = table.headers().map_err(|error| MeasuredFault::NoTable(error.to_string()))?.clone();
+    let place = |name: &str| titles.iter().position(|title| title == name);
+    let needed = |name: &'static str| place(name).ok_or(MeasuredFault::NoColumn(name));
+    let [row, column] = [needed("row")?, needed("column")?];
+    let numbers = match place("deviation_um") {
+        Some(deviation) => vec![deviation],
+        None => ["x", "y", "z"].into_iter().map(needed).collect::<Result<Vec<usize>, MeasuredFault>>()?,
+    };
+    let mut points: Vec<MeasuredPoint> = Vec::new();
+    let mut places = BTreeSet::new();
+    for record in table.records() {
+        let record = record.map_err(|error| MeasuredFault::NoTable(error.to_string()))?;
+        let cell = |k: usize| record.get(k).unwrap_or_default();
+        let is_other = |name: &str, own: &str| place(name).is_some_and(|k| cell(k) != own);
+        if is_other("surface", surface) || is_other("part", "grid") || numbers.iter().all(|&k| cell(k).is_empty()) {
+            continue;
+        }
+        let line = record.position().map_or(0, csv::Position::line);
+        let fault = |k: usize, wanted| MeasuredFault::NoNumber { line, text: cell(k).to_string(), wanted };
+        let index = |k: usize| {
+            let index = cell(k).parse::<usize>().ok().filter(|index| (1..=MOST_LINES).contains(index));
+            index.map(|index| index - 1).ok_or_else(|| fault(k, "row or column, which count from 1"))
+        };
+        let number = |k: usize| cell(k).parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| fault(k, "number"));
+        let measured = match numbers[..] {
+            [x, y, z] => Measured::Position([number(x)?, number(y)?, number(z)?]),
+            [deviation, ..] => Measured::Deviation(number(deviation)? / 1e3),
+            [] => continue,
+        };
+        let point = MeasuredPoint { row: index(row)?, column: index(column)?, measured };
+        if !places.insert((point.row, point.column)) {
+            return Err(MeasuredFault::Twice { line, row: point.row + 1, column: point.column + 1 });
+        }
+        points.push(point);
+    }
+    if points.is_empty() { Err(MeasuredFault::Nothing(surface.to_string())) } else { Ok(points) }
+}
+
+/// No grid has more rows or columns.
+const MOST_LINES: usize = 10_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_and_deviations_are_read_by_their_titles() {
+        let text = "# from the machine\nsurface,part,row,column,x,y,z,probe\nleft,grid,1,2, 1.5 ,-2,3e1,P1\nright,grid,1,1,0,0,0,P1\n\
+                    left,profile,1,1,0,0,0,P1\nleft,grid,2,1,,,,P1\n";
+        let found = read_measured(text, "left").expect("a table");
+        assert_eq!(found, [MeasuredPoint { row: 0, column: 1, measured: Measured::Position([1.5, -2.0, 30.0]) }]);
+        let found = read_measured("column,row,deviation_um\n3,1,-4.5\n", "left").expect("a table");
+        assert_eq!(found, [MeasuredPoint { row: 0, column: 2, measured: Measured::Deviation(-0.0045) }]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let told = |text: &str| read_measured(text, "left").expect_err("a fault").to_string();
+        assert!(told("row,x,y,z\n").contains("no column `column`"));
+        assert!(told("row,column,x,y\n1,1,0,0\n").contains("no column `z`"));
+        assert_eq!(
+            told("row,column,deviation_um\n1,1,2\n1,two,3\n"),
+            "line 3: `two` is no row or column, which count from 1"
+        );
+        assert_eq!(told("row,column,deviation_um\n0,1,2\n"), "line 2: `0` is no row or column, which count from 1");
+        assert_eq!(told("row,column,deviation_um\n1,1,nan\n"), "line 2: `nan` is no number");
+        assert_eq!(told("row,column,deviation_um\n1,1,1\n1,1,2\n"), "line 3: row 1, column 1 is there already");
+        assert_eq!(told("row,column,deviation_um\n"), "no line is about the grid of `left`");
+        assert!(told("row,column,deviation_um\n1,1\n").contains("found record with 2 fields"));
+    }
+}
