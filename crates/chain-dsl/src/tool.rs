@@ -213,7 +213,7 @@ fn build_surface<'g>(
             let segment = along.map(|(_, segment)| segment.span);
             let places = Places { point: written.at.span, side: written.body.span, segment };
             let flipped = steel::is_flipped(context, places, &unknowns, raw, -steel)?;
-            ToolShape::Surface(Surface::parametric(parameters, position, flipped))
+            ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
         }
         // the range of a parameter is wrong, and reported
         _ => return None,

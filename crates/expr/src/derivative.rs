@@ -1,7 +1,7 @@
 //! Exact derivatives and substitution, both on the shared graph.
 
-use crate::graph::{Expr, Graph, Node, NodeId, VariableId};
-use crate::hash::{NodeMap, NodeSet};
+use crate::graph::{Expr, Graph, Node, NodeId, Placed, VariableId};
+use crate::hash::NodeMap;
 use crate::op::{Binary, Unary};
 
 impl<'g> Expr<'g> {
@@ -142,34 +142,25 @@ fn blend<'g>(side: Expr<'g>, positive: Expr<'g>, negative: Expr<'g>) -> Expr<'g>
 
 impl Graph {
     fn reachable_without_derivative(&self, root: NodeId, variable: VariableId) -> Vec<NodeId> {
-        let mut seen = NodeSet::default();
-        let mut stack = vec![root];
-        while let Some(id) = stack.pop() {
-            if self.known_derivative(variable, id).is_none() && seen.insert(id) {
-                stack.extend(self.node(id).operands());
-            }
-        }
-        let mut order: Vec<NodeId> = seen.into_iter().collect();
-        order.sort_unstable();
-        order
+        self.reachable_where([root], |id| self.known_derivative(variable, id).is_none())
     }
 
     /// The expressions with variables, or longer parts, replaced wherever they stand as a whole; simplified anew. Shared parts
     /// stay shared.
     pub fn substitute<'g>(&'g self, roots: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let table: NodeMap<NodeId, Expr<'g>> = replacements.iter().map(|(part, value)| (part.id, *value)).collect();
-        let mut image: NodeMap<NodeId, Expr<'g>> = NodeMap::default();
-        for id in self.reachable(roots.iter().map(|root| root.id)) {
-            let new = match self.node(id) {
+        let order = self.order(roots);
+        let mut image: Vec<Expr<'g>> = Vec::with_capacity(order.nodes.len());
+        for Placed { id, node, operands: [a, b] } in order.nodes {
+            image.push(match node {
                 _ if table.contains_key(&id) => table[&id],
                 Node::Constant(_) | Node::Variable(_) => self.expr(id),
-                Node::Unary(op, a) => image[&a].unary(op),
-                Node::Curve(curve, order, a) => image[&a].on_curve(curve, order),
-                Node::Binary(op, a, b) => image[&a].binary(op, image[&b]),
-            };
-            image.insert(id, new);
+                Node::Unary(op, _) => image[a].unary(op),
+                Node::Curve(curve, order, _) => image[a].on_curve(curve, order),
+                Node::Binary(op, ..) => image[a].binary(op, image[b]),
+            });
         }
-        roots.iter().map(|root| image[&root.id]).collect()
+        order.roots.into_iter().map(|root| image[root]).collect()
     }
 
     /// What the expressions take the sine or cosine of, in order of creation.

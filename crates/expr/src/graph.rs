@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use crate::curve::Curve;
-use crate::hash::{NodeMap, NodeSet};
+use crate::hash::NodeMap;
 use crate::op::{Binary, Unary};
 use crate::rules;
 
@@ -110,6 +110,62 @@ impl Store {
 #[derive(Default)]
 pub struct Graph {
     store: RefCell<Store>,
+    visits: RefCell<Visits>,
+}
+
+/// Where walks through the graph have been. The memory is kept, so that a walk costs only what it comes to.
+#[derive(Default)]
+struct Visits {
+    walk: u32,
+    /// The last walk that came to each node, and where the node stands in its order.
+    last: Vec<(u32, u32)>,
+}
+
+impl Visits {
+    fn begin(&mut self, nodes: usize) {
+        if self.walk == u32::MAX {
+            *self = Visits::default();
+        }
+        self.walk += 1;
+        self.last.resize(nodes, (0, 0));
+    }
+
+    /// Whether it is the first visit.
+    fn is_first(&mut self, id: NodeId) -> bool {
+        std::mem::replace(&mut self.last[id.0 as usize].0, self.walk) != self.walk
+    }
+
+    /// As if the walk had not been there.
+    fn forget(&mut self, id: NodeId) {
+        self.last[id.0 as usize].0 = 0;
+    }
+
+    /// Puts what the walk came to in order.
+    fn sort(&self, nodes: &mut Vec<NodeId>) {
+        let (Some(&first), Some(&last)) = (nodes.iter().min(), nodes.iter().max()) else { return };
+        let width = (last.0 - first.0) as usize;
+        if width > 16 * nodes.len() {
+            return nodes.sort_unstable();
+        }
+        nodes.clear();
+        nodes.extend((first.0..=last.0).map(NodeId).filter(|id| self.last[id.0 as usize].0 == self.walk));
+    }
+}
+
+/// Nodes, each after what it is made of.
+pub(crate) struct Order {
+    pub(crate) nodes: Vec<Placed>,
+    /// The place of each root.
+    pub(crate) roots: Vec<usize>,
+}
+
+/// A node among others.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed {
+    pub(crate) id: NodeId,
+    pub(crate) node: Node,
+    /// The places of its operands: the only one twice, none as zeros.
+    pub(crate) operands: [usize; 2],
 }
 
 impl fmt::Debug for Graph {
@@ -224,41 +280,81 @@ impl Graph {
 
     /// Every node that the roots are made of, operands before what is made of them.
     pub(crate) fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
-        let store = self.store.borrow();
-        let mut seen = NodeSet::default();
+        self.reachable_where(roots, |_| true)
+    }
+
+    /// The same without nodes of a kind, and what only these are made of.
+    pub(crate) fn reachable_where(
+        &self,
+        roots: impl IntoIterator<Item = NodeId>,
+        is_wanted: impl Fn(NodeId) -> bool,
+    ) -> Vec<NodeId> {
+        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
+        visits.begin(store.nodes.len());
         let mut stack: Vec<NodeId> = roots.into_iter().collect();
+        let mut found = Vec::new();
         while let Some(id) = stack.pop() {
-            if seen.insert(id) {
+            if !visits.is_first(id) {
+                continue;
+            }
+            if is_wanted(id) {
+                found.push(id);
                 stack.extend(store.nodes[id.0 as usize].operands());
+            } else {
+                visits.forget(id);
             }
         }
-        let mut order: Vec<NodeId> = seen.into_iter().collect();
-        order.sort_unstable();
-        order
+        visits.sort(&mut found);
+        found
+    }
+
+    /// What the roots are made of.
+    pub(crate) fn order(&self, roots: &[Expr<'_>]) -> Order {
+        let found = self.reachable(roots.iter().map(|root| root.id));
+        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
+        for (place, id) in found.iter().enumerate() {
+            visits.last[id.0 as usize].1 = place as u32;
+        }
+        let place = |id: NodeId| visits.last[id.0 as usize].1 as usize;
+        let placed = |id: NodeId| {
+            let node = store.nodes[id.0 as usize];
+            let mut operands = node.operands().map(place);
+            let first = operands.next().unwrap_or(0);
+            Placed { id, node, operands: [first, operands.next().unwrap_or(first)] }
+        };
+        Order {
+            nodes: found.iter().copied().map(placed).collect(),
+            roots: roots.iter().map(|root| place(root.id)).collect(),
+        }
     }
 
     /// Operations that depend on at least one of the `variables`: what has to be done anew where these change, with equal
     /// parts done once.
     pub fn work(&self, roots: &[Expr<'_>], variables: &[Expr<'_>]) -> usize {
-        let changing: NodeSet<NodeId> = variables.iter().map(|variable| variable.id).collect();
-        let mut changed = changing.clone();
-        for id in self.reachable(roots.iter().map(|root| root.id)) {
-            if self.node(id).operands().any(|operand| changed.contains(&operand)) {
-                changed.insert(id);
-            }
+        let variables: Vec<Option<VariableId>> = variables.iter().map(|variable| variable.as_variable()).collect();
+        let mut changes: Vec<bool> = Vec::new();
+        let mut work = 0;
+        for Placed { node, operands: [a, b], .. } in self.order(roots).nodes {
+            let changed = match node {
+                Node::Constant(_) => false,
+                Node::Variable(id) => variables.contains(&Some(id)),
+                _ => changes[a] || changes[b],
+            };
+            work += usize::from(changed && !matches!(node, Node::Variable(_)));
+            changes.push(changed);
         }
-        changed.len() - changing.len()
+        work
     }
 
     /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.
     pub fn count(&self, roots: &[Expr<'_>]) -> NodeCount {
-        let order = self.reachable(roots.iter().map(|root| root.id));
-        let mut written: NodeMap<NodeId, f64> = NodeMap::default();
-        for &id in &order {
-            let below: f64 = self.node(id).operands().map(|operand| written[&operand]).sum();
-            written.insert(id, below + 1.0);
+        let order = self.order(roots);
+        let mut written: Vec<f64> = Vec::with_capacity(order.nodes.len());
+        for Placed { node, operands, .. } in &order.nodes {
+            let operands = operands.iter().take(node.operands().count());
+            written.push(operands.map(|place| written[*place]).sum::<f64>() + 1.0);
         }
-        NodeCount { written_out: roots.iter().map(|root| written[&root.id]).sum(), shared: order.len() }
+        NodeCount { written_out: order.roots.iter().map(|root| written[*root]).sum(), shared: order.nodes.len() }
     }
 }
 

@@ -115,8 +115,11 @@ impl Tape {
         }
         let roots = definitions.iter().map(|(_, value)| vec![value.id]);
         let roots = roots.chain([outputs.iter().map(|output| output.id).collect()]);
-        let mut seen = NodeSet::default();
-        let order: Vec<NodeId> = roots.flat_map(|roots| graph.reachable(roots)).filter(|id| seen.insert(*id)).collect();
+        let mut order: Vec<NodeId> = roots.flat_map(|roots| graph.reachable(roots)).collect();
+        if !definitions.is_empty() {
+            let mut seen = NodeSet::default();
+            order.retain(|id| seen.insert(*id));
+        }
         let mut registers = Registers::new(graph, &order, outputs, definitions);
         for (index, input) in inputs.iter().enumerate() {
             registers.place.insert(input.id, index as u32);
@@ -225,7 +228,8 @@ impl Registers {
             }
         }
         let partners = partners(graph, order);
-        Registers { place: NodeMap::default(), meanings, uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
+        let place = NodeMap::with_capacity_and_hasher(order.len(), Default::default());
+        Registers { place, meanings, uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
     }
 
     fn meant(&self, id: NodeId) -> NodeId {

@@ -1,7 +1,8 @@
 //! Short sums of products in one normal form, for what construction by rules does not see: a factor that all components of
 //! a vector share, sin² + cos² spread over several terms. Only sums of a few terms are ever written out.
 
-use std::collections::BTreeMap;
+use std::cell::LazyCell;
+use std::cmp::Ordering;
 
 use crate::graph::{Expr, Graph, Node, NodeId};
 use crate::op::{Binary, Unary};
@@ -14,8 +15,9 @@ const DEEPEST: usize = 24;
 /// Coefficients that differ, or are what is left of larger ones, by less than this share are rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Powers of the factors of one term, by node.
-pub(crate) type Monomial = BTreeMap<NodeId, u32>;
+/// Powers of the factors of one term, none of them zero, in the order of the nodes.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Monomial(Vec<(NodeId, u32)>);
 
 /// A number with the size of what it was summed from.
 #[derive(Clone, Copy)]
@@ -24,7 +26,8 @@ struct Coefficient {
     size: f64,
 }
 
-type Terms = BTreeMap<Monomial, Coefficient>;
+/// Each monomial once, in their order.
+type Terms = Vec<(Monomial, Coefficient)>;
 
 /// How far products are written out.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -53,9 +56,7 @@ impl<'g> Sum<'g> {
         let mut sum = Sum { graph, terms: Terms::new() };
         for &part in parts {
             let root = Sum::of(part, products)?;
-            for (monomial, coefficient) in multiplied(&root.terms, &root.terms)? {
-                sum.add(monomial, coefficient);
-            }
+            sum.terms = added(std::mem::take(&mut sum.terms), multiplied(&root.terms, &root.terms)?);
         }
         sum.settled()
     }
@@ -63,18 +64,18 @@ impl<'g> Sum<'g> {
     fn terms(expr: Expr<'g>, products: Products, depth: usize) -> Option<Terms> {
         let graph = expr.graph;
         let below = |id: NodeId| Sum::terms(graph.expr(id), products, depth.checked_sub(1)?);
-        let whole = |id: NodeId| Terms::from([(Monomial::from([(id, 1)]), Coefficient::from(1.0))]);
+        let whole = |id: NodeId| vec![(Monomial(vec![(id, 1)]), Coefficient::from(1.0))];
+        let negated = |mut terms: Terms| {
+            terms.iter_mut().for_each(|(_, c)| *c = c.times(-1.0));
+            terms
+        };
         Some(match expr.node() {
-            Node::Constant(bits) => Terms::from([(Monomial::new(), Coefficient::from(f64::from_bits(bits)))]),
-            Node::Unary(Unary::Neg, a) => {
-                below(a)?.into_iter().map(|(monomial, c)| (monomial, c.times(-1.0))).collect()
-            }
+            Node::Constant(bits) => vec![(Monomial::default(), Coefficient::from(f64::from_bits(bits)))],
+            Node::Unary(Unary::Neg, a) => negated(below(a)?),
             Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
-                let mut sum = Sum { graph, terms: below(a)? };
-                for (monomial, c) in below(b)? {
-                    sum.add(monomial, if op == Binary::Add { c } else { c.times(-1.0) });
-                }
-                (sum.terms.len() <= MOST_TERMS).then_some(sum.terms)?
+                let (a, b) = (below(a)?, below(b)?);
+                let sum = added(a, if op == Binary::Add { b } else { negated(b) });
+                (sum.len() <= MOST_TERMS).then_some(sum)?
             }
             Node::Binary(Binary::Mul, a, b) => {
                 let factor = |id: NodeId| {
@@ -88,35 +89,32 @@ impl<'g> Sum<'g> {
         })
     }
 
-    fn add(&mut self, monomial: Monomial, coefficient: Coefficient) {
-        add(&mut self.terms, monomial, coefficient);
-    }
-
     /// With sin² + cos² = 1 wherever it applies, and without terms that vanish.
     fn settled(mut self) -> Option<Sum<'g>> {
-        self.terms.retain(|_, coefficient| !coefficient.is_rounding());
-        while let Some((sine, cosine, rest)) = self.squares_of_one_angle() {
-            let coefficient = self.terms.remove(&sine)?;
-            self.terms.remove(&cosine);
-            self.add(rest, coefficient);
-            self.terms.retain(|_, coefficient| !coefficient.is_rounding());
+        self.terms.retain(|(_, coefficient)| !coefficient.is_rounding());
+        while let Some(([sine, cosine], rest)) = self.squares_of_one_angle() {
+            let (_, coefficient) = self.terms[sine];
+            let mut k = 0..;
+            self.terms.retain(|_| k.next().is_some_and(|k| k != sine && k != cosine));
+            add(&mut self.terms, rest, coefficient);
+            self.terms.retain(|(_, coefficient)| !coefficient.is_rounding());
         }
-        self.terms.values().all(|coefficient| coefficient.value.is_finite()).then_some(self)
+        self.terms.iter().all(|(_, coefficient)| coefficient.value.is_finite()).then_some(self)
     }
 
-    /// Two terms c·x·sin²a and c·x·cos²a, and x.
-    fn squares_of_one_angle(&self) -> Option<(Monomial, Monomial, Monomial)> {
-        for (monomial, coefficient) in &self.terms {
-            for (&factor, &power) in monomial.iter().filter(|(_, power)| **power >= 2) {
+    /// The places of two terms c·x·sin²a and c·x·cos²a, and x.
+    fn squares_of_one_angle(&self) -> Option<([usize; 2], Monomial)> {
+        for (sine, (monomial, coefficient)) in self.terms.iter().enumerate() {
+            for &(factor, power) in monomial.0.iter().filter(|(_, power)| *power >= 2) {
                 let Node::Unary(Unary::Sin, angle) = self.graph.node(factor) else { continue };
                 let mut rest = monomial.clone();
-                raise(&mut rest, factor, power - 2);
+                rest.set(factor, power - 2);
                 let mut partner = rest.clone();
                 let cosine = self.graph.expr(angle).cos().id;
-                let already = partner.get(&cosine).copied().unwrap_or(0);
-                raise(&mut partner, cosine, already + 2);
-                if self.terms.get(&partner).is_some_and(|other| coefficient.plus(other.times(-1.0)).is_rounding()) {
-                    return Some((monomial.clone(), partner, rest));
+                partner.set(cosine, partner.power(cosine) + 2);
+                let Ok(cosine) = place(&self.terms, &partner) else { continue };
+                if coefficient.plus(self.terms[cosine].1.times(-1.0)).is_rounding() {
+                    return Some(([sine, cosine], rest));
                 }
             }
         }
@@ -130,35 +128,35 @@ impl<'g> Sum<'g> {
 
     /// Whether the sum is the number one.
     pub(crate) fn is_one(&self) -> bool {
-        let mut terms = self.terms.iter();
-        terms.next().is_some_and(|(monomial, c)| monomial.is_empty() && c.plus((-1.0).into()).is_rounding())
-            && terms.next().is_none()
+        matches!(&self.terms[..], [(monomial, c)] if monomial.0.is_empty() && c.plus((-1.0).into()).is_rounding())
     }
 
     /// What all terms of all sums have as a factor.
     pub(crate) fn common_factor(sums: &[Sum<'g>]) -> Monomial {
-        let mut monomials = sums.iter().flat_map(|sum| sum.terms.keys());
+        let mut monomials = sums.iter().flat_map(|sum| &sum.terms).map(|(monomial, _)| monomial);
         let mut common = monomials.next().cloned().unwrap_or_default();
         for monomial in monomials {
-            common = common
-                .into_iter()
-                .filter_map(|(factor, power)| Some((factor, power.min(*monomial.get(&factor)?))))
-                .collect();
+            common.0.iter_mut().for_each(|(factor, power)| *power = monomial.power(*factor).min(*power));
+            common.0.retain(|(_, power)| *power > 0);
         }
         common
     }
 
-    /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v are that.
-    pub(crate) fn turned(u: &Sum<'g>, v: &Sum<'g>) -> Option<(Expr<'g>, [Sum<'g>; 2])> {
+    /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v, written out,
+    /// are that.
+    pub(crate) fn turned(u: Expr<'g>, v: Expr<'g>) -> Option<(Expr<'g>, [Sum<'g>; 2])> {
         let graph = u.graph;
-        let (first, _) = u.terms.first_key_value()?;
-        first.keys().find_map(|&factor| {
+        let u = Sum::of(u, Products::WrittenOut)?;
+        // seldom needed
+        let v = LazyCell::new(|| Sum::of(v, Products::WrittenOut));
+        let (first, _) = u.terms.first()?;
+        first.0.iter().find_map(|&(factor, _)| {
             let (Node::Unary(Unary::Sin, angle) | Node::Unary(Unary::Cos, angle)) = graph.node(factor) else {
                 return None;
             };
             let angle = graph.expr(angle);
             let (a, minus_b) = u.waves(angle)?;
-            let (b, also_a) = v.waves(angle)?;
+            let (b, also_a) = v.as_ref()?.waves(angle)?;
             let same =
                 differ_by_rounding(&a.terms, 1.0, &also_a.terms) && differ_by_rounding(&b.terms, -1.0, &minus_b.terms);
             same.then_some((angle, [a, b]))
@@ -170,29 +168,25 @@ impl<'g> Sum<'g> {
         let (cosine, sine) = (angle.cos().id, angle.sin().id);
         let empty = || Sum { graph: self.graph, terms: Terms::new() };
         let (mut a, mut b) = (empty(), empty());
-        for (monomial, &coefficient) in &self.terms {
-            let mut rest = monomial.clone();
-            match (rest.remove(&cosine), rest.remove(&sine)) {
-                (Some(1), None) => a.terms.insert(rest, coefficient),
-                (None, Some(1)) => b.terms.insert(rest, coefficient),
+        for (monomial, coefficient) in &self.terms {
+            let (part, wave) = match (monomial.power(cosine), monomial.power(sine)) {
+                (1, 0) => (&mut a, cosine),
+                (0, 1) => (&mut b, sine),
                 _ => return None,
             };
+            let mut rest = monomial.clone();
+            rest.set(wave, 0);
+            add(&mut part.terms, rest, *coefficient);
         }
         Some((a, b))
     }
 
     /// Divided by something that every term has as a factor.
     pub(crate) fn without(mut self, factor: &Monomial) -> Sum<'g> {
-        self.terms = std::mem::take(&mut self.terms)
-            .into_iter()
-            .map(|(mut monomial, coefficient)| {
-                for (&node, &power) in factor {
-                    let left = monomial.get(&node).copied().unwrap_or(0) - power;
-                    raise(&mut monomial, node, left);
-                }
-                (monomial, coefficient)
-            })
-            .collect();
+        for (monomial, _) in &mut self.terms {
+            factor.0.iter().for_each(|&(node, power)| monomial.set(node, monomial.power(node) - power));
+        }
+        self.terms.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
         self
     }
 
@@ -207,16 +201,45 @@ impl<'g> Sum<'g> {
 
 /// Π factorᵖᵒʷᵉʳ.
 pub(crate) fn product<'g>(graph: &'g Graph, monomial: &Monomial) -> Expr<'g> {
-    monomial.iter().fold(graph.constant(1.0), |product, (&factor, &power)| {
+    monomial.0.iter().fold(graph.constant(1.0), |product, &(factor, power)| {
         product * graph.expr(factor).powi(i32::try_from(power).expect("a few factors"))
     })
 }
 
-fn raise(monomial: &mut Monomial, factor: NodeId, power: u32) {
-    if power == 0 {
-        monomial.remove(&factor);
-    } else {
-        monomial.insert(factor, power);
+impl Monomial {
+    fn power(&self, factor: NodeId) -> u32 {
+        self.0.iter().find(|(own, _)| *own == factor).map_or(0, |(_, power)| *power)
+    }
+
+    fn set(&mut self, factor: NodeId, power: u32) {
+        match self.0.binary_search_by_key(&factor, |(own, _)| *own) {
+            Ok(at) if power == 0 => {
+                self.0.remove(at);
+            }
+            Ok(at) => self.0[at].1 = power,
+            Err(_) if power == 0 => {}
+            Err(at) => self.0.insert(at, (factor, power)),
+        }
+    }
+
+    fn times(&self, other: &Monomial) -> Monomial {
+        let (mut a, mut b) = (self.0.as_slice(), other.0.as_slice());
+        let mut product = Vec::with_capacity(a.len() + b.len());
+        while let ([(left, power), a_rest @ ..], [(right, other), b_rest @ ..]) = (a, b) {
+            (a, b) = match left.cmp(right) {
+                Ordering::Less => (a_rest, b),
+                Ordering::Greater => (a, b_rest),
+                Ordering::Equal => (a_rest, b_rest),
+            };
+            product.push(match left.cmp(right) {
+                Ordering::Less => (*left, *power),
+                Ordering::Greater => (*right, *other),
+                Ordering::Equal => (*left, power + other),
+            });
+        }
+        product.extend_from_slice(a);
+        product.extend_from_slice(b);
+        Monomial(product)
     }
 }
 
@@ -227,26 +250,48 @@ fn multiplied(a: &Terms, b: &Terms) -> Option<Terms> {
     let mut out = Terms::new();
     for (left, c) in a {
         for (right, d) in b {
-            let mut monomial = left.clone();
-            for (&factor, &power) in right {
-                *monomial.entry(factor).or_insert(0) += power;
-            }
-            add(&mut out, monomial, Coefficient { value: c.value * d.value, size: c.size * d.size });
+            add(&mut out, left.times(right), Coefficient { value: c.value * d.value, size: c.size * d.size });
         }
     }
     Some(out)
 }
 
+/// a + b.
+fn added(a: Terms, b: Terms) -> Terms {
+    let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
+    let mut sum = Terms::with_capacity(a.len() + b.len());
+    while let (Some((left, _)), Some((right, _))) = (a.peek(), b.peek()) {
+        match left.cmp(right) {
+            Ordering::Less => sum.extend(a.next()),
+            Ordering::Greater => sum.extend(b.next()),
+            Ordering::Equal => {
+                let both = a.next().zip(b.next());
+                sum.extend(both.map(|((monomial, c), (_, d))| (monomial, c.plus(d))));
+            }
+        }
+    }
+    sum.extend(a);
+    sum.extend(b);
+    sum
+}
+
+/// Where a monomial is, or belongs.
+fn place(terms: &Terms, monomial: &Monomial) -> Result<usize, usize> {
+    terms.binary_search_by(|(own, _)| own.cmp(monomial))
+}
+
 fn add(terms: &mut Terms, monomial: Monomial, coefficient: Coefficient) {
-    let sum = terms.get(&monomial).map_or(coefficient, |before| before.plus(coefficient));
-    terms.insert(monomial, sum);
+    match place(terms, &monomial) {
+        Ok(at) => terms[at].1 = terms[at].1.plus(coefficient),
+        Err(at) => terms.insert(at, (monomial, coefficient)),
+    }
 }
 
 /// Whether a = factor · b, term by term.
 fn differ_by_rounding(a: &Terms, factor: f64, b: &Terms) -> bool {
     a.len() == b.len()
-        && a.iter().all(|(monomial, coefficient)| {
-            b.get(monomial).is_some_and(|other| coefficient.plus(other.times(-factor)).is_rounding())
+        && a.iter().zip(b).all(|((monomial, coefficient), (same, other))| {
+            monomial == same && coefficient.plus(other.times(-factor)).is_rounding()
         })
 }
 

@@ -3,7 +3,7 @@
 use crate::geometry::pose::{Pose, Twist};
 use crate::geometry::vector::{Matrix3, Vector3};
 use crate::graph::{Expr, Graph};
-use crate::terms::{Products, Sum, product};
+use crate::terms::{Sum, product};
 
 /// The line that a rotation turns about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -276,8 +276,7 @@ impl<'g> Chain<'g> {
             if divisor != same {
                 return None;
             }
-            let written_out = |numerator: Expr<'g>| Sum::of(numerator, Products::WrittenOut);
-            let (before, parts) = Sum::turned(&written_out(u)?, &written_out(v)?)?;
+            let (before, parts) = Sum::turned(u, v)?;
             if self.steps.iter().any(|step| matches!(step, Step::Rotate(_, turn) if *turn == before)) {
                 return None;
             }

@@ -23,7 +23,12 @@ pub struct Surface<'g> {
 impl<'g> Surface<'g> {
     /// A parametric surface `position(u, v)`, whose body lies against `r_u × r_v` (or along it, if `flipped`).
     pub fn parametric(unknowns: [Expr<'g>; 2], position: Vector3<'g>, flipped: bool) -> Surface<'g> {
-        let normal = Surface::raw_normal(unknowns, position).normalized();
+        Surface::along(unknowns, position, Surface::raw_normal(unknowns, position), flipped)
+    }
+
+    /// The same where [`Surface::raw_normal`] is known.
+    pub fn along(unknowns: [Expr<'g>; 2], position: Vector3<'g>, raw: Vector3<'g>, flipped: bool) -> Surface<'g> {
+        let normal = raw.normalized();
         let normal = if flipped { -normal } else { normal };
         Surface { unknowns: unknowns.to_vec(), position, normal, constraints: Vec::new() }
     }
