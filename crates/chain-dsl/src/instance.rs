@@ -7,7 +7,7 @@ use crate::context::{Constant, Context, Role, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::shown;
 use crate::functions::plural;
-use crate::model::{Bounded, Parameter};
+use crate::model::{Bounded, Giver, Parameter};
 use crate::source::{Name, Span};
 use crate::syntax::ast::{Argument, Dimension, Expression, Param};
 
@@ -32,6 +32,15 @@ impl<'a> Source<'a, '_> {
         match self {
             Source::Instance { name, .. } => Some(name.span),
             Source::Definition | Source::Standing { .. } | Source::Job => None,
+        }
+    }
+
+    /// Who gives the value that a parameter has where nobody gives another one.
+    fn by_default(&self) -> Giver {
+        match self {
+            Source::Instance { definition, .. } => Giver::Definition((*definition).to_string()),
+            Source::Standing { name } => Giver::Definition(name.node.clone()),
+            Source::Definition | Source::Job => Giver::Job,
         }
     }
 }
@@ -81,17 +90,19 @@ impl<'a, 'g> Binder<'a, 'g> {
             _ => self.overrides.get(&full_name),
         };
         let given = match (overridden, setting, &self.source) {
-            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()))),
-            (None, Some(value), Source::Instance { job, .. }) => Some((value, context.evaluate(value, job))),
-            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope))),
+            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), Giver::Caller)),
+            (None, Some(value), Source::Instance { job, .. }) => {
+                Some((value, context.evaluate(value, job), Giver::Job))
+            }
+            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
         };
         let definition = match given {
-            Some((expression, value)) => {
+            Some((expression, value, given_by)) => {
                 let Some(definition) = context.require(&value, dimension, expression.span, &what) else {
                     scope.insert(name.clone(), Value::Poison);
                     return;
                 };
-                Some((definition, expression.span))
+                Some((definition, expression.span, given_by))
             }
             None => {
                 if !matches!(self.source, Source::Definition | Source::Standing { .. }) {
@@ -100,10 +111,10 @@ impl<'a, 'g> Binder<'a, 'g> {
                 None
             }
         };
-        let value = match definition {
-            Some((definition, span)) => match context.constant(definition) {
+        let value = match &definition {
+            Some((definition, span, _)) => match context.constant(*definition) {
                 Constant::Unknown => f64::NAN,
-                _ => match context.require_constant(definition, span, &what) {
+                _ => match context.require_constant(*definition, *span, &what) {
                     Some(value) => value,
                     None => {
                         scope.insert(name.clone(), Value::Poison);
@@ -113,7 +124,7 @@ impl<'a, 'g> Binder<'a, 'g> {
             },
             None => f64::NAN,
         };
-        let checked_at = definition.map_or(param.name.span, |(_, span)| span);
+        let checked_at = definition.as_ref().map_or(param.name.span, |(_, span, _)| *span);
         let range = self.check_value(context, param, value, scope, checked_at);
         let variable = context.variable(full_name.clone(), Role::Parameter, value);
         scope.insert(name.clone(), Value::Scalar(variable, dimension));
@@ -122,7 +133,7 @@ impl<'a, 'g> Binder<'a, 'g> {
             let is_count = is_count(&param.dimension);
             self.standing.push(Bounded { name: full_name.clone(), variable, dimension, low, high, is_count });
         }
-        if let Some((definition, _)) = definition {
+        if let Some((definition, written, given_by)) = definition {
             let is_count = is_count(&param.dimension);
             self.parameters.push(Parameter {
                 name: full_name,
@@ -132,6 +143,9 @@ impl<'a, 'g> Binder<'a, 'g> {
                 value,
                 is_count,
                 range,
+                doc: param.doc.clone(),
+                given_by,
+                written,
             });
         }
     }

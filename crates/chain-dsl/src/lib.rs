@@ -63,15 +63,15 @@ mod unused;
 
 pub use codes::Code;
 pub use compile::{Compilation, compile_file, compile_text, compile_with_machine};
-pub use derivation::{derivation, equations};
+pub use derivation::{derivation, described, equations};
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use explain::UnknownCode;
 pub use format::format;
 pub use load::read_file;
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Limit, Machine, NcWord, Parameter,
-    Process, Sample, SampleGrid, ToolShape,
+    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
+    Parameter, Process, Sample, SampleGrid, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

@@ -7,6 +7,7 @@ use flank_expr::{Expr, Graph};
 
 use crate::dimension::Dimension;
 use crate::machine;
+use crate::source::Span;
 
 /// One job, ready to be solved: its parameters are variables with values beside them.
 #[derive(Clone, Debug)]
@@ -47,6 +48,23 @@ pub struct Parameter<'g> {
     pub is_count: bool,
     /// Between which values it must lie, if that is stated.
     pub range: Option<(f64, f64)>,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// Who gives it its value.
+    pub given_by: Giver,
+    /// Where that value is written.
+    pub written: Span,
+}
+
+/// Who gives a parameter its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Giver {
+    /// The machine or tool of this name, whose own value it is where nobody gives another one.
+    Definition(String),
+    /// The job.
+    Job,
+    /// The caller, from outside the text.
+    Caller,
 }
 
 /// A variable that is looked for in a range.

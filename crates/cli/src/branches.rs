@@ -96,7 +96,7 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
 }
 
 /// The place at which branches were looked for.
-fn anchor(solved: &Solved<'_, '_>) -> String {
+pub(crate) fn anchor(solved: &Solved<'_, '_>) -> String {
     let [a, b] = &solved.sample.coordinates;
     let show = |name: &str, dimension: Dimension, x: f64| format!("{name} {}", units::text(dimension, x, DECIMALS));
     let [x, y] = solved.effort.anchor;

@@ -27,14 +27,18 @@ pub(crate) fn field(radii: &[Option<f64>]) -> Field {
     }
 }
 
+/// How many points of a surface are certified, and the largest radius, mm; `None` if that was not asked for.
+pub(crate) fn proven(solved: &Solved<'_, '_>) -> Option<(usize, Option<f64>)> {
+    let radii = solved.radii.as_ref()?.iter().copied().flatten();
+    Some((radii.clone().count(), radii.reduce(f64::max)))
+}
+
 /// The largest radius of each surface that was certified; empty if none was.
 pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
-    for (solved, radii) in solved.iter().filter_map(|solved| Some((solved, solved.radii.as_ref()?))) {
-        let certified: Vec<f64> = radii.iter().copied().flatten().collect();
-        let largest = certified.iter().copied().reduce(f64::max);
+    for (solved, (count, largest)) in solved.iter().filter_map(|solved| Some((solved, proven(solved)?))) {
         let largest = largest.map_or(String::new(), |radius| format!(", each within {radius:.1e} mm"));
-        let _ = writeln!(out, "certified: {} points of {}{largest}", certified.len(), solved.surface.name);
+        let _ = writeln!(out, "certified: {count} points of {}{largest}", solved.surface.name);
     }
     if out.is_empty() { out } else { format!("\n{out}") }
 }

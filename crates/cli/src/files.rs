@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Banded, Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Scene, WriteError, write_3mf,
+    Banded, Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, WriteError, write_3mf,
     write_atomically, write_csv_in_bands, write_grid_csv, write_grid_json, write_json_in_bands, write_motion_csv,
-    write_motion_json, write_nc, write_obj, write_page, write_parquet, write_step, write_stl_in_bands, write_vtp,
+    write_motion_json, write_nc, write_obj, write_page, write_parquet, write_report_html, write_report_markdown,
+    write_step, write_stl_in_bands, write_vtp,
 };
 
-use crate::arguments::{Format, PictureFormat, TableFormat};
+use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
 use crate::spec;
 
 /// Extensions that no folder is made with.
@@ -114,6 +115,14 @@ impl<'a> Folder<'a> {
     /// A page to look at.
     pub(crate) fn page(&mut self, name: &str, dataset: &Dataset, scene: &Scene) -> Result<(), String> {
         self.write(&format!("{name}.html"), |out| write_page(dataset, scene, out))
+    }
+
+    /// A document to read.
+    pub(crate) fn report(&mut self, name: &str, report: &Report, format: ReportFormat) -> Result<(), String> {
+        match format {
+            ReportFormat::Html => self.write(name, |out| write_report_html(report, out)),
+            ReportFormat::Md => self.write(name, |out| write_report_markdown(report, out)),
+        }
     }
 
     /// Any text.

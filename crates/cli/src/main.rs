@@ -23,6 +23,7 @@ mod new;
 mod plot;
 mod reach;
 mod reasons;
+mod report;
 mod required;
 mod schema;
 mod sensitivity;
@@ -90,6 +91,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Check(arguments) => Ok(check::run(arguments)),
         Command::Convert(arguments) => convert::run(arguments),
         Command::Derive(arguments) => derive::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
         Command::Deviation(arguments) => deviation::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Plot(arguments) => plot::run(arguments),

@@ -116,6 +116,13 @@ impl Sensitivity {
         ranked
     }
 
+    /// Of each of them: its name, root of the mean square and largest normal displacement, and the unit of these.
+    pub(crate) fn rows(&self) -> Vec<[String; 4]> {
+        let row =
+            |one: &Influence| [one.parameter.clone(), micrometres(one.rms), micrometres(one.largest), one.unit.clone()];
+        self.ranked().into_iter().map(|(_, one)| row(one)).collect()
+    }
+
     /// The largest normal displacement by a parameter, mm per mm, radian or 1 of it; `None` for counts.
     pub(crate) fn most(&self, parameter: &str) -> Option<f64> {
         let of = self.influences.iter().find(|one| one.parameter == parameter)?;
@@ -158,13 +165,8 @@ pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
             out += &format!("\n{name}: no point is solved, so it cannot be said what moves it\n");
             continue;
         }
-        let ranked = sensitivity.ranked();
         let mut rows = vec![["parameter", "rms", "largest", "normal displacement in"].map(String::from)];
-        rows.extend(
-            ranked.iter().map(|(_, one)| {
-                [one.parameter.clone(), micrometres(one.rms), micrometres(one.largest), one.unit.clone()]
-            }),
-        );
+        rows.extend(sensitivity.rows());
         out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>>"));
         let idle = sensitivity.idle();
         if !idle.is_empty() {

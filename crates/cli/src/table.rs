@@ -59,23 +59,23 @@ pub(crate) struct Table<'a, 'j, 'g> {
 }
 
 /// Something that was reached: its name, unit, smallest and largest value.
-struct Reached {
-    name: String,
-    unit: &'static str,
-    ends: Option<(f64, f64)>,
+pub(crate) struct Reached {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    pub(crate) ends: Option<(f64, f64)>,
 }
 
 /// One row of the table, whatever it is of.
 #[derive(Clone, Copy)]
-struct Row<'a, 'g> {
-    name: &'a str,
+pub(crate) struct Row<'a, 'g> {
+    pub(crate) name: &'a str,
     surface: &'a GeneratedSurface<'g>,
     summary: &'a Summary,
 }
 
 impl Row<'_, '_> {
     /// Radius and z in the work's frame, then the unknowns.
-    fn reached(&self) -> Vec<Reached> {
+    pub(crate) fn reached(&self) -> Vec<Reached> {
         let length = |name: &str, ends: Ends| Reached { name: name.to_string(), unit: "mm", ends: ends.0 };
         let mut all = vec![length("rho", self.summary.rho), length("z", self.summary.z)];
         for (unknown, ends) in self.surface.unknowns.iter().zip(&self.summary.unknowns) {
@@ -107,7 +107,7 @@ impl Row<'_, '_> {
         lines.collect()
     }
 
-    fn json(&self) -> Map<String, Value> {
+    pub(crate) fn json(&self) -> Map<String, Value> {
         let reached: Vec<Value> = self
             .reached()
             .iter()
@@ -130,13 +130,13 @@ impl Row<'_, '_> {
 }
 
 impl<'g> Solved<'_, 'g> {
-    fn row(&self) -> Row<'_, 'g> {
+    pub(crate) fn row(&self) -> Row<'_, 'g> {
         Row { name: &self.surface.name, surface: self.surface, summary: &self.summary }
     }
 }
 
 impl<'g> Line<'_, 'g> {
-    fn row(&self) -> Row<'_, 'g> {
+    pub(crate) fn row(&self) -> Row<'_, 'g> {
         Row { name: &self.name, surface: self.surface, summary: &self.summary }
     }
 }
@@ -213,7 +213,8 @@ impl Reached {
     }
 }
 
-fn surface_json(solved: &Solved<'_, '_>) -> Value {
+/// All that is told of a surface as data.
+pub(crate) fn surface_json(solved: &Solved<'_, '_>) -> Value {
     let mut entries = solved.row().json();
     entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
     entries.insert("fields".to_string(), fields::json(solved));

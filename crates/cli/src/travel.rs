@@ -1,38 +1,64 @@
-//! Axes that leave their travel while the surfaces are made.
+//! How far axes go while the surfaces are made, and which leave their travel.
 
 use std::collections::HashMap;
 use std::fmt::Write;
 
-use flank_chain_dsl::Job;
+use flank_chain_dsl::{Axis, Job};
 use flank_expr::{Expr, VariableId};
 use flank_solver::{Range, extent};
 
 use crate::table::Solved;
 use crate::units;
 
-/// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
-pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+/// How far an axis goes over the motions that the solved points need.
+pub(crate) struct Run<'j, 'g> {
+    pub(crate) axis: &'j Axis<'g>,
+    machine: &'j str,
+    /// mm or radians; `None` if no solved point has its motion.
+    pub(crate) over: Option<Range>,
+}
+
+/// All axes of a job, in the order of its machines.
+pub(crate) fn runs<'j, 'g>(job: &'j Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<Run<'j, 'g>> {
     let over = reached(job, solved);
     let bindings = job.bindings();
+    let axes = job.machines.iter().flat_map(|machine| machine.axes.iter().map(|axis| (machine.name.as_str(), axis)));
+    axes.map(|(machine, axis)| Run { axis, machine, over: extent(axis.law, &over, &bindings).ok().flatten() }).collect()
+}
+
+impl<'j> Run<'j, '_> {
+    /// As the job calls it: `m.X`.
+    pub(crate) fn name(&self) -> String {
+        format!("{}.{}", self.machine, self.axis.name)
+    }
+
+    /// The machine that it is an axis of.
+    pub(crate) fn machine(&self) -> &'j str {
+        self.machine
+    }
+
+    /// Whether it leaves its travel; `None` if it has none, or no place that could be told.
+    pub(crate) fn is_beyond(&self) -> Option<bool> {
+        let (found, (low, high)) = self.over.zip(self.axis.travel)?;
+        // rounding of the law itself
+        let slack = 1e-9 * (high - low);
+        Some(found.low < low - slack || found.high > high + slack)
+    }
+}
+
+/// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
+pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
-    for machine in &job.machines {
-        for axis in &machine.axes {
-            let Some((low, high)) = axis.travel else { continue };
-            // an axis whose motion no solved point has is at no place that could be told
-            let Ok(Some(found)) = extent(axis.law, &over, &bindings) else { continue };
-            // rounding of the law itself
-            let slack = 1e-9 * (high - low);
-            if found.low < low - slack || found.high > high + slack {
-                let unit = units::symbol(axis.dimension);
-                let [from, to, low, high] =
-                    [found.low, found.high, low, high].map(|value| units::shown(axis.dimension, value));
-                let _ = writeln!(
-                    out,
-                    "beyond its travel: axis {}.{} runs from {from:.4} to {to:.4} {unit}, its travel is {low:.4} to {high:.4} {unit}",
-                    machine.name, axis.name
-                );
-            }
-        }
+    for run in runs(job, solved).iter().filter(|run| run.is_beyond() == Some(true)) {
+        let (Some(found), Some((low, high))) = (run.over, run.axis.travel) else { continue };
+        let unit = units::symbol(run.axis.dimension);
+        let [from, to, low, high] =
+            [found.low, found.high, low, high].map(|value| units::shown(run.axis.dimension, value));
+        let _ = writeln!(
+            out,
+            "beyond its travel: axis {} runs from {from:.4} to {to:.4} {unit}, its travel is {low:.4} to {high:.4} {unit}",
+            run.name()
+        );
     }
     out
 }

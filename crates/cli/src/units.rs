@@ -34,9 +34,14 @@ pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
     if is_angle(dimension) { value.to_degrees() } else { value }
 }
 
-/// A value with its unit, with some decimals, without a negative zero.
-pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
+/// A value in that unit, with some decimals, without a negative zero.
+pub(crate) fn digits(dimension: Dimension, value: f64, decimals: usize) -> String {
     let shown = shown(dimension, value);
     let visible = if shown.abs() < 0.5 * 10f64.powi(-(decimals as i32)) { 0.0 } else { shown };
-    format!("{visible:.decimals$} {}", symbol(dimension)).trim_end().to_string()
+    format!("{visible:.decimals$}")
+}
+
+/// The same with its unit.
+pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
+    format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()
 }

@@ -133,7 +133,17 @@ fn comparisons_and_pictures() {
     let measured = out.join("pinion_19x62.grid.csv");
     let back = ["deviation", PINION, "concave", "--no-picture", "--measured", measured.to_str().unwrap()];
     judge.run(&[&back[..], &at].concat(), 0);
-    judge.has_met(&["flank.deviation/1", "flank.plot/1", "flank.view/1", "flank.measure/1", "flank.grid/1"]);
+    judge.run(&[&["report", SPUR, "--certify"][..], &at].concat(), 0);
+    judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
+    judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
+    judge.has_met(&[
+        "flank.deviation/1",
+        "flank.plot/1",
+        "flank.view/1",
+        "flank.measure/1",
+        "flank.grid/1",
+        "flank.report/1",
+    ]);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use crate::dataset::Header;
 
 /// What a reader must know to use the numbers, then the caller's own sentences.
-pub(crate) fn sentences(header: &Header) -> Vec<String> {
+#[must_use]
+pub fn sentences(header: &Header) -> Vec<String> {
     let fixed = [
         "lengths in mm, angles in degrees, not reduced to one turn",
         "positions and unit normals are in the frame named with their surface",

@@ -59,6 +59,7 @@
 
 mod atomic_file;
 mod bands;
+mod base64;
 mod columns;
 mod conventions;
 mod csv_file;
@@ -75,6 +76,7 @@ mod page;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod picture;
+mod report;
 mod step;
 mod stl_file;
 mod tally;
@@ -85,6 +87,7 @@ mod xml;
 
 pub use atomic_file::write_atomically;
 pub use bands::{Banded, Taker};
+pub use conventions::sentences as conventions;
 pub use csv_file::{write_csv, write_csv_in_bands};
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
@@ -107,6 +110,9 @@ pub use parquet_file::write_parquet;
 pub use picture::{
     DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions, Section, SectionLine, ToolPosition,
     axis_positions, field_lines, field_maps, machine, picture, rows_follow_profile, section, topography,
+};
+pub use report::{
+    Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,
 };
 pub use step::{Deviation, Face, write_step};
 pub use stl_file::{write_stl, write_stl_in_bands};

@@ -350,7 +350,7 @@ impl Page {
 }
 
 /// A step as it is written in a spec.
-fn described(step: Step<'_>) -> String {
+pub fn described(step: Step<'_>) -> String {
     match step {
         Step::Translate(Vector3([x, y, z])) => format!("translate({x}, {y}, {z})"),
         Step::Rotate(Line::X, angle) => format!("rotate_x({})", angle_text(angle)),

@@ -24,6 +24,7 @@ Examples:
   flank view specs/bevel/pinion_19x62.chain             a page with the machine in 3-D
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
   flank plot specs/bevel/pinion_19x62.chain             the pictures that matter for the job
+  flank report specs/bevel/pinion_19x62.chain           all that is known of it on one page
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank fmt specs/tools/*.chain                         the settled layout
 
@@ -47,6 +48,8 @@ pub(crate) enum Command {
     Derive(Derive),
     /// Draw surfaces, maps, contact lines, sections, the machine, its motion
     Plot(Plot),
+    /// Write all that is known of a job on one page: inputs, machine, what was solved and how well, what was not checked
+    Report(Report),
     /// How far one surface lies off another one of the same body (ease-off, tooth-space width), or measured points off a surface
     Deviation(Deviation),
     /// Write nominal points and normals for a gear measuring machine
@@ -79,6 +82,7 @@ impl Command {
             Command::Derive(arguments) => arguments.json,
             Command::Measure(arguments) => arguments.json,
             Command::Plot(arguments) => arguments.json,
+            Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
             Command::Import(arguments) => arguments.json,
@@ -440,6 +444,44 @@ pub(crate) struct View {
     /// Print files and sizes as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+One file for each job, JOB.report.html or JOB.report.md; the pictures of Markdown lie beside it. The same job gives the same bytes:
+there is no date unless one is given.
+
+Examples:
+  flank report specs/bevel/pinion_19x62.chain
+  flank report specs/bevel/pinion_19x62.chain --certify --date 2026-11-21 --out order_4711.html
+  flank report specs/hobbing/undercut_gear.chain --set teeth=12 --format html,md --out reports
+  flank report specs/hobbing/helical_gear.chain --json")]
+pub(crate) struct Report {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// Folder for the files, made if it is not there; or a file that ends in .html or .md
+    #[arg(long, value_name = "PATH", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// html, md, or both with a comma; html, or what the file of --out is, without it
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) format: Vec<ReportFormat>,
+    /// Prove of each point that exactly one root lies near it, and state how near
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// A date, or another mark, to stand on the page
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) date: Option<String>,
+    /// Print what is on the page as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// One page with its pictures in it
+    Html,
+    /// Markdown with its pictures beside it
+    Md,
 }
 
 #[derive(Args, Debug)]

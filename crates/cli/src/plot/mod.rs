@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::files::Folder;
 use crate::table::aligned;
 use crate::{Ending, deviation, print, solve, spec};
-use subject::Subject;
+pub(crate) use subject::{Subject, first_sampled};
 
 /// Without `--what` the first of these that fit are drawn, and no more than so many.
 const DEFAULTS: [What; 6] =
@@ -29,9 +29,9 @@ const DEFAULTS: [What; 6] =
 const MOST_DEFAULTS: usize = 3;
 
 /// A picture, and what it shows in a few words.
-struct Drawing {
-    picture: Picture,
-    shows: String,
+pub(crate) struct Drawing {
+    pub(crate) picture: Picture,
+    pub(crate) shows: String,
 }
 
 /// A picture with its files.
@@ -42,7 +42,7 @@ struct Written {
 }
 
 /// Why a kind of picture cannot be drawn.
-type Unfit = String;
+pub(crate) type Unfit = String;
 
 pub(crate) fn run(arguments: &Plot) -> Result<Ending, Failure> {
     let graph = Graph::new();
@@ -82,22 +82,33 @@ fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<Strin
     meant.iter().map(plot).collect()
 }
 
-/// What is asked for; the first that do not fit otherwise.
+/// What is asked for.
 fn drawings(subject: &Subject<'_, '_>, arguments: &Plot) -> Result<Vec<(What, Drawing)>, String> {
+    let options = options(arguments);
     if arguments.what.is_empty() {
-        let fitting = DEFAULTS.into_iter().filter_map(|what| Some((what, draw(subject, what, arguments).ok()?)));
-        return Ok(fitting.take(MOST_DEFAULTS).collect());
+        return Ok(defaults(subject, options));
     }
     let asked = arguments.what.iter().map(|&what| {
-        draw(subject, what, arguments)
+        draw(subject, what, &arguments.of, options)
             .map(|drawing| (what, drawing))
             .map_err(|why| unfit(subject, what, &why, arguments))
     });
     asked.collect()
 }
 
-fn draw(subject: &Subject<'_, '_>, what: What, arguments: &Plot) -> Result<Drawing, Unfit> {
-    let options = options(arguments);
+/// Those that matter for a job.
+pub(crate) fn defaults(subject: &Subject<'_, '_>, options: PictureOptions) -> Vec<(What, Drawing)> {
+    let fitting = DEFAULTS.into_iter().filter_map(|what| Some((what, draw(subject, what, &[], options).ok()?)));
+    fitting.take(MOST_DEFAULTS).collect()
+}
+
+/// One picture; `of` names the parameters that sensitivities are to.
+pub(crate) fn draw(
+    subject: &Subject<'_, '_>,
+    what: What,
+    of: &[String],
+    options: PictureOptions,
+) -> Result<Drawing, Unfit> {
     match what {
         What::Surface => Ok(Drawing {
             picture: flank_export::picture(&subject.dataset, &options),
@@ -105,7 +116,7 @@ fn draw(subject: &Subject<'_, '_>, what: What, arguments: &Plot) -> Result<Drawi
         }),
         What::Topography => maps::topography(subject, &options),
         What::Curvature => maps::curvature(subject, &options),
-        What::Sensitivity => maps::sensitivity(subject, &arguments.of, &options),
+        What::Sensitivity => maps::sensitivity(subject, of, &options),
         What::Deviation => Err("it takes a second surface: --surface NAME --from OTHER".to_string()),
         What::Left => maps::left(subject, &options),
         What::Residual => maps::residual(subject, &options),
@@ -117,13 +128,14 @@ fn draw(subject: &Subject<'_, '_>, what: What, arguments: &Plot) -> Result<Drawi
 }
 
 fn unfit(subject: &Subject<'_, '_>, what: What, why: &str, arguments: &Plot) -> String {
-    let others = What::value_variants().iter().filter(|other| draw(subject, **other, arguments).is_ok());
+    let others =
+        What::value_variants().iter().filter(|other| draw(subject, **other, &arguments.of, options(arguments)).is_ok());
     let others: Vec<String> = others.map(|other| name(*other)).collect();
     format!("--what {} does not fit job {}: {why}\nwhat fits: {}", name(what), subject.job.name, others.join(", "))
 }
 
 /// As the command line has it.
-fn name(what: What) -> String {
+pub(crate) fn name(what: What) -> String {
     what.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
 }
 

@@ -9,16 +9,18 @@ use crate::arguments::{Means, Plot, What};
 use crate::solve::{self, Wanted};
 use crate::table::Solved;
 
-pub(super) struct Subject<'j, 'g> {
+pub(crate) struct Subject<'j, 'g> {
     pub(super) job: &'j Job<'g>,
-    pub(super) solved: Vec<Solved<'j, 'g>>,
+    pub(crate) solved: Vec<Solved<'j, 'g>>,
     /// All surfaces with their fields, in the order of `solved`.
-    pub(super) dataset: Dataset,
+    pub(crate) dataset: Dataset,
     /// The surfaces that maps show, as indices of `solved`; there is one at least.
     pub(super) chosen: Vec<usize>,
 }
 
 impl<'j, 'g> Subject<'j, 'g> {
+    /// Solves what is to be drawn.
+    ///
     /// # Errors
     /// In words, if a surface that is named is not sampled.
     pub(super) fn new(
@@ -27,8 +29,7 @@ impl<'j, 'g> Subject<'j, 'g> {
         header: Header,
         arguments: &Plot,
     ) -> Result<Subject<'j, 'g>, String> {
-        let first = job.surfaces.iter().find(|surface| surface.sample.is_some());
-        let first: Vec<&str> = first.map(|surface| surface.name.as_str()).into_iter().collect();
+        let first = first_sampled(job);
         let names = if names.is_empty() { &first[..] } else { names };
         let is_asked = |what: What| arguments.what.contains(&what);
         let wanted = Wanted {
@@ -43,7 +44,20 @@ impl<'j, 'g> Subject<'j, 'g> {
             let points_only = Wanted { geometry: false, sensitivity: false, ..wanted };
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
-        let solved: Vec<Solved<'j, 'g>> = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, _>>()?;
+        let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, _>>()?;
+        Subject::of(job, solved, names, header)
+    }
+
+    /// Of surfaces that are solved.
+    ///
+    /// # Errors
+    /// In words, if a surface that is named is not among them.
+    pub(crate) fn of(
+        job: &'j Job<'g>,
+        solved: Vec<Solved<'j, 'g>>,
+        names: &[&str],
+        header: Header,
+    ) -> Result<Subject<'j, 'g>, String> {
         let place = |name: &&str| {
             let found = solved.iter().position(|solved| solved.surface.name == *name);
             found.ok_or(format!("`{name}` is not sampled: add `sample {name} {{ … }}`, which says at which points"))
@@ -118,6 +132,12 @@ impl<'j, 'g> Subject<'j, 'g> {
         bindings.extend(laws.into_iter().map(|(variable, law)| (variable, bound(law, &bindings))).collect::<Vec<_>>());
         bindings
     }
+}
+
+/// The surface that maps show where nobody names one.
+pub(crate) fn first_sampled<'j>(job: &'j Job<'_>) -> Vec<&'j str> {
+    let first = job.surfaces.iter().find(|surface| surface.sample.is_some());
+    first.map(|surface| surface.name.as_str()).into_iter().collect()
 }
 
 /// An expression with numbers for its variables.

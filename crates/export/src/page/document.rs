@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::base64::encoded;
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
+use crate::base64::encoded;
 use crate::conventions::sentences;
 use crate::dataset::{Axis, Dataset, Field, Patch, Values};
 use crate::json_file;

@@ -1,6 +1,5 @@
 //! A page to look at a job with: one HTML file that needs no network.
 
-mod base64;
 mod document;
 mod scene;
 

@@ -248,6 +248,11 @@ pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Pictu
     on_sheet(options, |size| positions::compose(tables, size))
 }
 
+/// The letters of pictures that are elements of one page, once for all of them.
+pub(crate) fn letters<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> String {
+    svg::letters(pictures)
+}
+
 /// A figure on a sheet of the size that is asked for.
 fn on_sheet(options: &PictureOptions, compose: impl FnOnce([f64; 2]) -> figure::Figure) -> Picture {
     let width = options.width.clamp(*SIDES.start(), *SIDES.end());
@@ -262,6 +267,27 @@ impl Picture {
     #[must_use]
     pub fn svg(&self) -> String {
         svg::document(self)
+    }
+
+    /// The picture as an element of an HTML page that holds its [`letters`].
+    pub(crate) fn element(&self) -> String {
+        svg::element(self)
+    }
+
+    /// The same figure with so many times the pixels across and down.
+    pub(crate) fn finer(&self, times: u32) -> Picture {
+        let side = |side: u32| side.saturating_mul(times).min(*SIDES.end());
+        Picture {
+            width: side(self.width),
+            height: side(self.height),
+            unit: self.unit * f64::from(times),
+            ..self.clone()
+        }
+    }
+
+    /// What it is called.
+    pub(crate) fn title(&self) -> &str {
+        &self.title
     }
 
     /// The same picture as a PNG file, with a white ground.

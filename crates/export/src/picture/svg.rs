@@ -1,4 +1,4 @@
-//! The display list as SVG.
+//! The display list as SVG: documents; and elements of a page, which share their letters and are short.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -29,7 +29,7 @@ fn write_document(picture: &Picture, svg: &mut String) -> std::fmt::Result {
         number(down)
     )?;
     writeln!(svg, "<title>{}</title>\n<desc>{}</desc>", escaped(&picture.title), escaped(&picture.description))?;
-    write_glyphs(&picture.items, svg)?;
+    write_glyphs([picture.items.as_slice()], svg)?;
     writeln!(svg, r##"<rect width="100%" height="100%" fill="#ffffff"/>"##)?;
     writeln!(svg, r#"<g stroke-linejoin="round" stroke-linecap="round">"#)?;
     for item in &picture.items {
@@ -39,9 +39,9 @@ fn write_document(picture: &Picture, svg: &mut String) -> std::fmt::Result {
 }
 
 /// Each glyph's outline once; texts refer to it.
-fn write_glyphs(items: &[Item], svg: &mut String) -> std::fmt::Result {
+fn write_glyphs<'a>(pictures: impl IntoIterator<Item = &'a [Item]>, svg: &mut String) -> std::fmt::Result {
     let mut used: BTreeSet<GlyphId> = BTreeSet::new();
-    for item in items {
+    for item in pictures.into_iter().flatten() {
         if let Item::Text { text, .. } = item {
             used.extend(font::layout(text).iter().map(|placed| placed.glyph));
         }
@@ -51,6 +51,102 @@ fn write_glyphs(items: &[Item], svg: &mut String) -> std::fmt::Result {
         writeln!(svg, r#"<path id="g{}" d="{}"/>"#, glyph.0, font::svg_outline(glyph))?;
     }
     writeln!(svg, "</defs>")
+}
+
+/// The letters of pictures that stand in one page.
+pub(super) fn letters<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> String {
+    let mut svg = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_glyphs(pictures.into_iter().map(|picture| picture.items.as_slice()), &mut svg);
+    svg
+}
+
+/// The picture as an element of a page that has its letters.
+pub(super) fn element(picture: &Picture) -> String {
+    let mut svg = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_element(picture, &mut svg);
+    svg
+}
+
+fn write_element(picture: &Picture, svg: &mut String) -> std::fmt::Result {
+    let [across, down] = picture.sheet_size();
+    let (across, down) = (number(across), number(down));
+    let title = escaped(&picture.title);
+    writeln!(
+        svg,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across} {down}" role="img" aria-label="{title}">"#
+    )?;
+    writeln!(svg, r#"<g stroke-linejoin="round" stroke-linecap="round">"#)?;
+    for run in picture.items.chunk_by(is_alike) {
+        write_run(run, svg)?;
+    }
+    writeln!(svg, "</g>\n</svg>")
+}
+
+/// Whether two items can be painted by one element.
+fn is_alike(a: &Item, b: &Item) -> bool {
+    match (a, b) {
+        (
+            Item::Polygon { fill, outline, width, .. },
+            Item::Polygon { fill: other_fill, outline: other_outline, width: other_width, .. },
+        ) => fill == outline && other_fill == other_outline && width == other_width,
+        (Item::Line { colour, width, .. }, Item::Line { colour: other_colour, width: other_width, .. }) => {
+            colour == other_colour && width == other_width
+        }
+        _ => false,
+    }
+}
+
+/// Lines become one path, polygons in the colours of their outlines a group.
+fn write_run(run: &[Item], svg: &mut String) -> std::fmt::Result {
+    match run {
+        [Item::Line { colour, width, .. }, ..] => {
+            write!(svg, r#"<path fill="none" stroke="{}" stroke-width="{}" d=""#, colour.hex(), number(*width))?;
+            for item in run {
+                let Item::Line { points, .. } = item else { continue };
+                write_path(points, svg)?;
+            }
+            writeln!(svg, r#""/>"#)
+        }
+        [Item::Polygon { fill, outline, width, .. }, ..] if fill == outline => {
+            writeln!(svg, r#"<g fill="currentColor" stroke="currentColor" stroke-width="{}">"#, number(*width))?;
+            for item in run {
+                let Item::Polygon { points, fill, .. } = item else { continue };
+                write!(svg, r#"<path color="{}" d=""#, fill.hex())?;
+                write_path(points, svg)?;
+                writeln!(svg, r#"z"/>"#)?;
+            }
+            writeln!(svg, "</g>")
+        }
+        _ => run.iter().try_for_each(|item| write_item(item, svg)),
+    }
+}
+
+/// A tenth of a sheet unit is finer than a page is printed; each place is seen from the one before.
+fn write_path(points: &[Place], svg: &mut String) -> std::fmt::Result {
+    let mut before = [0; 2];
+    for (at, point) in points.iter().enumerate() {
+        let place = point.map(|x| (10.0 * x).round() as i64);
+        let [right, down] = [place[0] - before[0], place[1] - before[1]];
+        svg.push_str(if at == 0 { "M" } else { "l" });
+        write_tenths(right, svg)?;
+        if down >= 0 {
+            svg.push(' ');
+        }
+        write_tenths(down, svg)?;
+        before = place;
+    }
+    Ok(())
+}
+
+fn write_tenths(tenths: i64, svg: &mut String) -> std::fmt::Result {
+    let (sign, size) = (if tenths < 0 { "-" } else { "" }, tenths.unsigned_abs());
+    match (size / 10, size % 10) {
+        (whole, 0) => write!(svg, "{sign}{whole}"),
+        (0, tenth) => write!(svg, "{sign}.{tenth}"),
+        (whole, tenth) => write!(svg, "{sign}{whole}.{tenth}"),
+    }
 }
 
 fn write_item(item: &Item, svg: &mut String) -> std::fmt::Result {

@@ -1,10 +1,15 @@
-//! Numbers as base64, which pages decode without loss.
+//! Base64, which pages decode without loss.
 
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Doubles, little-endian, as base64.
-pub(super) fn encoded(numbers: impl IntoIterator<Item = f64>) -> String {
+/// Doubles, little-endian.
+pub(crate) fn encoded(numbers: impl IntoIterator<Item = f64>) -> String {
     let bytes: Vec<u8> = numbers.into_iter().flat_map(f64::to_le_bytes).collect();
+    encoded_bytes(&bytes)
+}
+
+/// Any bytes.
+pub(crate) fn encoded_bytes(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {
         let bits = (0..3).fold(0, |bits, k| bits << 8 | u32::from(three.get(k).copied().unwrap_or(0)));

@@ -1,0 +1,214 @@
+//! `flank report`
+
+mod conventions;
+mod ends;
+mod extremes;
+mod influences;
+mod inputs;
+mod machines;
+mod pictures;
+mod results;
+mod target;
+mod unchecked;
+
+use flank_chain_dsl::{Job, Sources};
+use flank_export::{Block, Header, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_expr::Graph;
+use flank_solver::TOLERANCE;
+use serde_json::{Value, json};
+
+use crate::arguments::{Means, Report, What};
+use crate::failure::{Failure, not_done};
+use crate::limits::{self, Line};
+use crate::plot::{self, Drawing, Subject, first_sampled};
+use crate::solve::{self, Wanted};
+use crate::table::{self, Solved};
+use crate::travel::{self, Run};
+use crate::{Ending, branches, certify, cut, print, required, spec};
+use target::Target;
+
+pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
+    let jobs = solve::asked(&jobs)?;
+    let hash = spec::hash(&compilation);
+    let target = Target::of(arguments, &jobs)?;
+    let mut ending = Ending::Done;
+    for job in jobs {
+        let findings = Findings::of(job, &compilation.sources, &hash, arguments)?;
+        let document = findings.document();
+        let written = target.write(&job.name, &document)?;
+        print(&if arguments.json { findings.json(&document, &written) } else { findings.told(&written) });
+        let failures = findings.failures();
+        if !failures.is_empty() {
+            anstream::eprint!("{failures}");
+            ending = Ending::Unsolved;
+        }
+    }
+    Ok(ending)
+}
+
+/// All that was found out about a job.
+struct Findings<'j, 'g> {
+    job: &'j Job<'g>,
+    sources: &'j Sources,
+    arguments: &'j Report,
+    header: Header,
+    subject: Subject<'j, 'g>,
+    /// Where surfaces and contact end.
+    lines: Vec<Line<'j, 'g>>,
+    runs: Vec<Run<'j, 'g>>,
+    /// The pictures that matter for the job.
+    drawings: Vec<(What, Drawing)>,
+    is_certified: bool,
+}
+
+impl<'j, 'g> Findings<'j, 'g> {
+    fn of(job: &'j Job<'g>, sources: &'j Sources, hash: &str, arguments: &'j Report) -> Result<Self, String> {
+        let wanted = Wanted {
+            geometry: true,
+            sensitivity: true,
+            certificates: arguments.certify,
+            together: Some("a report"),
+            means: Means::MACHINE_CODE,
+        };
+        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
+        let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
+        let mut lines = Vec::new();
+        for solved in &mut solved {
+            lines.extend(limits::lines(job, solved.surface, wanted.means));
+            lines.extend(solved.trims.drain(..).filter(|line| !line.points.is_empty()));
+        }
+        let runs = travel::runs(job, &solved);
+        let header = solve::header(&job.name, &arguments.which, hash);
+        // the page says once where all its pictures come from
+        let unsigned = Header { spec: String::new(), ..header.clone() };
+        let subject = Subject::of(job, solved, &first_sampled(job), unsigned)?;
+        let drawings = plot::defaults(&subject, PictureOptions::default());
+        Ok(Findings {
+            job,
+            sources,
+            arguments,
+            header,
+            subject,
+            lines,
+            runs,
+            drawings,
+            is_certified: arguments.certify,
+        })
+    }
+
+    fn solved(&self) -> &[Solved<'j, 'g>] {
+        &self.subject.solved
+    }
+
+    /// What was asked for and not found; empty if nothing.
+    fn failures(&self) -> String {
+        let solved = self.solved();
+        branches::ambiguous(solved)
+            + &required::text(solved)
+            + &table::unsolved(self.job, solved)
+            + &cut::unknown(solved)
+            + &certify::failed(solved)
+            + &travel::beyond(self.job, solved)
+    }
+
+    /// Points that were asked for, and of them those that were solved.
+    fn counts(&self) -> [usize; 2] {
+        let all = self.solved().iter().map(|solved| [solved.summary.asked, solved.summary.solved()]);
+        all.fold([0; 2], |[asked, found], [a, f]| [asked + a, found + f])
+    }
+
+    fn document(&self) -> Document {
+        let mut sections = vec![inputs::section(self), machines::section(self), results::section(self)];
+        sections.extend([extremes::section(self), ends::section(self)]);
+        sections.extend(influences::section(self));
+        sections.extend(pictures::section(self));
+        let unchecked = unchecked::of(self);
+        let blocks = vec![
+            Block::Heading("Of this job".to_string()),
+            Block::List(unchecked.of_job),
+            Block::Heading("By no report".to_string()),
+            Block::List(unchecked.always),
+        ];
+        sections.push(ReportSection { title: "What was not checked".to_string(), blocks });
+        sections.push(conventions::section(self));
+        let header = &self.header;
+        Document {
+            kind: "Report on generated surfaces".to_string(),
+            title: self.job.name.clone(),
+            opening: self.opening(),
+            sections,
+            closing: format!("{} \u{b7} {} \u{b7} {}", header.program, header.spec, header.spec_hash),
+        }
+    }
+
+    fn opening(&self) -> Vec<Block> {
+        let mut blocks = Vec::new();
+        let doc: Vec<&str> = self.job.doc.iter().map(|line| line.trim()).collect();
+        if !doc.is_empty() {
+            blocks.push(Block::Paragraph(doc.join(" ")));
+        }
+        let header = &self.header;
+        let mut facts = vec![("spec".to_string(), header.spec.clone())];
+        facts.extend(
+            self.arguments
+                .which
+                .set
+                .iter()
+                .map(|(name, value)| ("set by hand".to_string(), format!("{name} = {value}"))),
+        );
+        facts.extend(self.arguments.date.iter().map(|date| ("date".to_string(), date.clone())));
+        facts.push(("made by".to_string(), header.program.clone()));
+        blocks.push(Block::Facts(facts));
+        blocks.push(self.verdict());
+        blocks.extend(pictures::first(self));
+        blocks
+    }
+
+    fn verdict(&self) -> Block {
+        let [asked, found] = self.counts();
+        let worst = self.solved().iter().filter_map(|solved| solved.summary.worst_residual).reduce(f64::max);
+        let worst = worst
+            .map_or(String::new(), |worst| format!("; worst residual {worst:.1e} mm, tolerance {TOLERANCE:.0e} mm"));
+        let counts = if found == asked {
+            format!("All {asked} points are solved")
+        } else {
+            format!("{found} of {asked} points are solved")
+        };
+        let text = format!("{counts}{worst}");
+        let is_good = self.failures().is_empty();
+        let mut more = Vec::new();
+        let undercut = ends::undercut_count(self);
+        if undercut > 0 {
+            more.push(format!("{undercut} points are cut away by the tool that generates them (undercut)"));
+        }
+        more.extend(travel::beyond(self.job, self.solved()).lines().map(str::to_string));
+        more.extend(required::text(self.solved()).lines().filter(|line| !line.starts_with(' ')).map(str::to_string));
+        Block::Notice(if is_good { Tone::Good } else { Tone::Bad }, text, more)
+    }
+
+    fn json(&self, document: &Document, written: &[String]) -> String {
+        let header = &self.header;
+        let unchecked = unchecked::of(self);
+        let [asked, found] = self.counts();
+        let pictures: Vec<Value> =
+            document.figures().map(|figure| json!({ "name": figure.name, "shows": figure.caption })).collect();
+        let table = json!({
+            "schema": "flank.report/1", "job": self.job.name, "doc": self.job.doc, "spec": header.spec,
+            "spec_hash": header.spec_hash, "program": header.program, "command": conventions::command(self),
+            "date": self.arguments.date, "tolerance": TOLERANCE, "asked": asked, "solved": found,
+            "undercut": ends::undercut_count(self),
+            "inputs": inputs::json(self), "motions": inputs::motions_json(self), "machines": machines::json(self),
+            "surfaces": results::json(self), "lines": ends::json(self), "pictures": pictures,
+            "not_checked": { "of_this_job": unchecked.of_job, "by_no_report": unchecked.always },
+            "conventions": conventions::sentences(self), "files": written, "not_done": not_done(&self.failures()),
+        });
+        format!("{table:#}\n")
+    }
+
+    fn told(&self, written: &[String]) -> String {
+        let [asked, found] = self.counts();
+        format!("job {}: {found} of {asked} points\nwrote {}\n", self.job.name, written.join(", "))
+    }
+}

@@ -1,0 +1,74 @@
+//! Where reports go: a folder, or one file.
+
+use std::path::{Path, PathBuf};
+
+use flank_chain_dsl::Job;
+use flank_export::Report as Document;
+
+use crate::arguments::{PictureFormat, Report, ReportFormat};
+use crate::files::Folder;
+
+pub(super) struct Target {
+    folder: PathBuf,
+    /// The name of the one file; names of jobs otherwise.
+    file: Option<String>,
+    formats: Vec<ReportFormat>,
+}
+
+impl Target {
+    /// # Errors
+    /// In words, if one file is to hold several reports or formats.
+    pub(super) fn of(arguments: &Report, jobs: &[&Job<'_>]) -> Result<Target, String> {
+        let out = &arguments.out;
+        let Some(format) = format_of(out) else {
+            let formats = if arguments.format.is_empty() { vec![ReportFormat::Html] } else { arguments.format.clone() };
+            return Ok(Target { folder: out.clone(), file: None, formats });
+        };
+        if let Some(other) = arguments.format.iter().find(|other| **other != format) {
+            return Err(format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other)));
+        }
+        if jobs.len() > 1 {
+            let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
+            let names = names.join(", ");
+            return Err(format!(
+                "{} can hold one job of {names}: choose it with --job, or name a folder",
+                out.display()
+            ));
+        }
+        let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let file = out.file_name().map(|name| name.to_string_lossy().into_owned());
+        Ok(Target { folder: folder.to_path_buf(), file, formats: vec![format] })
+    }
+
+    /// Writes the files of a job's report and names them.
+    pub(super) fn write(&self, job: &str, document: &Document) -> Result<Vec<String>, String> {
+        let mut folder = Folder::at(&self.folder)?;
+        for format in &self.formats {
+            let name = self.file.clone().unwrap_or_else(|| format!("{job}.report.{}", extension(*format)));
+            if *format == ReportFormat::Md {
+                for figure in document.figures() {
+                    folder.picture_as(&figure.name, &figure.picture, PictureFormat::Svg)?;
+                }
+            }
+            folder.report(&name, document, *format)?;
+        }
+        Ok(folder.written)
+    }
+}
+
+/// What a path says it is; nothing for a folder.
+fn format_of(path: &Path) -> Option<ReportFormat> {
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    match &*extension {
+        "html" | "htm" => Some(ReportFormat::Html),
+        "md" => Some(ReportFormat::Md),
+        _ => None,
+    }
+}
+
+fn extension(format: ReportFormat) -> &'static str {
+    match format {
+        ReportFormat::Html => "html",
+        ReportFormat::Md => "md",
+    }
+}
