@@ -339,12 +339,20 @@ impl<'s> Grid<'s> {
     pub(crate) fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
         let new = || OnLine::new(system, ranges);
-        let Some(mut on_line) = new() else { return };
-        let (prepared, known) = (field.prepare(&mut on_line, targets), field.known_lines(lines, places));
+        let mut on_line = new();
+        let known = field.known_lines(lines, places);
+        let prepare = |on_line: &mut Option<OnLine<'s>>, line: &[[f64; 2]]| {
+            on_line.as_mut().and_then(|on_line| on_line.prepared(line, &targets[..line.len()]))
+        };
+        let prepared: Vec<Option<Vec<f64>>> = if self.is_shared() {
+            targets.par_chunks(self.columns).with_min_len(SHARED / self.columns).map_init(new, prepare).collect()
+        } else {
+            targets.chunks(self.columns).map(|line| prepare(&mut on_line, line)).collect()
+        };
         let compute = |on_line: &mut Option<OnLine<'s>>, mut strip: Strip<'_>| {
             on_line.as_mut().map_or(0, |on_line| strip.compute(on_line, &known, &prepared, targets))
         };
-        self.effort.evaluations += self.on_strips(field, &mut Some(on_line), new, compute);
+        self.effort.evaluations += self.on_strips(field, &mut on_line, new, compute);
     }
 
     /// All lines, from those that are known.
@@ -352,6 +360,11 @@ impl<'s> Grid<'s> {
         let (targets, another) = (self.targets, solvers.another());
         let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, levels, targets);
         self.effort.evaluations += self.on_strips(field, solvers.newton(), another, refine);
+    }
+
+    /// Whether it is work for several threads.
+    fn is_shared(&self) -> bool {
+        self.targets.len() >= SHARED && rayon::current_num_threads() > 1
     }
 
     /// Work on each strip, on as many threads as there are; each has a tool of its own if there are several.
@@ -363,10 +376,10 @@ impl<'s> Grid<'s> {
         work: impl Fn(&mut T, Strip<'_>) -> u64 + Sync + Send,
     ) -> u64 {
         let strips = field.strips();
-        if self.targets.len() < SHARED || rayon::current_num_threads() == 1 {
-            strips.into_iter().map(|strip| work(tool, strip)).sum()
-        } else {
+        if self.is_shared() {
             strips.into_par_iter().map_init(new, work).sum()
+        } else {
+            strips.into_iter().map(|strip| work(tool, strip)).sum()
         }
     }
 

@@ -6,6 +6,7 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
+mod numbers;
 mod on_line;
 mod strip;
 
@@ -15,6 +16,7 @@ use crate::lanes::{LaneNewton, Lanes, VITAL};
 use crate::line::{Midpoint, STENCIL};
 use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
 
+use numbers::Numbers;
 pub(crate) use on_line::{OnLine, laid_out};
 pub(crate) use strip::Strip;
 
@@ -111,7 +113,7 @@ impl Shape {
 pub(crate) struct Field {
     shape: Shape,
     ranges: Vec<Range>,
-    values: Vec<f64>,
+    values: Numbers,
     marks: Vec<[Mark; LANES]>,
     /// Points by the careful path, which does not compute what else is wanted.
     loose: Vec<usize>,
@@ -122,7 +124,7 @@ impl Field {
     /// field if there is one.
     pub(crate) fn new(ranges: &[Range], counts: [usize; 2], extras: usize, memory: Option<Field>) -> Field {
         let shape = Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras);
-        let (values, marks) = memory.map_or((Vec::new(), Vec::new()), |field| (field.values, field.marks));
+        let (values, marks) = memory.map_or_else(Default::default, |field| (field.values, field.marks));
         let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new() };
         field.clear();
         field
@@ -130,11 +132,7 @@ impl Field {
 
     fn clear(&mut self) {
         // what is not marked is not read
-        let length = self.shape.blocks() * self.shape.planes * LANES;
-        if self.values.capacity() < length {
-            self.values = vec![0.0; length];
-        }
-        self.values.resize(length, 0.0);
+        self.values.set_len(self.shape.blocks() * self.shape.planes * LANES);
         self.marks.clear();
         self.marks.resize(self.shape.blocks(), [Mark::Unknown; LANES]);
     }
@@ -323,7 +321,7 @@ impl Field {
         let mut waiting = Vec::with_capacity(LANES);
         for level in levels {
             for (line, midpoint) in lines.iter().flat_map(|line| level.iter().map(move |midpoint| (*line, midpoint))) {
-                let (known, lane) = ((self.values.as_slice(), self.marks.as_slice()), waiting.len());
+                let (known, lane) = ((&*self.values, self.marks.as_slice()), waiting.len());
                 if !interpolate(shape, midpoint, known, |at| shape.place_on(line, at), newton, lane) {
                     continue;
                 }
@@ -367,13 +365,6 @@ impl Field {
     fn apart(&self, a: (usize, usize), b: (usize, usize)) -> f64 {
         let share = |(k, range): (usize, &Range)| (self.value_in(a, k) - self.value_in(b, k)).abs() / range.width();
         self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
-    }
-
-    /// What follows from the first target of each line.
-    pub(crate) fn prepare(&self, on_line: &mut OnLine<'_>, targets: &[[f64; 2]]) -> Vec<f64> {
-        let mut prepared = Vec::new();
-        (0..self.shape.count).for_each(|line| on_line.prepare(targets[self.shape.point(line, 0)][0], &mut prepared));
-        prepared
     }
 
     /// Those of some lines that are known at some `places`, with a determinant there.

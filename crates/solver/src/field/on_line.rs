@@ -77,10 +77,17 @@ impl<'s> OnLine<'s> {
         Some(OnLine { evaluator, size, side: 0.0 })
     }
 
-    /// Adds what depends on the first target alone.
-    pub(crate) fn prepare(&mut self, target: f64, prepared: &mut Vec<f64>) {
-        self.evaluator.set_uniform(self.size, target);
-        self.evaluator.prepare(prepared);
+    /// What follows from the first target of a line, if it is the same on all of the line, and the second ones are those of another.
+    pub(crate) fn prepared(&mut self, line: &[[f64; 2]], other: &[[f64; 2]]) -> Option<Vec<f64>> {
+        let first = line.first()?[0];
+        let differs = |(target, other): (&[f64; 2], &[f64; 2])| (target[0] != first) | (target[1] != other[1]);
+        if line.iter().zip(other).map(differs).fold(false, |any, differs| any | differs) {
+            return None;
+        }
+        let mut prepared = Vec::new();
+        self.evaluator.set_uniform(self.size, first);
+        self.evaluator.prepare(&mut prepared);
+        Some(prepared)
     }
 
     /// The second targets, for all lines that follow.
@@ -97,11 +104,63 @@ impl<'s> OnLine<'s> {
         }
     }
 
-    /// The numbers of the first lanes of a line by what [`OnLine::prepare`] has found for it; whether all are plain roots.
+    /// The numbers of the first lanes of a line by what [`OnLine::prepared`] has found for it; whether all are plain roots.
     pub(crate) fn run(&mut self, prepared: &[f64], count: usize, out: &mut [Lanes]) -> bool {
         self.evaluator.set_prepared(prepared);
         self.evaluator.run_into(count, out);
         let verdicts = self.evaluator.output(out.len());
         verdicts[..count].iter().fold(true, |all, verdict| all & (*verdict <= 0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use flank_expr::Graph;
+
+    use crate::grid::{Choice, Grid, Several, solve_field};
+    use crate::roots::{MOST_BOXES, all_roots};
+    use crate::solution::{Outcome, Range};
+    use crate::solvers::Solvers;
+    use crate::system::System;
+
+    /// x = 1 / (a + b) beyond its pole, its range and a condition, with some targets beside the lines: each point is what the
+    /// closed form says.
+    #[test]
+    fn lines_that_fail_in_part() {
+        let graph = Graph::new();
+        let [x, u, a, b] = ["x", "u", "a", "b"].map(|name| graph.variable(name));
+        let residuals = [x * (u + b) - 1.0, u - a];
+        let system = System::new(&residuals, &[x, u], &[a, b]).expect("nothing is unbound");
+        let system = system.with_conditions(&residuals, &[4.5 - x], &[x * x], &[x, u, a, b]);
+        let system = system.expect("nothing is unbound");
+        assert!(system.lanes.given.as_ref().is_some_and(|given| given.on_lines.is_some()));
+        let ranges = [Range { low: 0.2, high: 5.0 }, Range { low: -3.0, high: 3.0 }];
+        let counts = [60, 75];
+        let target = |k: usize| {
+            let (i, j) = (k / counts[1], k % counts[1]);
+            let aside = if i == 41 && j == 50 || j == 7 && i == 30 { 1e-3 } else { 0.0 };
+            [-1.0 + 3.0 * i as f64 / 59.0 + aside, j as f64 / 74.0 - aside]
+        };
+        let targets: Vec<[f64; 2]> = (0..counts[0] * counts[1]).map(target).collect();
+        let roots = |targets: &[f64; 2]| all_roots(&system, &ranges, targets, MOST_BOXES);
+        let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::Refuse };
+        let grid = Grid::new(&system, &ranges, (&targets, counts), None);
+        let (field, _) = solve_field(grid, &mut Solvers::new(&system, &ranges), None, choice);
+        for (k, [a, b]) in targets.iter().enumerate() {
+            let expected = 1.0 / (a + b);
+            match field.outcome(k) {
+                Some(Outcome::Solved) => {
+                    assert!((0.2..4.5).contains(&expected));
+                    let found: Vec<f64> = field.unknowns(k).chain([field.extra(k, 0)]).collect();
+                    let pairs = found.iter().zip([expected, *a, expected * expected]);
+                    pairs.for_each(|(found, expected)| {
+                        assert!((found - expected).abs() <= 1e-11 * expected.abs().max(1.0))
+                    });
+                }
+                Some(Outcome::CutAway(_)) => assert!((4.5..5.0).contains(&expected)),
+                _ => assert!(!(0.2..5.0).contains(&expected), "{a} {b}: {expected} is not found"),
+            }
+        }
+        assert!(field.solved() > 2000);
     }
 }

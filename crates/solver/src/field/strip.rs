@@ -59,14 +59,14 @@ impl Strip<'_> {
     }
 
     /// Computes lines one after the other whose points are given by the first target of the line and the second targets of the first
-    /// line. `known` are lines with a determinant on them; from one to the next each line follows from the one before if all of that
-    /// are plain roots with determinants of that sign. What fails stays as it was. `prepared` is what [`OnLine::prepare`] has found
-    /// for each line. Gives the number of evaluations.
+    /// line: those of which there is what [`OnLine::prepared`] has found. `known` are lines with a determinant on them; from one to the
+    /// next each line follows from the one before if all of that are plain roots with determinants of that sign. What fails
+    /// stays as it was. Gives the number of evaluations.
     pub(crate) fn compute(
         &mut self,
         on_line: &mut OnLine<'_>,
         known: &[(usize, f64)],
-        prepared: &[f64],
+        lines: &[Option<Vec<f64>>],
         targets: &[[f64; 2]],
     ) -> u64 {
         let (mut second, mut evaluations) = ([0.0; LANES], 0);
@@ -75,20 +75,19 @@ impl Strip<'_> {
         let mut known = known.iter().peekable();
         let mut follows = false;
         let mut spare = vec![[0.0; LANES]; self.shape.planes];
-        for (line, prepared) in prepared.chunks_exact(prepared.len() / self.shape.count).enumerate() {
+        for (line, prepared) in lines.iter().enumerate() {
             let beside = known.next_if(|(known, _)| *known == line);
             if let Some((_, determinant)) = beside {
                 on_line.set_determinant(*determinant);
             }
             let is_free = self.is_untouched(line);
-            if beside.is_none() && !(follows && is_free) || !self.has_targets(line, &second, targets) {
-                follows = false;
-                continue;
-            }
-            evaluations += self.width as u64;
+            let is_next = beside.is_some() || follows && is_free;
+            follows = false;
+            let Some(prepared) = prepared.as_ref().filter(|_| is_next) else { continue };
             let values = &mut self.values.as_chunks_mut::<LANES>().0[line * self.shape.planes..][..self.shape.planes];
             let out = if is_free { &mut *values } else { &mut spare };
             follows = on_line.run(prepared, self.width, out);
+            evaluations += self.width as u64;
             if follows {
                 self.marks[line][..self.width].fill(Mark::Solved);
                 if !is_free {
@@ -97,14 +96,6 @@ impl Strip<'_> {
             }
         }
         evaluations
-    }
-
-    /// Whether all points of a line have one first target, and these second targets.
-    fn has_targets(&self, line: usize, second: &Lanes, targets: &[[f64; 2]]) -> bool {
-        let first = targets[self.shape.point(line, 0)][0];
-        let targets = &targets[self.shape.point(line, self.first)..][..self.width];
-        let differs = |(target, second): (&[f64; 2], &f64)| u64::from((target[0] != first) | (target[1] != *second));
-        targets.iter().zip(second).map(differs).fold(0, |all, differs| all | differs) == 0
     }
 
     fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {
