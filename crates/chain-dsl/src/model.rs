@@ -283,6 +283,18 @@ impl SampleGrid {
         }
     }
 
+    /// With these rows and these columns only.
+    ///
+    /// # Panics
+    /// If one of them is not there.
+    pub fn picked(&self, lines: &[Vec<usize>; 2]) -> SampleGrid {
+        let pick = |values: &[Vec<f64>; 2]| [0, 1].map(|k| lines[k].iter().map(|at| values[k][*at]).collect());
+        match self {
+            SampleGrid::Values(values) => SampleGrid::Values(pick(values)),
+            SampleGrid::Shares { shares, corners } => SampleGrid::Shares { shares: pick(shares), corners: *corners },
+        }
+    }
+
     /// With one more row between any two and one more column between any two, half-way.
     pub fn halved(&self) -> SampleGrid {
         let between = |values: &[f64]| {

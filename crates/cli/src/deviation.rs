@@ -328,7 +328,7 @@ impl Measured<'_, '_> {
     fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
         let dataset = self.dataset(&arguments.which, hash);
         let mut folder = Folder::at(&arguments.out)?;
-        folder.data(&self.name(), &dataset, &[&dataset.patches[0]], &arguments.format)?;
+        folder.data(&self.name(), &dataset.surfaces(), &arguments.format)?;
         if !arguments.no_picture {
             let map = field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
             folder.picture(&self.name(), &map)?;

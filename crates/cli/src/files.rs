@@ -1,13 +1,12 @@
 //! The files that a command leaves in its folder.
 
-use std::io::Write;
 use std::path::Path;
 
 use flank_export::{
-    Banded, Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, WriteError, write_3mf,
-    write_atomically, write_csv_in_bands, write_grid_csv, write_grid_json, write_json_in_bands, write_motion_csv,
+    Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target, WriteError,
+    write_3mf, write_atomically, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
     write_motion_json, write_nc, write_obj, write_page, write_parquet, write_report_html, write_report_markdown,
-    write_step, write_stl_in_bands, write_vtp,
+    write_step, write_stl, write_vtp,
 };
 
 use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
@@ -38,27 +37,17 @@ impl<'a> Folder<'a> {
         Ok(Folder { path, written: Vec::new() })
     }
 
-    /// The points in the formats that are asked for. `surfaces` hand over those of the formats that need not hold all of them
-    /// together: CSV, JSON, STL.
-    pub(crate) fn data(
-        &mut self,
-        name: &str,
-        dataset: &Dataset,
-        surfaces: &[&dyn Banded],
-        formats: &[Format],
-    ) -> Result<(), String> {
-        let header = &dataset.header;
+    /// The points in the formats that are asked for.
+    pub(crate) fn data(&mut self, name: &str, surfaces: &Surfaces<'_>, formats: &[Format]) -> Result<(), String> {
         for format in formats {
             match format {
-                Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv_in_bands(header, surfaces, out))?,
-                Format::Json => {
-                    self.write(&format!("{name}.json"), |out| write_json_in_bands(header, surfaces, out))?
-                }
-                Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl_in_bands(header, surfaces, out))?,
-                Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(dataset, out))?,
-                Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(dataset, out))?,
-                Format::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(dataset, out))?,
-                Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(dataset, out))?,
+                Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv(surfaces, out))?,
+                Format::Json => self.write(&format!("{name}.json"), |out| write_json(surfaces, out))?,
+                Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out))?,
+                Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(surfaces, out))?,
+                Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(surfaces, out))?,
+                Format::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(surfaces, out))?,
+                Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(surfaces, out))?,
             }
         }
         Ok(())
@@ -130,11 +119,7 @@ impl<'a> Folder<'a> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
-    fn write(
-        &mut self,
-        name: &str,
-        content: impl Fn(&mut (dyn Write + Send)) -> Result<(), WriteError>,
-    ) -> Result<(), String> {
+    fn write(&mut self, name: &str, content: impl Fn(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), String> {
         let path = self.path.join(name);
         write_atomically(&path, content).map_err(|error| error.to_string())?;
         self.written.push(spec::shown(&path));

@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
 use flank_export::{
-    Axis, Banded, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Unit, Unknown, picture,
+    Axis, Banded, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Surfaces, Unit, Unknown, picture,
 };
 use flank_expr::{Expr, Graph};
 use flank_solver::{Effort, Range, SurfacePoint, SurfaceProblem};
 
-use crate::arguments::{Format, Means, Solve, Which};
+use crate::arguments::{Means, Solve, Which};
 use crate::cut::Cut;
 use crate::failure::Failure;
 use crate::files::Folder;
@@ -27,13 +27,11 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
-    let meshes = [Format::Obj, Format::ThreeMf, Format::Vtp, Format::Parquet].into_iter();
-    let mesh = meshes.zip(["OBJ", "3MF", "VTK", "Parquet"]).find(|(format, _)| arguments.format.contains(format));
     let wanted = Wanted {
         geometry: arguments.geometry,
         sensitivity: arguments.sensitivity,
         certificates: arguments.certify,
-        together: arguments.step.map(|_| "--step").or(mesh.map(|(_, name)| name)),
+        together: None,
         means: arguments.means,
     };
     let mut ending = Ending::Done;
@@ -303,8 +301,8 @@ fn write_files(
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
     let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));
-    let surfaces: Vec<&dyn Banded> = patches.map(|(patch, streamed)| streamed.unwrap_or(patch)).collect();
-    folder.data(name, dataset, &surfaces, &arguments.format)?;
+    let list = patches.map(|(patch, streamed)| streamed.unwrap_or(patch)).collect();
+    folder.data(name, &Surfaces { header: &dataset.header, list }, &arguments.format)?;
     let faces: Vec<&Face> = faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
     if !faces.is_empty() {
         folder.step(name, &dataset.header, &faces)?;

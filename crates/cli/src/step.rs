@@ -11,6 +11,9 @@ use crate::table::Solved;
 /// A finer grid than this is not solved to make a face better.
 const MOST_POINTS: usize = 250_000;
 
+/// Rows, and columns, that the face of a larger grid begins with.
+const MOST_LINES: usize = 101;
+
 /// A surface's face, if it has one.
 pub(crate) struct Smooth {
     pub(crate) face: Option<Face>,
@@ -18,12 +21,18 @@ pub(crate) struct Smooth {
     is_exact_enough: bool,
 }
 
-/// The face of a surface, through its sampled points or, where that leaves it off by more than `tolerance` (mm), through grids with twice
-/// the rows and columns.
+/// The face of a surface, through its sampled points (some of very many) or, where that leaves it off by more than `tolerance` (mm),
+/// through grids with twice the rows and columns.
 pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: Wanted) -> Smooth {
     let surface = solved.surface;
-    let mut coarse = patch(job, surface, solved.sample, &solved.points);
-    let mut sample = solved.sample.clone();
+    let (mut sample, mut coarse) = match thinned(solved.sample) {
+        Some(thin) => {
+            let points = solve::points(job, surface, &thin, wanted).points;
+            let coarse = patch(job, surface, &thin, &points);
+            (thin, coarse)
+        }
+        None => (solved.sample.clone(), patch(job, surface, solved.sample, &solved.points)),
+    };
     let mut best = Smooth { face: None, name: surface.name.clone(), is_exact_enough: false };
     while let Some(face) = Face::through(&coarse) {
         let Some(finer) = finer(&sample) else { break };
@@ -53,6 +62,19 @@ fn patch<'g>(
 ) -> Patch {
     let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: sample.counts[k] });
     solve::patch(job, &surface.name, surface, axes, points)
+}
+
+/// Rows and columns spread over the sample, the outermost among them, where it is too large to be made finer.
+fn thinned<'g>(sample: &Sample<'g>) -> Option<Sample<'g>> {
+    if finer(sample).is_some() {
+        return None;
+    }
+    let lines = sample.counts.map(|count| {
+        let parts = MOST_LINES.min(count) - 1;
+        (0..=parts).map(|part| part * (count - 1) / parts.max(1)).collect::<Vec<usize>>()
+    });
+    let counts = lines.each_ref().map(Vec::len);
+    Some(Sample { counts, grid: sample.grid.picked(&lines), ..sample.clone() })
 }
 
 /// The sample with one more row between any two and one more column between any two, half-way; `None` if it would be too large.

@@ -44,3 +44,15 @@ fn what_needs_all_points_together_is_told() {
     }
     assert_eq!(std::fs::read_dir(out).unwrap().count(), 0);
 }
+
+/// A face goes through as many points as it takes, not through all.
+#[test]
+fn a_large_grid_has_a_smooth_face() {
+    let out = folder("large-face");
+    let done = solve("flank", [501, 502], &out, &["--step", "--no-picture", "--format", "stl"]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(text(&done.stderr).contains("a face through 101 x 101 points, off by at most"), "{}", text(&done.stderr));
+    // 84 bytes of head, 50 a triangle
+    let stl = std::fs::metadata(out.join("flank.stl")).expect("it is written").len();
+    assert_eq!(stl, 84 + 50 * 2 * 500 * 501);
+}

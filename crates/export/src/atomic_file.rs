@@ -1,12 +1,13 @@
 //! Files that are complete or not there.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
 use crate::error::{FileError, WriteError};
+use crate::regions::Target;
 
 /// Bytes that go to the system at once.
 const BUFFER: usize = 1 << 16;
@@ -29,15 +30,12 @@ const BUFFER: usize = 1 << 16;
 /// Names the file and says in plain words what stood in the way, be it the disk or `content`.
 pub fn write_atomically(
     path: &Path,
-    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
+    content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), FileError> {
     replace(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })
 }
 
-fn replace(
-    path: &Path,
-    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
-) -> Result<(), WriteError> {
+fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), WriteError> {
     let existing = match fs::metadata(path) {
         Ok(found) => Some(found),
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
@@ -54,7 +52,7 @@ fn replace(
 fn through_temporary(
     path: &Path,
     permissions: Option<fs::Permissions>,
-    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
+    content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let folder = folder_of(path);
     let temporary = new_temporary(&folder)?;
@@ -71,10 +69,7 @@ fn through_temporary(
     Ok(())
 }
 
-fn fill(
-    file: File,
-    content: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), WriteError>,
-) -> Result<File, WriteError> {
+fn fill(file: File, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<File, WriteError> {
     let mut buffer = BufWriter::with_capacity(BUFFER, file);
     content(&mut buffer)?;
     buffer.into_inner().map_err(|error| error.into_error().into())

@@ -31,24 +31,47 @@ impl Banded for Patch {
     }
 }
 
+/// Surfaces to be written, with where they come from.
+#[derive(Clone)]
+pub struct Surfaces<'b> {
+    /// Stated at the head of every file.
+    pub header: &'b Header,
+    /// In the order they appear in files.
+    pub list: Vec<&'b dyn Banded>,
+}
+
+impl Dataset {
+    /// Its patches as surfaces in one piece.
+    #[must_use]
+    pub fn surfaces(&self) -> Surfaces<'_> {
+        Surfaces { header: &self.header, list: self.patches.iter().map(|patch| patch as &dyn Banded).collect() }
+    }
+}
+
+impl<'b> Surfaces<'b> {
+    pub(crate) fn outlines(&self) -> impl Iterator<Item = &'b Patch> {
+        self.list.iter().map(|surface| surface.outline())
+    }
+}
+
 /// What is known of surfaces once all their points have been seen.
-pub(crate) struct Seen<'b> {
-    pub(crate) header: &'b Header,
-    pub(crate) surfaces: Vec<(&'b dyn Banded, Tally)>,
+pub(crate) struct Seen {
+    /// Of each surface.
+    pub(crate) tallies: Vec<Tally>,
     pub(crate) all: Tally,
     /// Whether a point has a reason.
     pub(crate) told: bool,
 }
 
-impl<'b> Seen<'b> {
+impl Seen {
     /// Looks at all points.
     ///
     /// # Errors
     /// If a surface is malformed, or cannot be handed over.
-    pub(crate) fn of(header: &'b Header, surfaces: &[&'b dyn Banded]) -> Result<Seen<'b>, WriteError> {
+    pub(crate) fn of(surfaces: &Surfaces<'_>) -> Result<Seen, WriteError> {
         let (mut all, mut told) = (Tally::default(), false);
-        let mut seen = Vec::new();
-        for &surface in surfaces {
+        let mut tallies = Vec::new();
+        for surface in &surfaces.list {
             let (outline, mut tally) = (surface.outline(), Tally::default());
             let count = outline.rows.count.checked_mul(outline.columns.count);
             outline.check_fields(count.unwrap_or(usize::MAX))?;
@@ -65,17 +88,8 @@ impl<'b> Seen<'b> {
                 return Err(miscounted(outline, tally.asked).into());
             }
             all.add(&tally);
-            seen.push((surface, tally));
+            tallies.push(tally);
         }
-        Ok(Seen { header, surfaces: seen, all, told })
+        Ok(Seen { tallies, all, told })
     }
-
-    pub(crate) fn outlines(&self) -> impl Iterator<Item = &'b Patch> {
-        self.surfaces.iter().map(|(surface, _)| surface.outline())
-    }
-}
-
-/// A dataset's patches as surfaces in one piece.
-pub(crate) fn in_one_piece(dataset: &Dataset) -> Vec<&dyn Banded> {
-    dataset.patches.iter().map(|patch| patch as &dyn Banded).collect()
 }

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use crate::bands::{Banded, Seen, in_one_piece};
+use crate::bands::{Seen, Surfaces};
 use crate::columns::{titles, union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Field, Header, Patch, Point};
+use crate::dataset::{Field, Patch, Point};
 use crate::error::WriteError;
 use crate::number::push_shortest;
 
@@ -18,25 +18,19 @@ use crate::number::push_shortest;
 /// not defined and where a point is not solved. An unknown or a field whose title is taken by another column is written as
 /// `name [unit]`.
 ///
-/// # Errors
-/// When the dataset is malformed, or the stream refuses.
-pub fn write_csv(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    write_csv_in_bands(&dataset.header, &in_one_piece(dataset), out)
-}
-
-/// The same for surfaces that hand over their points in bands of rows; they are asked to twice.
+/// The points are asked for twice.
 ///
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
-pub fn write_csv_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut dyn Write) -> Result<(), WriteError> {
-    let seen = Seen::of(header, surfaces)?;
-    write_head(&seen, out)?;
-    let unknowns = union_of_unknowns(seen.outlines());
-    let fields = union_of_fields(seen.outlines());
+pub fn write_csv(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let seen = Seen::of(surfaces)?;
+    write_head(surfaces, &seen, out)?;
+    let unknowns = union_of_unknowns(surfaces.outlines());
+    let fields = union_of_fields(surfaces.outlines());
     let titles: Vec<String> = titles(&unknowns, seen.told, &fields).iter().map(|title| quoted(title)).collect();
     writeln!(out, "{}", titles.join(","))?;
     let mut line = Vec::new();
-    for surface in surfaces {
+    for surface in &surfaces.list {
         let patch = surface.outline();
         let name = quoted(&patch.name);
         let places: Vec<Option<usize>> =
@@ -76,23 +70,22 @@ fn quoted(text: &str) -> String {
     cell
 }
 
-fn write_head(seen: &Seen<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let header = seen.header;
+fn write_head(surfaces: &Surfaces<'_>, seen: &Seen, out: &mut dyn Write) -> io::Result<()> {
+    let header = surfaces.header;
     writeln!(out, "# {}", one_line(&header.program))?;
     writeln!(out, "# spec: {}, hash {}", one_line(&header.spec), one_line(&header.spec_hash))?;
     writeln!(out, "# job: {}", one_line(&header.job))?;
     for sentence in sentences(header) {
         writeln!(out, "# {sentence}")?;
     }
-    for unknown in union_of_unknowns(seen.outlines()) {
+    for unknown in union_of_unknowns(surfaces.outlines()) {
         writeln!(out, "# unknown `{}` in {}", one_line(&unknown.name), unknown.unit.symbol())?;
     }
-    for field in union_of_fields(seen.outlines()) {
+    for field in union_of_fields(surfaces.outlines()) {
         let [name, unit, meaning] = [&field.name, &field.unit, &field.meaning].map(|text| one_line(text));
         writeln!(out, "# field `{name}` in {unit}: {meaning}")?;
     }
-    for (surface, tally) in &seen.surfaces {
-        let patch = surface.outline();
+    for (patch, tally) in surfaces.outlines().zip(&seen.tallies) {
         writeln!(out, "# surface `{}`: {}", one_line(&patch.name), patch.told(tally))?;
     }
     writeln!(out, "# all surfaces: {}", seen.all.verdict())

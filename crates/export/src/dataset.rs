@@ -299,11 +299,6 @@ pub(crate) fn miscounted(patch: &Patch, points: usize) -> Malformed {
 }
 
 impl Dataset {
-    /// Whether any of the points says more than its status.
-    pub(crate) fn has_reasons(&self) -> bool {
-        self.patches.iter().flat_map(|patch| &patch.points).any(|point| !point.reason.is_empty())
-    }
-
     /// Whether the grids are complete and every solved point has all its numbers. The writers of data refuse what fails.
     ///
     /// # Errors

@@ -1,30 +1,90 @@
 //! Solved points and the triangles between them, for the formats that hold a mesh.
 
-use crate::dataset::{Patch, Point};
+use crate::bands::Banded;
+use crate::dataset::Point;
+use crate::error::WriteError;
 use crate::vector::{add, cross, dot, length, sub};
 
-/// The triangles of rows of points as numbers of these, wound so that they face where the points' normals do: out of the body.
-///
-/// A grid cell becomes two triangles along its shorter diagonal, or one where a single corner is not solved.
-pub(crate) fn facets(points: &[Point], columns: usize) -> impl Iterator<Item = [usize; 3]> {
-    let rows = points.len().checked_div(columns).unwrap_or(0);
-    let cells = (1..rows).flat_map(move |i| (1..columns).map(move |j| i * columns + j));
-    cells.flat_map(move |at| {
-        let corners = [at - columns - 1, at - 1, at, at - columns].map(|at| (at, &points[at]));
-        split(corners.map(Some).map(|corner| corner.filter(|(_, point)| point.is_solved())))
-            .into_iter()
-            .flatten()
-            .map(outward)
-    })
+/// The triangles between the rows of a surface, as these are handed over.
+pub(crate) struct Mesh {
+    columns: usize,
+    /// The last row.
+    above: Vec<Point>,
+    /// Of its points, and of those handed over next, how many solved ones come before them.
+    places: Vec<usize>,
+    solved: usize,
 }
 
-type Corner<'a> = (usize, &'a Point);
+/// A corner of a triangle: a solved point with its number among the solved ones of its surface, from 0.
+pub(crate) type Numbered<'a> = (usize, &'a Point);
+
+impl Mesh {
+    pub(crate) fn of(surface: &dyn Banded) -> Mesh {
+        Mesh { columns: surface.outline().columns.count, above: Vec::new(), places: Vec::new(), solved: 0 }
+    }
+
+    /// Hands over the triangles between rows that come next and of these with the last one, wound so that they face where the
+    /// points' normals do: out of the body. A grid cell becomes two triangles along its shorter diagonal, or one where a single
+    /// corner is not solved.
+    ///
+    /// # Errors
+    /// What `take` gives.
+    pub(crate) fn add(
+        &mut self,
+        points: &[Point],
+        take: &mut dyn FnMut([Numbered<'_>; 3]) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
+        let Mesh { columns, above, places, solved } = self;
+        for point in points {
+            places.push(*solved);
+            *solved += usize::from(point.is_solved());
+        }
+        let kept = above.len();
+        let point = |at: usize| if at < kept { &above[at] } else { &points[at - kept] };
+        let rows = places.len().checked_div(*columns).unwrap_or(0);
+        for (i, j) in (1..rows).flat_map(|i| (1..*columns).map(move |j| (i, j))) {
+            let at = i * *columns + j;
+            let corners = [at - *columns - 1, at - 1, at, at - *columns].map(|at| (places[at], point(at)));
+            let corners = corners.map(|corner| Some(corner).filter(|(_, point)| point.is_solved()));
+            split(corners).into_iter().flatten().map(outward).try_for_each(&mut *take)?;
+        }
+        let last = places.len().saturating_sub(*columns);
+        *above = (last..places.len()).map(|at| point(at).clone()).collect();
+        places.drain(..last);
+        Ok(())
+    }
+}
+
+/// Hands over all triangles of a surface.
+///
+/// # Errors
+/// What `take` gives, or if the surface cannot hand over its points.
+pub(crate) fn each_facet(
+    surface: &dyn Banded,
+    take: &mut dyn FnMut([Numbered<'_>; 3]) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    let mut mesh = Mesh::of(surface);
+    surface.bands(&mut |points| mesh.add(points, take))
+}
+
+/// How many triangles a surface has.
+///
+/// # Errors
+/// If it cannot hand over its points.
+pub(crate) fn count_facets(surface: &dyn Banded) -> Result<usize, WriteError> {
+    let mut count = 0;
+    each_facet(surface, &mut |_| {
+        count += 1;
+        Ok(())
+    })?;
+    Ok(count)
+}
 
 /// Splits a cell, given by its corners in order around it, into triangles of solved points.
-fn split(corners: [Option<Corner<'_>>; 4]) -> [Option<[Corner<'_>; 3]>; 2] {
+fn split<'a>(corners: [Option<Numbered<'a>>; 4]) -> [Option<[Numbered<'a>; 3]>; 2] {
     match corners {
         [Some(a), Some(b), Some(c), Some(d)] => {
-            let diagonal = |p: Corner<'_>, q: Corner<'_>| length(sub(p.1.position, q.1.position));
+            let diagonal = |p: Numbered<'_>, q: Numbered<'_>| length(sub(p.1.position, q.1.position));
             let along_ac = diagonal(a, c) <= diagonal(b, d);
             if along_ac { [Some([a, b, c]), Some([a, c, d])] } else { [Some([a, b, d]), Some([b, c, d])] }
         }
@@ -36,34 +96,8 @@ fn split(corners: [Option<Corner<'_>>; 4]) -> [Option<[Corner<'_>; 3]>; 2] {
     }
 }
 
-fn outward([a, b, c]: [Corner<'_>; 3]) -> [usize; 3] {
+fn outward<'a>([a, b, c]: [Numbered<'a>; 3]) -> [Numbered<'a>; 3] {
     let wound = cross(sub(b.1.position, a.1.position), sub(c.1.position, a.1.position));
     let normals = add(add(a.1.normal, b.1.normal), c.1.normal);
-    if dot(wound, normals) < 0.0 { [a.0, c.0, b.0] } else { [a.0, b.0, c.0] }
-}
-
-/// Where the solved points of a patch stand when only they are written.
-pub(crate) struct Places {
-    /// Of each point of the patch, how many solved ones come before it.
-    before: Vec<usize>,
-    /// How many are solved.
-    pub(crate) solved: usize,
-}
-
-impl Places {
-    pub(crate) fn of(patch: &Patch) -> Places {
-        let mut solved = 0;
-        let place = |point: &Point| {
-            let place = solved;
-            solved += usize::from(point.is_solved());
-            place
-        };
-        let before = patch.points.iter().map(place).collect();
-        Places { before, solved }
-    }
-
-    /// From 0; of a solved point.
-    pub(crate) fn of_point(&self, at: usize) -> usize {
-        self.before[at]
-    }
+    if dot(wound, normals) < 0.0 { [a, c, b] } else { [a, b, c] }
 }

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde::ser::{Error, SerializeSeq, Serializer};
 
-use crate::bands::{Banded, Seen, in_one_piece};
+use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::sentences;
-use crate::dataset::{Axis, Dataset, Field, Header, Patch, Point, Values};
+use crate::dataset::{Axis, Field, Patch, Point, Values};
 use crate::error::WriteError;
 use crate::json_layout::{UNITS, Units, write_document};
 use crate::number::plain;
@@ -21,20 +21,14 @@ pub const SCHEMA: &str = "flank.surfaces/2";
 /// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal`, `unknowns`
 /// and `fields` are `null`; of a solved one, a field that is not defined there is.
 ///
-/// # Errors
-/// When the dataset is malformed, or the stream refuses.
-pub fn write_json(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    write_json_in_bands(&dataset.header, &in_one_piece(dataset), out)
-}
-
-/// The same for surfaces that hand over their points in bands of rows; they are asked to twice.
+/// The points are asked for twice.
 ///
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
-pub fn write_json_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut dyn Write) -> Result<(), WriteError> {
+pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     /// Document, list of surfaces, surface, list of points.
     const BROKEN: usize = 4;
-    let seen = Seen::of(header, surfaces)?;
+    let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     let document = Document {
         schema: SCHEMA,
         program: &header.program,
@@ -44,7 +38,12 @@ pub fn write_json_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut 
         conventions: sentences(header),
         units: UNITS,
         tally: TallyOut::of(&seen.all),
-        surfaces: seen.surfaces.iter().map(|(surface, tally)| surface_out(*surface, tally)).collect(),
+        surfaces: surfaces
+            .list
+            .iter()
+            .zip(&seen.tallies)
+            .map(|(surface, tally)| surface_out(*surface, tally))
+            .collect(),
     };
     write_document(&document, BROKEN, out)
 }

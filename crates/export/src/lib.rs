@@ -42,7 +42,7 @@
 //! };
 //!
 //! let mut file = Vec::new();
-//! write_csv(&dataset, &mut file)?;
+//! write_csv(&dataset.surfaces(), &mut file)?;
 //! let text = String::from_utf8(file)?;
 //! let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
 //! assert_eq!(rows[0], "surface,i,j,x,y,z,nx,ny,nz,phi,residual,status,k1");
@@ -76,6 +76,7 @@ mod page;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod picture;
+mod regions;
 mod report;
 mod step;
 mod stl_file;
@@ -86,12 +87,12 @@ mod vtp_file;
 mod xml;
 
 pub use atomic_file::write_atomically;
-pub use bands::{Banded, Taker};
+pub use bands::{Banded, Surfaces, Taker};
 pub use conventions::sentences as conventions;
-pub use csv_file::{write_csv, write_csv_in_bands};
+pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, Malformed, PictureError, WriteError};
-pub use json_file::{SCHEMA, write_json, write_json_in_bands};
+pub use json_file::{SCHEMA, write_json};
 pub use measuring::{
     FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredPoint, MeasuringGrid, NominalFlank, Part,
     read_measured, write_grid_csv, write_grid_json,
@@ -111,11 +112,12 @@ pub use picture::{
     DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions, Section, SectionLine, ToolPosition,
     axis_positions, field_lines, field_maps, machine, picture, rows_follow_profile, section, topography,
 };
+pub use regions::Target;
 pub use report::{
     Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,
 };
 pub use step::{Deviation, Face, write_step};
-pub use stl_file::{write_stl, write_stl_in_bands};
+pub use stl_file::write_stl;
 pub use tally::Tally;
 pub use threemf_file::write_3mf;
 pub use vtp_file::write_vtp;

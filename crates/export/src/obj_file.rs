@@ -2,40 +2,59 @@
 
 use std::io::Write;
 
+use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::Dataset;
+use crate::dataset::Point;
 use crate::error::WriteError;
-use crate::facets::{Places, facets};
-use crate::number::shortest;
+use crate::facets::each_facet;
+use crate::number::push_shortest;
 
-/// Writes all patches as one Wavefront OBJ mesh, one object for each patch: solved points in mm with their normals, and triangles
+/// Writes all surfaces as one Wavefront OBJ mesh, one object for each: solved points in mm with their normals, and triangles
 /// that face out of the body. Comments at the head state the conventions.
 ///
+/// The points are asked for four times.
+///
 /// # Errors
-/// When the dataset is malformed, or the stream refuses.
-pub fn write_obj(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    dataset.check()?;
-    let header = &dataset.header;
+/// When a surface is malformed or cannot hand over its points, or the stream refuses.
+pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     writeln!(out, "# {}; spec: {}; job: {}", one_line(&header.program), one_line(&header.spec), one_line(&header.job))?;
-    sentences(&dataset.header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
+    sentences(header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
     let mut before = 0;
-    for patch in &dataset.patches {
-        writeln!(out, "# frame {}\no {}", one_line(&patch.frame), one_line(&patch.name))?;
-        let places = Places::of(patch);
-        for (letters, vector) in
-            [("v", (|point| point.position) as fn(&crate::dataset::Point) -> [f64; 3]), ("vn", |point| point.normal)]
-        {
-            for point in patch.points.iter().filter(|point| point.is_solved()) {
-                let [x, y, z] = vector(point).map(shortest);
-                writeln!(out, "{letters} {x} {y} {z}")?;
-            }
-        }
-        for facet in facets(&patch.points, patch.columns.count) {
+    for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {
+        let outline = surface.outline();
+        writeln!(out, "# frame {}\no {}", one_line(&outline.frame), one_line(&outline.name))?;
+        write_vectors(*surface, "v", |point| point.position, out)?;
+        write_vectors(*surface, "vn", |point| point.normal, out)?;
+        each_facet(*surface, &mut |corners| {
             // counted from 1, over all objects
-            let [a, b, c] = facet.map(|at| before + places.of_point(at) + 1);
-            writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
-        }
-        before += places.solved;
+            let [a, b, c] = corners.map(|(place, _)| before + place + 1);
+            Ok(writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?)
+        })?;
+        before += tally.solved;
     }
     Ok(())
+}
+
+/// A vector of each solved point, one a line.
+fn write_vectors(
+    surface: &dyn Banded,
+    letters: &str,
+    vector: fn(&Point) -> [f64; 3],
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    let mut line = Vec::new();
+    surface.bands(&mut |points| {
+        for point in points.iter().filter(|point| point.is_solved()) {
+            line.clear();
+            line.extend_from_slice(letters.as_bytes());
+            for number in vector(point) {
+                line.push(b' ');
+                push_shortest(number, &mut line);
+            }
+            line.push(b'\n');
+            out.write_all(&line)?;
+        }
+        Ok(())
+    })
 }

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
-use crate::bands::{Banded, Seen, in_one_piece};
+use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::one_line;
-use crate::dataset::{Dataset, Header, Point};
+use crate::dataset::Header;
 use crate::error::WriteError;
-use crate::facets::facets;
+use crate::facets::{Numbered, each_facet};
 use crate::vector::{cross, sub, unit};
 
 /// Writes all patches as one binary STL mesh, mm.
@@ -15,30 +15,24 @@ use crate::vector::{cross, sub, unit};
 /// wound so that they face where the normals of the points do, out of the body. A triangle that has no area in the
 /// format's single precision is left out. The surfaces are open: the mesh has no volume.
 ///
-/// # Errors
-/// When the dataset is malformed, there are more triangles than the format can count, or the stream refuses.
-pub fn write_stl(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    write_stl_in_bands(&dataset.header, &in_one_piece(dataset), out)
-}
-
-/// The same for surfaces that hand over their points in bands of rows; they are asked to three times.
+/// The points are asked for three times.
 ///
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, there are more triangles than the format can count, or the
 /// stream refuses.
-pub fn write_stl_in_bands(header: &Header, surfaces: &[&dyn Banded], out: &mut dyn Write) -> Result<(), WriteError> {
-    Seen::of(header, surfaces)?;
+pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    Seen::of(surfaces)?;
     let mut triangles = 0;
-    for surface in surfaces {
+    for surface in &surfaces.list {
         each_triangle(*surface, &mut |_| {
             triangles += 1;
             Ok(())
         })?;
     }
     let count = u32::try_from(triangles).map_err(|_| WriteError::TooManyTriangles { triangles })?;
-    out.write_all(&head(header))?;
+    out.write_all(&head(surfaces.header))?;
     out.write_all(&count.to_le_bytes())?;
-    for surface in surfaces {
+    for surface in &surfaces.list {
         each_triangle(*surface, &mut |triangle| {
             let mut bytes = [0; 50];
             for (place, number) in bytes.chunks_exact_mut(4).zip(triangle.as_flattened()) {
@@ -62,28 +56,18 @@ fn head(header: &Header) -> [u8; 80] {
 
 type Triangle = [[f32; 3]; 4];
 
-/// The triangles between each row and the one before, as rows are handed over.
+/// The triangles that have an area in the file.
 fn each_triangle(
     surface: &dyn Banded,
     take: &mut dyn FnMut(&Triangle) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let columns = surface.outline().columns.count;
-    let mut above: Vec<Point> = Vec::new();
-    surface.bands(&mut |points| {
-        let between = above.iter().chain(points).take(2 * above.len()).cloned().collect::<Vec<Point>>();
-        for points in [&between, points] {
-            let triangles = facets(points, columns).filter_map(|facet| triangle(points, facet));
-            triangles.into_iter().try_for_each(|triangle| take(&triangle))?;
-        }
-        above = points[points.len().saturating_sub(columns)..].to_vec();
-        Ok(())
-    })
+    each_facet(surface, &mut |corners| triangle(corners).map_or(Ok(()), |triangle| take(&triangle)))
 }
 
 /// Normal and corners; nothing where the rounded corners leave no area.
-fn triangle(points: &[Point], facet: [usize; 3]) -> Option<Triangle> {
+fn triangle(corners: [Numbered<'_>; 3]) -> Option<Triangle> {
     // Rounded first: the normal is that of the triangle in the file.
-    let corners = facet.map(|at| points[at].position.map(single));
+    let corners = corners.map(|(_, point)| point.position.map(single));
     let [a, b, c] = corners.map(|corner| corner.map(f64::from));
     let normal = unit(cross(sub(b, a), sub(c, a)))?.map(single);
     Some([normal, corners[0], corners[1], corners[2]])

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use zip::write::SimpleFileOptions;
 use zip::{DateTime, ZipWriter};
 
+use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Patch};
 use crate::error::WriteError;
-use crate::facets::{Places, facets};
-use crate::number::shortest;
+use crate::facets::{count_facets, each_facet};
+use crate::number::push_shortest;
 use crate::xml::escaped;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -27,11 +27,13 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 /// Writes all patches as one 3MF package in mm: an object of type `surface` for each patch with a triangle, since open meshes have no
 /// volume; triangles face out of the body. Its metadata state the conventions.
 ///
+/// The points are asked for four times.
+///
 /// # Errors
-/// When the dataset is malformed, or the stream refuses.
-pub fn write_3mf(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    dataset.check()?;
-    // one date for all, so that the same dataset gives the same bytes
+/// When a surface is malformed or cannot hand over its points, or the stream refuses.
+pub fn write_3mf(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    Seen::of(surfaces)?;
+    // one date for all, so that the same surfaces give the same bytes
     let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
     let mut package = ZipWriter::new_stream(out);
     for (name, text) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)] {
@@ -40,15 +42,15 @@ pub fn write_3mf(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
     }
     package.start_file("3D/3dmodel.model", options.large_file(true)).map_err(io::Error::from)?;
     let mut model = io::BufWriter::new(&mut package);
-    write_model(dataset, &mut model)?;
+    write_model(surfaces, &mut model)?;
     model.flush()?;
     drop(model);
     package.finish().map_err(io::Error::from)?.into_inner().flush()?;
     Ok(())
 }
 
-fn write_model(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    let header = &dataset.header;
+fn write_model(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let header = surfaces.header;
     let text = |text: &str| escaped(&one_line(text));
     writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
     writeln!(
@@ -58,37 +60,47 @@ fn write_model(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError>
     writeln!(out, r#"<metadata name="Title">{}</metadata>"#, text(&header.job))?;
     writeln!(out, r#"<metadata name="Application">{}</metadata>"#, text(&header.program))?;
     let about = [format!("spec: {}, hash {}", header.spec, header.spec_hash)];
-    let about: Vec<String> = about.into_iter().chain(sentences(&dataset.header)).collect();
+    let about: Vec<String> = about.into_iter().chain(sentences(header)).collect();
     writeln!(out, r#"<metadata name="Description">{}</metadata>"#, text(&about.join("; ")))?;
-    let drawn = || {
-        dataset
-            .patches
-            .iter()
-            .enumerate()
-            .filter(|(_, patch)| facets(&patch.points, patch.columns.count).next().is_some())
-    };
+    let mut drawn = Vec::new();
+    for (k, surface) in surfaces.list.iter().enumerate() {
+        if count_facets(*surface)? > 0 {
+            drawn.push((k + 1, *surface));
+        }
+    }
     writeln!(out, "<resources>")?;
-    drawn().try_for_each(|(k, patch)| write_object(k + 1, patch, out))?;
+    drawn.iter().try_for_each(|(id, surface)| write_object(*id, *surface, out))?;
     writeln!(out, "</resources>\n<build>")?;
-    drawn().try_for_each(|(k, _)| writeln!(out, r#"<item objectid="{}"/>"#, k + 1))?;
+    drawn.iter().try_for_each(|(id, _)| writeln!(out, r#"<item objectid="{id}"/>"#))?;
     writeln!(out, "</build>\n</model>")?;
     Ok(())
 }
 
-fn write_object(id: usize, patch: &Patch, out: &mut dyn Write) -> Result<(), WriteError> {
-    let name = escaped(&one_line(&format!("{} in {}", patch.name, patch.frame)));
+fn write_object(id: usize, surface: &dyn Banded, out: &mut dyn Write) -> Result<(), WriteError> {
+    let outline = surface.outline();
+    let name = escaped(&one_line(&format!("{} in {}", outline.name, outline.frame)));
     writeln!(out, r#"<object id="{id}" type="surface" name="{name}"><mesh>"#)?;
     writeln!(out, "<vertices>")?;
-    for point in patch.points.iter().filter(|point| point.is_solved()) {
-        let [x, y, z] = point.position.map(shortest);
-        writeln!(out, r#"<vertex x="{x}" y="{y}" z="{z}"/>"#)?;
-    }
+    let mut line = Vec::new();
+    surface.bands(&mut |points| {
+        for point in points.iter().filter(|point| point.is_solved()) {
+            line.clear();
+            line.extend_from_slice(b"<vertex");
+            for (name, number) in [" x=\"", " y=\"", " z=\""].iter().zip(point.position) {
+                line.extend_from_slice(name.as_bytes());
+                push_shortest(number, &mut line);
+                line.push(b'"');
+            }
+            line.extend_from_slice(b"/>\n");
+            out.write_all(&line)?;
+        }
+        Ok(())
+    })?;
     writeln!(out, "</vertices>\n<triangles>")?;
-    let places = Places::of(patch);
-    for facet in facets(&patch.points, patch.columns.count) {
-        let [a, b, c] = facet.map(|at| places.of_point(at));
-        writeln!(out, r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#)?;
-    }
+    each_facet(surface, &mut |corners| {
+        let [a, b, c] = corners.map(|(place, _)| place);
+        Ok(writeln!(out, r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#)?)
+    })?;
     writeln!(out, "</triangles>\n</mesh></object>")?;
     Ok(())
 }

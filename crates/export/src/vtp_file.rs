@@ -1,30 +1,35 @@
 //! Surfaces with all that is known of their points as VTK PolyData, which ParaView opens.
 
-use std::io::Write;
-
+use crate::bands::{Banded, Seen, Surfaces};
 use crate::columns::{union_of_fields, union_of_unknowns};
 use crate::conventions::{one_line, sentences};
-use crate::dataset::{Dataset, Field, Patch, Unknown, Values};
+use crate::dataset::{Field, Patch, Point, Unknown, Values};
 use crate::error::WriteError;
-use crate::facets::{Places, facets};
-use crate::tally::Tally;
+use crate::facets::{Mesh, count_facets};
+use crate::regions::{Regions, Target};
 use crate::xml::escaped;
 
-/// Writes all patches as one VTK PolyData file (`.vtp`, XML with raw appended data, little-endian), one piece for each patch.
+/// Writes all surfaces as one VTK PolyData file (`.vtp`, XML with raw appended data, little-endian), one piece for each.
 ///
 /// Points are the solved ones, mm. Each has its `normal`, `row` and `column` in the grid, its patch's number as `surface` (from 0, in
 /// the order of the file's head), its unknowns and fields as `name [unit]`, and its `residual`; NaN where a patch has no such
 /// unknown or field, or a field is not defined. Cells are triangles that face out of the body, as in STL. A comment at the head
 /// states the conventions, and how many points were asked for.
 ///
+/// The points are asked for three times; the arrays are filled side by side, so that no more than a part of each is held.
+///
 /// # Errors
-/// When the dataset is malformed, or the stream refuses.
-pub fn write_vtp(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteError> {
-    dataset.check()?;
-    let pieces: Vec<Piece<'_>> = dataset.patches.iter().enumerate().map(|(k, patch)| Piece::new(k, patch)).collect();
-    let arrays = arrays(dataset);
+/// When a surface is malformed or cannot hand over its points, or the target refuses.
+pub fn write_vtp(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), WriteError> {
+    let seen = Seen::of(surfaces)?;
+    let arrays = arrays(surfaces);
+    let pieces = surfaces.list.iter().zip(&seen.tallies).enumerate();
+    let pieces = pieces.map(|(number, (surface, tally))| {
+        Ok(Piece { number, surface: *surface, solved: tally.solved, triangles: count_facets(*surface)? })
+    });
+    let pieces = pieces.collect::<Result<Vec<Piece<'_>>, WriteError>>()?;
     out.write_all(b"<?xml version=\"1.0\"?>\n")?;
-    writeln!(out, "<!--\n{}\n-->", head(dataset))?;
+    writeln!(out, "<!--\n{}\n-->", head(surfaces, &seen))?;
     writeln!(out, "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">")?;
     writeln!(out, "<PolyData>")?;
     let mut offset = 0;
@@ -32,21 +37,16 @@ pub fn write_vtp(dataset: &Dataset, out: &mut dyn Write) -> Result<(), WriteErro
         piece.declare(&arrays, &mut offset, out)?;
     }
     write!(out, "</PolyData>\n<AppendedData encoding=\"raw\">\n_")?;
-    for piece in &pieces {
-        for array in &arrays {
-            out.write_all(&piece.bytes(array).to_le_bytes())?;
-            piece.write(array, out)?;
-        }
-    }
+    pieces.iter().try_for_each(|piece| piece.write(&arrays, out))?;
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")?;
     Ok(())
 }
 
-/// The solved points of a patch and its triangles.
+/// The solved points of a surface and its triangles.
 struct Piece<'a> {
     number: usize,
-    patch: &'a Patch,
-    places: Places,
+    surface: &'a dyn Banded,
+    solved: usize,
     triangles: usize,
 }
 
@@ -78,19 +78,19 @@ enum What<'a> {
 }
 
 /// All arrays of a piece, in the order in which they stand in the file.
-fn arrays(dataset: &Dataset) -> Vec<Array<'_>> {
+fn arrays<'b>(surfaces: &Surfaces<'b>) -> Vec<Array<'b>> {
     let mut arrays = Vec::new();
     let mut add = |name: String, section, what| arrays.push(Array { name, section, what });
     add("normal".into(), Section::PointData, What::Normal);
     add("row".into(), Section::PointData, What::Row);
     add("column".into(), Section::PointData, What::Column);
     add("surface".into(), Section::PointData, What::Surface);
-    for unknown in union_of_unknowns(&dataset.patches) {
+    for unknown in union_of_unknowns(surfaces.outlines()) {
         let name = format!("{} [{}]", unknown.name, unknown.unit.symbol());
         add(name, Section::PointData, What::Unknown(unknown));
     }
     add("residual".into(), Section::PointData, What::Residual);
-    for field in union_of_fields(&dataset.patches) {
+    for field in union_of_fields(surfaces.outlines()) {
         add(format!("{} [{}]", field.name, field.unit), Section::PointData, What::Field(field));
     }
     add("points".into(), Section::Points, What::Position);
@@ -121,32 +121,23 @@ impl Array<'_> {
     }
 }
 
-impl<'a> Piece<'a> {
-    fn new(number: usize, patch: &'a Patch) -> Piece<'a> {
-        Piece {
-            number,
-            patch,
-            places: Places::of(patch),
-            triangles: facets(&patch.points, patch.columns.count).count(),
-        }
-    }
-
+impl Piece<'_> {
     /// How many bytes an array takes.
     fn bytes(&self, array: &Array<'_>) -> u64 {
         let tuples = match array.what {
             What::Connectivity => 3 * self.triangles,
             What::Offsets => self.triangles,
-            _ => self.places.solved,
+            _ => self.solved,
         };
         (tuples * array.components() * array.kind().1) as u64
     }
 
     /// What stands of the piece in the XML part; `offset` goes on to where the next piece's data begin.
-    fn declare(&self, arrays: &[Array<'_>], offset: &mut u64, out: &mut dyn Write) -> Result<(), WriteError> {
+    fn declare(&self, arrays: &[Array<'_>], offset: &mut u64, out: &mut dyn Target) -> Result<(), WriteError> {
         writeln!(
             out,
             "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">",
-            self.places.solved, self.triangles
+            self.solved, self.triangles
         )?;
         let sections = [
             (Section::PointData, "PointData Normals=\"normal\"", "PointData"),
@@ -171,52 +162,92 @@ impl<'a> Piece<'a> {
         Ok(())
     }
 
-    fn write(&self, array: &Array<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-        let solved = || self.patch.numbered(0, &self.patch.points).filter(|(_, _, point)| point.is_solved());
-        let columns = self.patch.columns.count;
-        let mut float = |numbers: &[f64]| numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()));
-        match array.what {
-            What::Normal => solved().try_for_each(|(_, _, point)| float(&point.normal))?,
-            What::Position => solved().try_for_each(|(_, _, point)| float(&point.position))?,
-            What::Residual => solved().try_for_each(|(_, _, point)| float(&[point.residual]))?,
+    /// The arrays, each with its length before it.
+    fn write(&self, arrays: &[Array<'_>], out: &mut dyn Target) -> Result<(), WriteError> {
+        let mut regions = Regions::new(out.stream_position()?, arrays.iter().map(|array| 8 + self.bytes(array)));
+        for (k, array) in arrays.iter().enumerate() {
+            regions.push(k, &self.bytes(array).to_le_bytes(), out)?;
+        }
+        let patch = self.surface.outline();
+        let of_points: Vec<(usize, OfPoint<'_>)> = arrays
+            .iter()
+            .enumerate()
+            .filter(|(_, array)| array.section != Section::Polys)
+            .map(|(k, array)| (k, array.of_point(patch, self.number)))
+            .collect();
+        let polys = |what: fn(&What<'_>) -> bool| arrays.iter().position(|array| what(&array.what));
+        let connectivity = polys(|what| matches!(what, What::Connectivity)).expect("every piece has one");
+        let offsets = polys(|what| matches!(what, What::Offsets)).expect("every piece has them");
+        let (mut first, mut triangles, mut mesh, mut bytes) = (0, 0_i64, Mesh::of(self.surface), Vec::new());
+        self.surface.bands(&mut |points| {
+            for (at, (i, j, point)) in (first..).zip(patch.numbered(first, points)) {
+                for (k, of_point) in of_points.iter().filter(|_| point.is_solved()) {
+                    bytes.clear();
+                    of_point(&mut bytes, [at, i, j], point);
+                    regions.push(*k, &bytes, out)?;
+                }
+            }
+            first += points.len();
+            mesh.add(points, &mut |corners| {
+                triangles += 1;
+                regions.push(offsets, &(3 * triangles).to_le_bytes(), out)?;
+                let corners = corners.map(|(place, _)| (place as i64).to_le_bytes());
+                Ok(regions.push(connectivity, corners.as_flattened(), out)?)
+            })
+        })?;
+        Ok(regions.finish(out)?)
+    }
+}
+
+/// Puts what an array has of a point behind its bytes: of the point with this number, row and column.
+type OfPoint<'p> = Box<dyn Fn(&mut Vec<u8>, [usize; 3], &Point) + 'p>;
+
+impl Array<'_> {
+    /// The numbers of the points of a surface.
+    fn of_point<'p>(&'p self, patch: &'p Patch, number: usize) -> OfPoint<'p> {
+        fn float(bytes: &mut Vec<u8>, numbers: &[f64]) {
+            numbers.iter().for_each(|number| bytes.extend_from_slice(&number.to_le_bytes()));
+        }
+        fn whole(bytes: &mut Vec<u8>, number: usize) {
+            bytes.extend_from_slice(&(number as i32).to_le_bytes());
+        }
+        match &self.what {
+            What::Normal => Box::new(|bytes, _, point| float(bytes, &point.normal)),
+            What::Position => Box::new(|bytes, _, point| float(bytes, &point.position)),
+            What::Residual => Box::new(|bytes, _, point| float(bytes, &[point.residual])),
             What::Unknown(unknown) => {
-                let place = self.patch.unknowns.iter().position(|own| own == unknown);
-                let value = |values: &[f64]| place.map_or(f64::NAN, |place| unknown.unit.written(values[place]));
-                solved().try_for_each(|(_, _, point)| float(&[value(&point.unknowns)]))?;
+                let place = patch.unknowns.iter().position(|own| own == *unknown);
+                Box::new(move |bytes, _, point| {
+                    let value = place.map(|place| unknown.unit.written(point.unknowns[place]));
+                    float(bytes, &[value.unwrap_or(f64::NAN)]);
+                })
             }
             What::Field(field) => {
-                let own = self.patch.fields.iter().find(|own| own.shares_columns(field));
-                let nothing = &[f64::NAN; 3][..array.components()];
-                let value = |at| own.map(|own| own.values.at(at)).filter(|known| !known.is_empty()).unwrap_or(nothing);
-                solved().try_for_each(|(i, j, _)| float(value(i * columns + j)))?;
+                let own = patch.fields.iter().find(|own| own.shares_columns(field));
+                let nothing = &[f64::NAN; 3][..self.components()];
+                Box::new(move |bytes, [at, ..], _| {
+                    let known = own.map(|own| own.values.at(at)).filter(|known| !known.is_empty());
+                    float(bytes, known.unwrap_or(nothing));
+                })
             }
-            What::Row => solved().try_for_each(|(i, _, _)| out.write_all(&(i as i32).to_le_bytes()))?,
-            What::Column => solved().try_for_each(|(_, j, _)| out.write_all(&(j as i32).to_le_bytes()))?,
-            What::Surface => solved().try_for_each(|_| out.write_all(&(self.number as i32).to_le_bytes()))?,
-            What::Connectivity => {
-                let mut places = facets(&self.patch.points, self.patch.columns.count)
-                    .flatten()
-                    .map(|at| self.places.of_point(at) as i64);
-                places.try_for_each(|place| out.write_all(&place.to_le_bytes()))?;
-            }
-            What::Offsets => {
-                (1..=self.triangles as i64).try_for_each(|k| out.write_all(&(3 * k).to_le_bytes()))?;
-            }
+            What::Row => Box::new(|bytes, [_, i, _], _| whole(bytes, i)),
+            What::Column => Box::new(|bytes, [_, _, j], _| whole(bytes, j)),
+            What::Surface => Box::new(move |bytes, _, _| whole(bytes, number)),
+            What::Connectivity | What::Offsets => Box::new(|_, _, _| {}),
         }
-        Ok(())
     }
 }
 
 /// The conventions, as lines that may stand in an XML comment.
-fn head(dataset: &Dataset) -> String {
-    let header = &dataset.header;
+fn head(surfaces: &Surfaces<'_>, seen: &Seen) -> String {
+    let header = surfaces.header;
     let mut lines = vec![
         format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job),
         "only solved points are in this file".to_owned(),
     ];
-    lines.extend(sentences(&dataset.header));
-    lines.extend(dataset.patches.iter().enumerate().map(|(k, patch)| {
-        format!("surface {k} `{}`: frame {}; {}", patch.name, patch.frame, Tally::of([patch]).verdict())
+    lines.extend(sentences(header));
+    lines.extend(surfaces.outlines().zip(&seen.tallies).enumerate().map(|(k, (patch, tally))| {
+        format!("surface {k} `{}`: frame {}; {}", patch.name, patch.frame, tally.verdict())
     }));
     lines.iter().map(|line| one_line(line).replace("--", "- -")).collect::<Vec<_>>().join("\n")
 }

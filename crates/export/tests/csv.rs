@@ -9,7 +9,7 @@ const SPUR: Gear = Gear { helix: 0.0, width: 20.0 };
 
 fn text_of(dataset: &Dataset) -> String {
     let mut bytes = Vec::new();
-    write_csv(dataset, &mut bytes).expect("a sound dataset");
+    write_csv(&dataset.surfaces(), &mut bytes).expect("a sound dataset");
     String::from_utf8(bytes).expect("text")
 }
 
@@ -132,7 +132,7 @@ fn nothing_asked_for_is_a_head_and_titles() {
 
 #[test]
 fn a_dataset_that_contradicts_itself_is_refused() {
-    let refusal = |patch: Patch| match write_csv(&dataset("job", vec![patch]), &mut Vec::new()) {
+    let refusal = |patch: Patch| match write_csv(&dataset("job", vec![patch]).surfaces(), &mut Vec::new()) {
         Err(WriteError::Malformed(fault)) => fault,
         other => panic!("{other:?}"),
     };

@@ -25,7 +25,7 @@ fn a_file_appears_and_is_replaced() {
     let path = folder.path().join("flank.csv");
     let dataset = dataset("job", vec![bevel([4, 3])]);
     for _ in 0..2 {
-        write_atomically(&path, |out| write_csv(&dataset, out)).unwrap();
+        write_atomically(&path, |out| write_csv(&dataset.surfaces(), out)).unwrap();
     }
     assert!(fs::read_to_string(&path).unwrap().contains("concave flank,3,2,"));
     assert_eq!(names_in(folder.path()), ["flank.csv"]);

@@ -12,7 +12,7 @@ const SCHEMA_FILE: &str = include_str!("../../../schemas/surfaces-2.schema.json"
 
 fn text_of(dataset: &Dataset) -> String {
     let mut bytes = Vec::new();
-    write_json(dataset, &mut bytes).expect("a sound dataset");
+    write_json(&dataset.surfaces(), &mut bytes).expect("a sound dataset");
     String::from_utf8(bytes).expect("text")
 }
 

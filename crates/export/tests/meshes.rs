@@ -2,12 +2,16 @@
 
 mod synthetic;
 
-use std::io::{Cursor, Read, Write};
+use std::io::{Cursor, Read};
 
-use flank_export::{Dataset, Patch, WriteError, write_3mf, write_obj, write_vtp};
+use flank_export::{Dataset, Patch, Surfaces, Target, WriteError, write_3mf, write_obj, write_vtp};
 use synthetic::{Gear, bevel, cross, dataset, gallery, holes, plane, with_fields, without};
 
-type Writer = fn(&Dataset, &mut dyn Write) -> Result<(), WriteError>;
+type Writer = fn(&Surfaces<'_>, &mut dyn Target) -> Result<(), WriteError>;
+
+const VTP: Writer = write_vtp;
+const OBJ: Writer = |surfaces, out| write_obj(surfaces, out);
+const THREE_MF: Writer = |surfaces, out| write_3mf(surfaces, out);
 
 /// One object of a mesh as a reader sees it: points and triangles, which number them from 0.
 #[derive(Debug, PartialEq)]
@@ -17,9 +21,9 @@ struct Object {
 }
 
 fn bytes(write: Writer, dataset: &Dataset) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    write(dataset, &mut bytes).expect("a sound dataset");
-    bytes
+    let mut bytes = Cursor::new(Vec::new());
+    write(&dataset.surfaces(), &mut bytes).expect("a sound dataset");
+    bytes.into_inner()
 }
 
 fn from_obj(bytes: &[u8]) -> Vec<Object> {
@@ -128,19 +132,19 @@ fn solved(patch: &Patch) -> Vec<[f64; 3]> {
 fn every_format_has_the_same_points_and_triangles() {
     for (name, dataset) in gallery() {
         let expected: Vec<Vec<[f64; 3]>> = dataset.patches.iter().map(solved).collect();
-        let vtp = from_vtp(&bytes(write_vtp, &dataset));
-        let obj = from_obj(&bytes(write_obj, &dataset));
+        let vtp = from_vtp(&bytes(VTP, &dataset));
+        let obj = from_obj(&bytes(OBJ, &dataset));
         assert_eq!(vtp, obj, "{name}");
         assert_eq!(vtp.into_iter().map(|object| object.points).collect::<Vec<_>>(), expected, "{name}: bit for bit");
         let with_triangles: Vec<Object> = obj.into_iter().filter(|object| !object.triangles.is_empty()).collect();
-        assert_eq!(from_3mf(&bytes(write_3mf, &dataset)), with_triangles, "{name}");
+        assert_eq!(from_3mf(&bytes(THREE_MF, &dataset)), with_triangles, "{name}");
     }
 }
 
 #[test]
 fn triangles_face_where_the_normals_do() {
     let patch = Gear { helix: 0.4, width: 30.0 }.flank("flank", [21, 15]);
-    let object = from_vtp(&bytes(write_vtp, &dataset("job", vec![patch.clone()]))).remove(0);
+    let object = from_vtp(&bytes(VTP, &dataset("job", vec![patch.clone()]))).remove(0);
     assert_eq!(object.triangles.len(), 2 * 20 * 14);
     for corners in object.triangles {
         let [a, b, c] = corners.map(|at| object.points[at]);
@@ -154,7 +158,7 @@ fn triangles_face_where_the_normals_do() {
 fn vtk_has_all_that_is_known_of_the_points() {
     let first = with_fields(without(bevel([5, 4]), holes));
     let second = plane([3, 3], [0.0; 3], 5.0);
-    let pieces = pieces(&bytes(write_vtp, &dataset("job", vec![first.clone(), second.clone()])));
+    let pieces = pieces(&bytes(VTP, &dataset("job", vec![first.clone(), second.clone()])));
     let points: Vec<_> = first.points.iter().enumerate().filter(|(_, point)| point.is_solved()).collect();
     assert_eq!(array(&pieces[0], "row"), points.iter().map(|(at, _)| (at / 4) as f64).collect::<Vec<_>>());
     assert_eq!(array(&pieces[0], "column"), points.iter().map(|(at, _)| (at % 4) as f64).collect::<Vec<_>>());
@@ -171,7 +175,7 @@ fn vtk_has_all_that_is_known_of_the_points() {
 #[test]
 fn the_same_dataset_gives_the_same_bytes() {
     let dataset = dataset("job", vec![with_fields(bevel([5, 4]))]);
-    for write in [write_vtp as Writer, write_obj, write_3mf] {
+    for write in [VTP, OBJ, THREE_MF] {
         assert_eq!(bytes(write, &dataset), bytes(write, &dataset));
     }
 }

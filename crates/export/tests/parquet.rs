@@ -12,7 +12,7 @@ use synthetic::{bevel, dataset, gallery, holes, plane, with_fields, without};
 
 fn table(dataset: &Dataset) -> SerializedFileReader<File> {
     let mut file = tempfile::tempfile().expect("a file");
-    write_parquet(dataset, &mut file).expect("a sound dataset");
+    write_parquet(&dataset.surfaces(), &mut file).expect("a sound dataset");
     SerializedFileReader::new(file).expect("a Parquet file")
 }
 
@@ -32,7 +32,7 @@ fn cells(dataset: &Dataset) -> Vec<Vec<(String, String)>> {
 
 fn from_csv(dataset: &Dataset) -> Vec<Vec<(String, String)>> {
     let mut file = Vec::new();
-    write_csv(dataset, &mut file).expect("a sound dataset");
+    write_csv(&dataset.surfaces(), &mut file).expect("a sound dataset");
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(file.as_slice());
     let titles = reader.headers().expect("titles").clone();
     let row =

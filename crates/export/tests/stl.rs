@@ -9,7 +9,7 @@ use synthetic::{Gear, bevel, cross, dataset, gallery, holes, plane, without};
 
 fn bytes_of(dataset: &Dataset) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_stl(dataset, &mut bytes).expect("a sound dataset");
+    write_stl(&dataset.surfaces(), &mut bytes).expect("a sound dataset");
     bytes
 }
 
