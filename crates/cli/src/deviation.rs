@@ -328,11 +328,11 @@ impl Measured<'_, '_> {
     fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
         let dataset = self.dataset(&arguments.which, hash);
         let mut folder = Folder::at(&arguments.out)?;
-        folder.data(&self.name(), &dataset.surfaces(), &arguments.format)?;
-        if !arguments.no_picture {
-            let map = field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
-            folder.picture(&self.name(), &map)?;
-        }
+        let map = || field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
+        let map = (!arguments.no_picture).then(map);
+        folder.picture_after(&self.name(), map.as_ref(), |folder| {
+            folder.data(&self.name(), &dataset.surfaces(), &arguments.format)
+        })?;
         Ok(folder.written)
     }
 }

@@ -64,6 +64,24 @@ impl<'a> Folder<'a> {
         self.picture_as(name, drawn, PictureFormat::Svg)
     }
 
+    /// The same after what `meanwhile` writes: the picture is painted beside it, on another thread.
+    pub(crate) fn picture_after(
+        &mut self,
+        name: &str,
+        drawn: Option<&Picture>,
+        meanwhile: impl FnOnce(&mut Self) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let Some(drawn) = drawn else { return meanwhile(self) };
+        let (png, svg) = std::thread::scope(|scope| {
+            let png = scope.spawn(|| drawn.png());
+            let svg = meanwhile(self).map(|()| drawn.svg());
+            (png.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), svg)
+        });
+        let (png, svg) = (png.map_err(|error| error.to_string())?, svg?);
+        self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))?;
+        self.text(&format!("{name}.svg"), &svg)
+    }
+
     /// A picture in one format.
     pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), String> {
         match format {

@@ -302,13 +302,14 @@ fn write_files(
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
     let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));
     let list = patches.map(|(patch, streamed)| streamed.unwrap_or(patch)).collect();
-    folder.data(name, &Surfaces { header: &dataset.header, list }, &arguments.format)?;
+    let surfaces = Surfaces { header: &dataset.header, list };
     let faces: Vec<&Face> = faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
-    if !faces.is_empty() {
-        folder.step(name, &dataset.header, &faces)?;
-    }
+    let drawn = (!arguments.no_picture).then(|| picture(dataset, &PictureOptions::default()));
+    folder.picture_after(name, drawn.as_ref(), |folder| {
+        folder.data(name, &surfaces, &arguments.format)?;
+        if faces.is_empty() { Ok(()) } else { folder.step(name, &dataset.header, &faces) }
+    })?;
     if !arguments.no_picture {
-        folder.picture(name, &picture(dataset, &PictureOptions::default()))?;
         for (surface, drawn) in sensitivity::pictures(solved, dataset) {
             folder.picture(&format!("{name}.{surface}.sensitivity"), &drawn)?;
         }

@@ -14,6 +14,9 @@ use crate::vector::Vector;
 
 const DETAIL: Detail = Detail { smooth: 8, grid_spacing: f64::INFINITY, grid_width: 0.5, border_width: 1.0 };
 
+/// Smaller cells nobody sees.
+const CELLS: usize = 24;
+
 /// A patch this small on the sheet gets a ring around it.
 const SMALL: f64 = 14.0;
 
@@ -40,7 +43,7 @@ pub(super) fn draw(drawn: &[Drawn<'_>], nodes: &[Node], camera: Camera, rect: Re
         arc.add(&view, &mut layers);
     }
     for drawn in drawn {
-        add_mesh(&drawn.mesh, palette::of_patch(drawn.number), &view, DETAIL, &mut layers);
+        add_mesh(&drawn.mesh.coarser(CELLS), palette::of_patch(drawn.number), &view, DETAIL, &mut layers);
     }
     let mut taken = Occupancy::new(rect.right, rect.bottom);
     taken.take(&title);

