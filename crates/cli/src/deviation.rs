@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use crate::arguments::{Deviation, Means, Which};
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
+use crate::progress::Working;
 use crate::solve::{header, patch, problem, ranges};
 use crate::{Ending, inspect, print, spec};
 
@@ -130,6 +131,7 @@ pub(crate) fn measure<'j, 'g>(
             surface.surface.name
         ))
     };
+    let _working = Working::on(format!("solving {} and {}", surface.surface.name, from.surface.name));
     let near = problem(surface.job, surface.surface, [same(0)?, same(1)?], means);
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let points = problem(from.job, from.surface, coordinates, means);

@@ -6,6 +6,7 @@ use flank_solver::{Inspection, SurfacePoint};
 use crate::arguments::Deviation;
 use crate::deviation::{Held, Measured, Named};
 use crate::measure::Placed;
+use crate::progress::Working;
 use crate::{solve, spec};
 
 /// A larger grid is not compared.
@@ -40,6 +41,7 @@ pub(crate) fn inspect<'j, 'g>(
     }
     let inspection = Inspection::new(&of.surface.surface, solve::ranges(of.surface), &of.job.bindings())
         .expect("a job without errors leaves nothing unbound");
+    let _working = Working::on(format!("holding {shown} against {}", of.surface.name));
     let turn = inspection.best_turn(&positions, &nominal);
     let done = if arguments.as_it_lies { 0.0 } else { turn.unwrap_or(0.0) };
     let deviations = inspection.deviations(&positions, &nominal, done);

@@ -6,6 +6,7 @@ use flank_expr::Expr;
 use flank_solver::{SurfacePoint, SurfaceProblem};
 
 use crate::arguments::Means;
+use crate::progress::Working;
 use crate::solve;
 use crate::summary::Summary;
 
@@ -38,6 +39,7 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
 /// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
 pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Vec<Line<'j, 'g>> {
     let Some(sample) = &surface.sample else { return Vec::new() };
+    let _working = Working::on(format!("looking for the limits of {}", surface.name));
     let singular = surface.surface.clearance_minors().pop();
     [("singular line", singular), ("contact limit", surface.surface.contact_limit())]
         .into_iter()

@@ -21,6 +21,7 @@ mod limits;
 mod measure;
 mod new;
 mod plot;
+mod progress;
 mod reach;
 mod reasons;
 mod report;

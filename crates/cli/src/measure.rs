@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use crate::arguments::{Means, Measure};
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
+use crate::progress::Working;
 use crate::solve::Wanted;
 use crate::table::aligned;
 use crate::{Ending, deviation, print, solve, spec, units};
@@ -110,6 +111,7 @@ impl<'j, 'g> Placed<'j, 'g> {
     }
 
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Vec<SurfacePoint> {
+        let _working = Working::on(format!("solving {}", self.surface.name));
         solve::points(self.job, self.surface, sample, wanted(self.means)).points
     }
 

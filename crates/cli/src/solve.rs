@@ -14,6 +14,7 @@ use crate::cut::Cut;
 use crate::failure::Failure;
 use crate::files::Folder;
 use crate::limits::{self, Line};
+use crate::progress::Working;
 use crate::sensitivity::{self, Sensitivity};
 use crate::step::{self, Smooth};
 use crate::stream::{self, Kept, Streamed};
@@ -109,6 +110,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         Ok(false) => {}
         Err(reason) => return Some(Err(reason)),
     }
+    let _working = Working::on(format!("solving {}", surface.name));
     let Found { problem, mut points, effort, trims } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
     let needed = reach::beyond(job, surface, sample, &mut points, wanted.means);

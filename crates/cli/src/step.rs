@@ -5,6 +5,7 @@ use std::fmt::Write;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
 
+use crate::progress::Working;
 use crate::solve::{self, Wanted};
 use crate::table::Solved;
 
@@ -25,6 +26,7 @@ pub(crate) struct Smooth {
 /// through grids with twice the rows and columns.
 pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: Wanted) -> Smooth {
     let surface = solved.surface;
+    let working = Working::on(format!("making a smooth face of {}", surface.name));
     let (mut sample, mut coarse) = match thinned(solved.sample) {
         Some(thin) => {
             let points = solve::points(job, surface, &thin, wanted).points;
@@ -37,6 +39,7 @@ pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64,
     while let Some(face) = Face::through(&coarse) {
         let Some(finer) = finer(&sample) else { break };
         sample = finer;
+        working.reached(|| format!("{} x {} points", sample.counts[0], sample.counts[1]));
         let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample, wanted).points);
         let face = face.measured(&fine);
         let off = |face: &Face| {

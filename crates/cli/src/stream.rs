@@ -1,14 +1,11 @@
 //! Surfaces of more points than are kept: solved band after band, as often as they are needed.
 
-use std::cell::Cell;
-use std::io::IsTerminal;
-use std::time::{Duration, Instant};
-
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Banded, Patch, Point, Taker, WriteError};
 use flank_solver::{Band, Effort, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::Means;
+use crate::progress::Working;
 use crate::solve::{Wanted, patch, point, problem};
 use crate::summary::Summary;
 
@@ -18,8 +15,6 @@ const KEPT: usize = 1 << 16;
 const HANDED_OVER: usize = 8192;
 /// Rows, and columns, of a picture.
 const DRAWN: usize = 250;
-/// Work that takes no longer says nothing of how far it is.
-const QUIET: Duration = Duration::from_secs(2);
 
 /// A surface that is solved whenever its points are asked for; the points are the same each time.
 pub(crate) struct Streamed<'j, 'g> {
@@ -28,8 +23,6 @@ pub(crate) struct Streamed<'j, 'g> {
     sample: &'j Sample<'g>,
     problem: SurfaceProblem,
     outline: Patch,
-    /// When it was last told how far the work is.
-    told: Cell<Instant>,
 }
 
 /// What is kept of its points.
@@ -90,7 +83,6 @@ impl<'j, 'g> Streamed<'j, 'g> {
             sample,
             problem: problem(job, surface, coordinates, means),
             outline: patch(job, &surface.name, surface, [axis(0), axis(1)], &[]),
-            told: Cell::new(Instant::now()),
         }
     }
 
@@ -119,14 +111,11 @@ impl<'j, 'g> Streamed<'j, 'g> {
     }
 
     fn solve<E>(&self, mut each: impl FnMut(&Band<'_>) -> Result<(), E>) -> Result<Effort, E> {
-        self.told.set(Instant::now());
+        let working = Working::on(format!("solving {}", self.surface.name));
         let target = |row: usize, column: usize| self.sample.grid.at(row, column);
         self.problem.in_bands(target, self.sample.counts, None, |band| {
             each(band)?;
-            if self.told.get().elapsed() > QUIET && std::io::stderr().is_terminal() {
-                self.told.set(Instant::now());
-                anstream::eprintln!("{}: {} of {} rows", self.surface.name, band.rows().end, self.sample.counts[0]);
-            }
+            working.reached(|| format!("{} of {} rows", band.rows().end, self.sample.counts[0]));
             Ok(())
         })
     }

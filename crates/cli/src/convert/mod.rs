@@ -18,6 +18,7 @@ use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, P
 
 use crate::arguments::{Convert, Onto, Which};
 use crate::failure::Failure;
+use crate::progress::Working;
 use crate::{Ending, print, spec, units};
 use blocks::Blocks;
 use rates::Rates;
@@ -72,7 +73,9 @@ fn carry<'g>(
     let carried = Carried::on(target, arguments.positions)?;
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
+    let working = Working::on(format!("polynomials and their proof on {}", carried.machine.name));
     let series = is_followed.then(|| Series::of(&carried, arguments)).flatten();
+    drop(working);
     told.extend(series.as_ref().and_then(|series| series.unmet(arguments.tolerance)));
     let is_series = is_followed && told.is_empty();
     let rates = arguments.time.filter(|_| is_series).and_then(|seconds| Rates::of(&carried, seconds));
@@ -203,6 +206,7 @@ impl<'j, 'g> Carried<'j, 'g> {
     }
 
     fn on(target: Target<'j, 'g>, positions: u32) -> Result<Carried<'j, 'g>, String> {
+        let _working = Working::on(format!("following the tool on {}", target.machine.name));
         let positions = target.source.positions(positions as usize);
         let (problem, line) = target.postures(&positions)?;
         let Target { source, machine, free, chain, bindings, .. } = target;

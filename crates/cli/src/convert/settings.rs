@@ -12,6 +12,7 @@ use super::Target;
 use super::source::{Flank, Source};
 use crate::arguments::Convert;
 use crate::failure::not_done;
+use crate::progress::Working;
 use crate::table::aligned;
 use crate::{spec, units};
 
@@ -71,6 +72,7 @@ pub(super) fn find(job: &Job<'_>, target: &Target<'_, '_>, arguments: &Convert) 
         Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),
         _ => positions.clone(),
     };
+    let _working = Working::on(format!("looking for settings of {}", target.machine.name));
     let fit = problem.fit(&some);
     let deviation = source.flanks.iter().filter_map(|flank| deviation(&problem, source, flank, &fit, &some));
     let deviation = deviation.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))));
