@@ -87,6 +87,17 @@ impl<'g> Context<'g> {
         wanted: Dimension,
         what: &str,
     ) -> Option<(f64, f64)> {
+        self.ends(range, scope, wanted, what).map(|(values, _)| values)
+    }
+
+    /// Both ends of a range as numbers, and as they are written.
+    pub(crate) fn ends(
+        &mut self,
+        range: &Range,
+        scope: &Scope<'g>,
+        wanted: Dimension,
+        what: &str,
+    ) -> Option<((f64, f64), [Expr<'g>; 2])> {
         let low = self.scalar(&range.low, scope, wanted, &format!("the lower end of {what}"));
         let high = self.scalar(&range.high, scope, wanted, &format!("the upper end of {what}"));
         let low_value = low.and_then(|low| self.require_constant(low, range.low.span, &format!("the range of {what}")));
@@ -100,7 +111,7 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::EmptyRange, range.span, message).help(help));
             return None;
         }
-        Some((low_value, high_value))
+        Some(((low_value, high_value), [low?, high?]))
     }
 
     /// A dimension as written.

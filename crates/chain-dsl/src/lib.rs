@@ -71,7 +71,7 @@ pub use format::format;
 pub use load::read_file;
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
-    Parameter, Process, Sample, SampleGrid, ToolShape,
+    Parameter, Process, Sample, SampleEnds, SampleGrid, ToolShape,
 };
 pub use render::render;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};

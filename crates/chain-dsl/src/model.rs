@@ -234,6 +234,8 @@ pub struct Sample<'g> {
     pub counts: [usize; 2],
     /// Where its points are.
     pub grid: SampleGrid,
+    /// The same where its points end, as the spec has it: in the parameters of the job.
+    pub ends: SampleEnds<'g>,
     /// Functions of the unknowns, and the ends between which they lie on the branch that is meant.
     pub keep: Vec<(Coordinate<'g>, (f64, f64))>,
     /// What every point must fulfil.
@@ -263,6 +265,30 @@ pub enum SampleGrid {
         /// Both coordinates at toe root, heel root, toe tip, heel tip.
         corners: [[f64; 2]; 4],
     },
+}
+
+/// Where a [`SampleGrid`] ends, in the parameters of the job.
+#[derive(Clone, Debug)]
+pub struct SampleEnds<'g> {
+    /// The first and the last value, or share, of the rows, and of the columns.
+    pub values: [[Expr<'g>; 2]; 2],
+    /// Of shares the corners, as [`SampleGrid::Shares`] has them.
+    pub corners: Option<[[Expr<'g>; 2]; 4]>,
+}
+
+impl<'g> SampleEnds<'g> {
+    /// Both coordinates at the first row's first and last point, and at the last row's.
+    pub fn corners(&self) -> [[Expr<'g>; 2]; 4] {
+        let [rows, columns] = self.values;
+        let places = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| [rows[row], columns[column]]);
+        let Some([toe_root, heel_root, toe_tip, heel_tip]) = self.corners else { return places };
+        places.map(|[v, u]| {
+            [0, 1].map(|k| {
+                (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k])
+                    + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
+            })
+        })
+    }
 }
 
 impl SampleGrid {

@@ -1,11 +1,13 @@
 //! Which points of a surface are asked for.
 
+use flank_expr::Expr;
+
 use crate::codes::Code;
 use crate::context::{Context, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::limits;
-use crate::model::{Coordinate, GeneratedSurface, Limit, Sample, SampleGrid};
+use crate::model::{Coordinate, GeneratedSurface, Limit, Sample, SampleEnds, SampleGrid};
 use crate::source::Name;
 use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 
@@ -83,7 +85,7 @@ fn grid<'g>(
     let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
     let row_values = values(context, rows, scope, row_coordinate.dimension);
     let column_values = values(context, columns, scope, column_coordinate.dimension);
-    let (row_values, column_values) = (row_values?, column_values?);
+    let ((row_values, row_ends), (column_values, column_ends)) = (row_values?, column_values?);
     check_size(context, written, row_values.len(), column_values.len())?;
     let row_coordinate = unbroken(row_coordinate, rows, &row_values, surface);
     let column_coordinate = unbroken(column_coordinate, columns, &column_values, surface);
@@ -92,6 +94,7 @@ fn grid<'g>(
         coordinates: [row_coordinate, column_coordinate],
         counts: [row_values.len(), column_values.len()],
         grid: SampleGrid::Values([row_values, column_values]),
+        ends: SampleEnds { values: [row_ends, column_ends], corners: None },
         keep: Vec::new(),
         limits: Vec::new(),
     })
@@ -178,20 +181,21 @@ fn unbroken<'g>(
     Coordinate { value: middle + turned_back, ..coordinate }
 }
 
+/// The values, and the first and the last one as written.
 fn values<'g>(
     context: &mut Context<'g>,
     entry: &SampleEntry,
     scope: &Scope<'g>,
     dimension: Dimension,
-) -> Option<Vec<f64>> {
+) -> Option<(Vec<f64>, [Expr<'g>; 2])> {
     let what = format!("`{}`", entry.key.node);
     match &entry.values {
         SampleValues::Value(value) => {
             let expr = context.scalar(value, scope, dimension, &what)?;
-            Some(vec![context.require_constant(expr, value.span, &what)?])
+            Some((vec![context.require_constant(expr, value.span, &what)?], [expr; 2]))
         }
         SampleValues::Range(range, by) => {
-            let ends = context.range(range, scope, dimension, &what);
+            let ends = context.ends(range, scope, dimension, &what);
             let count = context.scalar(by, scope, Dimension::NUMBER, "the number of points");
             let count = context.require_constant(count?, by.span, "the number of points")?;
             if count.fract() != 0.0 || count < 1.0 {
@@ -203,7 +207,9 @@ fn values<'g>(
                 context.report(limits::SAMPLE_POINTS.exceeded(by.span));
                 return None;
             }
-            Some(spaced(ends?, count as usize))
+            let (ends, [low, high]) = ends?;
+            let written = if count > 1.0 { [low, high] } else { [0.5 * (low + high); 2] };
+            Some((spaced(ends, count as usize), written))
         }
     }
 }
@@ -238,12 +244,12 @@ fn outline<'g>(
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
 ) -> Option<Sample<'g>> {
-    let mut corners = [[f64::NAN; 2]; 4];
+    let mut corners: [Option<Corner<'g>>; 4] = [None; 4];
     let (mut profile, mut length) = (None, None);
     for entry in &written.entries {
         let name = entry.key.node.as_str();
         if let Some(corner) = CORNERS.iter().position(|known| *known == name) {
-            corners[corner] = corner_point(context, entry, scope)?;
+            corners[corner] = Some(corner_point(context, entry, scope)?);
         } else if name == "profilewise" {
             profile = values(context, entry, scope, Dimension::NUMBER);
             profile.as_ref()?;
@@ -259,7 +265,7 @@ fn outline<'g>(
             return None;
         }
     }
-    let missing: Vec<&str> = (0..4).filter(|&k| corners[k][0].is_nan()).map(|k| CORNERS[k]).collect();
+    let missing: Vec<&str> = (0..4).filter(|&k| corners[k].is_none()).map(|k| CORNERS[k]).collect();
     if !missing.is_empty() {
         let verb = if missing.len() == 1 { "is" } else { "are" };
         let message = format!("an outline has four corners: {} {verb} missing", quoted(&missing));
@@ -267,24 +273,34 @@ fn outline<'g>(
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     }
-    let (Some(profile), Some(length)) = (profile, length) else {
+    let (Some((profile, profile_ends)), Some((length, length_ends))) = (profile, length) else {
         let message = "an outline is divided twice: `profilewise` from root to tip, `lengthwise` from toe to heel";
         let help = "give both as shares: `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
         context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
         return None;
     };
     check_size(context, written, profile.len(), length.len())?;
+    let [toe_root, heel_root, toe_tip, heel_tip] = corners;
+    let corners = [toe_root?, heel_root?, toe_tip?, heel_tip?];
     Some(Sample {
         coordinates: [surface.coordinate("z")?, surface.coordinate("rho")?],
         labels: ["root -> tip".to_string(), "toe -> heel".to_string()],
         counts: [profile.len(), length.len()],
-        grid: SampleGrid::Shares { shares: [profile, length], corners },
+        grid: SampleGrid::Shares { shares: [profile, length], corners: corners.map(|corner| corner.values) },
+        ends: SampleEnds { values: [profile_ends, length_ends], corners: Some(corners.map(|corner| corner.written)) },
         keep: Vec::new(),
         limits: Vec::new(),
     })
 }
 
-fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scope<'g>) -> Option<[f64; 2]> {
+/// z and rho of a corner, as numbers and as written.
+#[derive(Clone, Copy)]
+struct Corner<'g> {
+    values: [f64; 2],
+    written: [Expr<'g>; 2],
+}
+
+fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scope<'g>) -> Option<Corner<'g>> {
     let what = format!("`{}`", entry.key.node);
     let SampleValues::Value(written) = &entry.values else {
         let message = format!("{what} is one point `[z, rho]`, not a range");
@@ -307,8 +323,10 @@ fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scop
     };
     let z = context.require(z, Dimension::LENGTH, written.span, &format!("z of {what}"));
     let rho = context.require(rho, Dimension::LENGTH, written.span, &format!("rho of {what}"));
-    Some([
-        context.require_constant(z?, written.span, &format!("z of {what}"))?,
-        context.require_constant(rho?, written.span, &format!("rho of {what}"))?,
-    ])
+    let both = [z?, rho?];
+    let values = [
+        context.require_constant(both[0], written.span, &format!("z of {what}"))?,
+        context.require_constant(both[1], written.span, &format!("rho of {what}"))?,
+    ];
+    Some(Corner { values, written: both })
 }

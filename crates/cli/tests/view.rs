@@ -115,47 +115,75 @@ fn what_cannot_be_shown_is_told() {
     assert!(text(&run.stderr).contains("cannot make the folder"), "{}", text(&run.stderr));
 }
 
-/// Both are solved by Newton on the same equations, once on tapes and once as JavaScript. The sample does not depend on the
-/// parameters that are moved, so both are asked for the same points.
+/// Both are solved by Newton on the same equations, once on tapes and once as JavaScript, at points that follow the parameters where the
+/// sample depends on them.
 #[test]
 fn the_page_solves_what_the_program_solves() {
+    const HELICAL: &str = "specs/hobbing/helical_gear.chain";
+    const BLANK: &str = "specs/bevel/pair_from_blank.chain";
     let folder = folder("view_solver");
-    let (file, _) = page(PINION, &folder);
-    let file = file.to_str().expect("a plain path");
-    let cases: [(&[&str], &[&str]); 3] = [
-        (&[], &[]),
-        (&["m.machine_root_angle=0.2745"], &["m.machine_root_angle=0.2745 rad"]),
-        (&["m.radial_distance=98.2", "m.ratio_of_roll=3.345"], &["m.radial_distance=98.2 mm", "m.ratio_of_roll=3.345"]),
+    // parameters in mm and radians for the page, with their unit for the program, and how many points are compared at least
+    let cases: [(&str, &[&str], &[&str], usize); 6] = [
+        (PINION, &[], &[], 1000),
+        (PINION, &["m.machine_root_angle=0.2745"], &["m.machine_root_angle=0.2745 rad"], 1000),
+        (
+            PINION,
+            &["m.radial_distance=98.2", "m.ratio_of_roll=3.345"],
+            &["m.radial_distance=98.2 mm", "m.ratio_of_roll=3.345"],
+            1000,
+        ),
+        (
+            "specs/hobbing/spur_gear.chain",
+            &["face_width=21", "profile_shift=0.22"],
+            &["face_width=21 mm", "profile_shift=0.22"],
+            500,
+        ),
+        (
+            HELICAL,
+            &["normal_module=3.03", "helix_angle=0.386"],
+            &["normal_module=3.03 mm", "helix_angle=0.386 rad"],
+            1000,
+        ),
+        (
+            BLANK,
+            &["face_width=37", "outer_transverse_module=4.17"],
+            &["face_width=37 mm", "outer_transverse_module=4.17 mm"],
+            1000,
+        ),
     ];
-    for (moves, set) in cases {
+    for (spec, moves, set, least) in cases {
+        let (file, _) = page(spec, &folder);
+        let file = file.to_str().expect("a plain path");
         let arguments: Vec<&str> = [file].into_iter().chain(moves.iter().copied()).collect();
         let Some(found) = node("solving.mjs", &arguments, &Value::Null) else {
             eprintln!("skipped 1 test: node is not installed");
             return;
         };
-        let expected = solved(PINION, set, &folder);
-        let mut compared = 0;
-        for (found, expected) in
-            found.as_array().expect("surfaces").iter().zip(expected["surfaces"].as_array().unwrap())
-        {
-            assert_eq!(found["name"], expected["name"]);
-            let field = |name| expected["fields"].as_array().unwrap().iter().position(|field| field["name"] == name);
-            let [k1, k2] = ["k1", "k2"].map(|name| field(name).expect("geometry is asked for"));
-            for (found, expected) in
-                found["points"].as_array().unwrap().iter().zip(expected["points"].as_array().unwrap())
-            {
-                assert_eq!(found["status"], expected["status"], "{set:?} {expected}");
-                assert!(off(&found["position"], &expected["position"]) < TOLERANCE, "{set:?} {expected}");
-                assert!(off(&found["normal"], &expected["normal"]) < TOLERANCE, "{set:?} {expected}");
-                if !found["curvatures"].is_null() {
-                    let bent = json!([expected["fields"][k1], expected["fields"][k2]]);
-                    assert!(off(&found["curvatures"], &bent) < TOLERANCE, "{set:?} {bent}");
-                }
-                compared += usize::from(!found["position"].is_null());
-            }
-        }
-        assert!(compared > 1000, "{compared} points of {set:?}");
+        let compared = compared(&found, &solved(spec, set, &folder), spec);
+        assert!(compared > least, "{compared} points of {spec} with {set:?}");
     }
+}
+
+/// How many points the page and the program both solve; they agree in all.
+fn compared(found: &Value, expected: &Value, of: &str) -> usize {
+    let mut compared = 0;
+    let list = |value: &Value| value.as_array().expect("a list").clone();
+    for (found, expected) in list(found).iter().zip(&list(&expected["surfaces"])) {
+        assert_eq!(found["name"], expected["name"]);
+        let field = |name| expected["fields"].as_array().and_then(|all| all.iter().position(|one| one["name"] == name));
+        let [k1, k2] = ["k1", "k2"].map(|name| field(name).expect("geometry is asked for"));
+        for (found, expected) in list(&found["points"]).iter().zip(&list(&expected["points"])) {
+            assert_eq!(found["status"], expected["status"], "{of} {expected}");
+            assert!(off(&found["position"], &expected["position"]) < TOLERANCE, "{of} {found} {expected}");
+            assert!(off(&found["normal"], &expected["normal"]) < TOLERANCE, "{of} {found} {expected}");
+            if !found["curvatures"].is_null() {
+                let bent = json!([expected["fields"][k1], expected["fields"][k2]]);
+                assert!(off(&found["curvatures"], &bent) < TOLERANCE, "{of} {bent}");
+            }
+            compared += usize::from(!found["position"].is_null());
+        }
+    }
+    compared
 }
 
 /// Opens, turns, clicks and moves as in `tests/page/browser.mjs`.

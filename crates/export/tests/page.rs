@@ -17,6 +17,8 @@ fn scene(patches: &[Patch]) -> Scene {
         contact: Vec::new(),
         coordinates: ["z", "rho"].map(String::from),
         targets: vec![[0.25, -1.5]; patch.points.len()],
+        shares: [patch.rows.count, patch.columns.count].map(|count| vec![0.0; count]),
+        corners: "corners".into(),
         ranges: vec![[-1.0, 1.0]; patch.unknowns.len()],
         motions: vec![None; patch.unknowns.len()],
         equations: "equations".into(),
@@ -25,7 +27,7 @@ fn scene(patches: &[Patch]) -> Scene {
         curvatures: false,
         trimmed_by: Vec::new(),
     };
-    let functions = ["poses", "equations", "point"];
+    let functions = ["poses", "equations", "point", "corners"];
     Scene {
         motions: vec![PageMotion {
             name: "roll".into(),

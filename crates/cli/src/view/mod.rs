@@ -104,6 +104,9 @@ fn write<'g>(
         scene.notes.push(note);
         for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
             surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();
+            for shares in &mut surface.shares {
+                *shares = thin::taken(shares.len(), step).into_iter().map(|at| shares[at]).collect();
+            }
         }
     }
     let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();

@@ -35,6 +35,8 @@ pub(super) fn of<'g>(
         contact: (0..made.unknowns.len()).filter(|k| surface.generation.motions.contains(&made.unknowns[*k])).collect(),
         coordinates: sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
         targets: sample.targets(),
+        shares: sample.counts.map(|count| (0..count).map(|k| k as f64 / (count.max(2) - 1) as f64).collect()),
+        corners: functions.add("corners", &[], &titled(sample.ends.corners().as_flattened(), "coordinates")),
         ranges: surface.unknowns.iter().map(|unknown| [unknown.low, unknown.high]).collect(),
         motions: made.unknowns.iter().map(motion).collect(),
         equations: functions.add(

@@ -34,7 +34,8 @@ pub(super) fn thinned(patch: &Patch, step: usize) -> Patch {
     thin
 }
 
-fn taken(count: usize, step: usize) -> Vec<usize> {
+/// The places of such lines.
+pub(super) fn taken(count: usize, step: usize) -> Vec<usize> {
     (0..count).filter(|k| k % step == 0 || k + 1 == count).collect()
 }
 

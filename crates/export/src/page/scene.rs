@@ -182,6 +182,10 @@ pub struct PageSurface {
     /// The values of these at each point.
     #[serde(skip)]
     pub targets: Vec<[f64; 2]>,
+    /// How far each row, and each column, is from the first to the last one that is asked for, as a share.
+    pub shares: [Vec<f64>; 2],
+    /// The function of the parameters that gives both coordinates at the first row's first and last point, then at the last row's.
+    pub corners: String,
     /// Where each unknown is looked for.
     #[serde(skip)]
     pub ranges: Vec<[f64; 2]>,

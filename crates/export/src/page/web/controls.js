@@ -98,8 +98,9 @@ export function buildParameters(page) {
     box.append(element("p", {
         className: "hint",
         textContent: "The surface follows: each point is solved anew here, by Newton's method on the spec's own equations, " +
-            "from the program's exact solution, to the same tolerance. Points keep the coordinates that they were asked for by. " +
-            "Parameters defined by a moved one follow it; requirements of the spec and what trims cut away are not looked at.",
+            "from the program's exact solution, to the same tolerance. Parameters defined by a moved one follow it, and so does the area " +
+            "that the spec samples. Ranges of the tool's parameters stay as they are, requirements of the spec are not looked at, and trims are " +
+            "not solved again.",
     }));
     page.parameterSliders = new Map(moved.map(([parameter, k]) => {
         const [low, high] = parameter.range;
@@ -132,11 +133,17 @@ export function tellState(page) {
     if (!page.settings.areMoved) return page.state.replaceChildren();
     const lost = page.surfaces.flatMap((surface) => [...surface.lost()].map(([word, count]) => `${surface.name}: ${count} ${word}`));
     const parts = [element("code", { textContent: command(page.data, page.settings) })];
+    const trimmed = page.data.surfaces.filter((surface) => surface.trimmed_by.length > 0);
+    if (trimmed.length > 0) {
+        const names = trimmed.map((surface) => `${surface.name} by ${surface.trimmed_by.join(" and ")}`);
+        const textContent = `What trims cut away is still as at the job's own values: ${names.join(", ")}.`;
+        parts.unshift(element("p", { className: "warning", id: "trims", textContent }));
+    }
     if (lost.length > 0) {
         const textContent = `Points lost (red crosses, where the job's own values have them): ${lost.join(", ")}.`;
         parts.unshift(element("p", { className: "warning", textContent }));
     }
-    parts.unshift(element("p", { className: "hint", textContent: "Solved in page page for moved parameters. The same with the program, whose sample may follow the parameters too:" }));
+    parts.unshift(element("p", { className: "hint", textContent: "Solved in page page for moved parameters. The same with the program:" }));
     return page.state.replaceChildren(...parts);
 }
 

@@ -100,13 +100,16 @@ export class Equations {
     }
 }
 
-/** The root that a point's own root moves to while the settings go from the job's own values to those wanted. */
+/**
+ * The root that a point's own root moves to while the settings go from the job's own values to those wanted, and with them what it is
+ * asked for by: `targets(share)` of that way.
+ */
 export function follow(equations, own, targets, settings) {
     let unknowns = own;
     let [reached, share] = [0, 1];
     for (;;) {
         const next = Math.min(1, reached + share);
-        const found = equations.solve(unknowns, targets, settings.between(next));
+        const found = equations.solve(unknowns, targets(next), settings.between(next));
         if (found.unknowns && next === 1) return found;
         if (found.unknowns) {
             [unknowns, reached] = [found.unknowns, next];

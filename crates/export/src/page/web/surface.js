@@ -23,6 +23,7 @@ export class WorkSurface {
         this.words = [...data.words];
         this.targets = decoded(data.targets);
         this.fields = data.fields.map((field) => ({ ...field, values: decoded(field.values) }));
+        this.cornersAt = functions[data.corners];
         this.pointAt = functions[data.point];
         this.equations = new Equations(functions[data.equations], data.unknowns.map(({ low, high }) => [low, high]));
         this.reset();
@@ -31,6 +32,26 @@ export class WorkSurface {
     /** Everything as the program solved it. */
     reset() {
         Object.assign(this, this.own, { isMoved: false, curvatures: null });
+    }
+
+    /** By how much other settings move both coordinates that points are asked for by, at the corners of the grid. */
+    cornersMoved(settings) {
+        const [own, now] = [settings.own, settings.values].map((values) => {
+            const out = new Float64Array(8);
+            this.cornersAt(...values, out);
+            return out;
+        });
+        return now.map((value, k) => value - own[k]);
+    }
+
+    /** The coordinates that a point is asked for by, a share of the way from the job's own settings to those wanted. */
+    targetsOf(point, moved) {
+        const own = this.targets.subarray(2 * point, 2 * point + 2);
+        const columns = this.data.columns.count;
+        const [v, u] = [this.data.shares[0][Math.floor(point / columns)], this.data.shares[1][point % columns]];
+        const weights = [(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u];
+        const by = [0, 1].map((k) => weights.reduce((sum, weight, corner) => sum + weight * moved[2 * corner + k], 0));
+        return (share) => own.map((value, k) => value + share * by[k]);
     }
 
     /** Solves all points for other settings. What the program did not solve stays unsolved. */
@@ -45,15 +66,15 @@ export class WorkSurface {
         this.unknowns = nothing(this.width);
         this.residuals = nothing(1);
         this.curvatures = this.data.curvatures ? nothing(2) : null;
+        const moved = this.cornersMoved(settings);
         for (let point = 0; point < this.count; ++point) {
-            if (this.own.status[point] === SOLVED) this.solvePoint(point, settings);
+            if (this.own.status[point] === SOLVED) this.solvePoint(point, settings, moved);
         }
     }
 
-    solvePoint(point, settings) {
+    solvePoint(point, settings, moved) {
         const start = this.own.unknowns.subarray(this.width * point, this.width * (point + 1));
-        const targets = this.targets.subarray(2 * point, 2 * point + 2);
-        const found = follow(this.equations, start, targets, settings);
+        const found = follow(this.equations, start, this.targetsOf(point, moved), settings);
         if (found.why) {
             this.status[point] = this.numberOf(found.why);
             return;
