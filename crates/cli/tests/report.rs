@@ -151,7 +151,10 @@ fn inputs_say_who_gives_them() {
     assert_eq!((&angle["given_by"], &angle["definition"]), (&"definition".into(), &"rack".into()));
     assert_eq!((&angle["value"], &angle["unit"]), (&20.0.into(), &"deg".into()));
     let html = read(out.join("undercut_gear.report.html"));
-    has_row(&rows(&page(&html)), &["teeth", "30", "--set"]);
+    let rows = rows(&page(&html));
+    has_row(&rows, &["teeth", "30", "--set"]);
+    has_row(&rows, &["r.pressure_angle", "20 deg", "20", "deg", "default"]);
+    has_row(&rows, &["m.shift", "profile_shift * module", "0", "mm", "job"]);
     assert!(html.contains("flank report specs/hobbing/undercut_gear.chain --job undercut_gear --set teeth=30"));
 }
 

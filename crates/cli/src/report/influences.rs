@@ -6,7 +6,7 @@ use super::Findings;
 use crate::table::Solved;
 
 /// Parameters of each surface that are listed.
-const SHOWN: usize = 8;
+const SHOWN: usize = 5;
 
 /// The parameters that move each surface most; nothing if no parameter moves any.
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {

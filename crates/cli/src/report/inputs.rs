@@ -36,28 +36,20 @@ fn groups<'j, 'g>(findings: &Findings<'j, 'g>) -> Vec<Vec<&'j Parameter<'g>>> {
     owners.into_iter().map(|of| all.iter().filter(|parameter| owner(parameter) == of).collect()).collect()
 }
 
-/// What the job or the caller gives, what is by default, and what of that is zero and without a word.
+/// A table, and the names of those that are zero by default and of which there is nothing to say.
 fn blocks(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Vec<Block> {
-    let is_default = |parameter: &&&Parameter<'_>| matches!(parameter.given_by, Giver::Definition(_));
-    let (by_default, given): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = parameters.iter().partition(is_default);
-    let is_idle = |parameter: &&Parameter<'_>| parameter.value == 0.0 && parameter.doc.is_empty();
-    let (idle, by_default): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = by_default.into_iter().partition(is_idle);
-    let owner = owner_text(findings, parameters);
-    let mut blocks = Vec::new();
-    if !given.is_empty() {
-        blocks.push(table(findings, format!("{owner}: given"), &given));
-    }
-    if !by_default.is_empty() {
-        blocks.push(table(findings, format!("{owner}: by default"), &by_default));
-    }
-    if !idle.is_empty() {
-        blocks.push(Block::Facts(by_unit(&owner, &idle)));
-    }
-    blocks
+    let is_idle = |parameter: &&&Parameter<'_>| {
+        let is_default = matches!(parameter.given_by, Giver::Definition(_));
+        is_default && parameter.value == 0.0 && parameter.doc.is_empty()
+    };
+    let (idle, told): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = parameters.iter().partition(is_idle);
+    let table = (!told.is_empty()).then(|| table(findings, owner_text(findings, parameters), &told));
+    let zero = (!idle.is_empty()).then(|| Block::Facts(by_unit(&idle)));
+    table.into_iter().chain(zero).collect()
 }
 
-/// The names of parameters that are zero, by their unit.
-fn by_unit(owner: &str, parameters: &[&Parameter<'_>]) -> Vec<(String, String)> {
+/// The names of parameters that are zero by default, by their unit.
+fn by_unit(parameters: &[&Parameter<'_>]) -> Vec<(String, String)> {
     let mut units: Vec<String> = Vec::new();
     for parameter in parameters {
         let unit = unit(parameter.dimension);
@@ -68,13 +60,15 @@ fn by_unit(owner: &str, parameters: &[&Parameter<'_>]) -> Vec<(String, String)> 
     let of_unit = |of: String| {
         let names = parameters.iter().filter(|parameter| unit(parameter.dimension) == of);
         let names: Vec<&str> = names.map(|parameter| parameter.name.as_str()).collect();
-        (format!("{owner}: 0 {of}").trim_end().to_string(), format!("by default {}", names.join(", ")))
+        (format!("0 {of} by default").replace("  ", " "), names.join(", "))
     };
     units.into_iter().map(of_unit).collect()
 }
 
 fn owner_text(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> String {
-    let Some(owner) = parameters.first().and_then(|parameter| owner(parameter)) else { return "Job".to_string() };
+    let Some(owner) = parameters.first().and_then(|parameter| owner(parameter)) else {
+        return "Job".to_string();
+    };
     if let Some(machine) = findings.job.machines.iter().find(|machine| machine.name == owner) {
         return format!("Machine {owner} = {}", machine.definition);
     }
@@ -88,12 +82,11 @@ fn owner_text(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Str
 fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<'_>]) -> Block {
     let has_ranges = parameters.iter().any(|parameter| parameter.range.is_some());
     let has_docs = parameters.iter().any(|parameter| !parameter.doc.is_empty());
-    let is_changed = parameters.iter().any(|parameter| parameter.given_by == Giver::Caller);
     let mut columns =
         vec![Column::code("name"), Column::code("as written"), Column::numbers("value"), Column::words("unit")];
     columns.extend(has_ranges.then(|| Column::numbers("allowed")));
-    columns.extend(is_changed.then(|| Column::words("by")));
-    columns.extend(has_docs.then(|| Column::words("meaning")));
+    columns.push(Column::words("given by"));
+    columns.extend(has_docs.then(|| Column::sentences("meaning")));
     let row = |parameter: &&Parameter<'_>| {
         let range = parameter.range.map_or(String::new(), |(low, high)| {
             format!("{} .. {}", number(parameter.dimension, low), number(parameter.dimension, high))
@@ -105,8 +98,12 @@ fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<
             unit(parameter.dimension),
         ];
         cells.extend(has_ranges.then_some(range));
-        let by = if parameter.given_by == Giver::Caller { "--set" } else { "job" };
-        cells.extend(is_changed.then(|| by.to_string()));
+        let giver = match parameter.given_by {
+            Giver::Definition(_) => "default",
+            Giver::Job => "job",
+            Giver::Caller => "--set",
+        };
+        cells.push(giver.to_string());
         cells.extend(has_docs.then(|| joined(&parameter.doc)));
         cells
     };

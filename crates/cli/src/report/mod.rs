@@ -126,9 +126,9 @@ impl<'j, 'g> Findings<'j, 'g> {
         sections.extend(pictures::section(self));
         let unchecked = unchecked::of(self);
         let blocks = vec![
-            Block::Heading("Of this job".to_string()),
+            Block::Heading("In this job".to_string()),
             Block::List(unchecked.of_job),
-            Block::Heading("By no report".to_string()),
+            Block::Heading("In any report".to_string()),
             Block::List(unchecked.always),
         ];
         sections.push(ReportSection { title: "What was not checked".to_string(), blocks });

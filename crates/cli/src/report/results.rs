@@ -20,7 +20,7 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
 fn surfaces(findings: &Findings<'_, '_>) -> Block {
     let columns = vec![
         Column::words("surface"),
-        Column::words("made as"),
+        Column::sentences("made as"),
         Column::words("rows \u{d7} columns"),
         Column::numbers("asked"),
         Column::numbers("solved"),
@@ -80,16 +80,16 @@ fn roots(findings: &Findings<'_, '_>) -> Block {
         Column::words("surface"),
         Column::words("begun at"),
         Column::numbers("roots that qualify"),
-        Column::words("others in the ranges?"),
+        Column::words("others that qualify"),
         Column::numbers("boxes searched"),
     ];
     let row = |solved: &Solved<'_, '_>| {
         let others = match solved.effort.undecided.len() {
-            0 => "no: proven on intervals".to_string(),
+            0 => "none: proven on intervals".to_string(),
             1 => "not excluded in one part".to_string(),
             parts => format!("not excluded in {parts} parts"),
         };
-        let kept = if solved.sample.keep.is_empty() { "" } else { "; chosen by \u{201c}keep\u{201d}" };
+        let kept = if solved.sample.keep.is_empty() { "" } else { "; by \u{201c}keep\u{201d}" };
         vec![
             solved.surface.name.clone(),
             branches::anchor(solved),

@@ -1,6 +1,6 @@
 //! What was not checked: each sentence is there because of what was, or was not, done for this job.
 
-use flank_chain_dsl::{LawSource, Process};
+use flank_chain_dsl::LawSource;
 
 use super::Findings;
 use crate::certify;
@@ -30,7 +30,7 @@ pub(super) fn of(findings: &Findings<'_, '_>) -> Unchecked {
         "Between the points of the grids nothing is solved; a finer grid in \u{201c}sample\u{201d} shows more.",
         "Collisions of tool, holder, machine, work and fixture, and what the tool cuts on its way in and out.",
         "Speeds, accelerations, order and duration of the motions; forces, deflection, heat, wear.",
-        "Manufacturing tolerances and errors of machine, tool and clamping: \u{201c}What moves the surfaces\u{201d} says what each would do.",
+        "Manufacturing tolerances, and errors of machine, tool and clamping.",
         "Meshing with a mating gear, contact pattern, backlash, strength: flank deviation compares two surfaces.",
         "Whether the numbers in the spec are those of the real tool and machine.",
     ];
@@ -86,17 +86,18 @@ fn not_trimmed(findings: &Findings<'_, '_>) -> Option<String> {
     ))
 }
 
+fn has_count(solved: &Solved<'_, '_>) -> bool {
+    solved.surface.unknowns.iter().any(|unknown| unknown.is_count)
+}
+
 fn steps_of_the_tool(findings: &Findings<'_, '_>) -> Option<String> {
-    let is_ideal =
-        |solved: &Solved<'_, '_>| solved.cut.is_none() && solved.surface.generation.process == Process::Envelope;
-    let names = those(findings, is_ideal)?;
+    let names = those(findings, |solved| solved.cut.is_none() && !has_count(solved))?;
     Some(format!(
-        "Roughness, feed marks and facets of single edges on {names}: ideal envelopes, of tools without gaps. \u{201c}cut \u{2026} by \u{2026}\u{201d} says what edges leave."
+        "Roughness, feed marks and facets of single edges on {names}: ideal surfaces, of tools without gaps. \u{201c}cut \u{2026} by \u{2026}\u{201d} says what edges leave."
     ))
 }
 
 fn counts(findings: &Findings<'_, '_>) -> Option<String> {
-    let has_count = |solved: &Solved<'_, '_>| solved.surface.unknowns.iter().any(|unknown| unknown.is_count);
     let names = those(findings, has_count)?;
     Some(format!("Whether what is counted comes out whole: on {names} it runs on without steps."))
 }

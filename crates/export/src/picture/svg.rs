@@ -188,3 +188,51 @@ fn number(value: f64) -> f64 {
     let rounded = (100.0 * value).round() / 100.0;
     if rounded == 0.0 { 0.0 } else { rounded }
 }
+
+#[cfg(test)]
+mod tests {
+    use resvg::tiny_skia::{Pixmap, Transform};
+    use resvg::usvg::{Options, Tree};
+
+    use super::super::paint::{Colour, Sheet};
+    use super::*;
+
+    #[test]
+    fn paths_go_on_from_where_they_are() {
+        let mut path = String::new();
+        write_path(&[[485.73, 617.69], [485.79, 617.72], [484.15, 623.05], [484.0, 622.0]], &mut path).unwrap();
+        assert_eq!(path, "M485.7 617.7l.1 0l-1.6 5.4l-.2-1.1");
+    }
+
+    /// An element with the letters of its page shows what the document shows.
+    #[test]
+    fn an_element_is_its_document() {
+        let mut sheet = Sheet::default();
+        let [red, blue] = [Colour([200, 40, 20]), Colour([20, 60, 160])];
+        sheet.polygon(&[[10.0, 10.0], [90.0, 12.0], [50.0, 80.0]], red, red, 2.0);
+        sheet.polygon(&[[60.0, 60.0], [110.0, 62.0], [80.0, 90.0]], blue, blue, 2.0);
+        sheet.polygon(&[[20.0, 60.0], [40.0, 62.0], [30.0, 90.0]], blue, red, 3.0);
+        sheet.line(&[[5.0, 5.0], [115.0, 85.0]], blue, 1.5);
+        sheet.line(&[[5.0, 85.0], [115.0, 5.0]], blue, 1.5);
+        sheet.text([10.0, 50.0], super::super::paint::Anchor::Start, 14.0, red, "12 mm");
+        let picture = Picture {
+            width: 120,
+            height: 90,
+            unit: 1.0,
+            title: "a < b".to_owned(),
+            description: String::new(),
+            items: sheet.items,
+        };
+        let element = element(&picture).replacen('>', &format!(">{}", letters([&picture])), 1);
+        let drawn = [element, document(&picture)].map(|svg| {
+            let tree = Tree::from_str(&svg, &Options::default()).expect("an SVG that others can read");
+            let mut pixels = Pixmap::new(120, 90).expect("a small size");
+            pixels.fill(resvg::tiny_skia::Color::WHITE);
+            resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
+            pixels
+        });
+        let off = drawn[0].data().iter().zip(drawn[1].data()).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+        assert_eq!(off, 0);
+        assert!(drawn[0].data().iter().any(|byte| *byte < 60));
+    }
+}

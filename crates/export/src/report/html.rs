@@ -12,6 +12,8 @@ use crate::xml::escaped;
 const STYLE: &str = include_str!("style.css");
 /// Bytes that the pictures of a page have at the most, as long as some of them are not pixels.
 const MOST_BYTES: usize = 2_200_000;
+/// Letters of names that are kept on one line.
+const LONG_NAME: usize = 26;
 /// Pixels of such a picture are so many times finer than usual.
 const FINER: u32 = 2;
 
@@ -146,15 +148,17 @@ fn write_table(caption: &str, columns: &[Column], rows: &[Vec<String>], out: &mu
 /// A cell: numbers with a real minus sign, names in pieces that fit on a line.
 fn shown(kind: Kind, cell: &str) -> String {
     match kind {
-        Kind::Words => escaped(cell),
+        Kind::Words | Kind::Sentences => escaped(cell),
         Kind::Numbers => escaped(&with_minus(cell)),
-        Kind::Code => escaped(cell).replace('_', "_<wbr/>"),
+        Kind::Code if cell.chars().count() > LONG_NAME => escaped(cell).replace('_', "_<wbr/>"),
+        Kind::Code => escaped(cell),
     }
 }
 
 fn class(kind: Kind) -> &'static str {
     match kind {
         Kind::Words => "",
+        Kind::Sentences => " class=\"s\"",
         Kind::Numbers => " class=\"n\"",
         Kind::Code => " class=\"c\"",
     }

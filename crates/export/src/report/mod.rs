@@ -77,6 +77,8 @@ pub struct Column {
 pub enum Kind {
     /// Words, on the left.
     Words,
+    /// Sentences, which need room.
+    Sentences,
     /// Numbers, on the right.
     Numbers,
     /// Names and formulas as a spec has them.
@@ -110,6 +112,12 @@ impl Column {
     #[must_use]
     pub fn words(title: &str) -> Column {
         Column { title: title.to_owned(), kind: Kind::Words }
+    }
+
+    /// A column of sentences.
+    #[must_use]
+    pub fn sentences(title: &str) -> Column {
+        Column { title: title.to_owned(), kind: Kind::Sentences }
     }
 
     /// A column of numbers.
