@@ -269,14 +269,17 @@ impl<'s> Grid<'s> {
         field.divide(lines, &points);
         let (count, length) = ((self.rows, &rows), (self.columns, &columns));
         let (count, length) = if lines == Lines::Rows { (count, length) } else { (length, count) };
-        if solvers.newton().has_all_given() {
+        let has_all_given = solvers.newton().has_all_given();
+        if has_all_given {
             self.compute_strips(&mut field, count.1, length.1);
         }
         let levels = |(count, known): (usize, &[usize])| levels(&(0..count).collect::<Vec<_>>(), known);
-        if !field.is_complete() {
-            let along = levels((length.0, length.1));
-            self.effort.evaluations += field.refine_lines(solvers.newton(), count.1, &along, self.targets);
-            self.refine_strips(&mut field, solvers, &levels((count.0, count.1)));
+        if !(has_all_given && field.is_complete()) {
+            let (newton, targets) = (solvers.newton(), self.targets);
+            let refine = || field.refine_lines(newton, count.1, &levels((length.0, length.1)), targets);
+            let (evaluations, down) = rayon::join(refine, || levels((count.0, count.1)));
+            self.effort.evaluations += evaluations;
+            self.refine_strips(&mut field, solvers, &down);
         }
         self.finish(&mut field, solvers, 0..self.rows);
         field

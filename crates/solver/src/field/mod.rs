@@ -123,7 +123,10 @@ impl Field {
     /// Nothing known of `counts` rows and columns, with room for `extras` further numbers a point; in the memory of another
     /// field if there is one.
     pub(crate) fn new(ranges: &[Range], counts: [usize; 2], extras: usize, memory: Option<Field>) -> Field {
-        let shape = Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras);
+        Field::of(Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras), ranges, memory)
+    }
+
+    fn of(shape: Shape, ranges: &[Range], memory: Option<Field>) -> Field {
         let (values, marks) = memory.map_or_else(Default::default, |field| (field.values, field.marks));
         let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new() };
         field.clear();
@@ -159,11 +162,15 @@ impl Field {
 
     /// Takes over all that another field of the same kind knows of a point.
     pub(crate) fn copy(&mut self, point: usize, from: &Field, other: usize) {
-        for plane in 0..self.shape.planes {
-            self.set(point, plane, from.value(other, plane));
-        }
-        let (block, lane) = self.shape.place(point);
-        self.marks[block][lane] = from.mark(other);
+        self.copy_place(self.shape.place(point), from, from.shape.place(other));
+    }
+
+    fn copy_place(&mut self, (block, lane): (usize, usize), from: &Field, (other, column): (usize, usize)) {
+        let planes = self.shape.planes;
+        let numbers = &from.values.as_chunks::<LANES>().0[other * planes..][..planes];
+        let to = &mut self.values.as_chunks_mut::<LANES>().0[block * planes..][..planes];
+        to.iter_mut().zip(numbers).for_each(|(to, numbers)| to[lane] = numbers[column]);
+        self.marks[block][lane] = from.marks[other][column];
     }
 
     /// Number of points.
@@ -227,13 +234,21 @@ impl Field {
 
     /// Number of solved points.
     pub(crate) fn solved(&self) -> usize {
-        self.marks.iter().flatten().filter(|mark| **mark == Mark::Solved).count()
+        self.count(|mark| mark == Mark::Solved)
     }
 
     /// Whether nothing is left to look for.
     pub(crate) fn is_complete(&self) -> bool {
-        let roots = |marks: &[Mark; LANES]| marks.iter().map(|mark| u8::from(mark.is_root())).sum::<u8>();
-        self.marks.iter().map(|marks| usize::from(roots(marks))).sum::<usize>() == self.len()
+        self.count(Mark::is_root) == self.len()
+    }
+
+    fn count(&self, is_meant: impl Fn(Mark) -> bool) -> usize {
+        let of = |marks: &[Mark; LANES]| {
+            // mostly all of a block are, which takes a few vectors to see
+            let others = marks.iter().fold(0, |others, mark| others | u8::from(!is_meant(*mark)));
+            if others == 0 { LANES } else { marks.iter().filter(|mark| is_meant(**mark)).count() }
+        };
+        self.marks.iter().map(of).sum()
     }
 
     /// A point by the careful path.
@@ -316,55 +331,27 @@ impl Field {
         levels: &[Vec<Midpoint>],
         targets: &[[f64; 2]],
     ) -> u64 {
-        let shape = self.shape;
-        let mut evaluations = 0;
-        let mut waiting = Vec::with_capacity(LANES);
-        for level in levels {
-            for (line, midpoint) in lines.iter().flat_map(|line| level.iter().map(move |midpoint| (*line, midpoint))) {
-                let (known, lane) = ((&*self.values, self.marks.as_slice()), waiting.len());
-                if !interpolate(shape, midpoint, known, |at| shape.place_on(line, at), newton, lane) {
-                    continue;
-                }
-                let target = targets[shape.point(line, midpoint.at)];
-                newton.input(shape.size)[lane] = target[0];
-                newton.input(shape.size + 1)[lane] = target[1];
-                waiting.push((line, midpoint));
-                if waiting.len() == LANES {
-                    evaluations += self.solve(newton, &mut waiting);
-                }
-            }
-            evaluations += self.solve(newton, &mut waiting);
-        }
-        evaluations
-    }
-
-    /// Solves the points of lines that wait in the first lanes.
-    fn solve(&mut self, newton: &mut LaneNewton<'_>, waiting: &mut Vec<(usize, &Midpoint)>) -> u64 {
-        if waiting.is_empty() {
-            return 0;
-        }
-        let shape = self.shape;
-        let evaluations = newton.run(&[true; LANES][..waiting.len()], newton.were_rough());
-        let is_plain = newton.all_plain(waiting.len(), NEAR);
-        for (lane, (line, midpoint)) in waiting.drain(..).enumerate() {
-            let (block, column) = shape.place_on(line, midpoint.at);
-            let [before, behind] = midpoint.beside.map(|at| shape.place_on(line, at));
-            let apart = || self.apart(before, behind);
-            if is_plain {
-                self.marks[block][column] = Mark::Solved;
-                keep(shape, block_of(shape, &mut self.values, block), column, newton, lane);
-            } else if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
-                let values = block_of(shape, &mut self.values, block);
-                take(shape, values, &mut self.marks[block], column, newton, lane);
+        let Shape { length, size, planes, .. } = self.shape;
+        // beside each other these lines are lanes of lines that go across them
+        let shape = Shape::new(Lines::Columns, [lines.len(), length], size, planes);
+        let mut across = Field::of(shape, &self.ranges, None);
+        let (own, of_line) = (self.shape, |line: usize| (0..length).map(move |at| (line, at)));
+        let targets: Vec<[f64; 2]> =
+            lines.iter().flat_map(|line| of_line(*line)).map(|(line, at)| targets[own.point(line, at)]).collect();
+        let pairs = || {
+            let places = |(k, line): (usize, &usize)| of_line(*line).map(move |(line, at)| (k, line, at));
+            let places = lines.iter().enumerate().flat_map(places);
+            places.map(move |(k, line, at)| (own.place_on(line, at), shape.place_on(at, k)))
+        };
+        let is_root = |field: &Field, (block, lane): (usize, usize)| field.marks[block][lane].is_root();
+        pairs().filter(|(own, _)| is_root(self, *own)).for_each(|(own, beside)| across.copy_place(beside, self, own));
+        let evaluations = across.strips().into_iter().map(|mut strip| strip.refine(newton, levels, &targets)).sum();
+        for (own, beside) in pairs() {
+            if is_root(&across, beside) && !is_root(self, own) {
+                self.copy_place(own, &across, beside);
             }
         }
         evaluations
-    }
-
-    /// How far two points are apart, as a share of the ranges.
-    fn apart(&self, a: (usize, usize), b: (usize, usize)) -> f64 {
-        let share = |(k, range): (usize, &Range)| (self.value_in(a, k) - self.value_in(b, k)).abs() / range.width();
-        self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
     }
 
     /// Those of some lines that are known at some `places`, with a determinant there.
