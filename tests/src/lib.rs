@@ -42,12 +42,27 @@ pub fn all_pages() -> Vec<PathBuf> {
 }
 
 fn markdown(folder: &Path) -> Vec<PathBuf> {
+    files(folder, "md")
+}
+
+/// All specs of the library, as paths from the repository's top folder.
+///
+/// # Panics
+/// If a folder cannot be read.
+pub fn shipped() -> Vec<String> {
+    let top = repository("");
+    let below = |path: PathBuf| path.strip_prefix(&top).map(|path| path.display().to_string());
+    files(&repository("specs"), "chain").into_iter().map(|path| below(path).expect("it is below")).collect()
+}
+
+/// The files of a folder and of those below that have an extension, in the order of their paths.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("the folder is there");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
     let below = |path: PathBuf| match path.extension() {
-        _ if path.is_dir() => markdown(&path),
-        Some(extension) if extension == "md" => vec![path],
+        _ if path.is_dir() => files(&path, extension),
+        Some(own) if own == extension => vec![path],
         _ => Vec::new(),
     };
     paths.into_iter().flat_map(below).collect()
@@ -69,7 +84,11 @@ pub fn job_named<'g>(graph: &'g Graph, spec: &str, name: &str, set: &[(&str, &st
     jobs(graph, spec, set).into_iter().find(|job| job.name == name).expect("the job is in the spec")
 }
 
-fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> {
+/// All jobs of a spec, with some values replaced.
+///
+/// # Panics
+/// With the diagnostics, if there are errors.
+pub fn jobs<'g>(graph: &'g Graph, spec: &str, set: &[(&str, &str)]) -> Vec<Job<'g>> {
     let set: Vec<(String, String)> = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     right(compile_file(graph, &repository(spec), &set), spec)
 }
