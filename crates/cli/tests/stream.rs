@@ -56,3 +56,44 @@ fn a_large_grid_has_a_smooth_face() {
     let stl = std::fs::metadata(out.join("flank.stl")).expect("it is written").len();
     assert_eq!(stl, 84 + 50 * 2 * 500 * 501);
 }
+
+/// A run that is killed while it writes: what stood there before is still there, and no half file has its name.
+#[test]
+fn a_killed_run_leaves_the_old_file() {
+    let out = folder("killed");
+    let old = out.join("flank.csv");
+    std::fs::write(&old, "old").expect("the test's file");
+    let arguments = ["--job", "flank", "--set", "rows=1000", "--set", "columns=1000", "--no-picture", "--out"];
+    let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"))
+        .args(["solve", JOB])
+        .args(arguments)
+        .arg(&out)
+        .current_dir(support::top())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the binary runs");
+    let begun = || {
+        let files = std::fs::read_dir(&out).expect("the folder is there").map(|file| file.expect("a file"));
+        let mut parts = files.filter(|file| file.file_name().to_string_lossy().ends_with(".part"));
+        parts.any(|part| part.metadata().is_ok_and(|part| part.len() > 1_000_000))
+    };
+    while !begun() {
+        assert!(run.try_wait().expect("it runs").is_none(), "it ended before it was killed");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    run.kill().expect("it runs");
+    run.wait().expect("it ran");
+    assert_eq!(std::fs::read_to_string(&old).expect("it is there"), "old");
+}
+
+/// What the disk says half-way is told, and the old file stays.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let out = folder("full");
+    std::os::unix::fs::symlink("/dev/full", out.join("flank.csv")).expect("links can be made");
+    let done = solve("flank", [300, 300], &out, &["--no-picture"]);
+    assert_eq!(done.status.code(), Some(1));
+    assert!(text(&done.stderr).contains("the disk is full"), "{}", text(&done.stderr));
+}
