@@ -1,12 +1,13 @@
 //! Surfaces as a binary STL mesh.
 
-use std::io::Write;
+use std::io::SeekFrom;
 
 use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::one_line;
 use crate::dataset::Header;
 use crate::error::WriteError;
 use crate::facets::{Numbered, each_facet};
+use crate::regions::Target;
 use crate::vector::{cross, sub, unit};
 
 /// Writes all patches as one binary STL mesh, mm.
@@ -15,32 +16,32 @@ use crate::vector::{cross, sub, unit};
 /// wound so that they face where the normals of the points do, out of the body. A triangle that has no area in the
 /// format's single precision is left out. The surfaces are open: the mesh has no volume.
 ///
-/// The points are asked for three times.
+/// The points are asked for twice; the number of triangles is put in its place when they are written.
 ///
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, there are more triangles than the format can count, or the
-/// stream refuses.
-pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+/// target refuses.
+pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), WriteError> {
     Seen::of(surfaces)?;
-    let mut triangles = 0;
-    for surface in &surfaces.list {
-        each_triangle(*surface, &mut |_| {
-            triangles += 1;
-            Ok(())
-        })?;
-    }
-    let count = u32::try_from(triangles).map_err(|_| WriteError::TooManyTriangles { triangles })?;
     out.write_all(&head(surfaces.header))?;
-    out.write_all(&count.to_le_bytes())?;
+    let place = out.stream_position()?;
+    out.write_all(&[0; 4])?;
+    let mut triangles = 0;
     for surface in &surfaces.list {
         each_triangle(*surface, &mut |triangle| {
             let mut bytes = [0; 50];
             for (place, number) in bytes.chunks_exact_mut(4).zip(triangle.as_flattened()) {
                 place.copy_from_slice(&number.to_le_bytes());
             }
+            triangles += 1;
             Ok(out.write_all(&bytes)?)
         })?;
     }
+    let count = u32::try_from(triangles).map_err(|_| WriteError::TooManyTriangles { triangles })?;
+    let end = out.stream_position()?;
+    out.seek(SeekFrom::Start(place))?;
+    out.write_all(&count.to_le_bytes())?;
+    out.seek(SeekFrom::Start(end))?;
     Ok(())
 }
 

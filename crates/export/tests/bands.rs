@@ -29,7 +29,7 @@ const WRITERS: [(&str, Writer); 7] = [
     ("CSV", |surfaces, out| write_csv(surfaces, out)),
     ("JSON", |surfaces, out| write_json(surfaces, out)),
     ("Parquet", |surfaces, out| write_parquet(surfaces, out)),
-    ("STL", |surfaces, out| write_stl(surfaces, out)),
+    ("STL", write_stl),
     ("OBJ", |surfaces, out| write_obj(surfaces, out)),
     ("3MF", |surfaces, out| write_3mf(surfaces, out)),
     ("VTK", write_vtp),

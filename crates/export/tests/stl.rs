@@ -8,9 +8,9 @@ use flank_export::{Dataset, Patch, write_stl};
 use synthetic::{Gear, bevel, cross, dataset, gallery, holes, plane, without};
 
 fn bytes_of(dataset: &Dataset) -> Vec<u8> {
-    let mut bytes = Vec::new();
+    let mut bytes = Cursor::new(Vec::new());
     write_stl(&dataset.surfaces(), &mut bytes).expect("a sound dataset");
-    bytes
+    bytes.into_inner()
 }
 
 type Triangle = ([f64; 3], [[f64; 3]; 3]);
