@@ -24,7 +24,7 @@ const GROUP: usize = 1 << 16;
 /// Writes all points as a Parquet table with the columns of the CSV file ([`write_csv`](crate::write_csv)), not compressed. Numbers that a
 /// point does not have are null. The file's metadata state the conventions and what each surface, unknown and field is.
 ///
-/// The points are asked for twice; some [`GROUP`] of them are held.
+/// The points are asked for twice; 65,536 of them are held at a time.
 ///
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
