@@ -274,17 +274,6 @@ impl Picture {
         svg::element(self)
     }
 
-    /// The same figure with so many times the pixels across and down.
-    pub(crate) fn finer(&self, times: u32) -> Picture {
-        let side = |side: u32| side.saturating_mul(times).min(*SIDES.end());
-        Picture {
-            width: side(self.width),
-            height: side(self.height),
-            unit: self.unit * f64::from(times),
-            ..self.clone()
-        }
-    }
-
     /// What it is called.
     pub(crate) fn title(&self) -> &str {
         &self.title

@@ -14,8 +14,6 @@ const STYLE: &str = include_str!("style.css");
 const MOST_BYTES: usize = 2_200_000;
 /// Letters of names that are kept on one line.
 const LONG_NAME: usize = 26;
-/// Pixels of such a picture are so many times finer than usual.
-const FINER: u32 = 2;
 
 /// Writes a document as an HTML page that needs no other file and prints on A4.
 ///
@@ -59,7 +57,7 @@ fn drawn(pictures: &[&Picture]) -> Result<Vec<String>, WriteError> {
             break;
         }
         let picture = pictures[*at];
-        let pixels = encoded_bytes(&picture.finer(FINER).png()?);
+        let pixels = encoded_bytes(&picture.png()?);
         bytes -= element.len();
         *element = format!("<img alt=\"{}\" src=\"data:image/png;base64,{pixels}\"/>\n", escaped(picture.title()));
         bytes += element.len();
