@@ -9,7 +9,7 @@ use crate::bands::{Banded, Seen, Surfaces};
 use crate::conventions::sentences;
 use crate::dataset::{Axis, Field, Patch, Point, Values};
 use crate::error::WriteError;
-use crate::json_layout::{UNITS, Units, write_document};
+use crate::json_layout::{Head, write_document};
 use crate::number::plain;
 use crate::tally::Tally;
 
@@ -30,13 +30,7 @@ pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wr
     const BROKEN: usize = 4;
     let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     let document = Document {
-        schema: SCHEMA,
-        program: &header.program,
-        spec: &header.spec,
-        spec_hash: &header.spec_hash,
-        job: &header.job,
-        conventions: sentences(header),
-        units: UNITS,
+        head: Head::new(SCHEMA, header, sentences(header)),
         tally: TallyOut::of(&seen.all),
         surfaces: surfaces
             .list
@@ -50,13 +44,8 @@ pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wr
 
 #[derive(Serialize)]
 struct Document<'a> {
-    schema: &'a str,
-    program: &'a str,
-    spec: &'a str,
-    spec_hash: &'a str,
-    job: &'a str,
-    conventions: Vec<String>,
-    units: Units,
+    #[serde(flatten)]
+    head: Head<'a>,
     #[serde(flatten)]
     tally: TallyOut,
     surfaces: Vec<SurfaceOut<'a>>,

@@ -5,16 +5,40 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
+use crate::dataset::Header;
 use crate::error::WriteError;
 
-/// The units that all documents have.
+/// What all documents begin with.
 #[derive(Serialize)]
-pub(crate) struct Units {
+pub(crate) struct Head<'a> {
+    schema: &'a str,
+    program: &'a str,
+    spec: &'a str,
+    spec_hash: &'a str,
+    job: &'a str,
+    conventions: Vec<String>,
+    units: Units,
+}
+
+#[derive(Serialize)]
+struct Units {
     length: &'static str,
     angle: &'static str,
 }
 
-pub(crate) const UNITS: Units = Units { length: "mm", angle: "deg" };
+impl<'a> Head<'a> {
+    pub(crate) fn new(schema: &'a str, header: &'a Header, conventions: Vec<String>) -> Head<'a> {
+        Head {
+            schema,
+            program: &header.program,
+            spec: &header.spec,
+            spec_hash: &header.spec_hash,
+            job: &header.job,
+            conventions,
+            units: Units { length: "mm", angle: "deg" },
+        }
+    }
+}
 
 /// Writes a document whose `broken` outermost levels have a line for each of their parts.
 pub(crate) fn write_document(document: &impl Serialize, broken: usize, out: &mut dyn Write) -> Result<(), WriteError> {

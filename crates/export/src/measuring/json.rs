@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{Hand, MeasuringGrid, NominalFlank, Part, places, sentences};
 use crate::dataset::{Patch, Point};
 use crate::error::WriteError;
-use crate::json_layout::{UNITS, Units, write_document};
+use crate::json_layout::{Head, write_document};
 use crate::number::plain;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
@@ -23,15 +23,8 @@ pub fn write_grid_json(grid: &MeasuringGrid, out: &mut dyn Write) -> Result<(), 
     for (_, patch) in grid.flanks.iter().flat_map(|flank| &flank.parts) {
         patch.check()?;
     }
-    let header = &grid.header;
     let document = Document {
-        schema: GRID_SCHEMA,
-        program: &header.program,
-        spec: &header.spec,
-        spec_hash: &header.spec_hash,
-        job: &header.job,
-        conventions: sentences(grid),
-        units: UNITS,
+        head: Head::new(GRID_SCHEMA, &grid.header, sentences(grid)),
         margins: grid.margins,
         flanks: grid.flanks.iter().map(flank_out).collect(),
     };
@@ -40,13 +33,8 @@ pub fn write_grid_json(grid: &MeasuringGrid, out: &mut dyn Write) -> Result<(), 
 
 #[derive(Serialize)]
 struct Document<'a> {
-    schema: &'a str,
-    program: &'a str,
-    spec: &'a str,
-    spec_hash: &'a str,
-    job: &'a str,
-    conventions: Vec<String>,
-    units: Units,
+    #[serde(flatten)]
+    head: Head<'a>,
     margins: [f64; 2],
     flanks: Vec<FlankOut<'a>>,
 }

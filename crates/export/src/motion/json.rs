@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::table::{AS_IN_THE_SPEC, MachineAxis, MotionTable};
 use crate::error::WriteError;
-use crate::json_layout::{UNITS, Units, write_document};
+use crate::json_layout::{Head, write_document};
 use crate::number::plain;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
@@ -20,15 +20,8 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
     /// Document, list of rows.
     const BROKEN: usize = 2;
     table.check()?;
-    let header = &table.header;
     let document = Document {
-        schema: MOTION_SCHEMA,
-        program: &header.program,
-        spec: &header.spec,
-        spec_hash: &header.spec_hash,
-        job: &header.job,
-        conventions: table.sentences(AS_IN_THE_SPEC),
-        units: UNITS,
+        head: Head::new(MOTION_SCHEMA, &table.header, table.sentences(AS_IN_THE_SPEC)),
         motion: MotionOut { name: &table.motion.name, unit: table.motion.unit.symbol() },
         axes: (0..table.axes.len()).map(|index| axis_out(table, index)).collect(),
         series: series_out(table),
@@ -40,13 +33,8 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
 
 #[derive(Serialize)]
 struct Document<'a> {
-    schema: &'a str,
-    program: &'a str,
-    spec: &'a str,
-    spec_hash: &'a str,
-    job: &'a str,
-    conventions: Vec<String>,
-    units: Units,
+    #[serde(flatten)]
+    head: Head<'a>,
     motion: MotionOut<'a>,
     axes: Vec<AxisOut<'a>>,
     series: Option<SeriesOut>,
