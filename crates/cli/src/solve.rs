@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
             + &travel::beyond(job, &solved)
             + &step::missed(&faces, arguments.step.unwrap_or_default());
         let spec = spec::shown(&arguments.which.file);
-        let table = Table { job, spec, solved: &solved, lines: &lines, written, since: start };
+        let table = Table { job, spec, solved: &solved, lines: &lines, faces: &faces, written, since: start };
         print(&if arguments.json { table.json(&told) } else { table.text() });
         anstream::eprintln!("{}", table.time());
         anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
+use serde_json::{Value, json};
 
 use crate::progress::Working;
 use crate::solve::{self, Wanted};
@@ -18,8 +19,8 @@ const MOST_LINES: usize = 101;
 /// A surface's face, if it has one.
 pub(crate) struct Smooth {
     pub(crate) face: Option<Face>,
-    name: String,
-    is_exact_enough: bool,
+    pub(crate) name: String,
+    pub(crate) is_exact_enough: bool,
 }
 
 /// The face of a surface, through its sampled points (some of very many) or, where that leaves it off by more than `tolerance` (mm),
@@ -99,6 +100,20 @@ pub(crate) fn told(faces: &[Smooth]) -> String {
         };
     }
     out
+}
+
+/// The same as data.
+pub(crate) fn json(faces: &[Smooth]) -> Value {
+    let entry = |smooth: &Smooth| {
+        let face = smooth.face.as_ref();
+        let off = face.and_then(|face| face.deviation);
+        json!({
+            "surface": smooth.name, "counts": face.map(Face::counts), "left_out": face.map(|face| face.left_out),
+            "deviation": off.map(|off| off.largest), "measured": off.map(|off| off.points),
+            "not_measured": off.map(|off| off.missing), "is_exact_enough": smooth.is_exact_enough,
+        })
+    };
+    faces.iter().map(entry).collect()
 }
 
 /// Which faces are not as exact as asked for.

@@ -14,6 +14,7 @@ use crate::failure::not_done;
 use crate::limits::Line;
 use crate::reach::Needed;
 use crate::sensitivity::{self, Sensitivity};
+use crate::step::{self, Smooth};
 use crate::stream::Streamed;
 use crate::summary::{Ends, Summary};
 use crate::{branches, certify, cut, fields, reasons, required, units};
@@ -54,6 +55,8 @@ pub(crate) struct Table<'a, 'j, 'g> {
     pub(crate) spec: String,
     pub(crate) solved: &'a [Solved<'j, 'g>],
     pub(crate) lines: &'a [&'a Line<'j, 'g>],
+    /// Of a STEP file, if one was asked for.
+    pub(crate) faces: &'a [Smooth],
     pub(crate) written: Vec<String>,
     pub(crate) since: Instant,
 }
@@ -170,6 +173,7 @@ impl Table<'_, '_, '_> {
             "spec": self.spec,
             "surfaces": surfaces,
             "lines": self.lines.iter().map(|line| line.row().json()).collect::<Vec<_>>(),
+            "faces": step::json(self.faces),
             "files": self.written,
             "not_done": not_done(told),
         });

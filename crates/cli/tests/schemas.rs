@@ -77,7 +77,7 @@ fn solved_surfaces() {
     let [at, to] = ["--out", out.to_str().unwrap()];
     let solve =
         |spec: &'static str, more: &[&'static str]| [&["solve", spec, "--json", "--no-picture", at, to], more].concat();
-    judge.run(&solve(SPUR, &["--geometry", "--sensitivity", "--certify", "--limits", "--format", "json"]), 0);
+    judge.run(&solve(SPUR, &["--geometry", "--sensitivity", "--certify", "--limits", "--step", "--format", "json"]), 0);
     judge.file(&out.join("spur_gear.json"));
     judge.run(&solve(PINION, &["--geometry", "--sensitivity", "--format", "json"]), 0);
     judge.file(&out.join("pinion_19x62.json"));
@@ -133,7 +133,7 @@ fn comparisons_and_pictures() {
     let measured = out.join("pinion_19x62.grid.csv");
     let back = ["deviation", PINION, "concave", "--no-picture", "--measured", measured.to_str().unwrap()];
     judge.run(&[&back[..], &at].concat(), 0);
-    judge.run(&[&["report", SPUR, "--certify"][..], &at].concat(), 0);
+    judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
     judge.has_met(&[

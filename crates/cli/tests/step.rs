@@ -64,6 +64,19 @@ fn the_head_and_the_report_say_how_far_the_faces_are_off() {
         assert!(line.contains("off by at most") && file.contains(line), "{line}");
     }
     assert_eq!(told.matches("STEP: ").count(), 2);
+    // the same on the page, as data, and in the file that lies beside it
+    let beside = out.join("report");
+    let to = beside.to_str().expect("a plain path");
+    let run = flank(&["report", spec, "--step=1um", "--json", "--out", to]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    assert_eq!(std::fs::read_to_string(beside.join("helical_gear.step")).expect("written"), file);
+    let reported: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let page = std::fs::read_to_string(beside.join("helical_gear.report.html")).expect("written");
+    for face in reported["faces"].as_array().expect("a list") {
+        let off = format!("{:.2e}", 1e3 * face["deviation"].as_f64().expect("measured"));
+        assert!(told.contains(&format!("off by at most {off} um")) && page.contains(&off), "{off}: {told}");
+    }
+    assert_eq!(reported["faces"].as_array().map(Vec::len), Some(2));
     let again = flank(&["solve", spec, "--step=1um", "--out", folder, "--no-picture"]);
     assert!(again.status.success());
     assert_eq!(std::fs::read_to_string(out.join("helical_gear.step")).expect("written"), file, "the same bytes");

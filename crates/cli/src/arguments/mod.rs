@@ -2,6 +2,7 @@
 
 mod convert;
 mod measuring;
+mod report;
 
 use std::path::PathBuf;
 
@@ -11,6 +12,7 @@ use flank_expr::InstructionSet;
 
 pub(crate) use convert::{Convert, EmitForm, Onto, TableFormat};
 pub(crate) use measuring::{Deviation, Measure};
+pub(crate) use report::{Report, ReportFormat};
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -444,44 +446,6 @@ pub(crate) struct View {
     /// Print files and sizes as JSON
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Args, Debug)]
-#[command(after_help = "\
-One file for each job, JOB.report.html or JOB.report.md; the pictures of Markdown lie beside it. The same job gives the same bytes:
-there is no date unless one is given.
-
-Examples:
-  flank report specs/bevel/pinion_19x62.chain
-  flank report specs/bevel/pinion_19x62.chain --certify --date 2026-11-21 --out order_4711.html
-  flank report specs/hobbing/undercut_gear.chain --set teeth=12 --format html,md --out reports
-  flank report specs/hobbing/helical_gear.chain --json")]
-pub(crate) struct Report {
-    #[command(flatten)]
-    pub(crate) which: Which,
-    /// Folder for the files, made if it is not there; or a file that ends in .html or .md
-    #[arg(long, value_name = "PATH", default_value = "build")]
-    pub(crate) out: PathBuf,
-    /// html, md, or both with a comma; html, or what the file of --out is, without it
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) format: Vec<ReportFormat>,
-    /// Prove of each point that exactly one root lies near it, and state how near
-    #[arg(long)]
-    pub(crate) certify: bool,
-    /// A date, or another mark, to stand on the page
-    #[arg(long, value_name = "TEXT")]
-    pub(crate) date: Option<String>,
-    /// Print what is on the page as JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ReportFormat {
-    /// One page with its pictures in it
-    Html,
-    /// Markdown with its pictures beside it
-    Md,
 }
 
 #[derive(Args, Debug)]

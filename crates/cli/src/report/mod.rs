@@ -22,6 +22,7 @@ use crate::failure::{Failure, not_done};
 use crate::limits::{self, Line};
 use crate::plot::{self, Drawing, Subject, first_sampled};
 use crate::solve::{self, Wanted};
+use crate::step::{self, Smooth};
 use crate::table::{self, Solved};
 use crate::travel::{self, Run};
 use crate::{Ending, branches, certify, cut, print, required, spec};
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
     for job in jobs {
         let findings = Findings::of(job, &compilation.sources, &hash, arguments)?;
         let document = findings.document();
-        let written = target.write(&job.name, &document)?;
+        let written = target.write(&findings, &document)?;
         print(&if arguments.json { findings.json(&document, &written) } else { findings.told(&written) });
         let failures = findings.failures();
         if !failures.is_empty() {
@@ -60,6 +61,8 @@ struct Findings<'j, 'g> {
     runs: Vec<Run<'j, 'g>>,
     /// The pictures that matter for the job.
     drawings: Vec<(What, Drawing)>,
+    /// Of a STEP file, if one is asked for.
+    faces: Vec<Smooth>,
     is_certified: bool,
 }
 
@@ -79,6 +82,9 @@ impl<'j, 'g> Findings<'j, 'g> {
             lines.extend(limits::lines(job, solved.surface, wanted.means));
             lines.extend(solved.trims.drain(..).filter(|line| !line.points.is_empty()));
         }
+        let bare = Wanted { geometry: false, sensitivity: false, certificates: false, ..wanted };
+        let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
+        let faces = arguments.step.into_iter().flat_map(smooth).collect();
         let runs = travel::runs(job, &solved);
         let header = solve::header(&job.name, &arguments.which, hash);
         // the page says once where all its pictures come from
@@ -94,6 +100,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             lines,
             runs,
             drawings,
+            faces,
             is_certified: arguments.certify,
         })
     }
@@ -111,6 +118,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             + &cut::unknown(solved)
             + &certify::failed(solved)
             + &travel::beyond(self.job, solved)
+            + &step::missed(&self.faces, self.arguments.step.unwrap_or_default())
     }
 
     /// Points that were asked for, and of them those that were solved.
@@ -200,7 +208,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             "date": self.arguments.date, "tolerance": TOLERANCE, "asked": asked, "solved": found,
             "undercut": ends::undercut_count(self),
             "inputs": inputs::json(self), "motions": inputs::motions_json(self), "machines": machines::json(self),
-            "surfaces": results::json(self), "lines": ends::json(self), "pictures": pictures,
+            "surfaces": results::json(self), "lines": ends::json(self), "faces": step::json(&self.faces), "pictures": pictures,
             "not_checked": { "of_this_job": unchecked.of_job, "by_no_report": unchecked.always },
             "conventions": conventions::sentences(self), "files": written, "not_done": not_done(&self.failures()),
         });

@@ -1,10 +1,11 @@
 //! What was solved, and how well.
 
 use flank_chain_dsl::{GeneratedSurface, Process};
-use flank_export::{Block, Column, ReportSection, Tone};
+use flank_export::{Block, Column, Face, ReportSection, Tone};
 use serde_json::{Value, json};
 
 use super::Findings;
+use crate::step::Smooth;
 use crate::table::{self, Solved};
 use crate::{branches, certify, reasons, required, units};
 
@@ -13,6 +14,7 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
     blocks.extend(findings.solved().iter().filter_map(|solved| missing(findings, solved)));
     blocks.push(roots(findings));
     blocks.extend(certificates(findings));
+    blocks.extend(faces(findings));
     blocks.extend(requirements(findings));
     ReportSection { title: "What was solved".to_string(), blocks }
 }
@@ -117,6 +119,34 @@ fn certificates(findings: &Findings<'_, '_>) -> Option<Block> {
         Column::numbers("exactly one root within, mm"),
     ];
     (!rows.is_empty()).then(|| Block::Table("Certificates: proofs on intervals".to_string(), columns, rows))
+}
+
+/// How far the smooth faces of the STEP file are off.
+fn faces(findings: &Findings<'_, '_>) -> Option<Block> {
+    let columns = vec![
+        Column::words("surface"),
+        Column::words("through points"),
+        Column::numbers("points beyond it"),
+        Column::numbers("off by at most, um"),
+        Column::numbers("at exact points"),
+        Column::numbers("not measured at"),
+    ];
+    let row = |smooth: &Smooth| {
+        let none = || "\u{2013}".to_string();
+        let face = smooth.face.as_ref();
+        let off = face.and_then(|face| face.deviation);
+        vec![
+            smooth.name.clone(),
+            face.map(Face::counts).map_or_else(none, |[rows, columns]| format!("{rows} \u{d7} {columns}")),
+            face.map_or_else(none, |face| face.left_out.to_string()),
+            off.map_or_else(none, |off| format!("{:.2e}", 1e3 * off.largest)),
+            off.map_or_else(none, |off| off.points.to_string()),
+            off.map_or_else(none, |off| off.missing.to_string()),
+        ]
+    };
+    let rows: Vec<Vec<String>> = findings.faces.iter().map(row).collect();
+    let caption = "Faces of the STEP file: distances from exact points between those that they go through";
+    (!rows.is_empty()).then(|| Block::Table(caption.to_string(), columns, rows))
 }
 
 /// What the samples require of their points, and where it does not hold.

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::Job;
-use flank_export::Report as Document;
+use flank_export::{Face, Report as Document};
 
+use super::Findings;
 use crate::arguments::{PictureFormat, Report, ReportFormat};
 use crate::files::Folder;
 
@@ -41,8 +42,13 @@ impl Target {
     }
 
     /// Writes the files of a job's report and names them.
-    pub(super) fn write(&self, job: &str, document: &Document) -> Result<Vec<String>, String> {
+    pub(super) fn write(&self, findings: &Findings<'_, '_>, document: &Document) -> Result<Vec<String>, String> {
+        let job = &findings.job.name;
         let mut folder = Folder::at(&self.folder)?;
+        let faces: Vec<&Face> = findings.faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
+        if !faces.is_empty() {
+            folder.step(job, &findings.header, &faces)?;
+        }
         for format in &self.formats {
             let name = self.file.clone().unwrap_or_else(|| format!("{job}.report.{}", extension(*format)));
             if *format == ReportFormat::Md {

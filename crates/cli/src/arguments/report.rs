@@ -1,0 +1,49 @@
+//! The arguments of `flank report`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Which, length};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+One file for each job, JOB.report.html or JOB.report.md; the pictures of Markdown lie beside it. The same job gives the same bytes:
+there is no date unless one is given.
+
+Examples:
+  flank report specs/bevel/pinion_19x62.chain
+  flank report specs/bevel/pinion_19x62.chain --certify --date 2026-11-21 --out order_4711.html
+  flank report specs/hobbing/undercut_gear.chain --set teeth=12 --format html,md --out reports
+  flank report specs/hobbing/helical_gear.chain --json")]
+pub(crate) struct Report {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// Folder for the files, made if it is not there; or a file that ends in .html or .md
+    #[arg(long, value_name = "PATH", default_value = "build")]
+    pub(crate) out: PathBuf,
+    /// html, md, or both with a comma; html, or what the file of --out is, without it
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) format: Vec<ReportFormat>,
+    /// Prove of each point that exactly one root lies near it, and state how near
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// Also write the surfaces as smooth faces into a STEP file, and state how far they are off: no more than 0.1um, or than another
+    /// length if possible
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
+    pub(crate) step: Option<f64>,
+    /// A date, or another mark, to stand on the page
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) date: Option<String>,
+    /// Print what is on the page as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// One page with its pictures in it
+    Html,
+    /// Markdown with its pictures beside it
+    Md,
+}
