@@ -4,18 +4,17 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
 use crate::error::{FileError, WriteError};
 use crate::regions::Target;
+use crate::unfinished::Unfinished;
 
 /// Bytes that go to the system at once.
 const BUFFER: usize = 1 << 16;
 
 /// Writes a file so that a reader sees the old one or the new one, never half of it.
 ///
-/// The content goes to a temporary file in the same folder, is forced to the disk, and takes the name at the end. On any
-/// error the temporary file is removed and what was there before stays. A link is followed, so the file it names is
+/// The content goes to a file in the same folder that has no name (a hidden one where the system knows no others), is forced to
+/// the disk, and gets its name at the end. On any error that file is gone and what was there before stays. A link is followed, so the file it names is
 /// replaced; a device or a pipe is written to as it is.
 ///
 /// ```
@@ -55,13 +54,13 @@ fn through_temporary(
     content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let folder = folder_of(path);
-    let temporary = new_temporary(&folder)?;
-    let file = fill(temporary.as_file().try_clone()?, content)?;
+    let unfinished = Unfinished::within(&folder)?;
+    let file = fill(unfinished.file()?, content)?;
     if let Some(permissions) = permissions {
         file.set_permissions(permissions)?;
     }
     file.sync_all()?;
-    temporary.persist(path).map_err(|error| error.error)?;
+    unfinished.finish(path)?;
     // The name is on the disk only when the folder is; not every system lets a folder be synced.
     if let Ok(folder) = File::open(&folder) {
         let _ = folder.sync_all();
@@ -80,16 +79,4 @@ fn folder_of(path: &Path) -> PathBuf {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
         _ => PathBuf::from("."),
     }
-}
-
-/// A temporary file with the permissions a new file has here, not the private ones of a secret.
-fn new_temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".flank-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
 }

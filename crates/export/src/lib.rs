@@ -82,6 +82,7 @@ mod step;
 mod stl_file;
 mod tally;
 mod threemf_file;
+mod unfinished;
 mod vector;
 mod vtp_file;
 mod xml;
