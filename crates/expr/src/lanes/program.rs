@@ -72,6 +72,7 @@ pub struct LaneTape {
     pub(super) once: Vec<Instruction>,
     /// What depends on the lane alone; results have blocks of their own, which are named.
     pub(super) by_lane: Vec<LaneInstruction>,
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only machine code asks for it"))]
     pub(super) kept: Vec<u32>,
     pub(super) each: Vec<LaneInstruction>,
     pub(super) curves: Vec<Arc<Curve>>,
