@@ -190,6 +190,14 @@ impl Measured<'_, '_> {
         self.deviations.iter().flatten().copied()
     }
 
+    /// The smallest, the largest, and the root of the mean square, um.
+    fn spread(&self) -> Option<[f64; 3]> {
+        let count = self.known().count();
+        let ends = self.known().map(|x| (x, x)).reduce(|(low, high), (x, _)| (low.min(x), high.max(x)));
+        let square = self.known().map(|x| x * x).sum::<f64>() / count as f64;
+        ends.map(|(low, high)| [low, high, square.sqrt()])
+    }
+
     fn ease_off(&self) -> Option<EaseOff> {
         EaseOff::of(&self.deviations, self.counts)
     }
@@ -235,10 +243,9 @@ impl Measured<'_, '_> {
                 radius * turn
             );
         }
-        if let Some(middle) = self.in_the_middle() {
-            let (low, high) = self.known().fold((middle, middle), |(low, high), x| (low.min(x), high.max(x)));
-            let rms = (self.known().map(|x| x * x).sum::<f64>() / known as f64).sqrt();
-            let _ = writeln!(out, "  range        {low:.3} .. {high:.3} um, rms {rms:.3}, in the middle {middle:.3}");
+        if let Some([low, high, rms]) = self.spread() {
+            let middle = self.in_the_middle().map_or(String::new(), |middle| format!(", in the middle {middle:.3}"));
+            let _ = writeln!(out, "  range        {low:.3} .. {high:.3} um, rms {rms:.3}{middle}");
         }
         if let Some(ease_off) = self.ease_off() {
             for (k, label) in self.labels.iter().enumerate() {
@@ -255,7 +262,7 @@ impl Measured<'_, '_> {
     }
 
     fn json(&self, written: &[String]) -> String {
-        let ease_off = self.ease_off();
+        let (ease_off, spread) = (self.ease_off(), self.spread());
         let direction = |k: usize| {
             ease_off.map(|of| {
                 let angle = self.lengths()[k].map(|length| arcmin(of.slopes[k], length));
@@ -271,7 +278,7 @@ impl Measured<'_, '_> {
             "asked": self.points.len(), "known": self.known().count(),
             "turn_deg": self.turn.map(f64::to_degrees), "turned": self.is_turned,
             "turn_mm": self.turn.map(|turn| self.middle_radius() * turn),
-            "lowest_um": self.known().reduce(f64::min), "highest_um": self.known().reduce(f64::max),
+            "lowest_um": spread.map(|of| of[0]), "highest_um": spread.map(|of| of[1]), "rms_um": spread.map(|of| of[2]),
             "middle_um": self.in_the_middle(),
             "directions": [direction(0), direction(1)], "bias_um": ease_off.map(|of| of.bias),
             "files": written, "not_done": not_done(&self.missing()),

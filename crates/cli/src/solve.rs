@@ -47,6 +47,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
         let dataset = dataset(job, &solved, &lines, header(&job.name, &arguments.which, &hash));
         let faces: Vec<Smooth> = arguments
+            .faces
             .step
             .iter()
             .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
@@ -58,7 +59,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
             + &travel::beyond(job, &solved)
-            + &step::missed(&faces, arguments.step.unwrap_or_default());
+            + &step::missed(&faces, arguments.faces.step.unwrap_or_default());
         let spec = spec::shown(&arguments.which.file);
         let table = Table { job, spec, solved: &solved, lines: &lines, faces: &faces, written, since: start };
         print(&if arguments.json { table.json(&told) } else { table.text() });

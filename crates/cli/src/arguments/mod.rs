@@ -156,10 +156,8 @@ pub(crate) struct Solve {
     /// Files with the points, several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<Format>,
-    /// Also write the surfaces as smooth faces into a STEP file, through as many points as keep them within a distance of the exact
-    /// surface (0.1um unless it says another)
-    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
-    pub(crate) step: Option<f64>,
+    #[command(flatten)]
+    pub(crate) faces: Faces,
     /// Also find where each surface turns back (the singular line of undercut) and where the tool's contact ends
     #[arg(long)]
     pub(crate) limits: bool,
@@ -285,6 +283,15 @@ fn pixels(text: &str) -> Result<(u32, u32), String> {
     let side = |digits: &str| digits.trim().parse::<u32>().ok().filter(|side| (64..=16_384).contains(side));
     let both = text.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?)));
     both.ok_or("write two numbers from 64 to 16384, for example 2400x1800".to_string())
+}
+
+/// The smooth faces of a STEP file.
+#[derive(Args, Debug)]
+pub(crate) struct Faces {
+    /// Also write the surfaces as smooth faces into a STEP file, through as many points as keep them within a distance of the exact
+    /// surface (0.1um unless it says another)
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
+    pub(crate) step: Option<f64>,
 }
 
 /// A length in mm.

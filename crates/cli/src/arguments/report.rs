@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Which, length};
+use super::{Faces, Which};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -28,10 +28,8 @@ pub(crate) struct Report {
     /// Prove of each point that exactly one root lies near it, and state how near
     #[arg(long)]
     pub(crate) certify: bool,
-    /// Also write the surfaces as smooth faces into a STEP file, and state how far they are off: no more than 0.1um, or than another
-    /// length if possible
-    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
-    pub(crate) step: Option<f64>,
+    #[command(flatten)]
+    pub(crate) faces: Faces,
     /// A date, or another mark, to stand on the page
     #[arg(long, value_name = "TEXT")]
     pub(crate) date: Option<String>,

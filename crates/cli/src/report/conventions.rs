@@ -45,7 +45,7 @@ pub(super) fn command(findings: &Findings<'_, '_>) -> String {
         words.extend(["--set".to_string(), format!("{name}={value}")]);
     }
     words.extend(findings.is_certified.then(|| "--certify".to_string()));
-    words.extend(findings.arguments.step.map(|tolerance| format!("--step={}um", 1e3 * tolerance)));
+    words.extend(findings.arguments.faces.step.map(|tolerance| format!("--step={tolerance}mm")));
     if let Some(date) = &findings.arguments.date {
         words.extend(["--date".to_string(), date.clone()]);
     }

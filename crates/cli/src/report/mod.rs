@@ -84,7 +84,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         }
         let bare = Wanted { geometry: false, sensitivity: false, certificates: false, ..wanted };
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
-        let faces = arguments.step.into_iter().flat_map(smooth).collect();
+        let faces = arguments.faces.step.into_iter().flat_map(smooth).collect();
         let runs = travel::runs(job, &solved);
         let header = solve::header(&job.name, &arguments.which, hash);
         // the page says once where all its pictures come from
@@ -118,7 +118,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             + &cut::unknown(solved)
             + &certify::failed(solved)
             + &travel::beyond(self.job, solved)
-            + &step::missed(&self.faces, self.arguments.step.unwrap_or_default())
+            + &step::missed(&self.faces, self.arguments.faces.step.unwrap_or_default())
     }
 
     /// Points that were asked for, and of them those that were solved.
