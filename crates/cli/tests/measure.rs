@@ -72,6 +72,12 @@ fn a_bevel_grid_runs_from_root_to_tip_and_toe_to_heel_on_the_flank_that_is_sampl
         assert!((1..=5).all(|row| (1..9).all(|column| rho(at(row, column + 1)) > rho(at(row, column)))));
         let middle = nominal(&out.join("pinion_19x62.grid.csv"), surface, "middle");
         assert!((0..3).all(|k| (middle[0].1[k] - at(3, 5).1[k]).abs() < 1e-9), "the middle of an odd grid");
+        let shown =
+            told["flanks"].as_array().unwrap().iter().find(|one| one["surface"] == surface).expect("it is told");
+        let [x, y, z] = middle[0].1;
+        for (key, value) in [("rho_mm", x.hypot(y)), ("z_mm", z), ("angle_deg", y.atan2(x).to_degrees())] {
+            assert!((shown["middle"][key].as_f64().expect("a number") - value).abs() < 1e-9, "{key}: {shown}");
+        }
     }
     let file: Value =
         serde_json::from_str(&std::fs::read_to_string(out.join("pinion_19x62.grid.json")).unwrap()).expect("JSON");
@@ -159,6 +165,7 @@ fn known_deviations_come_back() {
         assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
         let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
         assert!((told["turn_deg"].as_f64().expect("a turn").to_radians() - turn).abs() < 1e-10, "{told}");
+        are_the_numbers_of(&told, &grid, &off);
         let found = deviations(&out, "pinion_19x62.concave.measured.csv");
         for (found, off) in found.iter().zip(&off) {
             assert!((1e-3 * found - off).abs() < 1e-9, "{found} um, {off} mm");
@@ -166,6 +173,48 @@ fn known_deviations_come_back() {
         assert_eq!(found.len(), 45);
         assert!(out.join("pinion_19x62.concave.measured.svg").exists());
     }
+}
+
+/// The numbers of a table of 5 rows and 9 columns against the points that it is made of, deviations in mm.
+fn are_the_numbers_of(told: &Value, grid: &[Nominal], off: &[f64]) {
+    let number = |key: &str| told[key].as_f64().expect("a number");
+    let is =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 2e-6, "{found} instead of {expected}: {told}");
+    is(number("lowest_um"), 1e3 * off.iter().copied().fold(f64::INFINITY, f64::min));
+    is(number("highest_um"), 1e3 * off.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    is(number("rms_um"), 1e3 * (off.iter().map(|off| off * off).sum::<f64>() / 45.0).sqrt());
+    is(number("middle_um"), 1e3 * off[2 * 9 + 4]);
+    let [x, y, _] = grid[2 * 9 + 4].1;
+    is(number("turn_mm"), x.hypot(y) * number("turn_deg").to_radians());
+    // a slope is what it rises over the way from end to end through the middle
+    for (k, [from, to]) in [[4, 4 * 9 + 4], [2 * 9, 2 * 9 + 8]].into_iter().enumerate() {
+        let way = (0..3).map(|k| (grid[to].1[k] - grid[from].1[k]).powi(2)).sum::<f64>().sqrt();
+        let of = &told["directions"][k];
+        let slope = of["slope_um"].as_f64().expect("a slope");
+        is(of["slope_arcmin"].as_f64().expect("an angle"), (1e-3 * slope / way).atan().to_degrees() * 60.0);
+    }
+}
+
+/// Where the middle was not measured, the rest still has its numbers.
+#[test]
+fn a_middle_that_is_missing_hides_nothing() {
+    let out = folder("measure_no_middle");
+    let table = "row,column,deviation_um\n1,1,3\n1,3,-4\n3,1,0\n3,3,5\n";
+    let file = written(&out, "corners.csv", table);
+    let run = flank(&[
+        "deviation",
+        PINION,
+        "concave",
+        "--measured",
+        &file,
+        "--as-it-lies",
+        "--no-picture",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(run.status.code(), Some(3));
+    // (9 + 16 + 0 + 25) / 4 = 3.5355²
+    assert!(text(&run.stdout).contains("range        -4.000 .. 5.000 um, rms 3.536\n"), "{}", text(&run.stdout));
 }
 
 /// What another setting leaves, measured against the nominal flank, is what the exact derivative says, to first order.

@@ -119,6 +119,16 @@ fn numbers_are_those_of_solve() {
     has_row(&rows, &[first["name"].as_str().unwrap(), &asked, &found, &worst, &first["evaluations"].to_string()]);
     let k1 = first["fields"].as_array().unwrap().iter().find(|field| field["name"] == "k1").unwrap();
     has_row(&rows, &["flank_plus", "largest, k1", &format!("{:.6}", k1["high"].as_f64().unwrap())]);
+    let most = &first["sensitivity"]["parameters"][0];
+    let moves = ["rms", "largest"].map(|key| most[key].as_f64().expect("a displacement"));
+    let row = rows.iter().find(|row| {
+        row.first().is_some_and(|name| name == "flank_plus") && row.len() == 5 && row[1] == most["parameter"]
+    });
+    let row = row.expect("the parameter that moves it most comes first");
+    for (cell, value) in row[2..4].iter().zip(moves) {
+        let shown: f64 = cell.replace('\u{2212}', "-").parse().expect("a number");
+        assert!((shown - value).abs() <= 5e-4 * value.abs().max(1.0), "{row:?}: {most}");
+    }
     // the base circle of ten teeth of module 5 at 20 deg, 25 mm · cos 20 deg
     has_row(&rows, &["flank_plus", "singular line", "23.4923"]);
     for reason in told["surfaces"][0]["reasons"].as_array().unwrap() {
@@ -126,6 +136,33 @@ fn numbers_are_those_of_solve() {
         assert!(html.contains(&reason), "{reason}");
     }
     assert!(html.contains("98 of 287 points of flank_plus are not solved"), "the reasons have their counts");
+}
+
+/// The curvature of an involute is one over the way along the base tangent, so it is largest where the flank begins.
+#[test]
+fn extreme_curvatures_stand_where_they_are() {
+    let out = folder("report_extremes");
+    let told = reported(&["specs/hobbing/spur_gear.chain"], &out, 0);
+    let flank = told["surfaces"].as_array().unwrap().iter().find(|one| one["name"] == "flank_plus").expect("a flank");
+    let number = |name: &str| {
+        let input = told["inputs"].as_array().unwrap().iter().find(|input| input["name"] == name).expect("an input");
+        input["value"].as_f64().expect("a number")
+    };
+    let base = number("module") * number("teeth") / 2.0 * 20f64.to_radians().cos();
+    assert_eq!(number("r.pressure_angle"), 20.0);
+    let lowest = &flank["ranges_reached"][0];
+    assert_eq!(lowest["name"], "rho");
+    let rho = lowest["low"].as_f64().expect("a radius");
+    let k1 = &flank["curvature"][0];
+    let [x, y] = [0, 1].map(|k| k1["position"][k].as_f64().expect("a coordinate"));
+    assert!((x.hypot(y) - rho).abs() < 1e-9, "{k1}");
+    let expected = 1.0 / (rho * rho - base * base).sqrt();
+    assert!((k1["value"].as_f64().expect("a curvature") - expected).abs() < 1e-9 * expected, "{k1}: {expected}");
+    let html = read(out.join("spur_gear.report.html"));
+    has_row(
+        &rows(&page(&html)),
+        &["flank_plus", &format!("{expected:.6}"), &format!("{:.4}", 1.0 / expected), &format!("{rho:.4}")],
+    );
 }
 
 #[test]
