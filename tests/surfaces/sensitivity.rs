@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Dimension, Job};
 use flank_expr::Graph;
-use flank_solver::{NormalSensitivity, Outcome, Range, Setting, SurfacePoint, SurfaceProblem};
+use flank_solver::{NormalSensitivity, Outcome, Parameter, Range, SurfacePoint, SurfaceProblem};
 use flank_tests::{job, points};
 
 /// Up to seven of a surface's sampled points, spread over the grid.
@@ -45,11 +45,11 @@ const BOUND: f64 = 2e-12;
 const BOUND_OF_AN_ARC: f64 = 1e-10;
 
 fn sensitivity(job: &Job<'_>, surface: &str) -> NormalSensitivity {
-    let settings = job.parameters.iter();
-    let settings: Vec<Setting<'_>> =
-        settings.map(|p| Setting { variable: p.variable, definition: p.definition, value: p.value }).collect();
+    let parameters = job.parameters.iter();
+    let parameters: Vec<Parameter<'_>> =
+        parameters.map(|p| Parameter { variable: p.variable, definition: p.definition, value: p.value }).collect();
     let made = &job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job").surface;
-    NormalSensitivity::new(made, &settings).expect("all bound")
+    NormalSensitivity::new(made, &parameters).expect("all bound")
 }
 
 /// Tries all parameters but counts: how many leave the surface alone, and how many move it.

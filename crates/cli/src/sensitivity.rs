@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
 use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
-use flank_solver::{NormalSensitivity, Outcome, Setting, SurfacePoint};
+use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
 use serde_json::{Value, json};
 
 use crate::table::{Solved, aligned};
@@ -37,13 +37,11 @@ struct Influence {
 }
 
 pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
-    let settings: Vec<Setting<'g>> = job
-        .parameters
-        .iter()
-        .map(|p| Setting { variable: p.variable, definition: p.definition, value: p.value })
-        .collect();
+    let changing =
+        |p: &Parameter<'g>| flank_solver::Parameter { variable: p.variable, definition: p.definition, value: p.value };
+    let parameters: Vec<_> = job.parameters.iter().map(changing).collect();
     let exact =
-        NormalSensitivity::new(&surface.surface, &settings).expect("a job without errors leaves nothing unbound");
+        NormalSensitivity::new(&surface.surface, &parameters).expect("a job without errors leaves nothing unbound");
     let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| exact.at(&point.unknowns)).flatten();
     let moved: Vec<Option<Vec<f64>>> = points.iter().map(at).collect();
     let continuous = job.parameters.iter().enumerate().filter(|(_, parameter)| !parameter.is_count);
@@ -93,12 +91,7 @@ fn small_step(dimension: Dimension) -> (f64, String) {
         Dimension::LENGTH => (1.0, "mm".to_string()),
         Dimension::ANGLE => (PI / 10_800.0, "arcmin".to_string()),
         Dimension::NUMBER => (1e-3, "0.001".to_string()),
-        other => {
-            let power =
-                |(unit, power): (&str, i32)| if power == 0 { String::new() } else { format!(" {unit}^{power}") };
-            let units = [("mm", other.length), ("rad", other.angle)].map(power).concat();
-            (1.0, format!("({})", units.trim_start()))
-        }
+        other => (1.0, format!("({})", crate::units::inside(other))),
     }
 }
 
@@ -193,9 +186,9 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
 /// A picture of each surface: maps of the parameters that move it most. Named by the surface.
 pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
     let mut pictures = Vec::new();
-    for solved in solved {
+    // the surfaces come first among the patches
+    for (patch, solved) in solved.iter().enumerate() {
         let Some(sensitivity) = &solved.sensitivity else { continue };
-        let Some(patch) = dataset.patches.iter().position(|patch| patch.name == solved.surface.name) else { continue };
         let most = sensitivity.most_moving(MAPS).into_iter();
         let shown: Vec<(usize, usize)> = most.map(|k| (patch, solved.fields.len() + k)).collect();
         let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);

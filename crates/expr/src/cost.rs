@@ -21,11 +21,6 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Operations of arithmetic, square roots among them.
-    pub fn flops(&self) -> usize {
-        self.additions + self.multiplications + self.divisions + self.roots
-    }
-
     fn count(&mut self, operation: Operation) {
         let counter = match operation {
             Operation::Binary(Binary::Add | Binary::Sub) | Operation::Unary(Unary::Neg) => &mut self.additions,

@@ -6,10 +6,12 @@
 
 use std::ops::Range;
 
+use crate::anchor::{Choice, Followed, follow};
 use crate::field::Field;
-use crate::grid::{Choice, Effort, Grid, solve_field};
+use crate::grid::{Effort, Grid};
 use crate::line::{levels, stencil};
 use crate::points::SurfacePoints;
+use crate::reach::settle;
 use crate::solution::{self, Outcome};
 use crate::solvers::Solvers;
 use crate::surface::SurfacePoint;
@@ -101,7 +103,7 @@ pub(crate) fn solve_in_bands<E>(
     ranges: &[solution::Range],
     wanted: Wanted<'_>,
     start: Option<&[f64]>,
-    choice: Choice<'_>,
+    choice: &Choice<'_>,
     points: usize,
     each: &mut dyn FnMut(Range<usize>, Field, usize) -> Result<Field, E>,
 ) -> Result<Effort, E> {
@@ -112,18 +114,38 @@ pub(crate) fn solve_in_bands<E>(
     let mut apart = Grid::new(system, ranges, (&targets, [places.len(), columns]), None);
     apart.are_rows_apart = true;
     let mut solvers = Solvers::new(system, ranges);
-    let (known, mut effort) = solve_field(apart, &mut solvers, start, choice);
+    let Followed { field: mut known, is_beyond } = follow(&mut apart, &mut solvers, start, choice);
     if rows == 1 {
-        return each(0..1, known, 0).map(|_| effort);
+        settle(&mut apart, &mut known, &mut solvers.careful, 0..columns, choice.periodic);
+        return each(0..1, known, 0).map(|_| apart.effort);
+    }
+    let mut effort = apart.effort;
+    let beyond = choice.reach.filter(|_| is_beyond).map(|reach| reach.ranges.as_slice());
+    if let Some(beyond) = beyond {
+        solvers = Solvers::new(system, beyond);
     }
     if let Some(root) = (0..known.len()).find(|point| known.is_root(*point)) {
         solvers.decide(&known.unknowns(root).collect::<Vec<_>>(), &targets[root]);
     }
-    let mut bands = Bands { system, ranges, wanted, solvers, places, known, evaluations: 0, memory: None };
+    let mut bands = Bands {
+        system,
+        ranges: beyond.unwrap_or(ranges),
+        wanted,
+        solvers,
+        places,
+        known,
+        evaluations: 0,
+        memory: None,
+    };
+    let mut own_solvers = Solvers::new(system, ranges);
     bands.lead_upwards();
     for k in 0..bands.count() {
-        let (field, own) = bands.solve(k);
+        let (mut field, own, targets) = bands.solve(k);
         bands.learn(k + 1, &field, own.end - 1);
+        let mut grid = Grid::new(system, ranges, (&targets, [targets.len() / columns, columns]), None);
+        let points = own.start * columns..own.end * columns;
+        settle(&mut grid, &mut field, &mut own_solvers.careful, points, choice.periodic);
+        effort.evaluations += grid.effort.evaluations;
         let is_last = k + 1 == bands.count();
         let told = bands.places[k]..bands.places[k + 1] + usize::from(is_last);
         bands.memory = Some(each(told, field, own.start)?);
@@ -157,7 +179,7 @@ impl Bands<'_> {
         for k in (0..self.count()).rev() {
             let has_gaps = !(k * columns..(k + 1) * columns).all(|point| self.known.is_root(point));
             if has_gaps && !self.is_ambiguous() {
-                let (field, own) = self.solve(k);
+                let (field, own, _) = self.solve(k);
                 self.learn(k, &field, own.start);
                 self.memory = Some(field);
             }
@@ -176,8 +198,8 @@ impl Bands<'_> {
         }
     }
 
-    /// A band as some lines of a field, with the known rows around.
-    fn solve(&mut self, k: usize) -> (Field, Range<usize>) {
+    /// A band as some lines of a field, with the known rows around, and the targets of all.
+    fn solve(&mut self, k: usize) -> (Field, Range<usize>, Vec<[f64; 2]>) {
         let is_ambiguous = self.is_ambiguous();
         let Bands { system, ranges, wanted, solvers, places, known, evaluations, memory } = self;
         let columns = wanted.counts[1];
@@ -192,7 +214,7 @@ impl Bands<'_> {
         let mut field = grid.field();
         if is_ambiguous {
             (own.start * columns..own.end * columns).for_each(|point| field.copy(point, known, 0));
-            return (field, own);
+            return (field, own, targets);
         }
         let known_lines: Vec<usize> = (0..=own.start).chain(own.end - 1..lines.len()).collect();
         for (line, place) in known_lines.iter().zip(around) {
@@ -205,6 +227,6 @@ impl Bands<'_> {
         grid.refine_strips(&mut field, solvers, &levels(&lines, &known_lines));
         grid.finish(&mut field, solvers, own.clone());
         *evaluations += grid.effort.evaluations;
-        (field, own)
+        (field, own, targets)
     }
 }

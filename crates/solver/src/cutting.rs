@@ -364,12 +364,12 @@ impl Search {
     /// The edges of the next round.
     fn next(&mut self, ranges: &[Range]) -> Vec<Pass> {
         let Some(places) = self.guide.near.within(self.level, ranges, MOST_EDGES) else {
-            self.left = Some(if self.nearest.is_some() { Left::Undecided } else { Left::Unreached });
+            self.left = Some(Left::Undecided);
             return Vec::new();
         };
         if places.len() == self.count && self.nearest.is_none() && self.level > self.guide.near.step() {
             // a wider circle holds no further edge
-            self.left = Some(Left::Unreached);
+            self.left = Some(if self.lost { Left::Undecided } else { Left::Unreached });
         }
         let new = places.iter().filter(|place| place.q > self.tried).map(|place| self.guide.pass(place)).collect();
         self.count = places.len();
@@ -410,5 +410,38 @@ impl Search {
 
     fn end(self) -> Left {
         self.left.unwrap_or(Left::Undecided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A search over counts around zero with `q = ½ h n²` that begins with all edges up to q = 1.
+    fn search(h: f64) -> Search {
+        let near = WholeNumbers::new(vec![0.0], &[vec![h]]).expect("positive");
+        let guide = Guide { placed: [0.0; 6], swept: [0.0; 2], counts: vec![0.0], follows: vec![[0.0; 2]], near };
+        Search { guide, level: 1.0, tried: -1.0, count: 0, nearest: None, lowest: None, lost: false, left: None }
+    }
+
+    /// What becomes of a search if each edge becomes the same.
+    fn end(mut search: Search, counts: Range, passed: fn() -> Passed) -> Left {
+        while search.left.is_none() {
+            let passes = search.next(&[counts]);
+            search.learn(passes.iter().map(|pass| (pass, passed())), 0.0);
+        }
+        search.end()
+    }
+
+    #[test]
+    fn what_was_not_tried_or_not_followed_is_not_unreached() {
+        let few = Range { low: -3.0, high: 3.0 };
+        assert_eq!(end(search(1.0), few, || Passed::Beyond), Left::Unreached);
+        assert_eq!(end(search(1.0), few, || Passed::Lost), Left::Undecided);
+        let at = || Passed::At { height: 0.5, swept: [0.0; 2] };
+        assert!(matches!(end(search(1.0), few, at), Left::Cut { height: 0.5, .. }));
+        // more than can be tried, from the first
+        let many = Range { low: -1e6, high: 1e6 };
+        assert_eq!(end(search(1e-9), many, || Passed::Beyond), Left::Undecided);
     }
 }

@@ -11,7 +11,7 @@ use crate::surface::SurfacePoint;
 use crate::system::System;
 
 /// Distances along a normal are looked for up to here, mm.
-const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
+pub(crate) const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
 /// Turns about the axis are looked for in here.
 const A_TURN: Range = Range { low: -2.0 * std::f64::consts::PI, high: 2.0 * std::f64::consts::PI };
 /// Points that a thread takes at a time.
@@ -152,6 +152,10 @@ pub struct EaseOff {
     pub bias: f64,
 }
 
+/// A term of the parabola of which less than this share is its own, over the points with a value, is not told from the others: rounding of
+/// the squares leaves 1e-8 of a term that others make up, and three neighbours of a grid of 200 points a hundred times this share.
+const INDEPENDENT: f64 = 1e-6;
+
 impl EaseOff {
     /// Of the deviations of a grid, row by row; `None` where there is none. `None` if these are too few or lie too much on a
     /// line to say.
@@ -170,7 +174,8 @@ impl EaseOff {
             normal += terms * terms.transpose();
             right += terms * value;
         }
-        let factors = normal.cholesky().filter(|factors| factors.l().diagonal().min() > 1e-6)?;
+        let independent = |l: nalgebra::Vector6<f64>| l.min() > INDEPENDENT * l.max();
+        let factors = normal.cholesky().filter(|factors| independent(factors.l().diagonal()))?;
         let [_, v, u, vv, vu, uu] = factors.solve(&right).into();
         Some(EaseOff { slopes: [2.0 * v, 2.0 * u], crownings: [-vv, -uu], bias: 4.0 * vu })
     }

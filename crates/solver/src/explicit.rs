@@ -137,6 +137,12 @@ struct Angle<'g> {
 }
 
 impl<'g> Angle<'g> {
+    /// Cosine and sine of it and a fixed angle together.
+    fn beside(self, offset: Expr<'g>) -> (Expr<'g>, Expr<'g>) {
+        let (c, s) = (offset.cos(), offset.sin());
+        (self.cos() * c - self.sin() * s, self.sin() * c + self.cos() * s)
+    }
+
     /// About a unit vector, from one vector to another; `size` is the product of their lengths across it.
     fn between(about: Vector3<'g>, from: Vector3<'g>, to: Vector3<'g>, size: Expr<'g>) -> Angle<'g> {
         let y = about.dot(from.cross(to));
@@ -388,49 +394,16 @@ impl<'g> Form<'g> {
         angles: [Angle<'g>; 3],
         at: Vector3<'g>,
     ) -> Result<[Expr<'g>; 3], NotExplicit> {
-        let graph = problem.graph();
         let variables = self.linear.map(|unknown| problem.unknowns[unknown]);
         let is_first = |part: &Part<'g>| match part {
             Part::Shift(by) => variables.iter().any(|x| !by.derivative(*x).is_zero()),
             _ => false,
         };
         let start = self.parts.iter().position(is_first).ok_or(NotExplicit::Flat)?;
-        let turn = |joint: usize, offset: Expr<'g>| {
-            let (angle, c, s) = (angles[joint], offset.cos(), offset.sin());
-            (angle.cos() * c - angle.sin() * s, angle.sin() * c + angle.cos() * s)
-        };
-        let backward = |v: Vector3<'g>, part: &Part<'g>| match *part {
-            Part::Still(pose) => pose.inverse().point(v),
-            Part::Shift(by) => v - by,
-            Part::Turn(joint, axis, offset) => {
-                let (cos, sin) = turn(joint, offset);
-                turned(v, axis, cos, -sin)
-            }
-        };
-        let forward = |v: Vector3<'g>, part: &Part<'g>| match *part {
-            Part::Still(pose) => pose.point(v),
-            Part::Shift(by) => v + by,
-            Part::Turn(joint, axis, offset) => {
-                let (cos, sin) = turn(joint, offset);
-                turned(v, axis, cos, sin)
-            }
-        };
-        let origin = Vector3::zero(graph);
-        let reached = self.parts[..start].iter().fold(at, backward);
-        let tool = self.parts[start..].iter().rev().fold(origin, forward);
-        let mut rest = tool;
-        let mut directions = [origin; 3];
-        for (direction, variable) in directions.iter_mut().zip(variables) {
-            for k in 0..3 {
-                let linear = rest.0[k].linear_in(variable);
-                let (slope, intercept) = match linear {
-                    Some(linear) => (linear.slope, linear.intercept),
-                    None if rest.0[k].derivative(variable).is_zero() => (graph.constant(0.0), rest.0[k]),
-                    None => return Err(NotExplicit::Flat),
-                };
-                (direction.0[k], rest.0[k]) = (slope, intercept);
-            }
-        }
+        let reached = self.parts[..start].iter().fold(at, |v, part| part.backward(v, angles));
+        let origin = Vector3::zero(problem.graph());
+        let tool = self.parts[start..].iter().rev().fold(origin, |v, part| part.forward(v, angles));
+        let (directions, rest) = linear_in(tool, variables)?;
         let moving = |part: &Expr<'g>| problem.unknowns.iter().any(|x| !part.derivative(*x).is_zero());
         if directions.iter().flat_map(|direction| &direction.0).any(moving) {
             return Err(NotExplicit::Flat);
@@ -449,4 +422,51 @@ impl<'g> Form<'g> {
         };
         Ok(std::array::from_fn(length))
     }
+}
+
+impl<'g> Part<'g> {
+    /// A vector given behind the step, as it is before it.
+    fn forward(&self, v: Vector3<'g>, angles: [Angle<'g>; 3]) -> Vector3<'g> {
+        match *self {
+            Part::Still(pose) => pose.point(v),
+            Part::Shift(by) => v + by,
+            Part::Turn(joint, axis, offset) => {
+                let (cos, sin) = angles[joint].beside(offset);
+                turned(v, axis, cos, sin)
+            }
+        }
+    }
+
+    /// A vector given before the step, as it is behind it.
+    fn backward(&self, v: Vector3<'g>, angles: [Angle<'g>; 3]) -> Vector3<'g> {
+        match *self {
+            Part::Still(pose) => pose.inverse().point(v),
+            Part::Shift(by) => v - by,
+            Part::Turn(joint, axis, offset) => {
+                let (cos, sin) = angles[joint].beside(offset);
+                turned(v, axis, cos, -sin)
+            }
+        }
+    }
+}
+
+/// A vector that is linear in three variables: by which vector each of them counts, and what is left.
+fn linear_in<'g>(
+    vector: Vector3<'g>,
+    variables: [Expr<'g>; 3],
+) -> Result<([Vector3<'g>; 3], Vector3<'g>), NotExplicit> {
+    let graph = vector.0[0].graph();
+    let mut rest = vector;
+    let mut directions = [Vector3::zero(graph); 3];
+    for (direction, variable) in directions.iter_mut().zip(variables) {
+        for k in 0..3 {
+            let linear = rest.0[k].linear_in(variable);
+            (direction.0[k], rest.0[k]) = match linear {
+                Some(linear) => (linear.slope, linear.intercept),
+                None if rest.0[k].derivative(variable).is_zero() => (graph.constant(0.0), rest.0[k]),
+                None => return Err(NotExplicit::Flat),
+            };
+        }
+    }
+    Ok((directions, rest))
 }

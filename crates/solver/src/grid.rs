@@ -1,6 +1,8 @@
 //! Grids of points: one is looked for, the others follow from neighbour to neighbour.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use flank_expr::LANES;
 use rayon::prelude::*;
@@ -10,14 +12,11 @@ use crate::field::{Field, Lines, NEAR, OnLine, Strip};
 use crate::lanes::LaneNewton;
 use crate::line::{Midpoint, divided_difference, lattice, levels};
 use crate::newton::{LONGEST_STEP, solve_with};
-use crate::roots::{MOST_BOXES, Roots, Undecided, all_roots};
+use crate::roots::Undecided;
 use crate::solution::{Range, Solution, distance};
 use crate::solvers::Solvers;
-use crate::start::{WIDELY, scan};
 use crate::system::{Evaluation, System};
 
-/// Points that are tried as the anchor before a grid is taken for unsolvable.
-const MOST_ANCHORS: usize = 9;
 /// Parts into which the way to a neighbour is divided where one step is too long.
 const SUBSTEPS: [u32; 3] = [1, 4, 16];
 /// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
@@ -40,15 +39,10 @@ pub struct Effort {
     pub branches: Vec<Solution>,
     /// Boxes of the ranges at the anchor in which further branches are not excluded.
     pub undecided: Vec<Undecided>,
-}
-
-/// What is done where several branches qualify.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Several {
-    /// No point is solved.
-    Refuse,
-    /// The one that reaches the most points is taken, of several such the one nearest the middle of the ranges.
-    TakeWidest,
+    /// Whether the search for an anchor was given up before it had looked at all points.
+    pub is_given_up: bool,
+    /// Whether the branch has no point in the middle, so that what it is kept by was looked at elsewhere, at the anchor.
+    pub is_kept_elsewhere: bool,
 }
 
 /// Where a step may lead.
@@ -57,95 +51,6 @@ enum Sides {
     /// Not across where the Jacobian has no inverse.
     Same,
     Both,
-}
-
-/// Which branch is meant.
-pub(crate) struct Choice<'c> {
-    /// All branches at given targets.
-    pub(crate) roots: &'c dyn Fn(&[f64; 2]) -> Roots,
-    /// Whether a branch with these unknowns at the anchor qualifies.
-    pub(crate) keeps: &'c mut dyn FnMut(&[f64]) -> bool,
-    pub(crate) several: Several,
-}
-
-/// Solves the system at each pair of targets of a grid (row by row); every point gets a verdict.
-///
-/// The system's parameters are the two targets. One point, the anchor, is looked for in the whole of the ranges, the middle
-/// of the grid first. From there a lattice of few points is solved in steps short enough to stay on the branch; the gaps are
-/// halved again and again, many points at once, each from a polynomial through its neighbours. What fails there is
-/// solved alone, from neighbour to neighbour. So all points lie on one branch; a point where that branch leaves the ranges
-/// is outside, even if another branch has a point there.
-///
-/// Results do not depend on the number of threads.
-///
-/// # Panics
-/// If there are not `counts[0] · counts[1]` targets.
-pub fn solve_grid(
-    system: &System,
-    ranges: &[Range],
-    targets: &[[f64; 2]],
-    counts: [usize; 2],
-) -> (Vec<Solution>, Effort) {
-    let roots = |targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
-    let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::TakeWidest };
-    let (field, effort) = {
-        let grid = Grid::new(system, ranges, (targets, counts), None);
-        solve_field(grid, &mut Solvers::new(system, ranges), None, choice)
-    };
-    let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
-    ((0..targets.len()).map(solution).collect(), effort)
-}
-
-/// The same without an allocation for each point, with a choice among several branches; the branch may be given by a start
-/// for the point in the middle, which is tried first.
-pub(crate) fn solve_field(
-    mut grid: Grid<'_>,
-    solvers: &mut Solvers<'_>,
-    start: Option<&[f64]>,
-    choice: Choice<'_>,
-) -> (Field, Effort) {
-    let (ranges, targets, counts) = (grid.ranges, grid.targets, [grid.rows, grid.columns]);
-    let middle = (counts[0] / 2) * counts[1] + counts[1] / 2;
-    let start = start.filter(|_| !targets.is_empty());
-    if let Some(root) = start.and_then(|start| grid.root_from(&mut solvers.careful, middle, start)) {
-        let filling = grid.fill(solvers, middle, &root);
-        grid.effort.anchor = targets[middle];
-        grid.effort.branches = vec![root];
-        return (filling, grid.effort);
-    }
-    let mut failures = grid.field();
-    for anchor in anchors(counts) {
-        if !grid.look_for(anchor, choice.roots, choice.keeps) {
-            failures.put(anchor, &grid.failure(anchor));
-            continue;
-        }
-        if grid.effort.branches.len() > 1 && choice.several == Several::Refuse {
-            let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(ranges) };
-            (0..targets.len()).for_each(|point| failures.put(point, &ambiguous));
-            failures.place_loose(&mut solvers.careful);
-            return (failures, grid.effort);
-        }
-        let filling = grid.best_filling(solvers, anchor);
-        return (filling, grid.effort);
-    }
-    failures.place_loose(&mut solvers.careful);
-    (failures, grid.effort)
-}
-
-/// The points that a grid may begin at, the one nearest the middle first.
-fn anchors([rows, columns]: [usize; 2]) -> impl Iterator<Item = usize> {
-    let all = rows * columns;
-    let from_middle = move |point: &usize| {
-        let across = |k: usize, count: usize| (2 * k).abs_diff(count - 1) * 1000 / count.max(2);
-        across(point / columns, rows).max(across(point % columns, columns))
-    };
-    // hardly ever are there others to look at
-    let others = move || {
-        let mut order: Vec<usize> = (0..all).collect();
-        order.sort_by_cached_key(from_middle);
-        order.into_iter().step_by((all / MOST_ANCHORS).max(1)).skip(1)
-    };
-    (0..all).min_by_key(from_middle).into_iter().chain(std::iter::once_with(others).flatten())
 }
 
 pub(crate) struct Grid<'s> {
@@ -183,37 +88,18 @@ impl<'s> Grid<'s> {
         }
     }
 
-    /// Finds all branches at a point; whether there are any.
-    fn look_for(
-        &mut self,
-        point: usize,
-        roots: &dyn Fn(&[f64; 2]) -> Roots,
-        keeps: &mut dyn FnMut(&[f64]) -> bool,
-    ) -> bool {
-        let found = roots(&self.targets[point]);
-        let middle: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
-        let off = |root: &Solution| distance(&root.unknowns, &middle, self.ranges);
-        let proven = found.isolated.into_iter().map(|root| root.solution);
-        let mut branches: Vec<Solution> = proven.chain(found.unproven).filter(|root| keeps(&root.unknowns)).collect();
-        branches.sort_by(|a, b| off(a).total_cmp(&off(b)));
-        self.effort.boxes += found.boxes;
-        self.effort.anchor = self.targets[point];
-        self.effort.branches = branches;
-        self.effort.undecided = found.undecided;
-        !self.effort.branches.is_empty()
-    }
-
-    /// Why there is no root at a point, as far as a scan can tell.
-    fn failure(&mut self, point: usize) -> Solution {
-        self.evaluation.set_parameters(&self.targets[point]);
-        let (found, evaluations) = scan(&mut self.evaluation, self.ranges, WIDELY);
-        self.effort.evaluations += evaluations;
-        let failure = found.into_iter().next().filter(|solution| !solution.is_solved());
-        failure.unwrap_or_else(|| Solution::never_reached(self.ranges))
+    /// The same points within other ranges.
+    pub(crate) fn within<'o>(&self, ranges: &'o [Range]) -> Grid<'o>
+    where
+        's: 'o,
+    {
+        let mut other = Grid::new(self.system, ranges, (self.targets, [self.rows, self.columns]), None);
+        other.are_rows_apart = self.are_rows_apart;
+        other
     }
 
     /// The root that a start leads to: at once if that is near, else with care.
-    fn root_from(&mut self, newton: &mut LaneNewton<'_>, point: usize, start: &[f64]) -> Option<Solution> {
+    pub(crate) fn root_from(&mut self, newton: &mut LaneNewton<'_>, point: usize, start: &[f64]) -> Option<Solution> {
         newton.put(0, start.iter().copied(), &self.targets[point]);
         self.effort.evaluations += newton.run(&[true], true);
         if newton.is_root(0) && newton.moved(0) <= LONGEST_STEP && newton.outcome(0) == Outcome::Solved {
@@ -227,29 +113,12 @@ impl<'s> Grid<'s> {
         solution.is_root().then_some(solution)
     }
 
-    /// The filling that reaches the most points; of several such, the one whose root lies nearest the middle of the ranges:
-    /// which branch is taken depends on the ranges, not on the order in which a search finds roots.
-    fn best_filling(&mut self, solvers: &mut Solvers<'_>, anchor: usize) -> Field {
-        let mut best: Option<Field> = None;
-        for root in self.effort.branches.clone() {
-            let filling = self.fill(solvers, anchor, &root);
-            let (most, solved) = (best.as_ref().map_or(0, Field::solved), filling.solved());
-            if best.is_none() || solved > most {
-                best = Some(filling);
-            }
-            if solved == self.targets.len() {
-                break;
-            }
-        }
-        best.unwrap_or_else(|| self.field())
-    }
-
     pub(crate) fn field(&mut self) -> Field {
         Field::new(self.ranges, [self.rows, self.columns], self.system.extra_count(), self.memory.take())
     }
 
     /// Everything that can be reached from the anchor.
-    fn fill(&mut self, solvers: &mut Solvers<'_>, anchor: usize, root: &Solution) -> Field {
+    pub(crate) fn fill(&mut self, solvers: &mut Solvers<'_>, anchor: usize, root: &Solution) -> Field {
         let mut field = self.field();
         field.put(anchor, root);
         let rows = lattice(self.rows, anchor / self.columns);
@@ -275,9 +144,10 @@ impl<'s> Grid<'s> {
         }
         let levels = |(count, known): (usize, &[usize])| levels(&(0..count).collect::<Vec<_>>(), known);
         if !(has_all_given && field.is_complete()) {
-            let (newton, targets) = (solvers.newton(), self.targets);
-            let refine = || field.refine_lines(newton, count.1, &levels((length.0, length.1)), targets);
-            let (evaluations, down) = rayon::join(refine, || levels((count.0, count.1)));
+            let (newton, targets, is_shared) = (solvers.newton(), self.targets, self.is_shared());
+            let mut refine = || field.refine_lines(newton, count.1, &levels((length.0, length.1)), targets);
+            let down = || levels((count.0, count.1));
+            let (evaluations, down) = if is_shared { rayon::join(refine, down) } else { (refine(), down()) };
             self.effort.evaluations += evaluations;
             self.refine_strips(&mut field, solvers, &down);
         }
@@ -361,7 +231,9 @@ impl<'s> Grid<'s> {
     /// All lines, from those that are known.
     pub(crate) fn refine_strips(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, levels: &[Vec<Midpoint>]) {
         let (targets, another) = (self.targets, solvers.another());
-        let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, levels, targets);
+        let shape = field.shape();
+        let number = |line, at| shape.point(line, at);
+        let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, levels, targets, number);
         self.effort.evaluations += self.on_strips(field, solvers.newton(), another, refine);
     }
 
@@ -370,7 +242,7 @@ impl<'s> Grid<'s> {
         self.targets.len() >= SHARED && rayon::current_num_threads() > 1
     }
 
-    /// Work on each strip, on as many threads as there are; each has a tool of its own if there are several.
+    /// Work on each strip, one after the other on as many threads as there are; further ones have tools of their own.
     fn on_strips<T>(
         &self,
         field: &mut Field,
@@ -379,11 +251,27 @@ impl<'s> Grid<'s> {
         work: impl Fn(&mut T, Strip<'_>) -> u64 + Sync + Send,
     ) -> u64 {
         let strips = field.strips();
-        if self.is_shared() {
-            strips.into_par_iter().map_init(new, work).sum()
-        } else {
-            strips.into_iter().map(|strip| work(tool, strip)).sum()
+        if !self.is_shared() {
+            return strips.into_iter().map(|strip| work(tool, strip)).sum();
         }
+        let others = rayon::current_num_threads().min(strips.len()) - 1;
+        let (strips, theirs) = (Mutex::new(strips.into_iter()), AtomicU64::new(0));
+        let next = || strips.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let mut own = 0;
+        rayon::in_place_scope(|scope| {
+            for _ in 0..others {
+                scope.spawn(|_| {
+                    let mut tool = None;
+                    while let Some(strip) = next() {
+                        theirs.fetch_add(work(tool.get_or_insert_with(&new), strip), Ordering::Relaxed);
+                    }
+                });
+            }
+            while let Some(strip) = next() {
+                own += work(tool, strip);
+            }
+        });
+        own + theirs.into_inner()
     }
 
     /// Roots beside points that are not known to be roots, both in some of the rows.

@@ -4,13 +4,12 @@ use flank_expr::geometry::{Surface, Vector3};
 use flank_expr::{Expr, TapeError};
 use rayon::prelude::*;
 
+use crate::deviation::FARTHEST;
 use crate::newton::solve;
 use crate::solution::{Outcome, Range};
 use crate::surface::SurfacePoint;
 use crate::system::System;
 
-/// Distances are looked for up to here, mm.
-const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
 /// A turn that changes by less, radians, has settled: 1e-9 um on a radius of a metre.
 const SETTLED: f64 = 1e-15;
 /// The turn settles in a few steps: what it does to a deviation is known but for what the normal changes on the way to the foot.

@@ -4,7 +4,7 @@
 
 use flank_expr::{InstructionSet, LANES, LaneEvaluator, LaneTape};
 
-use crate::field::NEAR;
+use crate::field::{Expected, NEAR};
 use crate::newton::{LARGEST_TOLERANCE, Linearized, OF_SIZE, TOLERANCE, newton_step};
 use crate::solution::{Outcome, Range, distance, verdict};
 use crate::system::{System, side_of};
@@ -30,6 +30,7 @@ pub(crate) struct LaneNewton<'s> {
     instructions: InstructionSet,
     /// Residuals, conditions and what else is wanted at a root.
     checked: LaneEvaluator<'s>,
+    expected: Option<Expected<'s>>,
     linearized: LaneEvaluator<'s>,
     is_written_out: bool,
     /// Unknowns that the last outputs of `checked` give, whatever the inputs.
@@ -54,6 +55,8 @@ pub(crate) struct LaneNewton<'s> {
     were_rough: bool,
     /// Room for the unknowns of a lane.
     unknowns: Vec<f64>,
+    /// Room for the targets of lines.
+    targets: Vec<[Lanes; 2]>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -67,20 +70,26 @@ enum End {
 
 impl<'s> LaneNewton<'s> {
     pub(crate) fn new(system: &'s System, ranges: &'s [Range]) -> LaneNewton<'s> {
-        LaneNewton::of(system, ranges, (&system.lanes.checked, &[]))
+        LaneNewton::of(system, ranges, (&system.lanes.checked, &[]), system.lanes.expected.as_ref())
     }
 
     /// The same with unknowns in closed form where equations give them; none if they give none.
     pub(crate) fn with_given(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
         let given = system.lanes.given.as_ref()?;
-        Some(LaneNewton::of(system, ranges, (&given.checked, &given.unknowns)))
+        Some(LaneNewton::of(system, ranges, (&given.checked, &given.unknowns), given.expected.as_ref()))
     }
 
-    fn of(system: &'s System, ranges: &'s [Range], (checked, given): (&'s LaneTape, &'s [usize])) -> LaneNewton<'s> {
+    fn of(
+        system: &'s System,
+        ranges: &'s [Range],
+        (checked, given): (&'s LaneTape, &'s [usize]),
+        expected: Option<&'s LaneTape>,
+    ) -> LaneNewton<'s> {
         let instructions = system.instructions();
         let mut linearized = LaneEvaluator::new(&system.lanes.linearized, instructions);
         let input_count = system.tape().input_count();
         let is_written_out = system.lanes.is_written_out;
+        let expected = expected.map(|tape| Expected::new(tape, instructions, ranges, input_count, given));
         let mut checked = LaneEvaluator::new(checked, instructions);
         for (k, range) in ranges.iter().enumerate() {
             let width = (input_count + k, range.width());
@@ -95,6 +104,7 @@ impl<'s> LaneNewton<'s> {
             ranges,
             instructions,
             checked,
+            expected,
             linearized,
             is_written_out,
             given,
@@ -111,11 +121,22 @@ impl<'s> LaneNewton<'s> {
             ends: [End::Idle; LANES],
             were_rough: true,
             unknowns: Vec::new(),
+            targets: Vec::new(),
         }
     }
 
     pub(crate) fn instructions(&self) -> InstructionSet {
         self.instructions
+    }
+
+    /// What looks at whole lines where they are expected; none where equations give all unknowns.
+    pub(crate) fn expected(&mut self) -> Option<&mut Expected<'s>> {
+        self.expected.as_mut()
+    }
+
+    /// Room for the targets of lines.
+    pub(crate) fn targets(&mut self) -> &mut Vec<[Lanes; 2]> {
+        &mut self.targets
     }
 
     /// An unknown (its start before a run, the root after it) or, after the unknowns, a parameter.

@@ -14,6 +14,7 @@
 //! assert!((solution.unknowns[0] - 4.0).abs() < 1e-12);
 //! ```
 
+mod anchor;
 mod angles;
 mod bands;
 mod certify;
@@ -32,8 +33,10 @@ mod lanes;
 mod lattice;
 mod line;
 mod newton;
+mod orientation;
 mod points;
 mod poses;
+mod reach;
 mod roots;
 mod sensitivity;
 mod settings;
@@ -48,6 +51,7 @@ mod trim;
 mod tube;
 mod whole_numbers;
 
+pub use anchor::solve_grid;
 pub use bands::Band;
 pub use certify::Certifier;
 pub use cutting::{CuttingEdges, Left};
@@ -55,14 +59,14 @@ pub use deviation::{Deviation, EaseOff};
 pub use explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
-pub use grid::{Effort, solve_grid};
+pub use grid::Effort;
 pub use inspection::Inspection;
 pub use intersection::{Intersection, Line, Meeting};
 pub use newton::{TOLERANCE, solve};
 pub use points::SurfacePoints;
 pub use poses::{Missing, PoseError, PoseProblem, Posture, TargetAxis};
 pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
-pub use sensitivity::{NormalSensitivity, Setting};
+pub use sensitivity::{NormalSensitivity, Parameter};
 pub use settings::{Adjustable, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
 pub use solution::{CutBy, Outcome, Range, Solution};
 pub use surface::{MOST_AT_ONCE, SurfacePoint, SurfaceProblem};

@@ -42,7 +42,8 @@ pub(crate) fn levels(places: &[usize], known: &[usize]) -> Vec<Vec<Midpoint>> {
         let gaps = known.windows(2).enumerate().filter(|(_, gap)| gap[1] - gap[0] > 1);
         let level: Vec<Midpoint> = gaps.map(|(k, gap)| midpoint(places, &known, k, [gap[0], gap[1]])).collect();
         known.extend(level.iter().map(|point| point.at));
-        known.sort_unstable();
+        // two rows in order, one after the other
+        known.sort();
         levels.push(level);
     }
     levels
@@ -91,11 +92,10 @@ fn products(places: &[usize], mut products: [f64; STENCIL]) -> [f64; STENCIL] {
     for (to, place) in to.iter_mut().zip(places) {
         *to = *place as f64;
     }
-    for k in 0..places.len() {
-        for other in k + 1..places.len() {
-            let distance = to[k] - to[other];
-            products[k] *= distance;
-            products[other] *= -distance;
+    for other in 0..places.len() {
+        for k in 0..STENCIL {
+            // of all places at once, which is vectors
+            products[k] *= if k == other { 1.0 } else { to[k] - to[other] };
         }
     }
     products

@@ -24,6 +24,9 @@ const MOST_HALVINGS: i32 = 12;
 pub(crate) const LONGEST_STEP: f64 = 0.35;
 /// Below this pivot (unknowns scaled by their ranges, equations by their size) a Jacobian counts as singular.
 const SINGULAR_BELOW: f64 = 1e-12;
+/// A direction in which a singular Jacobian (scaled in the same way) changes less than this share of what it changes most is left out
+/// of a step: rounding of the residuals, 1e-13 of their size, would move the unknowns by a thousandth of their ranges along it.
+const WEAKEST: f64 = 1e-10;
 
 /// Newton from a start value, damped so that the residuals never grow.
 ///
@@ -137,7 +140,7 @@ fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
     let (u, s, v) = (svd.U(), svd.S(), svd.V());
     let largest = s[0];
     let mut x = vec![0.0; n];
-    for k in (0..n).filter(|&k| s[k] > 1e-10 * largest) {
+    for k in (0..n).filter(|&k| s[k] > WEAKEST * largest) {
         let share: f64 = (0..n).map(|i| u[(i, k)] * right[(i, 0)]).sum::<f64>() / s[k];
         for (i, x) in x.iter_mut().enumerate() {
             *x += share * v[(i, k)];

@@ -7,6 +7,7 @@ use flank_expr::{Expr, Graph, ScalarEvaluator, Tape, TapeError, TaylorEvaluator}
 use thiserror::Error;
 
 use crate::newton::{Linearized, TOLERANCE, solve_with};
+use crate::orientation;
 use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
 use crate::start::{WIDELY, probe, scan};
 use crate::symmetry::Screw;
@@ -141,21 +142,7 @@ impl<'g> PoseProblem<'g> {
         let chain = target.then(&Chain::new(graph, slipped.clone()));
         let off = source.inverse().then(&chain).merged().pose();
         let unknowns: Vec<Expr<'g>> = variables.iter().chain(&amounts).copied().collect();
-        let travel = |axis: &TargetAxis<'_>| {
-            let free = if axis.is_rotary { FREE_TURNS } else { reach };
-            axis.travel.unwrap_or(Range { low: -free, high: free })
-        };
-        let turn = Range { low: -std::f64::consts::PI, high: std::f64::consts::PI };
-        let travels: Vec<Range> = axes.iter().map(travel).collect();
-        let within =
-            |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { range.common(turn) } else { *range };
-        let around = |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { turn } else { range.wider_by(1.0) };
-        let slip_range =
-            |slip: &Screw| if slip.angular == [0.0; 3] { Range { low: -reach, high: reach } } else { turn };
-        let slid: Vec<Range> = slips.iter().map(slip_range).collect();
-        let near: Vec<Range> = axes.iter().zip(&travels).map(within).chain(slid.clone()).collect();
-        let far: Vec<Range> = axes.iter().zip(&travels).map(around).chain(slid).collect();
-        let search = [near, far];
+        let (travels, search) = ranges(axes, &slips, reach);
         let deviation = deviation(&off);
         let components = independent(&chain, &unknowns, &search[0])?;
         let residuals: Vec<Expr<'g>> = components.iter().map(|&k| deviation[k]).collect();
@@ -329,6 +316,44 @@ impl<'g> PoseProblem<'g> {
         (sizes[size - 1] / sizes[0], involved)
     }
 
+    /// Axes that stand beyond their travels, and by how much (mm or radians); that which is farthest beyond, as a share of its travel,
+    /// first.
+    pub fn beyond(&self, axes: &[f64]) -> Vec<(usize, f64)> {
+        let each = axes.iter().zip(&self.travels).enumerate();
+        let mut beyond: Vec<(usize, f64)> = each
+            .map(|(k, (x, travel))| (k, travel.excess(*x)))
+            .filter(|&(k, by)| by > ROUNDING * self.travels[k].width())
+            .collect();
+        let share = |(k, by): &(usize, f64)| by / self.travels[*k].width();
+        beyond.sort_by(|a, b| share(b).total_cmp(&share(a)));
+        beyond
+    }
+
+    /// By what angle (rad) the tool's orientation is missed at least, at one value of the motions, however far the axes turn; and which
+    /// axes turn it. Where it is not missed, rounding is left: up to the root of the smallest difference of numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is not given.
+    pub fn turn_missed(&self, motions: &[f64]) -> Result<(f64, Vec<usize>), TapeError> {
+        let graph = self.upright.graph();
+        let inside = graph.variables_of(&[self.upright]);
+        let turns = |unknown: &Expr<'g>| unknown.as_variable().is_some_and(|own| inside.contains(&own));
+        let turning: Vec<usize> = (0..self.unknowns.len()).filter(|k| turns(&self.unknowns[*k])).collect();
+        let angles = turning.iter().map(|k| self.unknowns[*k]);
+        let inputs: Vec<Expr<'g>> = angles.chain(self.motions.iter().copied()).collect();
+        let tape = Tape::new(&[self.upright], &inputs)?;
+        let (mut evaluator, mut upright) = (ScalarEvaluator::new(&tape), [0.0]);
+        let mut at = [vec![0.0; turning.len()], motions.to_vec()].concat();
+        let most = orientation::greatest(turning.len(), |angles| {
+            at[..angles.len()].copy_from_slice(angles);
+            evaluator.run(&at, &mut upright);
+            upright[0]
+        });
+        // of a rotation matrix: the trace is 1 + 2 cos of the angle
+        let missed = (0.5 * most).clamp(-1.0, 1.0).acos();
+        Ok((missed, turning.into_iter().filter(|k| *k < self.axes).collect()))
+    }
+
     fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
         let mut deviation = [0.0; 6];
         if self.components.len() < deviation.len() {
@@ -337,12 +362,8 @@ impl<'g> PoseProblem<'g> {
         let rest = (0..6).filter(|k| !self.components.contains(k)).map(|k| Missing { direction: k, by: deviation[k] });
         let missing = rest.max_by(|a, b| a.by.abs().total_cmp(&b.by.abs())).filter(|most| most.by.abs() > TOLERANCE);
         let axes = solution.unknowns[..self.axes].to_vec();
-        let beyond =
-            axes.iter().zip(&self.travels).enumerate().map(|(k, (x, travel))| (k, travel.excess(*x), travel.width()));
-        let farthest =
-            beyond.filter(|(_, by, width)| *by > ROUNDING * width).max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
-        let outcome = match (solution.outcome, farthest) {
-            (Outcome::Solved, Some((unknown, by, _))) => Outcome::Outside { unknown, by },
+        let outcome = match (solution.outcome, self.beyond(&axes).first()) {
+            (Outcome::Solved, Some(&(unknown, by))) => Outcome::Outside { unknown, by },
             (outcome, _) => outcome,
         };
         Posture { outcome, axes, missing, unknowns: solution.unknowns }
@@ -417,6 +438,30 @@ fn lost(solution: &Solution) -> Outcome {
     }
 }
 
+/// The travels of the axes; and where postures are looked for, of each axis and then of each slip: within the travels, then beyond.
+fn ranges(axes: &[TargetAxis<'_>], slips: &[Screw], reach: f64) -> (Vec<Range>, [Vec<Range>; 2]) {
+    let turn = Range { low: -std::f64::consts::PI, high: std::f64::consts::PI };
+    let travel = |axis: &TargetAxis<'_>| {
+        let free = if axis.is_rotary { FREE_TURNS } else { reach };
+        axis.travel.unwrap_or(Range { low: -free, high: free })
+    };
+    let travels: Vec<Range> = axes.iter().map(travel).collect();
+    let within = |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { one_turn(*range) } else { *range };
+    let beyond = |(axis, range): (&TargetAxis<'_>, &Range)| if axis.is_rotary { turn } else { range.wider_by(1.0) };
+    let slid = |slip: &Screw| if slip.angular == [0.0; 3] { Range { low: -reach, high: reach } } else { turn };
+    let slid = slips.iter().map(slid);
+    let near = axes.iter().zip(&travels).map(within).chain(slid.clone()).collect();
+    let far = axes.iter().zip(&travels).map(beyond).chain(slid).collect();
+    (travels, [near, far])
+}
+
+/// As much of a range as one turn holds, nearest to zero.
+fn one_turn(range: Range) -> Range {
+    let turn = 2.0 * std::f64::consts::PI;
+    let low = (-0.5 * turn).clamp(range.low, range.low.max(range.high - turn));
+    Range { low, high: range.high.min(low + turn) }
+}
+
 /// Residuals that vanish, where something else is positive.
 fn equations<'g>(
     residuals: &[Expr<'g>],
@@ -442,6 +487,10 @@ pub(crate) fn slipping<'g>(graph: &'g Graph, slips: &[Screw]) -> (Vec<Step<'g>>,
     (slipped, amounts)
 }
 
+/// An axis moves the tool along its symmetries if they leave no more than this share of its twist: both are known to 1e-12 or better, and
+/// the normal equations of symmetries that are far apart keep that.
+const ALONG: f64 = 1e-9;
+
 /// A symmetry that an axis of the target does by itself, wherever the others and the settings stand.
 pub(crate) fn doubled<'g>(
     target: &Chain<'g>,
@@ -449,7 +498,6 @@ pub(crate) fn doubled<'g>(
     settings: &[Expr<'g>],
     slips: &[Screw],
 ) -> Result<Option<usize>, TapeError> {
-    let basis = Mat::from_fn(6, slips.len(), |i, j| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] });
     let inputs: Vec<Expr<'g>> = axes.iter().chain(settings).copied().collect();
     let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
     for axis in axes {
@@ -457,10 +505,21 @@ pub(crate) fn doubled<'g>(
         let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
         let mut out = [0.0; 6];
         ScalarEvaluator::new(&Tape::new(&twist, &inputs)?).run(&numbers, &mut out);
-        let of = Mat::from_fn(6, 1, |i, _| out[i]);
+        // velocities by the largest of them, so that they count as turns do
+        let velocities = slips.iter().flat_map(|slip| slip.linear).chain(out[3..].iter().copied());
+        let fastest = velocities.map(f64::abs).filter(|v| *v > 0.0).reduce(f64::max).unwrap_or(1.0);
+        let of = Mat::from_fn(6, 1, |i, _| if i < 3 { out[i] } else { out[i] / fastest });
+        let basis =
+            Mat::from_fn(
+                6,
+                slips.len(),
+                |i, j| {
+                    if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] / fastest }
+                },
+            );
         let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
         let left = &of - &basis * &shares;
-        if of.norm_l2() > 0.0 && left.norm_l2() <= 1e-9 * of.norm_l2() {
+        if of.norm_l2() > 0.0 && left.norm_l2() <= ALONG * of.norm_l2() {
             return Ok((0..slips.len()).max_by(|&a, &b| shares[(a, 0)].abs().total_cmp(&shares[(b, 0)].abs())));
         }
     }
@@ -508,4 +567,23 @@ fn independent(chain: &Chain<'_>, unknowns: &[Expr<'_>], ranges: &[Range]) -> Re
     let sets = sets.map(|set| (0..COMPONENTS).filter(|k| set >> k & 1 == 1).collect::<Vec<usize>>());
     let best = sets.map(|set| (independence(&set), set)).max_by(|a, b| a.0.total_cmp(&b.0));
     Ok(best.map_or_else(Vec::new, |(_, set)| set))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_turn_of_a_travel_is_that_nearest_to_zero() {
+        let of = |low: f64, high: f64| {
+            let found = one_turn(Range { low: low.to_radians(), high: high.to_radians() });
+            [found.low, found.high].map(|x| (x.to_degrees() * 1e6).round() / 1e6)
+        };
+        assert_eq!(of(-720.0, 720.0), [-180.0, 180.0]);
+        assert_eq!(of(-10.0, 350.0), [-10.0, 350.0]);
+        assert_eq!(of(-10.0, 100.0), [-10.0, 100.0]);
+        assert_eq!(of(140.0, 230.0), [140.0, 230.0]);
+        assert_eq!(of(300.0, 1000.0), [300.0, 660.0]);
+        assert_eq!(of(-1000.0, -300.0), [-660.0, -300.0]);
+    }
 }

@@ -10,40 +10,40 @@ const ALONG: f64 = 1e-12;
 
 /// A number that a surface was made with.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting<'g> {
+pub struct Parameter<'g> {
     /// The variable that stands for it.
     pub variable: Expr<'g>,
-    /// Its value as an expression in earlier settings: when one of these changes, it follows.
+    /// Its value as an expression in earlier parameters: when one of these changes, it follows.
     pub definition: Expr<'g>,
     /// Its value.
     pub value: f64,
 }
 
-/// The exact derivative of a surface's normal displacement with respect to each of its settings.
+/// The exact derivative of a surface's normal displacement with respect to each of its parameters.
 ///
-/// Change a setting by a little. The displacement of the surface along its old normal n is n · ∂r/∂s for unchanged unknowns:
+/// Change a parameter by a little. The displacement of the surface along its old normal n is n · ∂r/∂s for unchanged unknowns:
 /// whatever the unknowns do to solve the equations again moves the point along the surface, because n is square to ∂r/∂p. So
-/// it does not matter by which coordinates points are asked for, nor whether these move with the setting.
+/// it does not matter by which coordinates points are asked for, nor whether these move with the parameter.
 ///
 /// A cylinder of radius R, which is half of a diameter d:
 ///
 /// ```
 /// use flank_expr::Graph;
 /// use flank_expr::geometry::{Surface, Vector3};
-/// use flank_solver::{NormalSensitivity, Setting};
+/// use flank_solver::{NormalSensitivity, Parameter};
 ///
 /// let graph = Graph::new();
 /// let [a, z, d, radius, turn] = ["a", "z", "d", "R", "turn"].map(|name| graph.variable(name));
 /// let around = a + turn;
 /// let position = Vector3([radius * around.cos(), radius * around.sin(), z]);
 /// let cylinder = Surface::parametric([a, z], position, false);
-/// let setting = |variable, definition, value| Setting { variable, definition, value };
-/// let settings = [
-///     setting(d, graph.constant(20.0), 20.0),
-///     setting(radius, d / 2.0, 10.0),
-///     setting(turn, graph.constant(0.0), 0.0),
+/// let parameter = |variable, definition, value| Parameter { variable, definition, value };
+/// let parameters = [
+///     parameter(d, graph.constant(20.0), 20.0),
+///     parameter(radius, d / 2.0, 10.0),
+///     parameter(turn, graph.constant(0.0), 0.0),
 /// ];
-/// let sensitivity = NormalSensitivity::new(&cylinder, &settings).expect("nothing else is unknown");
+/// let sensitivity = NormalSensitivity::new(&cylinder, &parameters).expect("nothing else is unknown");
 ///
 /// let moved = sensitivity.at(&[0.3, 5.0]).expect("finite");
 /// assert!((moved[0] - 0.5).abs() < 1e-15, "the radius follows the diameter");
@@ -52,32 +52,32 @@ pub struct Setting<'g> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct NormalSensitivity {
-    settings: usize,
+    parameters: usize,
     tape: Tape,
-    /// How setting i (row) follows setting j (column).
+    /// How parameter i (row) follows parameter j (column).
     following: DMatrix<f64>,
 }
 
 impl NormalSensitivity {
-    /// The sensitivity of `surface` to `settings`, which stand in such an order that definitions depend on earlier ones only.
+    /// The sensitivity of `surface` to `parameters`, which stand in such an order that definitions depend on earlier ones only.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor a setting.
-    pub fn new<'g>(surface: &Surface<'g>, settings: &[Setting<'g>]) -> Result<NormalSensitivity, TapeError> {
+    /// If something depends on a variable that is neither an unknown nor a parameter.
+    pub fn new<'g>(surface: &Surface<'g>, parameters: &[Parameter<'g>]) -> Result<NormalSensitivity, TapeError> {
         let graph = surface.position.0[0].graph();
         let bindings: Vec<(Expr<'g>, Expr<'g>)> =
-            settings.iter().map(|setting| (setting.variable, graph.constant(setting.value))).collect();
-        let slopes = settings.iter().flat_map(|setting| surface.position.derivative(setting.variable).0);
+            parameters.iter().map(|parameter| (parameter.variable, graph.constant(parameter.value))).collect();
+        let slopes = parameters.iter().flat_map(|parameter| surface.position.derivative(parameter.variable).0);
         let outputs: Vec<Expr<'g>> = surface.normal.0.into_iter().chain(slopes).collect();
         Ok(NormalSensitivity {
-            settings: settings.len(),
+            parameters: parameters.len(),
             tape: Tape::new(&graph.substitute(&outputs, &bindings), &surface.unknowns)?,
-            following: following(settings, &bindings)?,
+            following: following(parameters, &bindings)?,
         })
     }
 
-    /// For each setting, mm of normal displacement (plus is outwards, more material) per unit of the setting: mm, radian or
-    /// 1. Exactly zero where the setting moves the point along the surface or not at all. `None` where it is not finite.
+    /// For each parameter, mm of normal displacement (plus is outwards, more material) per unit of the parameter: mm, radian or
+    /// 1. Exactly zero where the parameter moves the point along the surface or not at all. `None` where it is not finite.
     ///
     /// # Panics
     /// If there is not one number for each unknown.
@@ -85,7 +85,7 @@ impl NormalSensitivity {
         let mut out = vec![0.0; self.tape.output_count()];
         ScalarEvaluator::new(&self.tape).run(unknowns, &mut out);
         let normal = Vector3::from_column_slice(&out[..3]);
-        let displacements = DMatrixView::from_slice(&out[3..], 3, self.settings) * &self.following;
+        let displacements = DMatrixView::from_slice(&out[3..], 3, self.parameters) * &self.following;
         let along_normal = |moved: Vector3<f64>| {
             let share = normal.dot(&moved);
             if share.abs() <= ALONG * moved.norm() { 0.0 } else { share }
@@ -96,14 +96,14 @@ impl NormalSensitivity {
     }
 }
 
-/// The total derivatives of all settings with respect to each of them, which is changed itself while its definition is left
+/// The total derivatives of all parameters with respect to each of them, which is changed itself while its definition is left
 /// aside: as when it is given another value by hand.
-fn following<'g>(settings: &[Setting<'g>], bindings: &[(Expr<'g>, Expr<'g>)]) -> Result<DMatrix<f64>, TapeError> {
-    let mut total = DMatrix::identity(settings.len(), settings.len());
-    for (i, setting) in settings.iter().enumerate() {
-        let graph = setting.variable.graph();
+fn following<'g>(parameters: &[Parameter<'g>], bindings: &[(Expr<'g>, Expr<'g>)]) -> Result<DMatrix<f64>, TapeError> {
+    let mut total = DMatrix::identity(parameters.len(), parameters.len());
+    for (i, parameter) in parameters.iter().enumerate() {
+        let graph = parameter.variable.graph();
         let slopes: Vec<Expr<'g>> =
-            settings[..i].iter().map(|earlier| setting.definition.derivative(earlier.variable)).collect();
+            parameters[..i].iter().map(|earlier| parameter.definition.derivative(earlier.variable)).collect();
         let tape = Tape::new(&graph.substitute(&slopes, bindings), &[])?;
         let mut direct = vec![0.0; i];
         ScalarEvaluator::new(&tape).run(&[], &mut direct);

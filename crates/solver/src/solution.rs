@@ -1,7 +1,11 @@
 //! Ranges, and what becomes of a point that is looked for in them.
 
+use std::f64::consts::PI;
+
 /// How far outside its range an unknown may wander on its way, as a share of the range.
 const MARGIN: f64 = 0.25;
+/// How far beyond its range a branch is followed, as a share of the range.
+const BEYOND: f64 = 2.0;
 /// An unknown is inside its range if it is outside by less than this share of it: rounding of the ends themselves, and of
 /// targets that lie on them.
 pub(crate) const ROUNDING: f64 = 1e-10;
@@ -16,6 +20,8 @@ pub struct Range {
 }
 
 impl Range {
+    pub(crate) const EVERYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
     #[inline]
     pub(crate) fn width(self) -> f64 {
         self.high - self.low
@@ -30,9 +36,34 @@ impl Range {
         self.low + share * self.width()
     }
 
+    /// With twice its width beyond both ends, and at least as much about its middle.
+    pub fn beyond(self, at_least: f64) -> Range {
+        let (wider, middle) = (self.wider_by(BEYOND), self.middle());
+        let half = 0.5 * at_least;
+        Range { low: wider.low.min(middle - half), high: wider.high.max(middle + half) }
+    }
+
+    /// A full turn about its middle; all of it, where that is more.
+    pub(crate) fn turn(self) -> Range {
+        let middle = self.middle();
+        Range { low: self.low.min(middle - PI), high: self.high.max(middle + PI) }
+    }
+
     /// What both have in common; where that is nothing, the end of this one that is nearest.
     pub(crate) fn common(self, other: Range) -> Range {
         Range { low: other.low.clamp(self.low, self.high), high: other.high.clamp(self.low, self.high) }
+    }
+
+    /// Where something of a size is looked for in it: as far as that from zero; where all of it lies farther out, from its near end on, no
+    /// farther than twice that end is from zero, or twice the size.
+    pub(crate) fn near_zero(self, size: f64) -> Range {
+        if self.low > size {
+            Range { high: self.high.min(self.low + 2.0 * size.max(self.low)), ..self }
+        } else if self.high < -size {
+            Range { low: self.low.max(self.high - 2.0 * size.max(-self.high)), ..self }
+        } else {
+            self.common(Range { low: -size, high: size })
+        }
     }
 
     /// With a share of its width beyond both ends.
@@ -178,21 +209,57 @@ pub(crate) fn distance(a: &[f64], b: &[f64], ranges: &[Range]) -> f64 {
     a.iter().zip(b).zip(ranges).map(|((a, b), range)| (a - b).abs() / range.width()).fold(0.0, f64::max)
 }
 
+/// The value that is farthest outside its range, as a share of it, with by how much; nothing if all are inside.
+pub(crate) fn farthest_outside(values: &[f64], ranges: &[Range]) -> Option<(usize, f64)> {
+    let share = |(range, value): (&Range, &f64)| range.excess(*value) / range.width();
+    let (worst, most) = ranges
+        .iter()
+        .zip(values)
+        .map(share)
+        .enumerate()
+        .fold((0, 0.0), |worst, (k, share)| if share > worst.1 { (k, share) } else { worst });
+    (most > 0.0).then(|| (worst, ranges[worst].excess(values[worst])))
+}
+
 /// What the end of an iteration means.
 pub(crate) fn verdict(p: &[f64], ranges: &[Range], is_root: bool, singular: bool) -> Outcome {
     if !is_root {
         return if singular { Outcome::Singular } else { Outcome::NotConverged { iterations: 0 } };
     }
-    let share = |(range, value): (&Range, &f64)| range.excess(*value) / range.width();
-    let farthest = ranges
-        .iter()
-        .zip(p)
-        .map(share)
-        .enumerate()
-        .fold((0, 0.0), |worst, (k, share)| if share > worst.1 { (k, share) } else { worst });
-    if farthest.1 > ROUNDING {
-        let unknown = farthest.0;
-        return Outcome::Outside { unknown, by: ranges[unknown].excess(p[unknown]) };
+    if let Some((unknown, by)) = farthest_outside(p, ranges)
+        && by > ROUNDING * ranges[unknown].width()
+    {
+        return Outcome::Outside { unknown, by };
     }
     if singular { Outcome::Singular } else { Outcome::Solved }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_looked_for_lies_in_its_range() {
+        let of = |low: f64, high: f64| {
+            let Range { low, high } = Range { low, high }.near_zero(1e3);
+            [low, high]
+        };
+        assert_eq!(of(-10.0, 5e3), [-10.0, 1e3]);
+        assert_eq!(of(f64::NEG_INFINITY, f64::INFINITY), [-1e3, 1e3]);
+        assert_eq!(of(2e3, 5e3), [2e3, 5e3]);
+        assert_eq!(of(-5e3, -2e3), [-5e3, -2e3]);
+        assert_eq!(of(2e3, f64::INFINITY), [2e3, 6e3]);
+        assert_eq!(of(f64::NEG_INFINITY, -2e3), [-6e3, -2e3]);
+    }
+
+    #[test]
+    fn the_farthest_is_so_by_its_share() {
+        let range = |low, high| Range { low, high };
+        let ranges = [range(0.0, 1.0), range(0.0, 100.0)];
+        assert_eq!(farthest_outside(&[-0.5, 110.0], &ranges), Some((0, 0.5)));
+        assert_eq!(farthest_outside(&[1.0, 110.0], &ranges), Some((1, 10.0)));
+        assert_eq!(farthest_outside(&[1.0, 0.0], &ranges), None);
+        assert_eq!(verdict(&[1.0 + 0.5 * ROUNDING, 50.0], &ranges, true, false), Outcome::Solved);
+        assert_eq!(verdict(&[2.0, 50.0], &ranges, true, false), Outcome::Outside { unknown: 0, by: 1.0 });
+    }
 }

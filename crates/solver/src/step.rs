@@ -66,6 +66,8 @@ pub(crate) struct GivenTapes {
     pub(crate) checked: LaneTape,
     /// For lines of points, if all unknowns are given by two parameters: see [`field::laid_out`].
     pub(crate) on_lines: Option<LaneTape>,
+    /// For lines of points that are expected somewhere, if not all unknowns are given: see [`field::expected`].
+    pub(crate) expected: Option<LaneTape>,
     /// The numbers of the given unknowns.
     pub(crate) unknowns: Vec<usize>,
 }
@@ -96,7 +98,14 @@ impl GivenTapes {
         let is_on_lines = has_all && parameters.len() == 2;
         let on_lines = || field::laid_out(wanted, &given, &linear, [unknowns, parameters]);
         let on_lines = is_on_lines.then(on_lines).transpose()?;
-        Ok(Some(GivenTapes { checked, on_lines, unknowns: given.iter().map(|given| given.unknown).collect() }))
+        let expected = || field::expected(wanted, &given, [unknowns, parameters]);
+        let expected = (!has_all).then(expected).transpose()?;
+        Ok(Some(GivenTapes {
+            checked,
+            on_lines,
+            expected,
+            unknowns: given.iter().map(|given| given.unknown).collect(),
+        }))
     }
 }
 

@@ -5,14 +5,15 @@ use std::convert::Infallible;
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
+use crate::anchor::{Choice, Keep, Several, solve_settled};
 use crate::angles::SearchSystem;
 use crate::bands::{Band, Wanted, solve_in_bands};
 use crate::field::Field;
-use crate::grid::{Choice, Effort, Grid, Several, solve_field};
+use crate::grid::{Effort, Grid};
 use crate::points::SurfacePoints;
+use crate::reach::{Reach, periodic_in};
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::solution::{Outcome, Range, Solution};
-use crate::solvers::Solvers;
 use crate::system::System;
 
 /// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
@@ -33,6 +34,10 @@ pub struct SurfaceProblem {
     keep: (Tape, Vec<Range>),
     /// Where the unknowns of that branch are.
     kept_ranges: Vec<Range>,
+    /// Unknowns that mean the same after a turn.
+    periodic: Vec<bool>,
+    /// Where a branch is followed beyond its ranges.
+    reach: Option<Reach>,
     /// Points of the largest grid that is solved in one piece.
     at_once: usize,
 }
@@ -149,11 +154,15 @@ impl SurfaceProblem {
         let extras: Vec<Expr<'g>> = point.iter().copied().chain(curvatures.into_iter().flatten()).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain(targets).collect();
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
+        let point = Tape::new(&point, &bound.unknowns)?;
+        let decisive = Tape::new(conditions, &inputs)?;
         Ok(SurfaceProblem {
+            periodic: periodic_in(&[system.residual_tape(), &point, &decisive], &ranges),
+            reach: None,
             search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
             system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
-            point: Tape::new(&point, &bound.unknowns)?,
-            kept_ranges: ranges.clone(),
+            point,
+            kept_ranges: vec![Range::EVERYTHING; ranges.len()],
             ranges,
             several,
             at_once: MOST_AT_ONCE,
@@ -185,7 +194,8 @@ impl SurfaceProblem {
     /// Every point of the surface with given values of the two coordinates: all roots in the ranges (and in what is kept of them),
     /// proven.
     pub fn all_points(&self, target: [f64; 2]) -> Roots {
-        self.roots(&self.kept_ranges, &target)
+        let kept: Vec<Range> = self.ranges.iter().zip(&self.kept_ranges).map(|(own, kept)| own.common(*kept)).collect();
+        self.roots(&kept, &target)
     }
 
     fn roots(&self, ranges: &[Range], target: &[f64]) -> Roots {
@@ -216,6 +226,21 @@ impl SurfaceProblem {
         Ok(SurfaceProblem { keep: (Tape::new(&values, unknowns)?, ranges), kept_ranges, ..self })
     }
 
+    /// The same problem, whose branch is followed through wider ranges than its own: where it has no point in its ranges at the
+    /// middle of a grid, or leaves them and comes back. Only points within its own count as solved; of the others
+    /// [`Outcome::Outside`] tells by how much they miss them.
+    ///
+    /// # Panics
+    /// If `wider` has not one range for each unknown.
+    pub fn reaching(self, wider: Vec<Range>) -> SurfaceProblem {
+        assert_eq!(wider.len(), self.ranges.len(), "one range for each unknown");
+        // a turn of what is periodic is all there is
+        let searched = wider.iter().zip(&self.ranges).zip(&self.periodic);
+        let searched = searched.map(|((wider, own), is_periodic)| if *is_periodic { own.turn() } else { *wider });
+        let searched = searched.collect();
+        SurfaceProblem { reach: Some(Reach { ranges: wider, searched }), ..self }
+    }
+
     /// Solves a grid of targets, row by row; every point gets a verdict. If the ranges hold several branches that qualify,
     /// every point is [`Outcome::Ambiguous`], and [`Effort::branches`] lists them.
     ///
@@ -243,7 +268,7 @@ impl SurfaceProblem {
         let memory = memory.map(|points| points.field);
         let (field, effort) = if targets.len() <= self.at_once {
             let grid = Grid::new(&self.system, &self.ranges, (targets, counts), memory);
-            self.choosing(|choice| solve_field(grid, &mut Solvers::new(&self.system, &self.ranges), start, choice))
+            self.choosing(|choice| solve_settled(grid, start, choice))
         } else {
             self.assembled(targets, counts, start, memory)
         };
@@ -306,21 +331,28 @@ impl SurfaceProblem {
             }
             let targets = wanted.all();
             let grid = Grid::new(system, ranges, (&targets, wanted.counts), None);
-            let (field, effort) = solve_field(grid, &mut Solvers::new(system, ranges), start, choice);
+            let (field, effort) = solve_settled(grid, start, choice);
             each(0..wanted.counts[0], field, 0).map(|_| effort)
         })
     }
 
     /// Calls something with the choice among branches that this problem makes.
-    fn choosing<R>(&self, solve: impl FnOnce(Choice<'_>) -> R) -> R {
+    fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
         let (tape, ranges) = &self.keep;
-        let (mut keep, mut values) = (ScalarEvaluator::new(tape), vec![0.0; ranges.len()]);
-        let mut keeps = |unknowns: &[f64]| {
-            keep.run(unknowns, &mut values);
+        let keeps = |unknowns: &[f64]| {
+            let mut values = vec![0.0; ranges.len()];
+            ScalarEvaluator::new(tape).run(unknowns, &mut values);
             values.iter().zip(ranges).all(|(value, range)| range.low <= *value && *value <= range.high)
         };
-        let roots = |target: &[f64; 2]| self.roots(&self.kept_ranges, target);
-        solve(Choice { roots: &roots, keeps: &mut keeps, several: self.several })
+        let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
+        let keep = Keep { keeps: &keeps, ranges: &self.kept_ranges };
+        solve(&Choice {
+            roots: &roots,
+            keep: Some(keep).filter(|_| !ranges.is_empty()),
+            several: self.several,
+            reach: self.reach.as_ref(),
+            periodic: &self.periodic,
+        })
     }
 
     fn with_middle(&self, field: Field) -> SurfacePoints {

@@ -2,6 +2,7 @@
 
 use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
+use crate::field;
 use crate::newton::Linearized;
 use crate::solution::{CutBy, Outcome};
 use crate::step::{GivenTapes, MOST_EQUATIONS, Wanted, written_out};
@@ -28,6 +29,8 @@ pub(crate) struct LaneTapes {
     /// The step of Newton, see [`written_out`]; residuals, then the Jacobian row by row where it is not written out.
     pub(crate) linearized: LaneTape,
     pub(crate) is_written_out: bool,
+    /// For lines of points that are expected somewhere, see [`field::expected`]; none if an equation gives an unknown.
+    pub(crate) expected: Option<LaneTape>,
     pub(crate) given: Option<GivenTapes>,
 }
 
@@ -72,7 +75,7 @@ impl System {
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
         let residuals = Tape::new(residuals, &inputs)?;
         let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
-        let lanes = LaneTapes { checked, linearized, is_written_out: false, given: None };
+        let lanes = LaneTapes { checked, linearized, is_written_out: false, expected: None, given: None };
         let instructions = InstructionSet::fastest();
         Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, extra_count: 0, instructions })
     }
@@ -96,8 +99,10 @@ impl System {
         let is_written_out = self.lanes.is_written_out;
         let given = || GivenTapes::new(&wanted, unknowns, parameters);
         let given = if is_written_out { given()? } else { None };
+        let is_expected = is_written_out && given.is_none();
+        let expected = is_expected.then(|| field::expected(&wanted, &[], [unknowns, parameters])).transpose()?;
         let conditions = Tape::new(conditions, inputs)?;
-        let lanes = LaneTapes { checked, given, ..self.lanes };
+        let lanes = LaneTapes { checked, expected, given, ..self.lanes };
         Ok(System { conditions, lanes, extra_count: extras.len(), ..self })
     }
 

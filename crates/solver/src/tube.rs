@@ -79,12 +79,32 @@ impl Tube {
     /// How far, at most, each axis is from a polynomial of the motion's distance from `about` anywhere in the range, mm or radians;
     /// proven.
     pub fn distances(&self, about: f64, polynomials: &[Vec<f64>]) -> Vec<f64> {
+        let windows = self.pieces.iter().map(|piece| (piece, Window { middle: 0.0, half: piece.half }));
+        self.farthest(&windows.collect::<Vec<_>>(), about, polynomials)
+    }
+
+    /// The same over a part of the range.
+    pub fn distances_over(&self, part: Range, about: f64, polynomials: &[Vec<f64>]) -> Vec<f64> {
+        let windows = self.pieces.iter().filter_map(|piece| Some((piece, piece.window(part)?)));
+        self.farthest(&windows.collect::<Vec<_>>(), about, polynomials)
+    }
+
+    fn farthest(&self, windows: &[(&Piece, Window)], about: f64, polynomials: &[Vec<f64>]) -> Vec<f64> {
         let of = |axis: usize| {
-            let each = self.pieces.iter().map(|piece| piece.distance(axis, about, &polynomials[axis]));
+            let each = windows.iter().map(|(piece, window)| piece.distance(axis, *window, about, &polynomials[axis]));
             each.fold(0.0, f64::max)
         };
         (0..self.axes).map(of).collect()
     }
+}
+
+/// A part of a piece.
+#[derive(Clone, Copy)]
+struct Window {
+    /// Where its middle is, from the piece's.
+    middle: f64,
+    /// Half its length, rounded up.
+    half: f64,
 }
 
 impl Piece {
@@ -96,16 +116,28 @@ impl Piece {
         Interval::point(self.middle) + self.reach()
     }
 
-    fn distance(&self, axis: usize, about: f64, polynomial: &[f64]) -> f64 {
-        let off = Interval::point(self.middle) - Interval::point(about);
+    /// What a part of the range has in common with the piece; nothing where that is nothing.
+    fn window(&self, part: Range) -> Option<Window> {
+        let from_middle = |end: f64| Interval::point(end) - Interval::point(self.middle);
+        let (low, high) = (from_middle(part.low).lo.max(-self.half), from_middle(part.high).hi.min(self.half));
+        let middle = 0.5 * low + 0.5 * high;
+        let reach = |end: f64| (Interval::point(end) - Interval::point(middle)).magnitude();
+        (low <= high).then(|| Window { middle, half: reach(low).max(reach(high)) })
+    }
+
+    /// How far an axis is from a polynomial anywhere in a window.
+    fn distance(&self, axis: usize, window: Window, about: f64, polynomial: &[f64]) -> f64 {
+        let shift = Interval::point(window.middle);
+        let off = Interval::point(self.middle) + shift - Interval::point(about);
         let polynomial = points(polynomial);
-        let own = |k: usize| Interval::point(self.centre[axis].get(k).copied().unwrap_or(0.0));
+        let centre = points(&self.centre[axis]);
+        let own = |k: usize| coefficient(&centre, k, shift);
         let differences: Vec<Interval> =
             (0..polynomial.len().max(ORDER + 1)).map(|k| own(k) - coefficient(&polynomial, k, off)).collect();
         // coefficients of both signs cancel, which shows on short parts
-        let half = self.half / PARTS as f64;
+        let half = window.half / PARTS as f64;
         let part = |k: usize| {
-            let off = Interval::point((2 * k + 1) as f64) * Interval::point(half) - Interval::point(self.half);
+            let off = Interval::point((2 * k + 1) as f64) * Interval::point(half) - Interval::point(window.half);
             largest((0..differences.len()).map(|k| coefficient(&differences, k, off)), half)
         };
         let most = (0..PARTS).map(|k| part(k).hi).fold(0.0, f64::max);

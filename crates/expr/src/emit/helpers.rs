@@ -17,6 +17,9 @@ pub(super) enum Helper {
 }
 
 impl Helper {
+    pub(super) const ALL: [Helper; 6] =
+        [Helper::Sign, Helper::Min, Helper::Max, Helper::Arcinv, Helper::Curve, Helper::Pow];
+
     /// What stands behind the name of the function that calls it.
     pub(super) fn name(self) -> &'static str {
         match self {

@@ -1,5 +1,6 @@
 //! Names that all languages take for identifiers.
 
+use super::helpers::Helper;
 use crate::print::GREEK;
 
 /// The names of one function: its own and those of its arguments, all different and free of what the body uses.
@@ -28,7 +29,10 @@ impl Scope {
     }
 
     fn has(&self, name: &str) -> bool {
-        name == self.function || self.arguments.iter().any(|argument| argument == name)
+        let of_helper = name.strip_prefix(&self.function).and_then(|rest| rest.strip_prefix('_'));
+        name == self.function
+            || Helper::ALL.iter().any(|helper| of_helper == Some(helper.name()))
+            || self.arguments.iter().any(|argument| argument == name)
     }
 }
 
@@ -73,25 +77,61 @@ fn identifier(text: &str) -> String {
 }
 
 fn is_reserved(name: &str) -> bool {
-    KEYWORDS.split_whitespace().chain(MATHEMATICS.split_whitespace()).any(|word| word == name)
+    let is_among = |list: &str, name: &str| list.split_whitespace().any(|word| word == name);
+    // of float and long double
+    let plain = name.strip_suffix(['f', 'l']).unwrap_or(name);
+    [C, CPP, RUST, JAVASCRIPT, MACROS].into_iter().any(|list| is_among(list, name))
+        || [name, plain].into_iter().any(|name| is_among(MATHEMATICS, name))
 }
 
-/// Of C to C23, of C++ where headers are shared, of Rust, and of JavaScript with the globals that bodies use.
-const KEYWORDS: &str = "
-    abstract alignas alignof and arguments Array asm async auto await become bool box break case catch char class compl
-    const constexpr continue crate debugger default delete do double dyn else enum eval explicit export extends extern f32
-    f64 false final finally float fn for friend function gen goto if impl implements import in Infinity inline instanceof
-    int interface let long loop macro main match Math mod module move mut mutable namespace NaN new not null nullptr
-    Number operator or override package priv private protected pub public ref register requires restrict return self short
-    signed sizeof static struct super switch template this throw trait true try type typedef typename typeof undefined
-    union unsafe unsigned unsized use using var virtual void volatile where while with xor yield";
+/// Keywords to C23, what GNU's compilers define beside them, and the one function that is called from outside.
+const C: &str = "
+    alignas alignof asm auto bool break case char const constexpr continue default do double else enum extern false float for
+    goto i386 if inline int linux long main nullptr register restrict return short signed sizeof static static_assert struct
+    switch thread_local true typedef typeof typeof_unqual union unix unsigned void volatile while";
 
-/// What `math.h` declares without suffix, as C and POSIX have it.
+/// Keywords of C++, where headers are shared.
+const CPP: &str = "
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t char8_t class co_await
+    co_return co_yield compl concept const const_cast consteval constexpr constinit continue contract_assert decltype default
+    delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline int long mutable
+    namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires
+    return short signed sizeof static static_assert static_cast std struct switch template this thread_local throw true try
+    typedef typeid typename union unsigned using virtual void volatile wchar_t while xor xor_eq";
+
+/// Keywords to the edition of 2024 and those kept for later, the types that bodies name, and what an argument of its name would be
+/// matched against.
+const RUST: &str = "
+    abstract as async await become box break const continue crate do dyn else enum Err extern f32 f64 false final fn for gen if
+    impl in let loop macro match mod move mut None Ok override priv pub ref return Self self Some static struct super trait true
+    try type typeof union unsafe unsized use virtual where while yield";
+
+/// Reserved words of modules, and the globals that bodies use.
+const JAVASCRIPT: &str = "
+    arguments Array await break case catch class const continue debugger default delete do else enum eval export extends false
+    finally for function if implements import in Infinity instanceof interface let Math NaN new null Number package private
+    protected public return static super switch this throw true try typeof undefined var void while with yield";
+
+/// Macros, types and the variable of `math.h`, as C, POSIX and GNU have it.
+const MACROS: &str = "
+    DEC_INFINITY DEC_NAN DOMAIN double_t float_t FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FP_ILOGB0 FP_ILOGBNAN FP_INFINITE
+    FP_INT_DOWNWARD FP_INT_TONEAREST FP_INT_TONEARESTFROMZERO FP_INT_TOWARDZERO FP_INT_UPWARD FP_LLOGB0 FP_LLOGBNAN FP_NAN
+    FP_NORMAL FP_SUBNORMAL FP_ZERO HUGE HUGE_VAL HUGE_VALF HUGE_VALL INFINITY M_1_PI M_1_PIl M_2_PI M_2_PIl M_2_SQRTPI
+    M_2_SQRTPIl M_E M_El M_LN10 M_LN10l M_LN2 M_LN2l M_LOG10E M_LOG10El M_LOG2E M_LOG2El M_PI M_PI_2 M_PI_2l M_PI_4 M_PI_4l
+    M_PIl M_SQRT1_2 M_SQRT1_2l M_SQRT2 M_SQRT2l MATH_ERREXCEPT math_errhandling MATH_ERRNO MAXFLOAT NAN OVERFLOW PLOSS signgam
+    SING SNAN SNANF SNANL TLOSS UNDERFLOW X_TLOSS";
+
+/// Functions of `math.h` without suffix.
 const MATHEMATICS: &str = "
-    abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs fdim floor fma fmax fmin
-    fmod frexp gamma hypot ilogb isfinite isinf isnan isnormal j0 j1 jn ldexp lgamma llrint llround log log10 log1p log2 logb lrint
-    lround modf nan nearbyint nextafter nexttoward pow remainder remquo rint round scalbln scalbn signbit sin sinh sqrt tan tanh
-    tgamma trunc y0 y1 yn";
+    abs acos acosh acospi asin asinh asinpi atan atan2 atan2pi atanh atanpi canonicalize cbrt ceil compoundn copysign cos cosh
+    cospi dadd ddiv dfma dmul drem dsqrt dsub erf erfc exp exp10 exp10m1 exp2 exp2m1 expm1 fabs fadd fdim fdiv ffma finite floor
+    fma fmax fmaximum fmaximum_mag fmaximum_mag_num fmaximum_num fmin fminimum fminimum_mag fminimum_mag_num fminimum_num fmod
+    fmul fpclassify frexp fromfp fromfpx fsqrt fsub gamma getpayload hypot ilogb iscanonical iseqsig isfinite isgreater
+    isgreaterequal isinf isless islessequal islessgreater isnan isnormal issignaling issubnormal isunordered iszero j0 j1 jn
+    ldexp lgamma lgamma_r llogb llrint llround log log10 log10p1 log1p log2 log2p1 logb logp1 lrint lround modf nan nearbyint
+    nextafter nextdown nexttoward nextup pow pow10 pown powr remainder remquo rint rootn round roundeven rsqrt scalb scalbln
+    scalbn setpayload setpayloadsig signbit significand sin sincos sinh sinpi sqrt tan tanh tanpi tgamma totalorder
+    totalordermag trunc ufromfp ufromfpx y0 y1 yn";
 
 #[cfg(test)]
 mod tests {
@@ -115,9 +155,12 @@ mod tests {
 
     #[test]
     fn names_of_a_function_differ() {
-        let arguments = ["phi", "φ", "t12", "values", "return", "sin", "f", "tilt"].map(String::from);
+        let arguments = ["phi", "φ", "t12", "values", "return", "sin", "f", "tilt", "f_min"].map(String::from);
         let scope = Scope::new("f", &arguments);
-        assert_eq!(scope.arguments(), ["phi", "phi_", "t12_", "values_", "return_", "sin_", "f_", "tilt"]);
-        assert_eq!(Scope::new("main", &[]).function(), "main_");
+        assert_eq!(scope.arguments(), ["phi", "phi_", "t12_", "values_", "return_", "sin_", "f_", "tilt", "f_min_"]);
+        for name in ["main", "sin", "sinf", "hypotl", "signgam", "linux", "static_assert"] {
+            assert_eq!(Scope::new(name, &[]).function(), format!("{name}_"));
+        }
+        assert_eq!(Scope::new("half", &[]).function(), "half");
     }
 }

@@ -109,16 +109,6 @@ impl Interval {
         self.lo <= x && x <= self.hi
     }
 
-    /// Whether all of another interval lies in it.
-    pub fn encloses(self, other: Interval) -> bool {
-        other.is_empty() || self.lo <= other.lo && other.hi <= self.hi
-    }
-
-    /// Whether another interval lies in it without touching its ends.
-    pub fn encloses_inside(self, other: Interval) -> bool {
-        other.is_empty() || self.lo < other.lo && other.hi < self.hi
-    }
-
     /// Difference of the ends, rounded up.
     pub fn width(self) -> f64 {
         sum_bounds(self.hi, -self.lo).1

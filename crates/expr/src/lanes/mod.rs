@@ -131,7 +131,7 @@ impl<'t> LaneEvaluator<'t> {
     /// computing anything anew. Those that vary seldom must be as they were.
     ///
     /// # Panics
-    /// If there are not as many numbers as [`LaneTape::prepared_len`] says.
+    /// If there are not as many numbers as that one added.
     pub fn set_prepared(&mut self, prepared: &[f64]) {
         let inputs = self.tape.inputs.len();
         self.scalars[..inputs].copy_from_slice(&prepared[..inputs]);

@@ -158,11 +158,6 @@ impl LaneTape {
         self.scalars.len() - self.result_count..self.scalars.len()
     }
 
-    /// Numbers of a [`LaneEvaluator::prepare`](crate::LaneEvaluator::prepare).
-    pub fn prepared_len(&self) -> usize {
-        self.inputs.len() + self.result_count
-    }
-
     /// Instructions that are executed once for all lanes, those that are executed after an input changed that varies by lane, and
     /// those for each run.
     pub fn stages(&self) -> [usize; 3] {

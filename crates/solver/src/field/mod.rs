@@ -6,22 +6,23 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
+mod expected;
 mod numbers;
 mod on_line;
+mod plain;
 mod strip;
 
 use flank_expr::LANES;
 
 use crate::lanes::{LaneNewton, Lanes, VITAL};
-use crate::line::{Midpoint, STENCIL};
+use crate::line::Midpoint;
 use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
 
+pub(crate) use expected::{Expected, expected};
 use numbers::Numbers;
 pub(crate) use on_line::{OnLine, laid_out};
 pub(crate) use strip::Strip;
 
-/// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
-const ASTRAY: f64 = 0.25;
 /// Distances below this share of the ranges are never a jump to another branch.
 pub(crate) const NEAR: f64 = 1e-3;
 /// Around a point the Jacobian has an inverse if its determinants there differ by less than this factor.
@@ -67,7 +68,7 @@ pub(crate) enum Lines {
 
 /// How a field is divided.
 #[derive(Clone, Copy, Debug)]
-struct Shape {
+pub(crate) struct Shape {
     lines: Lines,
     /// Columns of the grid.
     columns: usize,
@@ -91,7 +92,8 @@ impl Shape {
         self.count * self.length.div_ceil(LANES)
     }
 
-    fn point(&self, line: usize, at: usize) -> usize {
+    /// Number in the grid of a point of a line.
+    pub(crate) fn point(&self, line: usize, at: usize) -> usize {
         if self.lines == Lines::Rows { line * self.columns + at } else { at * self.columns + line }
     }
 
@@ -117,6 +119,8 @@ pub(crate) struct Field {
     marks: Vec<[Mark; LANES]>,
     /// Points by the careful path, which does not compute what else is wanted.
     loose: Vec<usize>,
+    /// Of a field that is not needed any more.
+    memory: Option<Box<Field>>,
 }
 
 impl Field {
@@ -127,8 +131,9 @@ impl Field {
     }
 
     fn of(shape: Shape, ranges: &[Range], memory: Option<Field>) -> Field {
-        let (values, marks) = memory.map_or_else(Default::default, |field| (field.values, field.marks));
-        let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new() };
+        let (values, marks, memory) =
+            memory.map_or_else(Default::default, |field| (field.values, field.marks, field.memory));
+        let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new(), memory };
         field.clear();
         field
     }
@@ -171,6 +176,11 @@ impl Field {
         let to = &mut self.values.as_chunks_mut::<LANES>().0[block * planes..][..planes];
         to.iter_mut().zip(numbers).for_each(|(to, numbers)| to[lane] = numbers[column]);
         self.marks[block][lane] = from.marks[other][column];
+    }
+
+    /// How it is divided.
+    pub(crate) fn shape(&self) -> Shape {
+        self.shape
     }
 
     /// Number of points.
@@ -230,6 +240,26 @@ impl Field {
 
     pub(crate) fn is_root(&self, point: usize) -> bool {
         self.mark(point).is_root()
+    }
+
+    pub(crate) fn is_outside(&self, point: usize) -> bool {
+        self.mark(point) == Mark::Outside
+    }
+
+    /// Whether a point lies outside the ranges.
+    pub(crate) fn has_outside(&self) -> bool {
+        self.count(|mark| mark == Mark::Outside) > 0
+    }
+
+    /// Whether its points were looked for in other ranges than these.
+    pub(crate) fn is_of_others(&self, ranges: &[Range]) -> bool {
+        self.ranges != ranges
+    }
+
+    /// What is outside is told by these ranges from now on.
+    pub(crate) fn judge_by(&mut self, ranges: &[Range]) {
+        self.ranges.clear();
+        self.ranges.extend_from_slice(ranges);
     }
 
     /// Number of solved points.
@@ -334,23 +364,24 @@ impl Field {
         let Shape { length, size, planes, .. } = self.shape;
         // beside each other these lines are lanes of lines that go across them
         let shape = Shape::new(Lines::Columns, [lines.len(), length], size, planes);
-        let mut across = Field::of(shape, &self.ranges, None);
-        let (own, of_line) = (self.shape, |line: usize| (0..length).map(move |at| (line, at)));
-        let targets: Vec<[f64; 2]> =
-            lines.iter().flat_map(|line| of_line(*line)).map(|(line, at)| targets[own.point(line, at)]).collect();
+        let mut across = Field::of(shape, &self.ranges, self.memory.take().map(|memory| *memory));
+        let own = self.shape;
+        // of what lies beside each other in either field, one after the other
         let pairs = || {
-            let places = |(k, line): (usize, &usize)| of_line(*line).map(move |(line, at)| (k, line, at));
-            let places = lines.iter().enumerate().flat_map(places);
-            places.map(move |(k, line, at)| (own.place_on(line, at), shape.place_on(at, k)))
+            let places = (0..length).flat_map(|at| (0..lines.len()).map(move |k| (k, at)));
+            places.map(move |(k, at)| (own.place_on(lines[k], at), shape.place_on(at, k)))
         };
+        let number = |at: usize, k: usize| own.point(lines[k], at);
         let is_root = |field: &Field, (block, lane): (usize, usize)| field.marks[block][lane].is_root();
         pairs().filter(|(own, _)| is_root(self, *own)).for_each(|(own, beside)| across.copy_place(beside, self, own));
-        let evaluations = across.strips().into_iter().map(|mut strip| strip.refine(newton, levels, &targets)).sum();
+        let evaluations =
+            across.strips().into_iter().map(|mut strip| strip.refine(newton, levels, targets, number)).sum();
         for (own, beside) in pairs() {
             if is_root(&across, beside) && !is_root(self, own) {
                 self.copy_place(own, &across, beside);
             }
         }
+        self.memory = Some(Box::new(across));
         evaluations
     }
 
@@ -371,67 +402,6 @@ impl Field {
         };
         values.zip(marks.chunks_mut(shape.count.max(1))).enumerate().map(strip).collect()
     }
-}
-
-/// Whether a determinant between two others, and the way between them, cannot vanish. Not if one is no number.
-#[inline(always)]
-fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
-    let is_near = |a: f64, b: f64| {
-        let (product, most) = (a * b, SAME_DETERMINANT * a * a);
-        (product > 0.0) & (product < most) & (SAME_DETERMINANT * product > a * a)
-    };
-    is_near(before, behind) & is_near(before, between) & is_near(behind, between)
-}
-
-/// The start of a lane: on the polynomial through the known points around it, or between its two neighbours if some of them are no
-/// roots; the determinant where it cannot vanish between them, else NaN. False if the point is known or a neighbour is not: then
-/// it is not to be solved next. `place` tells the block and lane of what a midpoint speaks of.
-fn interpolate(
-    shape: Shape,
-    midpoint: &Midpoint,
-    (values, marks): (&[f64], &[[Mark; LANES]]),
-    place: impl Fn(usize) -> (usize, usize),
-    newton: &mut LaneNewton<'_>,
-    lane: usize,
-) -> bool {
-    let is_root = |(block, lane): (usize, usize)| marks[block][lane].is_root();
-    let first = |(block, lane): (usize, usize)| block * shape.planes * LANES + lane;
-    let [before, behind] = midpoint.beside.map(&place);
-    if is_root(place(midpoint.at)) || !is_root(before) || !is_root(behind) {
-        return false;
-    }
-    let (mut stencil, mut is_complete) = ([(0, 0.0); STENCIL], true);
-    for (known, (at, weight)) in stencil.iter_mut().zip(midpoint.known()) {
-        let place = place(*at);
-        is_complete &= is_root(place);
-        *known = (first(place), *weight);
-    }
-    let share = (midpoint.at - midpoint.beside[0]) as f64 / (midpoint.beside[1] - midpoint.beside[0]) as f64;
-    let linear = [(first(before), 1.0 - share), (first(behind), share)];
-    let known = if is_complete { &stencil[..midpoint.known().len()] } else { &linear };
-    let sum = |plane: usize| known.iter().map(|(first, weight)| weight * values[first + plane * LANES]).sum::<f64>();
-    for k in 0..shape.size {
-        newton.input(k)[lane] = sum(k);
-    }
-    let [before, behind] = linear.map(|(first, _)| values[first + shape.size * LANES]);
-    let between = sum(shape.size);
-    newton.determinant()[lane] = if keeps_sign(before, between, behind) { between } else { f64::NAN };
-    true
-}
-
-/// Lanes that are not active get the numbers of one that is.
-fn repeat_lane(shape: Shape, newton: &mut LaneNewton<'_>, from: usize, active: &[bool]) {
-    for k in 0..shape.size + 2 {
-        let values = newton.input(k);
-        for lane in (0..active.len()).filter(|lane| !active[*lane]) {
-            values[lane] = values[from];
-        }
-    }
-}
-
-/// Whether a point that came so far from its start may be on another branch than its neighbours, which are so far apart.
-fn is_astray(moved: f64, apart: impl Fn() -> f64) -> bool {
-    moved > NEAR && moved > ASTRAY * apart() + NEAR
 }
 
 /// A number of each lane in the order in which a field keeps them.

@@ -3,16 +3,15 @@
 
 use flank_expr::{Expr, LaneEvaluator, LaneTape, Tape, TapeError, Varies};
 
+use super::plain::{PlainRoot, are_plain, definitions};
 use crate::given::Given;
-use crate::lanes::{CLEAR, Lanes, PREDICTED};
-use crate::newton::TOLERANCE;
+use crate::lanes::{CLEAR, Lanes};
 use crate::solution::Range;
 use crate::step::{Linear, Wanted};
 use crate::system::System;
 
-/// Lays out the numbers of a point as a field keeps them, then one that is positive or no number where the point is no plain
-/// root: with residuals, unknowns in their ranges, all conditions met, numbers for what else is wanted, and a clear determinant
-/// of the sign that it has around there.
+/// Lays out [`PlainRoot`] of points whose unknowns are all given; a plain root has a clear determinant of the sign that it has around
+/// there.
 ///
 /// Inputs are the unknowns (without effect, as all are given), two parameters, of which the first one is that of the line and the
 /// second one that of the lane, the width, the lower and the upper end of each range, and the sign of the determinant.
@@ -25,34 +24,17 @@ pub(crate) fn laid_out<'g>(
     linear: &Linear<'g>,
     [unknowns, parameters]: [&[Expr<'g>]; 2],
 ) -> Result<LaneTape, TapeError> {
-    let graph = unknowns[0].graph();
-    let [lows, highs] = ["low", "high"]
-        .map(|name| (0..unknowns.len()).map(|k| graph.variable(format!("{name} {k}"))).collect::<Vec<Expr<'g>>>());
-    let side = graph.variable("side");
+    let side = unknowns[0].graph().variable("side of the fold");
     let determinant = linear.scaled_determinant();
-    let residual = most(wanted.residuals.iter().map(|residual| residual.abs())).unwrap_or(graph.constant(0.0));
-
-    let [ends, conditions] = [unknowns.len(), wanted.conditions.len()];
-    let outside = (0..ends).map(|k| (lows[k] - unknowns[k]).max(unknowns[k] - highs[k]));
-    let unmet = (0..conditions).map(|k| f64::MIN_POSITIVE - wanted.conditions[k]);
-    let endless = wanted.vital().map(|sum| sum.abs() - f64::MAX);
-    let off = [residual - PREDICTED * TOLERANCE, CLEAR - determinant * side];
-    let verdict = most(outside.chain(unmet).chain(endless).chain(off)).expect("two are always there");
-
-    let numbers = [unknowns, &[determinant, residual], wanted.extras].concat();
-    let outputs = [numbers.as_slice(), &[verdict]].concat();
-    let inputs = [unknowns, parameters, &linear.widths, &lows, &highs, &[side]].concat();
-    let definitions: Vec<_> = given.iter().map(|given| (unknowns[given.unknown], given.form)).collect();
-    let tape = Tape::with_definitions(&outputs, &inputs, &definitions)?;
+    let root = PlainRoot::new(wanted, unknowns, determinant, CLEAR - determinant * side);
+    let [lows, highs] = &root.ends;
+    let inputs = [unknowns, parameters, &linear.widths, lows, highs, &[side]].concat();
+    let tape = Tape::with_definitions(&root.outputs, &inputs, &definitions(given, unknowns))?;
     let mut varies = vec![Varies::Freely; unknowns.len()];
     varies.extend([Varies::ByRun, Varies::ByLane]);
     varies.extend(vec![Varies::Seldom; 3 * unknowns.len()]);
     varies.push(Varies::ByLane);
-    Ok(LaneTape::with_inputs(&tape, &varies).writing(numbers.len()))
-}
-
-fn most<'g>(terms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
-    terms.reduce(|a, b| a.max(b))
+    Ok(LaneTape::with_inputs(&tape, &varies).writing(root.written()))
 }
 
 /// What computes such lines.
@@ -108,8 +90,7 @@ impl<'s> OnLine<'s> {
     pub(crate) fn run(&mut self, prepared: &[f64], count: usize, out: &mut [Lanes]) -> bool {
         self.evaluator.set_prepared(prepared);
         self.evaluator.run_into(count, out);
-        let verdicts = self.evaluator.output(out.len());
-        verdicts[..count].iter().fold(true, |all, verdict| all & (*verdict <= 0.0))
+        are_plain(self.evaluator.output(out.len()), count)
     }
 }
 
@@ -117,10 +98,10 @@ impl<'s> OnLine<'s> {
 mod tests {
     use flank_expr::Graph;
 
-    use crate::grid::{Choice, Grid, Several, solve_field};
+    use crate::anchor::{Choice, Several, solve_settled};
+    use crate::grid::Grid;
     use crate::roots::{MOST_BOXES, all_roots};
     use crate::solution::{Outcome, Range};
-    use crate::solvers::Solvers;
     use crate::system::System;
 
     /// x = 1 / (a + b) beyond its pole, its range and a condition, with some targets beside the lines: each point is what the
@@ -142,10 +123,10 @@ mod tests {
             [-1.0 + 3.0 * i as f64 / 59.0 + aside, j as f64 / 74.0 - aside]
         };
         let targets: Vec<[f64; 2]> = (0..counts[0] * counts[1]).map(target).collect();
-        let roots = |targets: &[f64; 2]| all_roots(&system, &ranges, targets, MOST_BOXES);
-        let choice = Choice { roots: &roots, keeps: &mut |_| true, several: Several::Refuse };
+        let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(&system, ranges, targets, MOST_BOXES);
+        let choice = Choice { roots: &roots, keep: None, several: Several::Refuse, reach: None, periodic: &[] };
         let grid = Grid::new(&system, &ranges, (&targets, counts), None);
-        let (field, _) = solve_field(grid, &mut Solvers::new(&system, &ranges), None, choice);
+        let (field, _) = solve_settled(grid, None, &choice);
         for (k, [a, b]) in targets.iter().enumerate() {
             let expected = 1.0 / (a + b);
             match field.outcome(k) {

@@ -4,10 +4,15 @@
 
 use flank_expr::LANES;
 
-use super::{Mark, NEAR, OnLine, Shape, block_of, interpolate, is_astray, keeps_sign, number, repeat_lane, take};
+use super::{Mark, NEAR, OnLine, SAME_DETERMINANT, Shape, block_of, number, take};
 use crate::lanes::{LaneNewton, Lanes};
-use crate::line::Midpoint;
+use crate::line::{Midpoint, STENCIL};
 use crate::solution::Range;
+
+/// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
+const ASTRAY: f64 = 0.25;
+/// Lines whose targets are put in order at once.
+const LINES: usize = 64;
 
 /// The same part of all lines of a field.
 pub(crate) struct Strip<'f> {
@@ -21,21 +26,34 @@ pub(crate) struct Strip<'f> {
 }
 
 impl Strip<'_> {
-    /// Solves what follows from the known lines; what fails stays unknown, for the careful path. Gives the number of
-    /// evaluations.
+    /// Solves what follows from the known lines; what fails stays unknown, for the careful path. `number` tells which target is that
+    /// of a line at a place on it; from line to line it grows by the same. Gives the number of evaluations.
     pub(crate) fn refine(
         &mut self,
         newton: &mut LaneNewton<'_>,
         levels: &[Vec<Midpoint>],
         targets: &[[f64; 2]],
+        number: impl Fn(usize, usize) -> usize,
     ) -> u64 {
-        let (mut evaluations, mut rough) = (0, true);
+        let (mut evaluations, mut rough, mut plain) = (0, true, true);
         let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
         let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
+        let mut ordered = std::mem::take(newton.targets());
+        self.put_in_order(targets, number, &mut ordered);
         for midpoint in levels.iter().flatten() {
             let is_free = empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]);
             empty[midpoint.at] = false;
-            self.set_targets(midpoint.at, newton, targets);
+            if let Some(expected) = newton.expected().filter(|_| is_free && plain && !rough) {
+                evaluations += self.width as u64;
+                full[midpoint.at] = self.is_as_expected(midpoint, expected, &ordered[midpoint.at]);
+                if full[midpoint.at] {
+                    continue;
+                }
+                rough = true;
+            }
+            for k in 0..2 {
+                *newton.input(self.shape.size + k) = ordered[midpoint.at][k];
+            }
             if is_free {
                 if newton.has_all_given() {
                     *newton.determinant() = *self.plane(midpoint.beside[0], self.shape.size);
@@ -53,8 +71,10 @@ impl Strip<'_> {
                 evaluations += newton.run(&active[..self.width], rough);
             }
             rough = newton.were_rough();
-            full[midpoint.at] = self.take_line(midpoint, newton);
+            plain = self.take_plain(midpoint.at, newton);
+            full[midpoint.at] = plain || self.take_lanes(midpoint, newton);
         }
+        *newton.targets() = ordered;
         evaluations
     }
 
@@ -98,11 +118,22 @@ impl Strip<'_> {
         evaluations
     }
 
-    fn set_targets(&self, line: usize, newton: &mut LaneNewton<'_>, targets: &[[f64; 2]]) {
-        for k in 0..2 {
-            let values = newton.input(self.shape.size + k);
-            for (value, target) in values.iter_mut().zip(self.targets_on(line, targets)) {
-                *value = target[k];
+    /// The targets of all lines.
+    fn put_in_order(
+        &self,
+        targets: &[[f64; 2]],
+        number: impl Fn(usize, usize) -> usize,
+        ordered: &mut Vec<[Lanes; 2]>,
+    ) {
+        ordered.resize(self.shape.count, [[0.0; LANES]; 2]);
+        let step = number(1, self.first) - number(0, self.first);
+        // some lines at once, so that targets are read where they lie beside each other
+        for (k, lines) in ordered.chunks_mut(LINES).enumerate() {
+            for lane in 0..self.width.min(LANES) {
+                let targets = targets[number(k * LINES, self.first + lane)..].iter().step_by(step);
+                for (ordered, target) in lines.iter_mut().zip(targets) {
+                    [ordered[0][lane], ordered[1][lane]] = *target;
+                }
             }
         }
     }
@@ -120,7 +151,7 @@ impl Strip<'_> {
         self.marks[line][..self.width].iter().all(|mark| *mark == Mark::Unknown)
     }
 
-    fn plane(&self, line: usize, plane: usize) -> &Lanes {
+    pub(super) fn plane(&self, line: usize, plane: usize) -> &Lanes {
         &self.values.as_chunks::<LANES>().0[line * self.shape.planes + plane]
     }
 
@@ -134,13 +165,7 @@ impl Strip<'_> {
                     if newton.is_given(plane) && !rough {
                         continue;
                     }
-                    let mut sums = [0.0; LANES];
-                    for (line, weight) in midpoint.known() {
-                        let values = self.plane(*line, plane);
-                        for lane in 0..LANES {
-                            sums[lane] += weight * values[lane];
-                        }
-                    }
+                    let sums = self.sums(midpoint.known(), plane);
                     if plane < size {
                         *newton.input(plane) = sums;
                     } else {
@@ -157,9 +182,34 @@ impl Strip<'_> {
         );
     }
 
-    /// The start of one point; false if the point is known, or does not follow.
+    /// The start of a lane of a line: on the polynomial through the known points around it, or between its two neighbours if some of
+    /// them are no roots; the determinant where it cannot vanish between them, else NaN. False if the point is known or a neighbour
+    /// is not: then it is not to be solved next.
     fn interpolate_lane(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, lane: usize) -> bool {
-        interpolate(self.shape, midpoint, (self.values, self.marks), |line| (line, lane), newton, lane)
+        let (shape, values) = (self.shape, &*self.values);
+        let is_root = |line: usize| self.marks[line][lane].is_root();
+        let first = |line: usize| line * shape.planes * LANES + lane;
+        let [before, behind] = midpoint.beside;
+        if is_root(midpoint.at) || !is_root(before) || !is_root(behind) {
+            return false;
+        }
+        let (mut stencil, mut is_complete) = ([(0, 0.0); STENCIL], true);
+        for (known, (line, weight)) in stencil.iter_mut().zip(midpoint.known()) {
+            is_complete &= is_root(*line);
+            *known = (first(*line), *weight);
+        }
+        let share = (midpoint.at - before) as f64 / (behind - before) as f64;
+        let linear = [(first(before), 1.0 - share), (first(behind), share)];
+        let known = if is_complete { &stencil[..midpoint.known().len()] } else { &linear };
+        let sum =
+            |plane: usize| known.iter().map(|(first, weight)| weight * values[first + plane * LANES]).sum::<f64>();
+        for k in 0..shape.size {
+            newton.input(k)[lane] = sum(k);
+        }
+        let [before, behind] = linear.map(|(first, _)| values[first + shape.size * LANES]);
+        let between = sum(shape.size);
+        newton.determinant()[lane] = if keeps_sign(before, between, behind) { between } else { f64::NAN };
+        true
     }
 
     /// Takes what the lanes have come to if all are plain roots.
@@ -176,14 +226,10 @@ impl Strip<'_> {
         are_plain
     }
 
-    /// Takes what the lanes have come to; whether all of them are roots now.
-    fn take_line(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
-        let line = midpoint.at;
-        let (shape, width) = (self.shape, self.width);
-        if self.take_plain(line, newton) {
-            return true;
-        }
-        for lane in 0..width {
+    /// Takes what the lanes have come to, one by one; whether all of them are roots now.
+    fn take_lanes(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
+        let (line, shape) = (midpoint.at, self.shape);
+        for lane in 0..self.width {
             let [before, behind] = midpoint.beside;
             let apart = || {
                 let share = |(k, range): (usize, &Range)| {
@@ -198,4 +244,32 @@ impl Strip<'_> {
         }
         self.is_line_of_roots(line)
     }
+}
+
+/// Whether a determinant between two others, and the way between them, cannot vanish. Not if one is no number.
+#[inline(always)]
+fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
+    is_same_side(before, behind) & is_same_side(before, between) & is_same_side(behind, between)
+}
+
+/// Whether the determinant cannot vanish between two places beside each other where it has these values. Not if one is no number.
+#[inline(always)]
+pub(super) fn is_same_side(a: f64, b: f64) -> bool {
+    let (product, most) = (a * b, SAME_DETERMINANT * a * a);
+    (product > 0.0) & (product < most) & (SAME_DETERMINANT * product > a * a)
+}
+
+/// Lanes that are not active get the numbers of one that is.
+fn repeat_lane(shape: Shape, newton: &mut LaneNewton<'_>, from: usize, active: &[bool]) {
+    for k in 0..shape.size + 2 {
+        let values = newton.input(k);
+        for lane in (0..active.len()).filter(|lane| !active[*lane]) {
+            values[lane] = values[from];
+        }
+    }
+}
+
+/// Whether a point that came so far from its start may be on another branch than its neighbours, which are so far apart.
+fn is_astray(moved: f64, apart: impl Fn() -> f64) -> bool {
+    moved > NEAR && moved > ASTRAY * apart() + NEAR
 }

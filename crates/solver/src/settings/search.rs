@@ -26,6 +26,11 @@ const MOST_STEPS: usize = 80;
 const LARGEST_DAMPING: f64 = 1e8;
 /// A deviation, of the reach or in radians, that is rounding.
 const EXACT: f64 = 1e-12;
+/// A setting that is outside its range by less than this share of it, of the reach at most, is on its end: poses that are met to
+/// [`EXACT`] leave a setting that moves them a thousandth as much as others uncertain by so much.
+const WITHIN: f64 = 1e-9;
+/// Numbers are looked for up to this size: ratios and coefficients of machines are smaller.
+const LARGE: f64 = 1e3;
 /// A direction in the settings that changes the poses by less than this share of what others do is not determined.
 const UNSEEN: f64 = 1e-9;
 /// A share of such a direction that is more than rounding.
@@ -122,26 +127,14 @@ impl Search {
         let unit = Range { low: 0.0, high: 1.0 };
         let shares = probe(&vec![unit; self.settings.len() + self.is_rotary.len()], k);
         let values = self.settings.iter().zip(&shares).zip(held);
-        let settings =
-            values.map(|((setting, share), held)| held.unwrap_or_else(|| self.somewhere(setting, *share))).collect();
+        let settings = values
+            .map(|((setting, share), held)| held.unwrap_or_else(|| somewhere(setting, self.reach, *share)))
+            .collect();
         // what moves may do so at about the pace of the motion, one way or the other
         let middle = &motions[motions.len() / 2];
         let paces: Vec<f64> = shares[self.settings.len()..].iter().map(|share| 4.0 * share - 2.0).collect();
         let moving = |at: &Vec<f64>| paces.iter().map(|pace| pace * (at[0] - middle[0])).collect();
         State { settings, moving: motions.iter().map(moving).collect(), cost: f64::INFINITY }
-    }
-
-    fn somewhere(&self, setting: &Sought, share: f64) -> f64 {
-        let around = |size: f64| setting.range.common(Range { low: -size, high: size }).at(share);
-        match setting.kind {
-            SettingKind::Length => around(self.reach),
-            SettingKind::Angle => around(std::f64::consts::PI),
-            // numbers are as often around one as around ten
-            SettingKind::Number => {
-                let (low, high) = (setting.range.low.max(-1e3).asinh(), setting.range.high.min(1e3).asinh());
-                (low + share * (high - low)).sinh()
-            }
-        }
     }
 
     /// Levenberg and Marquardt, settings and poses together.
@@ -262,7 +255,7 @@ impl Search {
     }
 
     fn is_within(&self, state: &State) -> bool {
-        let margin = |range: Range| 1e-9 * range.width().min(self.reach);
+        let margin = |range: Range| WITHIN * range.width().min(self.reach);
         self.settings.iter().zip(&state.settings).all(|(s, x)| s.range.excess(*x) <= margin(s.range))
     }
 
@@ -325,10 +318,42 @@ impl Search {
     }
 }
 
+/// A value for a start: at a share of where a setting is looked for, lengths as far as `reach` from zero, mm.
+fn somewhere(setting: &Sought, reach: f64, share: f64) -> f64 {
+    match setting.kind {
+        SettingKind::Length => setting.range.near_zero(reach).at(share),
+        SettingKind::Angle => setting.range.near_zero(std::f64::consts::PI).at(share),
+        // numbers are as often around one as around ten
+        SettingKind::Number => {
+            let Range { low, high } = setting.range.near_zero(LARGE);
+            Range { low: low.asinh(), high: high.asinh() }.at(share).sinh()
+        }
+    }
+}
+
 /// A few of the positions, ends and middle among them.
 fn spread(motions: &[Vec<f64>], count: usize) -> Vec<Vec<f64>> {
     if motions.len() <= count {
         return motions.to_vec();
     }
     (0..count).map(|k| motions[k * (motions.len() - 1) / (count - 1)].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn starts_are_spread_over_the_range_wherever_it_lies() {
+        for kind in [SettingKind::Length, SettingKind::Angle, SettingKind::Number] {
+            for (low, high) in [(2e3, 5e3), (-5e3, -2e3), (0.5, 0.7), (-1.0, 2e4), (4.0, 5.0), (2e3, f64::INFINITY)] {
+                let sought = Sought { kind, range: Range { low, high }, usual: None };
+                let starts: Vec<f64> = (0..=10).map(|k| somewhere(&sought, 100.0, f64::from(k) / 10.0)).collect();
+                // arsinh and sinh take a few roundings
+                let is_within = |x: &f64| sought.range.excess(*x) <= 1e-12 * x.abs();
+                assert!(starts.iter().all(is_within), "{kind:?} {low} .. {high}: {starts:?}");
+                assert!(starts.windows(2).all(|pair| pair[0] < pair[1]), "{kind:?} {low} .. {high}: {starts:?}");
+            }
+        }
+    }
 }
