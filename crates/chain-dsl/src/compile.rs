@@ -27,7 +27,7 @@ use crate::unused;
 /// What became of a text.
 #[derive(Clone, Debug)]
 pub struct Compilation<'g> {
-    /// The texts, for showing places in them.
+    /// All texts that were read, for showing places in them: specs, values from outside, then tables.
     pub sources: Sources,
     /// Findings in the order of their places.
     pub diagnostics: Vec<Diagnostic>,
@@ -37,6 +37,8 @@ pub struct Compilation<'g> {
     /// error.
     pub machine: Option<Job<'g>>,
     main: Option<FileId>,
+    /// The names of the values from outside.
+    set: Vec<Name>,
 }
 
 impl<'g> Compilation<'g> {
@@ -48,14 +50,33 @@ impl<'g> Compilation<'g> {
     /// Takes the job of a name out, or all jobs if none is asked for.
     ///
     /// # Errors
-    /// The finding if there is no such job, or no job at all.
+    /// The finding if there is no such job, or no job at all, or a value is given from outside that only jobs have which are not
+    /// asked for.
     pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Diagnostic> {
         let mut jobs = std::mem::take(&mut self.jobs);
         let known: Vec<String> = jobs.iter().map(|job| job.name.clone()).collect();
+        let mut others = Vec::new();
         if let Some(wanted) = wanted {
-            jobs.retain(|job| job.name == wanted);
+            (jobs, others) = jobs.into_iter().partition(|job| job.name == wanted);
         }
-        if jobs.is_empty() { Err(self.no_job(wanted, &known)) } else { Ok(jobs) }
+        match &jobs[..] {
+            [] => Err(self.no_job(wanted, &known)),
+            [job, ..] => self.set_elsewhere(job, &others).map_or(Ok(()), Err).map(|()| jobs),
+        }
+    }
+
+    /// What is said of a value from outside that only jobs have which nobody asks for.
+    fn set_elsewhere(&self, job: &Job<'g>, others: &[Job<'g>]) -> Option<Diagnostic> {
+        let mut owners = self.set.iter().filter_map(|name| {
+            let beside = [Some(job), self.machine.as_ref()];
+            let is_there = beside.into_iter().flatten().any(|job| job.has_parameter(&name.node));
+            let owner = others.iter().find(|other| other.has_parameter(&name.node)).filter(|_| !is_there);
+            owner.map(|owner| (name, owner))
+        });
+        let (name, owner) = owners.next()?;
+        let message = format!("job `{}` has no parameter `{}`", job.name, name.node);
+        let help = format!("job `{}` has one, and is not asked for", owner.name);
+        Some(Diagnostic::new(Code::UnknownName, name.span, message).help(help))
     }
 
     fn no_job(&mut self, wanted: Option<&str>, known: &[String]) -> Diagnostic {
@@ -134,11 +155,12 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
         unused::warn(&mut context, file, &all);
     }
     graph.set_room(None);
+    context.tables.tell(&mut sources);
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
     let (jobs, machine) = if failed { (Vec::new(), None) } else { (jobs, machine) };
-    Compilation { sources, diagnostics, jobs, machine, main }
+    Compilation { sources, diagnostics, jobs, machine, main, set: overrides.names }
 }
 
 /// The last machine of a file by itself.

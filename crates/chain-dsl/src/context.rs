@@ -12,8 +12,12 @@ use crate::dimension::Dimension;
 use crate::limits;
 use crate::profile::{Profile, Segment};
 use crate::source::{Name, Span};
+use crate::spelling::closest;
 use crate::syntax::ast;
 use crate::tables::Tables;
+
+/// Names that a reader takes in at once.
+pub(crate) const READABLE: usize = 16;
 
 /// What a variable stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +66,15 @@ impl Value<'_> {
         }
     }
 
+    /// The greatest power of a length or an angle in it.
+    pub(crate) fn greatest_power(&self) -> usize {
+        match self {
+            Value::Scalar(_, dimension) => dimension.greatest_power(),
+            Value::Vector(parts) => parts.iter().map(Value::greatest_power).max().unwrap_or(0),
+            _ => 0,
+        }
+    }
+
     pub(crate) fn described(&self) -> String {
         match self {
             Value::Scalar(_, dimension) if *dimension == Dimension::NUMBER => "a number".to_string(),
@@ -98,6 +111,7 @@ pub(crate) struct Context<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) functions: HashMap<String, Rc<ast::Function>>,
     pub(crate) tables: Tables,
+    variables: Vec<Expr<'g>>,
     roles: Vec<Role>,
     values: Vec<f64>,
     diagnostics: Vec<Diagnostic>,
@@ -122,6 +136,7 @@ impl<'g> Context<'g> {
             graph,
             functions: HashMap::new(),
             tables,
+            variables: Vec::new(),
             roles: Vec::new(),
             values: Vec::new(),
             diagnostics: Vec::new(),
@@ -176,9 +191,21 @@ impl<'g> Context<'g> {
     }
 
     pub(crate) fn variable(&mut self, name: impl Into<String>, role: Role, value: f64) -> Expr<'g> {
+        let variable = self.graph.variable(name);
+        self.variables.push(variable);
         self.roles.push(role);
         self.values.push(value);
-        self.graph.variable(name)
+        variable
+    }
+
+    /// The variables that expressions depend on.
+    pub(crate) fn variables_of(&self, exprs: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.graph.variables_of(exprs).into_iter().map(|variable| self.variables[variable.index()]).collect()
+    }
+
+    /// The value of a variable; NaN where it has none yet.
+    pub(crate) fn value_of(&self, variable: Expr<'g>) -> f64 {
+        variable.as_variable().map_or(f64::NAN, |variable| self.values[variable.index()])
     }
 
     pub(crate) fn values(&self) -> &[f64] {
@@ -312,18 +339,9 @@ pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>)
     let mut known: Vec<&str> = known.collect();
     known.sort_unstable();
     known.dedup();
-    if let Some(same) = known.iter().find(|candidate| candidate.to_lowercase() == name.to_lowercase()) {
-        return Some(format!("did you mean `{same}`?"));
-    }
-    let nearest =
-        known.iter().map(|candidate| (strsim::damerau_levenshtein(name, candidate), *candidate)).min().filter(
-            |(distance, candidate)| {
-                *distance <= candidate.chars().count().div_ceil(3) && *distance < candidate.chars().count()
-            },
-        );
-    match nearest {
-        Some((_, candidate)) => Some(format!("did you mean `{candidate}`?")),
-        None if !known.is_empty() && known.len() <= 16 => Some(format!("there is: {}", quoted(&known))),
+    match closest(name, known.iter().copied()) {
+        Some(meant) => Some(format!("did you mean `{meant}`?")),
+        None if !known.is_empty() && known.len() <= READABLE => Some(format!("there is: {}", quoted(&known))),
         None => None,
     }
 }

@@ -19,9 +19,9 @@ impl Dimension {
     /// An angle, radians inside.
     pub const ANGLE: Dimension = Dimension { length: 0, angle: 1 };
 
-    /// Dimension of a product.
+    /// Dimension of a product. Exponents that are no `i32` stay at its end, in quotients and powers, too; a text does not get there.
     pub fn times(self, other: Dimension) -> Dimension {
-        Dimension { length: self.length + other.length, angle: self.angle + other.angle }
+        Dimension { length: self.length.saturating_add(other.length), angle: self.angle.saturating_add(other.angle) }
     }
 
     /// Dimension of a quotient.
@@ -31,7 +31,12 @@ impl Dimension {
 
     /// Dimension of a whole power.
     pub fn power(self, exponent: i32) -> Dimension {
-        Dimension { length: self.length * exponent, angle: self.angle * exponent }
+        Dimension { length: self.length.saturating_mul(exponent), angle: self.angle.saturating_mul(exponent) }
+    }
+
+    /// The greatest exponent, by its amount.
+    pub(crate) fn greatest_power(self) -> usize {
+        self.length.unsigned_abs().max(self.angle.unsigned_abs()) as usize
     }
 
     /// Dimension of the square root, if the exponents are even.
@@ -69,7 +74,7 @@ impl fmt::Display for Dimension {
         let mut below = Vec::new();
         for (name, exponent) in [("length", self.length), ("angle", self.angle)] {
             let side = if exponent > 0 { &mut above } else { &mut below };
-            match exponent.abs() {
+            match exponent.unsigned_abs() {
                 0 => {}
                 1 => side.push(name.to_string()),
                 e => side.push(format!("{name}^{e}")),

@@ -19,7 +19,7 @@ impl<'g> Context<'g> {
         if !self.step(expression.span) {
             return Value::Poison;
         }
-        match &expression.kind {
+        let value = match &expression.kind {
             ExpressionKind::Number(value, units) => self.number(*value, units),
             ExpressionKind::Text(_) => Value::Text,
             ExpressionKind::Path(path) => self.path(path, scope),
@@ -38,7 +38,12 @@ impl<'g> Context<'g> {
             }
             ExpressionKind::If(condition, yes, no) => self.conditional(condition, yes, no, scope),
             ExpressionKind::Error => Value::Poison,
+        };
+        if value.greatest_power() > limits::POWER.most {
+            self.report(limits::POWER.exceeded(expression.span));
+            return Value::Poison;
         }
+        value
     }
 
     /// An expression that must have a dimension.
@@ -125,6 +130,10 @@ impl<'g> Context<'g> {
                     return None;
                 }
             }
+        }
+        if product.greatest_power() > limits::POWER.most {
+            self.report(limits::POWER.exceeded(written.span));
+            return None;
         }
         Some(product)
     }
@@ -291,18 +300,19 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::WrongDimension, spans.1, message));
             return Value::Poison;
         }
-        let whole = match self.constant(exponent) {
-            Constant::Known(value) if value.fract() == 0.0 && value.abs() <= 64.0 => Some(value as i32),
-            _ => None,
-        };
+        let whole = exponent.as_constant().filter(|value| value.fract() == 0.0 && value.abs() <= 64.0);
         match whole {
-            Some(whole) => Value::Scalar(base.powi(whole), base_dimension.power(whole)),
+            Some(whole) => Value::Scalar(base.powi(whole as i32), base_dimension.power(whole as i32)),
             None if base_dimension.length == 0 => Value::Scalar(base.pow(exponent), Dimension::NUMBER),
             None => {
                 let message = format!("a {base_dimension} can only be raised to a whole constant power");
-                self.report(
-                    Diagnostic::new(Code::WrongDimension, spans.1, message).help("`sqrt` takes the root of an area"),
-                );
+                let help = match self.constant(exponent) {
+                    Constant::Known(value) if value.fract() == 0.0 => {
+                        "write the number itself: a dimension does not depend on parameters"
+                    }
+                    _ => "`sqrt` takes the root of an area",
+                };
+                self.report(Diagnostic::new(Code::WrongDimension, spans.1, message).help(help));
                 Value::Poison
             }
         }

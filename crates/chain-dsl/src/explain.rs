@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::codes::Code;
+use crate::spelling::closest;
 
 /// What is not a code, and the code that was perhaps meant.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,11 +37,10 @@ impl FromStr for Code {
 /// The code that differs in one letter; of several the one with the nearest number: `E0309` was perhaps `E0308`.
 fn nearest(wanted: &str) -> Option<Code> {
     let number = |text: &str| text.trim_start_matches(|c: char| !c.is_ascii_digit()).parse().unwrap_or(0_u32);
-    let distance = |code: &Code| {
-        let letters = strsim::damerau_levenshtein(wanted, code.as_str());
-        (letters, number(wanted).abs_diff(number(code.as_str())))
-    };
-    Code::ALL.iter().copied().min_by_key(distance).filter(|code| distance(code).0 <= 1)
+    let mut codes = Code::ALL.to_vec();
+    codes.sort_by_key(|code| number(wanted).abs_diff(number(code.as_str())));
+    let meant = closest(wanted, codes.iter().map(|code| code.as_str()))?;
+    codes.into_iter().find(|code| code.as_str() == meant)
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use flank_expr::Expr;
+
 use crate::codes::Code;
 use crate::context::{Constant, Context, Role, Scope, Value, quoted};
 use crate::diagnostic::Diagnostic;
@@ -45,6 +47,28 @@ impl<'a> Source<'a, '_> {
     }
 }
 
+/// The value of a parameter as somebody gives it.
+struct Given<'g> {
+    definition: Expr<'g>,
+    written: Span,
+    by: Giver,
+}
+
+impl<'g> Given<'g> {
+    /// As a number; NaN while it depends on parameters without values.
+    fn number(&self, context: &mut Context<'g>, param: &Param) -> Option<f64> {
+        match context.constant(self.definition) {
+            Constant::Unknown => Some(f64::NAN),
+            _ => context.require_constant(self.definition, self.written, &shown_name(param)),
+        }
+    }
+}
+
+/// The short name: a default is looked at once by itself and once for each use, and both must say the same.
+fn shown_name(param: &Param) -> String {
+    format!("`{}`", param.name.node)
+}
+
 /// Makes a variable for each `param`, puts it into the scope and gives the list of them.
 pub(crate) struct Binder<'a, 'g> {
     pub(crate) source: Source<'a, 'g>,
@@ -71,82 +95,76 @@ impl<'a, 'g> Binder<'a, 'g> {
 
     /// One parameter.
     pub(crate) fn bind(&mut self, context: &mut Context<'g>, param: &Param, scope: &mut Scope<'g>) {
-        let name = &param.name.node;
-        let Some(dimension) = context.dimension(&param.dimension) else {
-            scope.insert(name.clone(), Value::Poison);
-            return;
+        let value = self.bound(context, param, scope).unwrap_or(Value::Poison);
+        scope.insert(param.name.node.clone(), value);
+    }
+
+    /// The variable that stands for it; nothing if something is wrong (and reported).
+    fn bound(&mut self, context: &mut Context<'g>, param: &Param, scope: &Scope<'g>) -> Option<Value<'g>> {
+        let dimension = context.dimension(&param.dimension)?;
+        let name = match &self.source {
+            Source::Instance { name, .. } | Source::Standing { name } => format!("{}.{}", name.node, param.name.node),
+            Source::Definition | Source::Job => param.name.node.clone(),
         };
-        let full_name = match &self.source {
-            Source::Instance { name: instance, .. } | Source::Standing { name: instance } => {
-                format!("{}.{name}", instance.node)
+        let given = match self.given(context, param, &name, scope) {
+            Some((expression, value, by)) => {
+                let definition = context.require(&value, dimension, expression.span, &shown_name(param))?;
+                Some(Given { definition, written: expression.span, by })
             }
-            Source::Definition | Source::Job => name.clone(),
+            None => None,
         };
-        // the short name: a default is looked at once by itself and once for each use, and both must say the same
-        let what = format!("`{name}`");
-        let setting = self.settings.get(name.as_str()).copied();
-        let overridden = match self.source {
-            Source::Definition => None,
-            _ => self.overrides.get(&full_name),
-        };
-        let given = match (overridden, setting, &self.source) {
-            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), Giver::Caller)),
-            (None, Some(value), Source::Instance { job, .. }) => {
-                Some((value, context.evaluate(value, job), Giver::Job))
-            }
-            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
-        };
-        let definition = match given {
-            Some((expression, value, given_by)) => {
-                let Some(definition) = context.require(&value, dimension, expression.span, &what) else {
-                    scope.insert(name.clone(), Value::Poison);
-                    return;
-                };
-                Some((definition, expression.span, given_by))
-            }
-            None => {
-                if !matches!(self.source, Source::Definition | Source::Standing { .. }) {
-                    self.missing.push(param.name.clone());
-                }
-                None
-            }
-        };
-        let value = match &definition {
-            Some((definition, span, _)) => match context.constant(*definition) {
-                Constant::Unknown => f64::NAN,
-                _ => match context.require_constant(*definition, *span, &what) {
-                    Some(value) => value,
-                    None => {
-                        scope.insert(name.clone(), Value::Poison);
-                        return;
-                    }
-                },
-            },
-            None => f64::NAN,
-        };
-        let checked_at = definition.as_ref().map_or(param.name.span, |(_, span, _)| *span);
+        if given.is_none() && !matches!(self.source, Source::Definition | Source::Standing { .. }) {
+            self.missing.push(param.name.clone());
+        }
+        let value = given.as_ref().map_or(Some(f64::NAN), |given| given.number(context, param))?;
+        let checked_at = given.as_ref().map_or(param.name.span, |given| given.written);
         let range = self.check_value(context, param, value, scope, checked_at);
-        let variable = context.variable(full_name.clone(), Role::Parameter, value);
-        scope.insert(name.clone(), Value::Scalar(variable, dimension));
+        let variable = context.variable(name.clone(), Role::Parameter, value);
+        let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
             let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            let is_count = is_count(&param.dimension);
-            self.standing.push(Bounded { name: full_name.clone(), variable, dimension, low, high, is_count });
+            self.standing.push(Bounded { name: name.clone(), variable, dimension, low, high, is_count });
         }
-        if let Some((definition, written, given_by)) = definition {
-            let is_count = is_count(&param.dimension);
+        if let Some(Given { definition, written, by: given_by }) = given {
+            let doc = param.doc.clone();
             self.parameters.push(Parameter {
-                name: full_name,
+                name,
                 variable,
                 dimension,
                 definition,
                 value,
                 is_count,
                 range,
-                doc: param.doc.clone(),
+                doc,
                 given_by,
                 written,
             });
+        }
+        Some(Value::Scalar(variable, dimension))
+    }
+
+    /// What a parameter is set to, and who says so: the caller before the job before the definition.
+    fn given<'p>(
+        &self,
+        context: &mut Context<'g>,
+        param: &'p Param,
+        full_name: &str,
+        scope: &Scope<'g>,
+    ) -> Option<(&'p Expression, Value<'g>, Giver)>
+    where
+        'a: 'p,
+    {
+        let setting = self.settings.get(param.name.node.as_str()).copied();
+        let overridden = match self.source {
+            Source::Definition => None,
+            _ => self.overrides.get(full_name),
+        };
+        match (overridden, setting, &self.source) {
+            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), Giver::Caller)),
+            (None, Some(value), Source::Instance { job, .. }) => {
+                Some((value, context.evaluate(value, job), Giver::Job))
+            }
+            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
         }
     }
 
@@ -165,7 +183,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
         let range = param.range.as_ref()?;
         let dimension = context.dimension(&param.dimension)?;
-        let what = format!("`{}`", param.name.node);
+        let what = shown_name(param);
         let (low, high) = context.range(range, scope, dimension, &what)?;
         if value < low || value > high {
             let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));

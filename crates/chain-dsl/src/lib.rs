@@ -54,6 +54,7 @@ mod render;
 mod requirement;
 mod sample;
 mod source;
+mod spelling;
 mod steel;
 pub mod syntax;
 mod tables;
@@ -68,10 +69,12 @@ pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;
 pub use explain::UnknownCode;
 pub use format::format;
-pub use load::read_file;
+pub use load::{read_file, read_other_file};
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
     Parameter, Process, Sample, SampleEnds, SampleGrid, ToolShape,
 };
 pub use render::render;
+pub use sample::spaced;
 pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};
+pub use spelling::closest;

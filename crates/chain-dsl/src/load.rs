@@ -71,9 +71,32 @@ pub(crate) fn load(path: &Path, beside: Option<&Path>) -> Loaded {
 /// # Errors
 /// Says why it cannot be read; the place is an empty text of the file's name.
 pub fn read_file(sources: &mut Sources, path: &Path) -> Result<FileId, Diagnostic> {
-    match read_limited(path) {
+    read_as(sources, path, limits::FILE_BYTES.most, ReadError::report)
+}
+
+/// The same for a text that is no spec, of at most so many bytes.
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_other_file(sources: &mut Sources, path: &Path, most: usize) -> Result<FileId, Diagnostic> {
+    read_as(sources, path, most, |error, path, place| match error {
+        ReadError::TooLarge => {
+            let message = format!("cannot read `{}`: it has more than {} MiB", path.display(), most >> 20);
+            Diagnostic::new(Code::UnreadableFile, place, message)
+        }
+        ReadError::Io(_) => error.report(path, place),
+    })
+}
+
+fn read_as(
+    sources: &mut Sources,
+    path: &Path,
+    most: usize,
+    report: impl Fn(&ReadError, &Path, Span) -> Diagnostic,
+) -> Result<FileId, Diagnostic> {
+    match read_limited(path, most) {
         Ok(text) => Ok(sources.add(path, text)),
-        Err(error) => Err(error.report(path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
+        Err(error) => Err(report(&error, path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
     }
 }
 
@@ -110,7 +133,7 @@ fn project_folder(path: &Path) -> PathBuf {
 
 impl Loader {
     fn read(&mut self, shown: &Path, real: &Path, used_at: Option<Span>) {
-        let text = match read_limited(real) {
+        let text = match read_limited(real, limits::FILE_BYTES.most) {
             Ok(text) => text,
             Err(error) => return self.unreadable(shown, &error, used_at),
         };
@@ -204,7 +227,7 @@ impl ReadError {
     }
 }
 
-fn read_limited(path: &Path) -> Result<String, ReadError> {
+fn read_limited(path: &Path, most: usize) -> Result<String, ReadError> {
     use std::io::Read;
     // a pipe would make the reader wait, a device never end
     let kind = std::fs::metadata(path).map_err(ReadError::Io)?;
@@ -213,13 +236,12 @@ fn read_limited(path: &Path) -> Result<String, ReadError> {
     }
     let file = std::fs::File::open(path).map_err(ReadError::Io)?;
     let mut text = String::new();
-    let limit = limits::FILE_BYTES.most as u64;
-    file.take(limit + 1).read_to_string(&mut text).map_err(ReadError::Io)?;
-    if text.len() as u64 > limit { Err(ReadError::TooLarge) } else { Ok(text) }
+    file.take(most as u64 + 1).read_to_string(&mut text).map_err(ReadError::Io)?;
+    if text.len() > most { Err(ReadError::TooLarge) } else { Ok(text) }
 }
 
 /// A path without `.` and without `folder/..`.
-fn tidy(path: &Path) -> PathBuf {
+pub(crate) fn tidy(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for component in path.components() {
         match component {

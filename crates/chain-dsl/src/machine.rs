@@ -7,7 +7,7 @@ use flank_expr::Expr;
 use flank_expr::geometry::Step;
 
 use crate::codes::Code;
-use crate::context::{Constant, Context, Role, Scope, Value};
+use crate::context::{Constant, Context, READABLE, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source};
@@ -22,9 +22,6 @@ use crate::transforms;
 /// What a statement of a machine costs each time that the machine is built: it is looked for twins, replaces others, gets a
 /// value, finds its place in the tree.
 const STEPS_PER_STATEMENT: usize = 4;
-
-/// Names that a reader takes in at once.
-const READABLE: usize = 12;
 
 /// All machines of a compilation by name.
 pub(crate) type Machines = HashMap<String, ast::Machine>;

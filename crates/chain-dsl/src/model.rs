@@ -1,5 +1,6 @@
 //! What a checked text means, all symbolic.
 
+use std::ops::{Add, Mul, Sub};
 use std::path::PathBuf;
 
 use flank_expr::geometry::{Chain, Edge, Step, Surface, Vector3};
@@ -281,14 +282,20 @@ impl<'g> SampleEnds<'g> {
     pub fn corners(&self) -> [[Expr<'g>; 2]; 4] {
         let [rows, columns] = self.values;
         let places = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| [rows[row], columns[column]]);
-        let Some([toe_root, heel_root, toe_tip, heel_tip]) = self.corners else { return places };
-        places.map(|[v, u]| {
-            [0, 1].map(|k| {
-                (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k])
-                    + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
-            })
-        })
+        let Some(corners) = self.corners else { return places };
+        places.map(|shares| between(corners, shares))
     }
+}
+
+/// The point at shares of the way from root to tip, and from toe to heel, between toe root, heel root, toe tip, heel tip.
+fn between<T>([toe_root, heel_root, toe_tip, heel_tip]: [[T; 2]; 4], [v, u]: [T; 2]) -> [T; 2]
+where
+    T: Copy + Add<Output = T> + Mul<Output = T>,
+    f64: Sub<T, Output = T>,
+{
+    [0, 1].map(|k| {
+        (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k]) + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
+    })
 }
 
 impl SampleGrid {
@@ -299,14 +306,17 @@ impl SampleGrid {
     pub fn at(&self, row: usize, column: usize) -> [f64; 2] {
         match self {
             SampleGrid::Values([rows, columns]) => [rows[row], columns[column]],
-            SampleGrid::Shares { shares: [rows, columns], corners: [toe_root, heel_root, toe_tip, heel_tip] } => {
-                let (v, u) = (rows[row], columns[column]);
-                std::array::from_fn(|k| {
-                    (1.0 - v) * ((1.0 - u) * toe_root[k] + u * heel_root[k])
-                        + v * ((1.0 - u) * toe_tip[k] + u * heel_tip[k])
-                })
-            }
+            SampleGrid::Shares { shares: [rows, columns], corners } => between(*corners, [rows[row], columns[column]]),
         }
+    }
+
+    /// Half-way between the coordinates of the first and of the last point of so many rows and columns.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn middle(&self, [rows, columns]: [usize; 2]) -> [f64; 2] {
+        let (first, last) = (self.at(0, 0), self.at(rows - 1, columns - 1));
+        std::array::from_fn(|k| 0.5 * (first[k] + last[k]))
     }
 
     /// With these rows and these columns only.
@@ -323,13 +333,13 @@ impl SampleGrid {
 
     /// With one more row between any two and one more column between any two, half-way.
     pub fn halved(&self) -> SampleGrid {
-        let between = |values: &[f64]| {
+        let halved = |values: &[f64]| {
             (1..2 * values.len()).map(|at| 0.5 * (values[(at - 1) / 2] + values[at / 2])).collect::<Vec<f64>>()
         };
         match self {
-            SampleGrid::Values(values) => SampleGrid::Values(values.each_ref().map(|values| between(values))),
+            SampleGrid::Values(values) => SampleGrid::Values(values.each_ref().map(|values| halved(values))),
             SampleGrid::Shares { shares, corners } => {
-                SampleGrid::Shares { shares: shares.each_ref().map(|shares| between(shares)), corners: *corners }
+                SampleGrid::Shares { shares: shares.each_ref().map(|shares| halved(shares)), corners: *corners }
             }
         }
     }
@@ -384,6 +394,11 @@ impl<'g> Generation<'g> {
 }
 
 impl<'g> Job<'g> {
+    /// Whether it has a parameter or setting of a full name, such as `m.swivel`.
+    pub fn has_parameter(&self, name: &str) -> bool {
+        self.parameters.iter().any(|parameter| parameter.name == name)
+    }
+
     /// Each parameter's variable with its value as a number: what to substitute before solving.
     pub fn bindings(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.parameters

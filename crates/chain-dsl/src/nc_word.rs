@@ -39,11 +39,12 @@ pub(crate) fn settle<'g>(
         }
     }
     for (k, axis) in axes.iter().enumerate() {
-        let same = |other: &&BuiltAxis<'g>| other.word.address == axis.word.address;
-        if let (Some((_, span)), Some(other)) = (stated[k], axes[..k].iter().find(same)) {
-            let message =
-                format!("axes `{}` and `{}` are both `{}`", other.name.node, axis.name.node, axis.word.address);
-            context.report(Diagnostic::new(Code::NcWord, span, message));
+        for (j, other) in axes[..k].iter().enumerate().filter(|(_, other)| other.word.address == axis.word.address) {
+            if let Some((_, span)) = stated[k].or(stated[j]) {
+                let message =
+                    format!("axes `{}` and `{}` are both `{}`", other.name.node, axis.name.node, axis.word.address);
+                context.report(Diagnostic::new(Code::NcWord, span, message));
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use flank_expr::{Curve, CurveId, Expr};
+use flank_expr::{Curve, CurveError, CurveId, Expr};
 
 use crate::codes::Code;
 use crate::context::{Constant, Context, Role, Scope, Value, quoted};
@@ -218,9 +218,17 @@ fn spline<'g>(context: &mut Context<'g>, call: &Call, name: &str, scope: &Scope<
         return Some((Shape::Unknown(unknown), unknown[0]));
     }
     let [x, y] = [0, 1].map(|k| Curve::through(format!("{name}_{}", ["x", "y"][k]), &over_run[k]));
-    let (Ok(x), Ok(y)) = (x, y) else {
-        let help = "for example `spline([[0 mm, 0 mm], [1 mm, 0.1 mm], [2 mm, 0.4 mm]])`";
-        return no_run(context, places[0], "a spline goes through at least two points", help);
+    let (x, y) = match (x, y) {
+        (Ok(x), Ok(y)) => (x, y),
+        (Err(CurveError::TooFew), _) | (_, Err(CurveError::TooFew)) => {
+            let help = "for example `spline([[0 mm, 0 mm], [1 mm, 0.1 mm], [2 mm, 0.4 mm]])`";
+            return no_run(context, places[0], "a spline goes through at least two points", help);
+        }
+        (Err(error), _) | (_, Err(error)) => {
+            let message = format!("over the run of this spline, {error}");
+            let help = "its points lie too close together, or too far apart, for the digits of a number";
+            return no_run(context, places[0], &message, help);
+        }
     };
     let ids = [context.graph.curve(x), context.graph.curve(y)];
     Some((Shape::Spline(ids), context.graph.constant(run)))

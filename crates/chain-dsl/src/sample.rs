@@ -14,6 +14,9 @@ use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 /// Corners of a flank in the axial section.
 const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 
+/// The one coordinate that comes round to itself.
+const POLAR_ANGLE: &str = "polar_angle";
+
 /// The grid that a `sample` statement asks for, the branch that it keeps to, and what it requires of the points.
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
@@ -35,8 +38,8 @@ fn kept<'g>(
     scope: &Scope<'g>,
 ) -> Option<(Coordinate<'g>, (f64, f64))> {
     let coordinate = coordinate(context, (&written.key, written.definition.as_ref()), surface, scope)?;
-    let ends = context.range(&written.range, scope, coordinate.dimension, &format!("`{}`", written.key.node))?;
-    Some((coordinate, ends))
+    let (low, high) = context.range(&written.range, scope, coordinate.dimension, &format!("`{}`", written.key.node))?;
+    Some((surface.about(coordinate, 0.5 * (low + high)), (low, high)))
 }
 
 fn limited<'g>(
@@ -87,13 +90,14 @@ fn grid<'g>(
     let column_values = values(context, columns, scope, column_coordinate.dimension);
     let ((row_values, row_ends), (column_values, column_ends)) = (row_values?, column_values?);
     check_size(context, written, row_values.len(), column_values.len())?;
-    let row_coordinate = unbroken(row_coordinate, rows, &row_values, surface);
-    let column_coordinate = unbroken(column_coordinate, columns, &column_values, surface);
+    let counts = [row_values.len(), column_values.len()];
+    let grid = SampleGrid::Values([row_values, column_values]);
+    let [row_middle, column_middle] = grid.middle(counts);
     Some(Sample {
         labels: [row_coordinate.name.clone(), column_coordinate.name.clone()],
-        coordinates: [row_coordinate, column_coordinate],
-        counts: [row_values.len(), column_values.len()],
-        grid: SampleGrid::Values([row_values, column_values]),
+        coordinates: [surface.about(row_coordinate, row_middle), surface.about(column_coordinate, column_middle)],
+        counts,
+        grid,
         ends: SampleEnds { values: [row_ends, column_ends], corners: None },
         keep: Vec::new(),
         limits: Vec::new(),
@@ -102,7 +106,7 @@ fn grid<'g>(
 
 impl<'g> GeneratedSurface<'g> {
     /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
-    /// `polar_angle` (about it, in (−π, π]; a sample measures it from the middle of its values), `nx`, `ny`, `nz` (the unit normal out
+    /// `polar_angle` (about it, in (−π, π]; see [`GeneratedSurface::about`]), `nx`, `ny`, `nz` (the unit normal out
     /// of the body), then its unknowns by their names.
     pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
         let [x, y, z] = self.surface.position.0;
@@ -112,7 +116,7 @@ impl<'g> GeneratedSurface<'g> {
             ("y", y, Dimension::LENGTH),
             ("z", z, Dimension::LENGTH),
             ("rho", (x * x + y * y).sqrt(), Dimension::LENGTH),
-            ("polar_angle", y.atan2(x), Dimension::ANGLE),
+            (POLAR_ANGLE, y.atan2(x), Dimension::ANGLE),
             ("nx", nx, Dimension::NUMBER),
             ("ny", ny, Dimension::NUMBER),
             ("nz", nz, Dimension::NUMBER),
@@ -128,6 +132,18 @@ impl<'g> GeneratedSurface<'g> {
         let sampled = self.sample.iter().flat_map(|sample| sample.coordinates.iter().cloned());
         self.coordinates().into_iter().chain(sampled).find(|coordinate| coordinate.name == name)
     }
+
+    /// The coordinate itself; a polar angle measured so that it does not jump within half a turn of the middle of the values that it
+    /// is asked for at, radians.
+    pub fn about(&self, coordinate: Coordinate<'g>, middle: f64) -> Coordinate<'g> {
+        if coordinate.name != POLAR_ANGLE || middle == 0.0 {
+            return coordinate;
+        }
+        let [x, y, _] = self.surface.position.0;
+        let [sine, cosine, middle] = [middle.sin(), middle.cos(), middle].map(|value| x.graph().constant(value));
+        let turned_back = (cosine * y - sine * x).atan2(cosine * x + sine * y);
+        Coordinate { value: middle + turned_back, ..coordinate }
+    }
 }
 
 fn coordinate<'g>(
@@ -137,6 +153,12 @@ fn coordinate<'g>(
     scope: &Scope<'g>,
 ) -> Option<Coordinate<'g>> {
     if let Some(definition) = definition {
+        if surface.coordinates().iter().any(|known| known.name == key.node) {
+            let message = format!("`{}` is a coordinate of the surface", key.node);
+            let help = "give your own coordinate another name";
+            context.report(Diagnostic::new(Code::DuplicateName, key.span, message).help(help));
+            return None;
+        }
         if !context.spend(scope.len(), definition.span) {
             return None;
         }
@@ -161,24 +183,6 @@ fn coordinate<'g>(
         context.unknown(key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
     }
     found
-}
-
-/// The coordinate itself; a polar angle is measured so that it does not jump within half a turn of the middle of its values.
-fn unbroken<'g>(
-    coordinate: Coordinate<'g>,
-    entry: &SampleEntry,
-    values: &[f64],
-    surface: &GeneratedSurface<'g>,
-) -> Coordinate<'g> {
-    let (Some(first), Some(last)) = (values.first(), values.last()) else { return coordinate };
-    let middle = 0.5 * (first + last);
-    if coordinate.name != "polar_angle" || entry.definition.is_some() || middle == 0.0 {
-        return coordinate;
-    }
-    let [x, y, _] = surface.surface.position.0;
-    let [sine, cosine, middle] = [middle.sin(), middle.cos(), middle].map(|value| x.graph().constant(value));
-    let turned_back = (cosine * y - sine * x).atan2(cosine * x + sine * y);
-    Coordinate { value: middle + turned_back, ..coordinate }
 }
 
 /// The values, and the first and the last one as written.
@@ -214,18 +218,10 @@ fn values<'g>(
     }
 }
 
-/// `count` values from end to end, both included; a single one is the middle.
-fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
-    if count == 1 {
-        return vec![0.5 * (low + high)];
-    }
-    let last = (count - 1) as f64;
-    (0..count)
-        .map(|k| {
-            let share = k as f64 / last;
-            low * (1.0 - share) + high * share
-        })
-        .collect()
+/// `count` values evenly from end to end, both included; a single one is the middle.
+pub fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
+    let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
+    (0..count).map(|k| low * (1.0 - share(k)) + high * share(k)).collect()
 }
 
 fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {

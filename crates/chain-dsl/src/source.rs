@@ -71,6 +71,15 @@ impl Sources {
         id
     }
 
+    /// Shows the files below one folder as files below another one.
+    pub fn show_below(&mut self, real: &Path, shown: &Path) {
+        for file in &mut self.files {
+            if let Ok(inner) = file.path.strip_prefix(real) {
+                file.path = shown.join(inner);
+            }
+        }
+    }
+
     /// The file behind an index of this collection.
     pub fn file(&self, id: FileId) -> &SourceFile {
         &self.files[id.0 as usize]

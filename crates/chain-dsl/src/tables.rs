@@ -12,6 +12,7 @@ use crate::context::{Context, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::{self, Dimension};
 use crate::limits::{self, Limit};
+use crate::load::tidy;
 use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{Argument, Call, ExpressionKind};
 
@@ -26,8 +27,12 @@ type Key = (PathBuf, [String; 2], [Dimension; 2]);
 pub(crate) struct Tables {
     /// The project folder; `None` for a text that is not a file.
     root: Option<PathBuf>,
-    /// The folder of each source file.
-    folders: HashMap<FileId, PathBuf>,
+    /// The folder of each source file, as the user knows it and as it really is.
+    folders: HashMap<FileId, [PathBuf; 2]>,
+    /// The files that have been read with their texts, in the order in which they were first needed.
+    texts: Vec<(PathBuf, Rc<str>)>,
+    /// Where a file is among them, by its real path.
+    known: HashMap<PathBuf, usize>,
     /// Tables that have been read.
     rows: HashMap<Key, Rc<Rows>>,
     /// One table is one curve however often it is named.
@@ -38,18 +43,26 @@ pub(crate) struct Tables {
 
 impl Tables {
     pub(crate) fn new(root: Option<PathBuf>, sources: &Sources) -> Tables {
-        let folder =
-            |path: &Path| std::fs::canonicalize(path).ok().and_then(|real| real.parent().map(Path::to_path_buf));
-        let folders = sources.files().filter_map(|(id, file)| Some((id, folder(&file.path)?))).collect();
-        Tables { root, folders, rows: HashMap::new(), curves: HashMap::new(), bytes: 0 }
+        let folders = sources.files().filter_map(|(id, file)| {
+            let real = std::fs::canonicalize(&file.path).ok()?;
+            Some((id, [file.path.parent()?.to_path_buf(), real.parent()?.to_path_buf()]))
+        });
+        Tables { root, folders: folders.collect(), ..Tables::default() }
     }
 
-    /// The real path of a table named in a file, or why it may not be read.
-    fn locate(&self, named: &str, file: FileId) -> Result<PathBuf, (Code, String)> {
+    /// Adds the texts that were read to those of the compilation.
+    pub(crate) fn tell(&self, sources: &mut Sources) {
+        for (path, text) in &self.texts {
+            sources.add(path, &**text);
+        }
+    }
+
+    /// The path of a table named in a file, as the user knows it and as it really is, or why it may not be read.
+    fn locate(&self, named: &str, file: FileId) -> Result<[PathBuf; 2], (Code, String)> {
         let Some(root) = &self.root else {
             return Err((Code::UnreadableFile, "a text that is not a file cannot use files".to_string()));
         };
-        let folder = self.folders.get(&file).cloned().unwrap_or_default();
+        let [shown, folder] = self.folders.get(&file).cloned().unwrap_or_default();
         let real = std::fs::canonicalize(folder.join(named)).map_err(|error| {
             (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
         })?;
@@ -59,7 +72,34 @@ impl Tables {
                 format!("`{named}` lies outside the project folder {}", root.display()),
             ));
         }
-        Ok(real)
+        Ok([tidy(&shown.join(named)), real])
+    }
+
+    /// The text of a table, read once; each time counts.
+    fn text(&mut self, [shown, real]: &[PathBuf; 2]) -> Result<Rc<str>, Reason> {
+        if let Some(&known) = self.known.get(real) {
+            let text = Rc::clone(&self.texts[known].1);
+            self.count(text.len() as u64)?;
+            return Ok(text);
+        }
+        let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
+        let kind = std::fs::metadata(real).map_err(|error| unreadable(&error))?;
+        if !kind.is_file() {
+            return Err(Reason::Wrong(Code::UnreadableFile, "it is not a plain file".to_string()));
+        }
+        self.count(kind.len())?;
+        let file = std::fs::File::open(real).map_err(|error| unreadable(&error))?;
+        let mut text = String::new();
+        file.take(kind.len()).read_to_string(&mut text).map_err(|error| unreadable(&error))?;
+        let text: Rc<str> = text.into();
+        self.known.insert(real.clone(), self.texts.len());
+        self.texts.push((shown.clone(), Rc::clone(&text)));
+        Ok(text)
+    }
+
+    fn count(&mut self, bytes: u64) -> Result<(), Reason> {
+        self.bytes += bytes;
+        if self.bytes > limits::TABLE_BYTES.most as u64 { Err(Reason::Exceeded(limits::TABLE_BYTES)) } else { Ok(()) }
     }
 }
 
@@ -68,7 +108,8 @@ pub(crate) struct Columns<'a> {
     named: &'a str,
     /// Where the file is named.
     pub(crate) span: Span,
-    real: PathBuf,
+    /// Its path as the user knows it, and as it really is.
+    path: [PathBuf; 2],
     /// The columns with their dimensions.
     pub(crate) columns: [(&'a Name, Dimension); 2],
 }
@@ -87,7 +128,7 @@ pub(crate) fn columns<'a>(context: &mut Context<'_>, call: &'a Call) -> Option<C
     let ExpressionKind::Text(named) = &path.kind else { return shape(context, function, path.span) };
     let columns = [column(context, function, x)?, column(context, function, y)?];
     match context.tables.locate(named, path.span.file) {
-        Ok(real) => Some(Columns { named, span: path.span, real, columns }),
+        Ok(found) => Some(Columns { named, span: path.span, path: found, columns }),
         Err((code, message)) => {
             context.report(Diagnostic::new(code, path.span, message));
             None
@@ -116,7 +157,7 @@ impl Columns<'_> {
 
     fn key(&self) -> Key {
         let [(x_name, x), (y_name, y)] = self.columns;
-        (self.real.clone(), [x_name.node.clone(), y_name.node.clone()], [x, y])
+        (self.path[1].clone(), [x_name.node.clone(), y_name.node.clone()], [x, y])
     }
 
     /// The numbers in them, mm and radians; a table is read once however often it is named.
@@ -126,7 +167,7 @@ impl Columns<'_> {
             return Some(Rc::clone(rows));
         }
         let columns = self.columns.map(|(name, dimension)| (name.node.as_str(), dimension));
-        let found = rows(&self.real, columns, &mut context.tables.bytes);
+        let found = context.tables.text(&self.path).and_then(|text| rows(&text, columns));
         let found = Rc::new(self.told(context, found)?);
         context.tables.rows.insert(key, Rc::clone(&found));
         Some(found)
@@ -169,21 +210,9 @@ enum Reason {
     Wrong(Code, String),
 }
 
-/// Two columns of a file; lines that begin with `#` are remarks, the first other line names the columns.
-/// `read` counts the bytes of all tables.
-fn rows(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result<Rows, Reason> {
-    let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
-    let kind = std::fs::metadata(path).map_err(|error| unreadable(&error))?;
-    if !kind.is_file() {
-        return Err(Reason::Wrong(Code::UnreadableFile, "it is not a plain file".to_string()));
-    }
-    *read += kind.len();
-    if *read > limits::TABLE_BYTES.most as u64 {
-        return Err(Reason::Exceeded(limits::TABLE_BYTES));
-    }
-    let file = std::fs::File::open(path).map_err(|error| unreadable(&error))?;
-    let mut reader =
-        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(file.take(kind.len()));
+/// Two columns of a text; lines that begin with `#` are remarks, the first other line names the columns.
+fn rows(text: &str, columns: [(&str, Dimension); 2]) -> Result<Rows, Reason> {
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
     let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
     let mut places = [(0, 1.0); 2];
@@ -196,8 +225,8 @@ fn rows(path: &Path, columns: [(&str, Dimension); 2], read: &mut u64) -> Result<
         let line = record.position().map_or(0, csv::Position::line);
         let number = |(column, size): (usize, f64)| {
             let cell = record.get(column).unwrap_or("");
-            let value: f64 = cell.parse().map_err(|_| wrong(format!("line {line}: `{cell}` is not a number")))?;
-            Ok::<f64, Reason>(value * size)
+            let value = cell.parse::<f64>().ok().map(|value| value * size).filter(|value| value.is_finite());
+            value.ok_or_else(|| wrong(format!("line {line}: `{cell}` is not a finite number")))
         };
         points.push((number(places[0])?, number(places[1])?));
         if points.len() > limits::TABLE_ROWS.most {

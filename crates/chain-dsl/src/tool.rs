@@ -158,7 +158,31 @@ fn build_surface<'g>(
     scope: &Scope<'g>,
     along: Option<Along<'_, 'g>>,
 ) -> Option<(ToolShape<'g>, Vec<Bounded<'g>>)> {
-    // every surface has names of its own beside those of the tool
+    let (scope, unknowns) = own_names(context, written, scope, along)?;
+    let (position, steel) = point_and_steel(context, written, &scope)?;
+    let shape = match (written.parameters.len(), unknowns.as_slice()) {
+        (1, [u]) => ToolShape::Edge(Edge { parameter: u.variable, position, steel }),
+        (2, [u, v]) => {
+            let parameters = [u.variable, v.variable];
+            let raw = Surface::raw_normal(parameters, position);
+            let segment = along.map(|(_, segment)| segment.span);
+            let places = Places { point: written.at.span, side: written.body.span, segment };
+            let flipped = steel::is_flipped(context, places, &unknowns, raw, -steel)?;
+            ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
+        }
+        // the range of a parameter is wrong, and reported
+        _ => return None,
+    };
+    Some((shape, unknowns))
+}
+
+/// The names that a surface has beside those of the tool, and its parameters: without those whose range is wrong (and reported).
+fn own_names<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+    along: Option<Along<'_, 'g>>,
+) -> Option<(Scope<'g>, Vec<Bounded<'g>>)> {
     if !context.spend(scope.len(), written.name.span) {
         return None;
     }
@@ -193,9 +217,18 @@ fn build_surface<'g>(
         let value = context.evaluate(&binding.value, &scope);
         scope.insert(binding.name.node.clone(), value);
     }
-    let position = context.vector(&written.at, &scope, Dimension::LENGTH, "the point");
+    Some((scope, unknowns))
+}
+
+/// The point of a surface, and a direction from it into the steel.
+fn point_and_steel<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+) -> Option<(Vector3<'g>, Vector3<'g>)> {
+    let position = context.vector(&written.at, scope, Dimension::LENGTH, "the point");
     let towards = match &written.body.side {
-        Side::Towards(direction) => direction_of_steel(context, direction, &scope),
+        Side::Towards(direction) => direction_of_steel(context, direction, scope),
         Side::Inside | Side::Outside => position,
     };
     let (position, towards) = (Vector3(position?), Vector3(towards?));
@@ -205,20 +238,7 @@ fn build_surface<'g>(
         Side::Outside => radial,
         Side::Towards(_) => towards,
     };
-    let shape = match (written.parameters.len(), unknowns.as_slice()) {
-        (1, [u]) => ToolShape::Edge(Edge { parameter: u.variable, position, steel }),
-        (2, [u, v]) => {
-            let parameters = [u.variable, v.variable];
-            let raw = Surface::raw_normal(parameters, position);
-            let segment = along.map(|(_, segment)| segment.span);
-            let places = Places { point: written.at.span, side: written.body.span, segment };
-            let flipped = steel::is_flipped(context, places, &unknowns, raw, -steel)?;
-            ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
-        }
-        // the range of a parameter is wrong, and reported
-        _ => return None,
-    };
-    Some((shape, unknowns))
+    Some((position, steel))
 }
 
 /// The run along a profile within one segment of it.

@@ -4,7 +4,7 @@ use flank_expr::Expr;
 use flank_expr::geometry::{Axis, Matrix3, Pose, Step, Vector3};
 
 use crate::codes::Code;
-use crate::context::{Context, Scope, Value};
+use crate::context::{Constant, Context, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::functions;
@@ -118,7 +118,11 @@ fn axis_index(name: &str) -> usize {
 /// A direction, made a unit vector.
 fn unit_axis<'g>(context: &mut Context<'g>, written: &Expression, scope: &Scope<'g>) -> Option<Vector3<'g>> {
     let axis = Vector3(context.vector(written, scope, Dimension::NUMBER, "an axis")?);
-    if axis.is_zero() {
+    let squares = axis.0.map(|component| match context.constant(component) {
+        Constant::Known(value) => value * value,
+        Constant::Unknown | Constant::Moves(_) => f64::NAN,
+    });
+    if squares.iter().sum::<f64>() == 0.0 {
         let message = "an axis needs a direction: this vector is zero";
         context.report(Diagnostic::new(Code::NotANumber, written.span, message));
         return None;
@@ -183,17 +187,20 @@ fn check_rigid<'g>(context: &mut Context<'g>, rotation: Matrix3<'g>, span: Span)
     let zero = [a.dot(b), b.dot(c), c.dot(a)];
     let all: Vec<Expr<'g>> = one.into_iter().chain(zero).collect();
     let depends = context.graph.variables_of(&all);
+    let open: Vec<usize> =
+        depends.iter().map(|variable| variable.index()).filter(|&index| context.values()[index].is_nan()).collect();
     for probe in [0.3, -0.7, 1.1] {
         let mut values = context.values().to_vec();
-        for variable in &depends {
-            let value = &mut values[variable.index()];
-            if value.is_nan() {
-                *value = probe + 0.1 * variable.index() as f64;
-            }
+        for &index in &open {
+            values[index] = probe + 0.1 * index as f64;
         }
         let found = context.graph.evaluate(&all, &values);
         let off = found[..4].iter().map(|x| (x - 1.0).abs()).chain(found[4..].iter().map(|x| x.abs()));
         let worst = off.fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
+        // a number that nobody gave may be one that the machine is not made for
+        if worst.is_nan() && !open.is_empty() {
+            continue;
+        }
         if worst.is_nan() || worst > RIGID_WITHIN {
             let (reason, help) = if (found[3] + 1.0).abs() < NEARLY {
                 (

@@ -25,6 +25,8 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
     // machines extend each other and jobs read their parameters: whoever mentions the name may mean it
     let mut by_machines = Used::default();
     machines().for_each(|machine| by_machines.machine(machine));
+    // a machine that others extend may hang frames on one that a variant has replaced
+    let parents: HashSet<&str> = machines().flat_map(written_frames).filter_map(parent).collect();
     for item in &file.items {
         match item {
             Item::Machine(machine) => {
@@ -34,7 +36,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                 });
                 let unused = params.filter(|name| !by_machines.has(name) && !by_jobs.has(name));
                 unused.for_each(|name| parameter(context, name));
-                frames(context, machine, &by_jobs, jobs().next().is_some());
+                frames(context, machine, &parents, &by_jobs, jobs().next().is_some());
             }
             Item::Tool(tool) => {
                 let mut used = Used::default();
@@ -75,19 +77,24 @@ fn parameter(context: &mut Context<'_>, name: &Name) {
     }
 }
 
+fn written_frames(machine: &ast::Machine) -> impl Iterator<Item = &ast::Frame> {
+    machine.statements.iter().filter_map(|statement| match statement {
+        MachineStatement::Frame(frame) => Some(frame),
+        _ => None,
+    })
+}
+
+fn parent(frame: &ast::Frame) -> Option<&str> {
+    Some(frame.parent.as_ref()?.node.as_str())
+}
+
 /// Frames at the ends of the tree that carry nothing, where jobs say what is carried.
-fn frames(context: &mut Context<'_>, machine: &ast::Machine, by_jobs: &Used, has_jobs: bool) {
-    let frames = || {
-        machine.statements.iter().filter_map(|statement| match statement {
-            MachineStatement::Frame(frame) => Some(frame),
-            _ => None,
-        })
-    };
+fn frames(context: &mut Context<'_>, machine: &ast::Machine, parents: &HashSet<&str>, by_jobs: &Used, has_jobs: bool) {
     if !has_jobs || !by_jobs.0.contains(&machine.name.node) {
         return;
     }
-    let parents: HashSet<&str> = frames().filter_map(|frame| Some(frame.parent.as_ref()?.node.as_str())).collect();
-    for frame in frames().filter(|frame| !parents.contains(frame.name.node.as_str()) && !by_jobs.has(&frame.name)) {
+    let carries = |frame: &&ast::Frame| parents.contains(frame.name.node.as_str()) || by_jobs.has(&frame.name);
+    for frame in written_frames(machine).filter(|frame| !carries(frame)) {
         let message =
             format!("no job reaches frame `{}`: no tool sits on it and no surface is given in it", frame.name.node);
         context.report(Diagnostic::new(Code::UnreachedFrame, frame.name.span, message));

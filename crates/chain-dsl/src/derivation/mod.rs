@@ -335,8 +335,11 @@ impl Page {
                         .unwrap_or(0)
                 };
                 for (i, row) in listing.values.chunks(columns).enumerate() {
-                    let label =
-                        if i == 0 { format!("  {name} = [") } else { format!("  {} [", " ".repeat(name.len() + 2)) };
+                    let label = if i == 0 {
+                        format!("  {name} = [")
+                    } else {
+                        format!("  {} [", " ".repeat(name.chars().count() + 2))
+                    };
                     let mut text = label;
                     for (j, entry) in row.iter().enumerate() {
                         let pad = " ".repeat(width(j) - entry.chars().count());

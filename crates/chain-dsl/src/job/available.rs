@@ -1,7 +1,7 @@
 //! What a surface may be made from: surfaces of tools and earlier surfaces of the job, whole or piece by piece.
 
 use crate::codes::Code;
-use crate::context::{Context, quoted};
+use crate::context::{Context, READABLE, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::model::{Bounded, ToolShape};
 use crate::source::{Name, Span};
@@ -163,7 +163,6 @@ impl<'g> Builder<'_, 'g> {
 
     /// The frames that a tool may sit on, unless they are too many to read.
     fn frames_to_choose_from(&self) -> Option<String> {
-        const READABLE: usize = 12;
         let all = (0..self.machines.len()).flat_map(|m| (0..self.machines[m].2.frames.len()).map(move |k| (m, k)));
         let names: Vec<String> = all.map(|frame| self.frame_name(frame)).take(READABLE + 1).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -22,8 +22,11 @@ impl<'g> Builder<'_, 'g> {
         }
         if ideal.generation.process != Process::Sweep || ideal.generation.motions != cutting.generation.motions {
             let message = format!("`{}` is not swept over the motions of `{}`", joined(surface), joined(by));
-            let help = "the ideal surface is the sweep of the ideal edge over the same motions, in the same order";
+            let help = "the ideal surface is the sweep of the ideal edge over the same motions";
             return context.report(wrong(message, help));
+        }
+        if let Some(message) = self.two_frames([surface, by], [index, edges]) {
+            return context.report(wrong(message, "give both in the frame of the work"));
         }
         if ideal.cut_by.is_some() {
             let message = format!("`{}` is cut twice", joined(surface));

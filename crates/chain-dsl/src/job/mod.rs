@@ -4,6 +4,7 @@ mod available;
 mod axes;
 mod cut;
 mod surfaces;
+mod sweep;
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -135,7 +136,9 @@ pub(crate) fn build<'g>(
             _ => {}
         }
     }
-    if !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
+    // a job whose name could not be read has been reported
+    let is_whole = !job.name.node.is_empty();
+    if is_whole && !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
         let message = format!("`{}` makes no surface", job.name.node);
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));

@@ -11,11 +11,10 @@ use crate::machine;
 use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
 use crate::sample;
 use crate::source::Span;
-use crate::steel::{self, Places};
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 
 use super::available::{Available, joined, which_piece};
-use super::{Builder, FrameRef};
+use super::{Builder, FrameRef, sweep};
 
 /// The ways to make a surface, by the names of their functions.
 const PROCESSES: [(&str, Process); 3] =
@@ -55,9 +54,7 @@ impl<'g> Builder<'_, 'g> {
         available: Available<'g>,
         motions: &[(Bounded<'g>, Span)],
     ) -> Option<()> {
-        let unknowns: Vec<Bounded<'g>> =
-            available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
-        if unknowns.len() > limits::SURFACE_UNKNOWNS.most {
+        if available.unknowns.len() + motions.len() > limits::SURFACE_UNKNOWNS.most {
             context.report(limits::SURFACE_UNKNOWNS.exceeded(written.value.span));
             return None;
         }
@@ -67,8 +64,17 @@ impl<'g> Builder<'_, 'g> {
         if !self.check_motions(context, &driven, motions, written, &available) {
             return None;
         }
+        let mut motions = motions.to_vec();
+        let mut flipped = false;
+        if let (Process::Sweep, ToolShape::Edge(edge), false) = (process, &available.shape, motions.is_empty()) {
+            let (first, turned) = sweep::side(context, &available, edge, &driven, &motions)?;
+            motions[..=first].rotate_right(1);
+            flipped = turned;
+        }
+        let unknowns: Vec<Bounded<'g>> =
+            available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
-        let surface = made(context, process, call, &available, &driven, &over, &unknowns)?;
+        let surface = made(context, process, call, &available, &driven, &over, flipped)?;
         let generation = Generation {
             tool_name: available.name,
             process,
@@ -242,11 +248,7 @@ impl<'g> Builder<'_, 'g> {
             let help = "name the surface that cuts into it: `trim flank by fillet`";
             return context.report(wrong(format!("`{}` cannot trim itself", joined(by)), help));
         }
-        let [own, its] = [index, other].map(|k| self.surfaces[k].0.frame.clone());
-        // frames of two machines are both the work
-        let machine = |frame: &str| frame.split('.').next().map(str::to_owned);
-        if own != its && machine(&own) == machine(&its) {
-            let message = format!("`{}` is given in `{own}`, `{}` in `{its}`", joined(surface), joined(by));
+        if let Some(message) = self.two_frames([surface, by], [index, other]) {
             return context.report(wrong(message, "give both in the frame of the work"));
         }
         if self.surfaces[index].0.trimmed_by.contains(&other) {
@@ -254,6 +256,15 @@ impl<'g> Builder<'_, 'g> {
             return context.report(wrong(message, "take one of them away"));
         }
         self.surfaces[index].0.trimmed_by.push(other);
+    }
+
+    /// In which frames two surfaces are given that cannot be held against each other: two of one machine. Frames of two machines are
+    /// both the work.
+    pub(super) fn two_frames(&self, paths: [&ast::Path; 2], surfaces: [usize; 2]) -> Option<String> {
+        let [(one, own), (other, its)] = surfaces.map(|k| &self.surfaces[k]);
+        let [named, by] = paths.map(joined);
+        (own.0 == its.0 && own.1 != its.1)
+            .then(|| format!("`{named}` is given in `{}`, `{by}` in `{}`", one.frame, other.frame))
     }
 
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
@@ -297,7 +308,7 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The surface that a process makes of what is available.
+/// The surface that a process makes of what is available; a sweep with its normal turned round if `flipped`.
 fn made<'g>(
     context: &mut Context<'g>,
     process: Process,
@@ -305,7 +316,7 @@ fn made<'g>(
     available: &Available<'g>,
     driven: &Chain<'g>,
     over: &[Expr<'g>],
-    unknowns: &[Bounded<'g>],
+    flipped: bool,
 ) -> Option<Surface<'g>> {
     let wrong = |context: &mut Context<'g>, span, message: &str, help: &str| {
         context.report(Diagnostic::new(Code::WrongKind, span, message).help(help));
@@ -326,12 +337,7 @@ fn made<'g>(
         (Process::Sweep, ToolShape::Edge(_)) if over.is_empty() => {
             wrong(context, call.span, "`sweep` takes at least one motion", "say `over: motion`")
         }
-        (Process::Sweep, ToolShape::Edge(edge)) => {
-            let raw = edge.raw_normal(driven, over[0]);
-            let places = Places { point: available.named, side: available.named, segment: None };
-            let flipped = steel::is_flipped(context, places, unknowns, raw, edge.steel)?;
-            Some(edge.sweep(driven, over, flipped))
-        }
+        (Process::Sweep, ToolShape::Edge(edge)) => Some(edge.sweep(driven, over, flipped)),
         (Process::Sweep, ToolShape::Surface(_)) => {
             let help = "for a surface, say `envelope`; an edge is a tool's surface with one parameter";
             wrong(context, available.named, "`sweep` takes a cutting edge, this is a surface", help)

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
+use crate::spelling::closest;
 
 use super::expected::{self, Before};
 use super::grammar::Rule;
@@ -96,7 +97,7 @@ impl<'s> Mistake<'s> {
     }
 
     fn closest(&self, candidates: impl IntoIterator<Item = &'static str>) -> Option<&'static str> {
-        words::closest(self.say(), candidates)
+        closest(self.say(), candidates)
     }
 
     /// Whatever it is: what was expected, and what is there.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::diagnostic::Diagnostic;
 use crate::source::FileId;
+use crate::spelling::closest;
 
 use super::grammar::{self, Rule};
 use super::scan::Scan;
@@ -191,12 +192,12 @@ fn the_scanner_knows_the_words_of_the_grammar() {
 
 #[test]
 fn the_word_that_was_meant() {
-    let meant = |word| words::closest(word, words::IN_JOB.iter().copied());
+    let meant = |word| closest(word, words::IN_JOB.iter().copied());
     assert_eq!(meant("mahcine"), Some("machine"));
     assert_eq!(meant("surfase"), Some("surface"));
     assert_eq!(meant("mot"), None);
     assert_eq!(meant("x"), None);
     assert_eq!(meant(""), None);
     assert_eq!(meant(&"m".repeat(1000)), None);
-    assert_eq!(words::closest("cradel", ["cradle", "cradles"]), Some("cradle"));
+    assert_eq!(closest("cradel", ["cradle", "cradles"]), Some("cradle"));
 }

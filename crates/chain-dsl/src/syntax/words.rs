@@ -70,18 +70,3 @@ pub(super) fn reserved(word: &str) -> Option<Reserved> {
         None
     }
 }
-
-/// The candidate that a misspelt word most likely stands for: at most one mistake in three letters, the first of the nearest.
-pub(super) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    const LONGEST: usize = 64;
-    let letters = word.chars().take(LONGEST + 1).count();
-    if !(2..=LONGEST).contains(&letters) {
-        return None;
-    }
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::osa_distance(word, candidate), candidate))
-        .filter(|&(distance, _)| distance <= (letters / 3).max(1))
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, candidate)| candidate)
-}

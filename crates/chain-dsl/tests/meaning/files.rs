@@ -191,6 +191,46 @@ fn a_curve_comes_from_two_columns_of_a_table() {
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {expected:?}");
 }
 
+/// Whatever a surface depends on is among the texts, once each: their hash stands for it.
+#[test]
+fn tables_are_among_the_texts_that_were_read() {
+    let folder = project("texts", &[("tools/t.chain", TOOL), ("tools/tables/relief.csv", TABLE)]);
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &folder.join("tools/../tools/t.chain"), &[]);
+    let texts: Vec<(PathBuf, &str)> =
+        compilation.sources.files().map(|(_, file)| (file.path.clone(), file.text.as_str())).collect();
+    let known = [folder.join("tools/../tools/t.chain"), folder.join("tools/tables/relief.csv")];
+    assert_eq!(texts, [(known[0].clone(), TOOL), (known[1].clone(), TABLE)]);
+}
+
+/// Three points on a line in a row, one after the other at these places.
+fn splined(points: [&str; 3]) -> String {
+    let points: Vec<String> = points.iter().map(|x| format!("[{x} mm, 0 mm]")).collect();
+    format!(
+        "tool t {{
+            profile p {{ s = spline([{}]) }}
+            surface f(s: along p, v: length in 0 mm .. 1 mm) {{
+                at = [p(s)[0], v, p(s)[1]]
+                body towards [0, 0, 1]
+            }}
+        }}",
+        points.join(", ")
+    )
+}
+
+#[test]
+fn splines_that_numbers_cannot_hold_are_told() {
+    let check = |points: [&str; 3]| {
+        let graph = Graph::new();
+        let found = flank_chain_dsl::compile_text(&graph, "t", &splined(points), &[]).diagnostics;
+        found.into_iter().map(|finding| (finding.code, finding.message)).collect::<Vec<_>>()
+    };
+    assert_eq!(check(["0", "1", "2"]), []);
+    let told = |message: &str| vec![(Code::BrokenProfile, format!("over the run of this spline, {message}"))];
+    assert_eq!(check(["-1e308", "1e308", "2"]), told("point 1 is not finite"));
+    assert_eq!(check(["-1e20", "0", "1"]), told("x does not increase at point 2"));
+}
+
 #[test]
 fn wrong_tables_are_told() {
     let check = |name: &str, tool: &str, table: &str| {
@@ -208,6 +248,16 @@ fn wrong_tables_are_told() {
     );
     assert_eq!(check("table-column", TOOL, &TABLE.replace("depth", "height")), [Code::WrongTable]);
     assert_eq!(check("table-number", TOOL, &TABLE.replace("40", "4o")), [Code::WrongTable]);
+    for (name, cell) in [("nan", "nan"), ("inf", "-inf"), ("overflow", "1e999"), ("of-unit", "1e308")] {
+        let table = TABLE.replace("[um]", "[cm]").replace("40", cell);
+        assert_eq!(check(&format!("table-{name}"), TOOL, &table), [Code::WrongTable], "{name}");
+    }
+    let along = "tool t {
+        profile p { s = spline(\"tables/relief.csv\", s: length, depth: length) }
+        surface f(s: along p, v: length in 0 mm .. 1 mm) { at = [p(s)[0], v, p(s)[1]] body towards [0, 0, 1] }
+    }";
+    assert_eq!(check("spline-right", along, TABLE), []);
+    assert_eq!(check("spline-nan", along, &TABLE.replace("40", "nan")), [Code::WrongTable]);
     assert_eq!(check("table-order", TOOL, &TABLE.replace("2, 40", "1, 40")), [Code::WrongTable; 2]);
     assert_eq!(check("table-unit", TOOL, &TABLE.replace("[um]", "[deg]")), [Code::WrongTable]);
     assert_eq!(
@@ -243,4 +293,29 @@ fn jobs_are_taken_by_name() {
     assert_eq!(help, "did you mean `other`?");
     let (codes, _) = taken("library.chain", Some("j")).expect_err("no job");
     assert_eq!(codes, [Code::NoJob]);
+}
+
+/// A value that only another job takes would change nothing of the one that is asked for.
+#[test]
+fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
+    let other = JOB.replace("job j {", "job other {\n    param extra : length = 1 mm").replace("use", "//");
+    let folder = project("set", &[("library.chain", LIBRARY), ("jobs/j.chain", &format!("{JOB}{other}"))]);
+    let set = [("extra".to_string(), "2 mm".to_string())];
+    let told = |wanted: Option<&str>| {
+        let graph = Graph::new();
+        let mut compilation = compile_file(&graph, &folder.join("jobs/j.chain"), &set);
+        assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
+        let jobs = compilation.take_jobs(wanted).map_err(|finding| {
+            let shown = render(std::slice::from_ref(&finding), &compilation.sources, false);
+            (finding.code, shown)
+        });
+        jobs.map(|jobs| jobs.len())
+    };
+    assert_eq!(told(None), Ok(2));
+    assert_eq!(told(Some("other")), Ok(1));
+    let (code, shown) = told(Some("j")).expect_err("`j` has no such parameter");
+    assert_eq!(code, Code::UnknownName);
+    for part in ["job `j` has no parameter `extra`", "extra=2 mm", "job `other` has one, and is not asked for"] {
+        assert!(shown.contains(part), "{part} in {shown}");
+    }
 }

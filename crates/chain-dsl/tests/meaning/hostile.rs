@@ -48,6 +48,28 @@ fn long_machine(frames: usize) -> String {
     format!("machine long extends lathe {{\n{chain}frame work in f{last} = rotate_z(C)\n}}\n")
 }
 
+/// An edge swept over as many motions as a surface may have.
+fn sweeps(count: usize) -> String {
+    let motions = limits::SURFACE_UNKNOWNS.most - 1;
+    let axes = lines(motions, |k| format!("axis A{k} : linear"));
+    let frames = lines(motions, |k| {
+        format!("frame f{} in f{k} = translate(1 mm, A{k}, 2 mm) rotate_y(A{k} / {} mm * 1 rad)", k + 1, k + 7)
+    });
+    let drives = lines(motions, |k| format!("motion t{k} : length in 0 mm .. 1 mm\ndrive m.A{k} = t{k}"));
+    let over: Vec<String> = (0..motions).map(|k| format!("t{k}")).collect();
+    let surfaces = lines(count, |k| format!("surface s{k} in m.f0 = sweep(p.edge, over: [{}])", over.join(", ")));
+    format!(
+        "machine tower {{ {axes}frame f0\n{frames} }}
+        tool pick {{
+            surface edge(u: length in 1 mm .. 3 mm) {{
+                at = [u, 0 mm, u]
+                body towards [1, 0, -1]
+            }}
+        }}
+        job j {{ machine m = tower\ntool p = pick\nmount p on m.f{motions}\n{drives}{surfaces} }}"
+    )
+}
+
 /// Each surface the envelope of the one before.
 fn envelopes(levels: usize) -> String {
     let axes = lines(levels, |k| {
@@ -203,6 +225,23 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
             )),
             limits::SURFACE_UNKNOWNS,
         ),
+        (
+            "powers of powers of a length",
+            format!("fn f(x: length) = {}x{}", "(".repeat(6), ")^64".repeat(6)),
+            limits::POWER,
+        ),
+        (
+            "a power of a length by multiplying",
+            format!(
+                "fn f0(x: length) {{ {} a40 }}",
+                lines(40, |k| {
+                    let before = if k == 0 { "x".to_string() } else { format!("a{k}") };
+                    format!("let a{} = {before} * {before}", k + 1)
+                })
+            ),
+            limits::POWER,
+        ),
+        ("a power of a length by name", format!("fn f(x: {}) = x", ["length^99"; 1_000].join(" * ")), limits::POWER),
         ("a long job", small_job(&lines(20_000, |k| format!("let a{k} = {k}"))), limits::JOB_STATEMENTS),
         ("thousands of jobs' errors", lines(20_000, |k| format!("job j{k} {{ machine m = m{k} }}")), limits::MISTAKES),
         (
@@ -282,6 +321,7 @@ fn accepted() -> Vec<(&'static str, String)> {
             ),
         ),
         ("envelopes of envelopes", envelopes(6)),
+        ("sweeps over seven motions", sweeps(100)),
         ("an empty file", " ".repeat((1 << 20) - LIBRARY.len() - 1)),
         ("comments", "// nothing\n".repeat(90_000)),
     ]
@@ -324,5 +364,5 @@ fn a_long_circle_is_told_briefly() {
     );
     let found = findings("a circle of frames", &text);
     assert_eq!(found.iter().map(|finding| finding.code).collect::<Vec<_>>(), [Code::CyclicFrames]);
-    assert!(found[0].message.ends_with(" → f10 → f11 → … → f0"), "{}", found[0].message);
+    assert!(found[0].message.ends_with(" → f14 → f15 → … → f0"), "{}", found[0].message);
 }

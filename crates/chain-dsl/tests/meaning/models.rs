@@ -1,7 +1,9 @@
 //! Models that texts make: inheritance, coupled axes, poses between frames, envelopes of envelopes.
 
-use flank_chain_dsl::{Compilation, compile_text, render};
-use flank_expr::Graph;
+use flank_chain_dsl::{Code, Compilation, compile_text, derivation, render};
+use flank_expr::{Graph, Style};
+
+use crate::errors;
 
 pub(crate) fn compiled<'g>(graph: &'g Graph, text: &str) -> Compilation<'g> {
     let compilation = compile_text(graph, "text", &format!("{text}{}", super::LIBRARY), &[]);
@@ -98,6 +100,91 @@ fn functions_take_and_give_vectors() {
     assert_eq!(laws(text)[0], "Z = cos(turn)");
 }
 
+/// The rows of a printed matrix stand below each other, also where a frame's name is longer in bytes than in letters.
+#[test]
+fn printed_rows_are_aligned() {
+    let text = "
+        machine kopf extends lathe { frame läufer in slide = rotate_x(0.3 rad) }
+        job j {
+            machine m = kopf(height: 3 mm)
+            tool b = ball
+            mount b on m.läufer
+            surface s in m.work = move(b.face)
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = 0 deg
+            drive m.Z = 1 mm
+        }";
+    let graph = Graph::new();
+    let page = derivation(&compiled(&graph, text).jobs[0], Style::Text);
+    let column = |line: &str| line.chars().position(|c| c == '[');
+    let lines: Vec<&str> = page.lines().collect();
+    let below = |pair: &&[&str]| pair[1].trim_start().starts_with('[');
+    let rows: Vec<&[&str]> = lines.windows(2).filter(below).collect();
+    assert!(rows.iter().any(|pair| pair[0].contains("läufer")), "{page}");
+    assert!(rows.iter().all(|pair| column(pair[0]) == column(pair[1])), "{page}");
+}
+
+/// A definition by itself is looked at with values that nobody gave: what cannot be computed for them says nothing of it.
+#[test]
+fn a_matrix_is_judged_by_values_that_were_given() {
+    let text = |cosine: &str| {
+        format!(
+            "machine tilted {{
+                param c : number
+                frame bed
+                let a = acos(c)
+                let half = tan(a / 2)
+                let sine = 2 * half / (1 + half^2)
+                frame head in bed = matrix([[c, -sine, 0, 0 mm], [sine, c, 0, 0 mm], [0, 0, 1, 0 mm]])
+            }}
+            job j {{
+                machine m = tilted(c: {cosine})
+                tool b = ball
+                mount b on m.head
+                surface s in m.bed = move(b.face)
+            }}"
+        )
+    };
+    let codes = |text: &str| errors(text).into_iter().map(|finding| finding.code).collect::<Vec<_>>();
+    assert_eq!(codes(&text("0.8")), []);
+    assert_eq!(codes(&text("1.2")), [Code::NotRigid]);
+}
+
+/// The exponent of a number is a parameter like others: what is made of it depends on it, also where it happens to be whole.
+#[test]
+fn a_parameter_may_be_an_exponent() {
+    let text = "
+        tool bowed {
+            param bow : number = 2
+            surface face(u: number in 0.5 .. 1.5, v: length in 0 mm .. 1 mm) {
+                at = [20 mm + 1 mm * u^bow, 1 mm * u, v]
+                body towards [1, 0, 0]
+            }
+        }
+        job j {
+            machine m = lathe(height: 0 mm)
+            tool b = bowed
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 0 mm
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    let job = &compilation.jobs[0];
+    let bow = job.parameters.iter().find(|parameter| parameter.name == "b.bow").expect("a parameter").variable;
+    let surface = &job.surfaces[0];
+    let x = surface.generation.position().0[0];
+    let mut values = vec![f64::NAN; graph.variable_count()];
+    for (variable, value) in [(bow, 2.0), (surface.unknowns[0].variable, 1.25)] {
+        values[variable.as_variable().expect("a variable").index()] = value;
+    }
+    let found = graph.evaluate(&[x, x.derivative(bow)], &values);
+    let expected = [20.0 + 1.25 * 1.25, 1.25 * 1.25 * 1.25f64.ln()];
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?} {expected:?}");
+}
+
 #[test]
 fn a_polar_angle_is_measured_from_the_middle_of_its_values() {
     for (low, high, jump) in [(170.0, 190.0, 0.0), (530.0, 550.0, 360.0), (-190.0, -170.0, -360.0)] {
@@ -116,13 +203,20 @@ fn a_polar_angle_is_measured_from_the_middle_of_its_values() {
                 drive m.C = -turn
                 drive m.Z = 0 mm
                 surface s in m.work = sweep(k.edge, over: turn)
-                sample s {{ z: 1 mm .. 2 mm by 2, polar_angle: {low} deg .. {high} deg by 3 }}
+                sample s {{
+                    z: 1 mm .. 2 mm by 2
+                    polar_angle: {low} deg .. {high} deg by 3
+                    keep polar_angle: {low} deg .. {high} deg
+                    require polar_angle: {low} deg .. {high} deg, \"it lies elsewhere\"
+                }}
             }}"
         );
         let graph = Graph::new();
         let compilation = compiled(&graph, &text);
         let surface = &compilation.jobs[0].surfaces[0];
-        let polar = surface.sample.as_ref().expect("a sample").coordinates[1].value;
+        let sample = surface.sample.as_ref().expect("a sample");
+        let polar = sample.coordinates[1].value;
+        assert_eq!([sample.keep[0].0.value, sample.limits[0].of.value], [polar; 2]);
         for degrees in [171.0, 179.9, 180.1, 189.0_f64] {
             let turn = (surface.unknowns[1].variable, graph.constant(degrees.to_radians()));
             let bound = [compilation.jobs[0].bindings(), vec![turn]].concat();

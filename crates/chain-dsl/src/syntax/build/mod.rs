@@ -14,6 +14,7 @@ use pest::iterators::{Pair, Pairs};
 
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
+use crate::limits::POWER;
 use crate::source::{Name, Span, Spanned};
 
 use super::ast::{self, Dimension, Path, Range};
@@ -98,12 +99,11 @@ impl<'s> Build<'s> {
     }
 
     fn power(&mut self, pair: Pair<'_, Rule>) -> i32 {
-        const GREATEST: i32 = 99;
         let power = pair.as_str().parse().unwrap_or(i32::MAX);
-        if (-GREATEST..=GREATEST).contains(&power) {
+        if power.unsigned_abs() as usize <= POWER.most {
             return power;
         }
-        self.report(self.span(&pair), "the exponent is too great", "dimensions and units go up to the power of 99");
+        self.diagnostics.push(POWER.exceeded(self.span(&pair)));
         1
     }
 }

@@ -1,6 +1,7 @@
 //! Words that are no units, and units and other words that are no names.
 
 use crate::diagnostic::Diagnostic;
+use crate::spelling::closest;
 
 use super::super::expected;
 use super::super::grammar::Rule;
@@ -18,7 +19,7 @@ impl Mistake<'_> {
             && self.scan.is_name(self.found)
             && self.scan.say(self.found + 1) != ":"
             && self.expected.iter().any(|rule| matches!(rule, Rule::unit_word | Rule::infix));
-        let like = words::closest(self.say(), words::UNITS.iter().copied());
+        let like = closest(self.say(), words::UNITS.iter().copied());
         if !unit || like.is_none() && self.misspelt(&expected::relevant(self.expected.clone())).is_some() {
             return None;
         }

@@ -4,6 +4,7 @@ use pest::iterators::Pair;
 
 use crate::diagnostic::Note;
 use crate::source::Span;
+use crate::spelling::closest;
 
 use super::super::ast::{Item, Job, Machine, Profile, Segment, Tool, ToolStatement};
 use super::super::build::Head;
@@ -199,7 +200,7 @@ impl<'s> Recover<'s> {
             return block.add_broken(scan, scan.say(first + 1), first..self.at);
         }
         let assigns = scan.say(first + 1) == "=";
-        let meant = words::closest(word, block.words().iter().copied()).filter(|meant| !assigns || *meant == "at");
+        let meant = closest(word, block.words().iter().copied()).filter(|meant| !assigns || *meant == "at");
         let named = if assigns { first } else { first + 1 };
         let help = match meant {
             Some(meant) => did_you_mean(meant),

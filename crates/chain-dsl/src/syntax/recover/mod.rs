@@ -11,6 +11,7 @@ use pest::iterators::Pair;
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::limits::MISTAKES;
+use crate::spelling::closest;
 
 use super::ast::{Expression, ExpressionKind, File, Item};
 use super::build::Build;
@@ -163,7 +164,7 @@ impl<'s> Recover<'s> {
             return self.item(self.scan.say(self.at + 1), false);
         }
         let word = self.scan.kind(self.at) == Some(Kind::Word);
-        let meant = words::closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word);
+        let meant = closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word);
         let Some(meant) = meant else {
             self.report_sign(LIST, "a file consists of machines, tools, jobs and functions");
             self.at = pieces::next_item(self.scan, self.at + 1);
