@@ -37,6 +37,29 @@ fn listed(solved: &Solved<'_, '_>) -> String {
     out
 }
 
+/// Where the branch of a surface was not looked for as it is meant: in the middle of its grid, until it is found; empty if it was.
+pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved {
+        let (name, at) = (&solved.surface.name, anchor(solved));
+        if solved.effort.is_kept_elsewhere {
+            let _ = writeln!(
+                out,
+                "note: no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}"
+            );
+        }
+        if solved.effort.is_given_up {
+            let _ = writeln!(
+                out,
+                "note: no point of {name} was found at those of its sample that were tried ({} boxes looked at); a sample \
+                 whose middle lies on the surface needs fewer",
+                solved.effort.boxes
+            );
+        }
+    }
+    out
+}
+
 /// What could not be decided of the ranges of each surface; empty if everything could.
 pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();

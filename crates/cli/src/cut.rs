@@ -111,7 +111,10 @@ pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> String {
             let _ = writeln!(out, "  {unreached}: no edge of {} passes there within its ranges", cut.by);
         }
         if undecided > 0 {
-            let _ = writeln!(out, "  {undecided}: undecided, an edge that may be the lowest could not be followed");
+            let _ = writeln!(
+                out,
+                "  {undecided}: undecided, an edge that may be the lowest could not be followed, or too many would have to be tried"
+            );
         }
     }
     out

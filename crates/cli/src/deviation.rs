@@ -14,9 +14,9 @@ use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::progress::Working;
 use crate::solve::{header, patch, problem, ranges};
-use crate::{Ending, inspect, print, spec};
+use crate::{Ending, eprint, inspect, print, spec};
 
-pub(crate) const NOTE: &str = "along the normal, plus is material";
+const NOTE: &str = "along the normal, plus is material";
 
 /// A surface of a job.
 #[derive(Clone, Copy)]
@@ -81,19 +81,28 @@ pub(crate) struct Measured<'j, 'g> {
 
 pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     let start = Instant::now();
+    if arguments.measured.is_none() && arguments.margin.is_given() {
+        let message =
+            "--margin says where the points of --measured lie; with --from they are those of its sample".to_string();
+        return Err(Failure::of_usage(message));
+    }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let surface = find(&jobs, &arguments.surface)?;
     let measured = match (&arguments.measured, &arguments.from) {
         (Some(file), _) => inspect::inspect(surface, file, arguments)?,
         (None, Some(from)) => measure([surface, find(&jobs, from)?], arguments.as_it_lies, arguments.means)?,
-        (None, None) => return Err("say what it is held against: --from or --measured".to_string().into()),
+        (None, None) => {
+            let message =
+                format!("say what `{}` is held against: --from SURFACE or --measured FILE", arguments.surface);
+            return Err(Failure::of_usage(message));
+        }
     };
     let written = measured.write(arguments, &spec::hash(&compilation))?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
-    anstream::eprintln!("{} points in {:.0} ms", measured.points.len(), start.elapsed().as_secs_f64() * 1e3);
+    eprint(&format!("{} points in {:.0} ms\n", measured.points.len(), start.elapsed().as_secs_f64() * 1e3));
     let missing = measured.missing();
-    anstream::eprint!("{missing}");
+    eprint(&missing);
     Ok(if missing.is_empty() { Ending::Done } else { Ending::Unsolved })
 }
 
@@ -123,9 +132,11 @@ pub(crate) fn measure<'j, 'g>(
     let sample = from.surface.sample.as_ref().ok_or(format!(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
     ))?;
+    let halfway = sample.grid.middle(sample.counts);
     let same = |k: usize| {
         let name = &sample.coordinates[k].name;
-        surface.surface.coordinate(name).map(|coordinate| coordinate.value).ok_or(format!(
+        let coordinate = surface.surface.coordinate(name);
+        coordinate.map(|coordinate| surface.surface.about(coordinate, halfway[k]).value).ok_or(format!(
             "`{of}` is sampled by `{name}`, which is no coordinate of `{}`; sample both by it, or by z and rho, or between \
              the corners of the blank",
             surface.surface.name
@@ -169,6 +180,9 @@ fn is_solved(point: &SurfacePoint) -> bool {
     point.outcome == Outcome::Solved
 }
 
+/// Nearer than this, um, the middle lies on the surface that it was turned onto: points are solved to 1e-9 mm.
+const ON_IT: f64 = 1e-6;
+
 impl Measured<'_, '_> {
     fn middle(&self) -> usize {
         (self.counts[0] / 2) * self.counts[1] + self.counts[1] / 2
@@ -182,8 +196,7 @@ impl Measured<'_, '_> {
     /// The middle of the grid, um.
     fn in_the_middle(&self) -> Option<f64> {
         let middle = *self.deviations.get(self.middle())?;
-        // rounding of a point that was turned onto the other one
-        middle.map(|off| if off.abs() < 1e-6 { 0.0 } else { off })
+        middle.map(|off| if off.abs() < ON_IT { 0.0 } else { off })
     }
 
     fn known(&self) -> impl Iterator<Item = f64> {
@@ -220,7 +233,7 @@ impl Measured<'_, '_> {
     fn name(&self) -> String {
         match &self.held {
             Held::Surface(of) => format!("{}.deviation", of.whole_name()),
-            Held::File { .. } => format!("{}.measured", self.from.whole_name()),
+            Held::File { .. } => format!("{}.measured.deviation", self.from.whole_name()),
         }
     }
 
@@ -239,8 +252,8 @@ impl Measured<'_, '_> {
             let _ = writeln!(
                 out,
                 "  turn about z {:.6} deg, {:.6} mm on the circle through the middle{done}",
-                turn.to_degrees(),
-                radius * turn
+                rounded(turn.to_degrees()),
+                rounded(radius * turn)
             );
         }
         if let Some([low, high, rms]) = self.spread() {
@@ -289,7 +302,10 @@ impl Measured<'_, '_> {
     /// Why numbers are missing, if some are.
     pub(crate) fn missing(&self) -> String {
         let (all, known) = (self.points.len(), self.known().count());
-        let [surface, from] = [self.held.name(), &self.from.surface.name];
+        let [surface, from] = match &self.held {
+            Held::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
+            held => [held.name().to_string(), self.from.surface.name.clone()],
+        };
         let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
         if let Held::File { points, .. } = self.held {
             return missing_of_file(self, [points, known, unsolved]);
@@ -324,10 +340,29 @@ impl Measured<'_, '_> {
             meaning: NOTE.to_string(),
             values: Values::Scalars(self.deviations.clone()),
         };
-        let mut header = header(&self.from.job.name, which, hash);
+        let held = match &self.held {
+            Held::Surface(of) => Some(of.job),
+            Held::File { .. } => None,
+        };
+        let jobs: Vec<&Job<'_>> = [self.from.job].into_iter().chain(held).collect();
+        let mut header = header(&jobs, which, hash);
         let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
         header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
         Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
+    }
+
+    /// How a picture is to be read.
+    pub(crate) fn note(&self) -> String {
+        let turn = self.turn.filter(|_| self.is_turned);
+        let turn = turn.map(|turn| {
+            format!(
+                "; {} is turned by {:.6} deg about z, {:.6} mm on the circle through the middle",
+                self.held.name(),
+                rounded(turn.to_degrees()),
+                rounded(self.middle_radius() * turn)
+            )
+        });
+        format!("{NOTE}{}", turn.unwrap_or_default())
     }
 
     pub(crate) fn title(&self) -> String {
@@ -337,7 +372,10 @@ impl Measured<'_, '_> {
     fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
         let dataset = self.dataset(&arguments.which, hash);
         let mut folder = Folder::at(&arguments.out)?;
-        let map = || field_maps(&dataset, &self.title(), &[(0, 0)], NOTE, &PictureOptions::default());
+        if let Some(measured) = &arguments.measured {
+            folder = folder.sparing(measured);
+        }
+        let map = || field_maps(&dataset, &self.title(), &[(0, 0)], &self.note(), &PictureOptions::default());
         let map = (!arguments.no_picture).then(map);
         folder.picture_after(&self.name(), map.as_ref(), |folder| {
             folder.data(&self.name(), &dataset.surfaces(), &arguments.format)
@@ -364,6 +402,11 @@ fn missing_of_file(of: &Measured<'_, '_>, [measured, known, unsolved]: [usize; 3
         );
     }
     out
+}
+
+/// To six decimals, never a negative zero.
+fn rounded(value: f64) -> f64 {
+    (1e6 * value).round() / 1e6 + 0.0
 }
 
 /// The angle of a rise in um over a length in mm.

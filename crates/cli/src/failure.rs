@@ -4,7 +4,7 @@ use flank_chain_dsl::{Diagnostic, Severity, Sources, render};
 use serde_json::{Value, json};
 
 use crate::spec::shown;
-use crate::{Ending, print};
+use crate::{Ending, eprint, print};
 
 /// What ends a command early.
 #[derive(Debug)]
@@ -34,9 +34,15 @@ impl Failure {
         }
     }
 
-    /// A wrong command line, of which the argument parser has told.
-    pub(crate) fn of_usage(message: String) -> Failure {
-        Failure { ending: Ending::Usage, text: String::new(), message, findings: Vec::new() }
+    /// A command line that the argument parser refuses.
+    pub(crate) fn of_parser(error: &clap::Error) -> Failure {
+        let message = error.to_string().trim().trim_start_matches("error: ").to_string();
+        Failure { ending: Ending::Usage, text: error.render().ansi().to_string(), message, findings: Vec::new() }
+    }
+
+    /// A command line whose parts do not go together.
+    pub(crate) fn of_usage(reason: String) -> Failure {
+        Failure { ending: Ending::Usage, ..Failure::from(reason) }
     }
 
     /// The same for something that cannot be solved.
@@ -46,7 +52,7 @@ impl Failure {
 
     /// Shows it on stderr, and as a document on stdout where documents are asked for.
     pub(crate) fn tell(&self, as_document: bool) -> Ending {
-        anstream::eprint!("{}", self.text);
+        eprint(&self.text);
         if as_document {
             print(&format!(
                 "{:#}\n",

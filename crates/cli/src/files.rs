@@ -1,6 +1,6 @@
 //! The files that a command leaves in its folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flank_export::{
     Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target, WriteError,
@@ -18,6 +18,8 @@ const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vt
 /// A folder that is written to, and the files that stand there now.
 pub(crate) struct Folder<'a> {
     path: &'a Path,
+    /// Files that are not written over.
+    spared: Vec<PathBuf>,
     pub(crate) written: Vec<String>,
 }
 
@@ -34,28 +36,49 @@ impl<'a> Folder<'a> {
             ));
         }
         std::fs::create_dir_all(path).map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;
-        Ok(Folder { path, written: Vec::new() })
+        Ok(Folder { path, spared: Vec::new(), written: Vec::new() })
     }
 
-    /// The points in the formats that are asked for.
+    /// The same, in which a file that the command reads is not written over.
+    pub(crate) fn sparing(mut self, read: &Path) -> Folder<'a> {
+        self.spared.extend(std::fs::canonicalize(read));
+        self
+    }
+
+    /// The points in the formats that are asked for. A mesh has one origin: of surfaces in several frames there is one for each.
     pub(crate) fn data(&mut self, name: &str, surfaces: &Surfaces<'_>, formats: &[Format]) -> Result<(), String> {
+        let meshes = by_frame(name, surfaces.list.iter().map(|surface| (surface.outline().frame.as_str(), *surface)));
+        let meshes: Vec<(String, Surfaces<'_>)> =
+            meshes.into_iter().map(|(name, list)| (name, Surfaces { header: surfaces.header, list })).collect();
         for format in formats {
             match format {
                 Format::Csv => self.write(&format!("{name}.csv"), |out| write_csv(surfaces, out))?,
                 Format::Json => self.write(&format!("{name}.json"), |out| write_json(surfaces, out))?,
-                Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out))?,
-                Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(surfaces, out))?,
-                Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(surfaces, out))?,
                 Format::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(surfaces, out))?,
-                Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(surfaces, out))?,
+                Format::Stl | Format::Obj | Format::ThreeMf | Format::Vtp => {
+                    meshes.iter().try_for_each(|(name, mesh)| self.mesh(name, mesh, *format))?;
+                }
             }
         }
         Ok(())
     }
 
-    /// Smooth faces.
+    fn mesh(&mut self, name: &str, surfaces: &Surfaces<'_>, format: Format) -> Result<(), String> {
+        match format {
+            Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out)),
+            Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(surfaces, out)),
+            Format::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(surfaces, out)),
+            Format::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(surfaces, out)),
+            Format::Csv | Format::Json | Format::Parquet => Ok(()),
+        }
+    }
+
+    /// Smooth faces, a file for each frame as of meshes.
     pub(crate) fn step(&mut self, name: &str, header: &Header, faces: &[&Face]) -> Result<(), String> {
-        self.write(&format!("{name}.step"), |out| write_step(header, faces, out))
+        let files = by_frame(name, faces.iter().map(|face| (face.frame(), *face)));
+        files
+            .iter()
+            .try_for_each(|(name, faces)| self.write(&format!("{name}.step"), |out| write_step(header, faces, out)))
     }
 
     /// A picture as PNG and SVG.
@@ -139,8 +162,30 @@ impl<'a> Folder<'a> {
 
     fn write(&mut self, name: &str, content: impl Fn(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), String> {
         let path = self.path.join(name);
+        if std::fs::canonicalize(&path).is_ok_and(|there| self.spared.contains(&there)) {
+            let path = spec::shown(&path);
+            return Err(format!(
+                "`{path}` is what this command reads and would be written over: name another folder with --out"
+            ));
+        }
         write_atomically(&path, content).map_err(|error| error.to_string())?;
         self.written.push(spec::shown(&path));
         Ok(())
     }
+}
+
+/// What lies in each frame, with the name of its file: the frame is part of it where there are several.
+fn by_frame<'f, T>(name: &str, all: impl Iterator<Item = (&'f str, T)>) -> Vec<(String, Vec<T>)> {
+    let mut frames: Vec<(&str, Vec<T>)> = Vec::new();
+    for (frame, one) in all {
+        match frames.iter_mut().find(|(known, _)| *known == frame) {
+            Some((_, list)) => list.push(one),
+            None => frames.push((frame, vec![one])),
+        }
+    }
+    let is_one = frames.len() == 1;
+    frames
+        .into_iter()
+        .map(|(frame, list)| (if is_one { name.to_string() } else { format!("{name}.{frame}") }, list))
+        .collect()
 }

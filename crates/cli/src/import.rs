@@ -9,6 +9,9 @@ use crate::arguments::{Coefficients, Import, Signs};
 use crate::failure::Failure;
 use crate::{Ending, print, spec};
 
+/// No REXS file is larger.
+const MOST_BYTES: usize = 16 << 20;
+
 const SETTINGS: &str = "bevel_gear_manufacturing_settings";
 const TOOL: &str = "bevel_gear_tool";
 
@@ -78,7 +81,7 @@ mod orders {
 
 pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let file = spec::shown(&arguments.file);
-    let text = std::fs::read_to_string(&arguments.file).map_err(|error| format!("cannot read {file}: {error}"))?;
+    let text = spec::other_text(&arguments.file, MOST_BYTES)?;
     let spec = job(&text, &file, arguments)?;
     if arguments.json {
         let imported = json!({ "schema": "flank.import/1", "file": file, "job": arguments.name, "spec": spec });
@@ -105,8 +108,8 @@ fn job(text: &str, file: &str, arguments: &Import) -> Result<String, String> {
             "say which tool has which blades: `--outside ID` for the concave flank, `--inside ID` for the convex one; {known}"
         ));
     }
-    let version = model.attribute("version").unwrap_or("without a version");
-    let mut out = format!("//! From {file}, REXS {version}, {}.\n", settings.described());
+    let version = model.attribute("version").map_or("without a version".to_string(), on_one_line);
+    let mut out = format!("//! From {}, REXS {version}, {}.\n", on_one_line(file), settings.described());
     let _ = writeln!(out, "//! Signs: {}.", said(arguments.signs));
     let machine = machine(&settings, arguments, &mut out)?;
     let known: Vec<&str> = VALUES.iter().map(|value| value.0).chain(MOTIONS.iter().map(|motion| motion.0)).collect();
@@ -136,11 +139,17 @@ fn job(text: &str, file: &str, arguments: &Import) -> Result<String, String> {
 fn said(signs: Signs) -> &'static str {
     match signs {
         Signs::Frames => "as they are in the file, taken for those of the frames of cradle_generator",
-        Signs::LeftHandPinion => "left-hand-pinion: cutter_tilt, cutter_swivel and center_roll_position times -1",
-        Signs::RightHandGear => "right-hand-gear: cutter_tilt and work_offset times -1",
+        Signs::LeftHandPinion => {
+            "left-hand-pinion: cutter_tilt, cutter_swivel and center_roll_position times -1, coefficients of motions as they are"
+        }
+        Signs::RightHandGear => {
+            "right-hand-gear: cutter_tilt and work_offset times -1, coefficients of motions as they are"
+        }
     }
 }
 
+/// Whether a constant is reversed. Of coefficients none is: in the published system that these two sets of signs are those of, they count along
+/// the roll of this machine.
 fn is_reversed(signs: Signs, attribute: &str) -> bool {
     match signs {
         Signs::Frames => false,
@@ -241,6 +250,11 @@ fn cutter(tool: &Component<'_, '_>) -> Result<String, String> {
     Ok(format!("{kind}(\n        {}\n    )\n", lines.join(",\n        ")))
 }
 
+/// A text of the file as it may stand in a comment: nothing in it ends the line.
+fn on_one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
 fn spaced(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
@@ -274,9 +288,10 @@ impl<'a, 'i> Component<'a, 'i> {
     }
 
     fn described(&self) -> String {
-        let kind = self.0.attribute("type").unwrap_or("component");
-        let name = self.0.attribute("name").map(|name| format!(" ({})", name.replace(['\n', '\r'], " ")));
-        format!("{kind} {}{}", self.0.attribute("id").unwrap_or("?"), name.unwrap_or_default())
+        let said = |attribute: &str| self.0.attribute(attribute).map(on_one_line);
+        let name = said("name").map(|name| format!(" ({name})"));
+        let [kind, id] = [("type", "component"), ("id", "?")].map(|(of, none)| said(of).unwrap_or(none.to_string()));
+        format!("{kind} {id}{}", name.unwrap_or_default())
     }
 
     fn attribute(&self, name: &str) -> Option<Node<'a, 'i>> {
@@ -302,12 +317,12 @@ impl<'a, 'i> Component<'a, 'i> {
     fn tell_unused(&self, known: &[&str], out: &mut String) {
         let attributes = self.0.children().filter(|node| node.has_tag_name("attribute"));
         for node in attributes {
-            let name = node.attribute("id").unwrap_or("?").replace(['\n', '\r'], " ");
+            let name = on_one_line(node.attribute("id").unwrap_or("?"));
             let texts = node.descendants().filter(Node::is_text).filter_map(|text| text.text());
             let words: Vec<&str> = texts.flat_map(str::split_whitespace).collect();
             if !known.contains(&name.as_str()) && !words.is_empty() {
                 let unit = node.attribute("unit").filter(|unit| *unit != "none").unwrap_or_default();
-                let value = format!("{} {}", words.join(" "), unit.replace(['\n', '\r'], " "));
+                let value = format!("{} {}", on_one_line(&words.join(" ")), on_one_line(unit));
                 let _ = writeln!(out, "//! Not used of {}: {name}, {}.", self.described(), value.trim_end());
             }
         }

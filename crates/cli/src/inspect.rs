@@ -1,16 +1,19 @@
 //! `flank deviation --measured`: measured points held against the nominal surface.
 
-use flank_export::{Measured as Reading, MeasuredPoint, read_measured};
+use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
 use flank_solver::{Inspection, SurfacePoint};
 
 use crate::arguments::Deviation;
 use crate::deviation::{Held, Measured, Named};
+use crate::failure::Failure;
 use crate::measure::Placed;
 use crate::progress::Working;
 use crate::{solve, spec};
 
 /// A larger grid is not compared.
 const MOST_PLACES: usize = 1_000_000;
+/// Enough for so many points with all their digits.
+const MOST_BYTES: usize = 256 << 20;
 
 /// # Errors
 /// In words: what is wrong with the file, or why the surface has no grid.
@@ -18,17 +21,17 @@ pub(crate) fn inspect<'j, 'g>(
     of: Named<'j, 'g>,
     file: &std::path::Path,
     arguments: &Deviation,
-) -> Result<Measured<'j, 'g>, String> {
+) -> Result<Measured<'j, 'g>, Failure> {
     let shown = spec::shown(file);
-    let text = std::fs::read_to_string(file).map_err(|error| format!("cannot read {shown}: {error}"))?;
-    let readings = read_measured(&text, &of.surface.name).map_err(|fault| format!("{shown}: {fault}"))?;
-    let most = |index: &dyn Fn(&MeasuredPoint) -> usize| readings.iter().map(index).max().map_or(0, |last| last + 1);
-    let counts = [most(&|reading| reading.row), most(&|reading| reading.column)];
+    let text = spec::other_text(file, MOST_BYTES)?;
+    let read = read_measured(&text, &of.surface.name).map_err(|fault| format!("{shown}: {fault}"))?;
+    let MeasuredGrid { counts, points: readings } = read;
     if counts[0] * counts[1] > MOST_PLACES {
         let [rows, columns] = counts;
         return Err(format!(
             "{shown}: {rows} rows of {columns} columns are more than the {MOST_PLACES} points that are compared"
-        ));
+        )
+        .into());
     }
     let placed = Placed::new(of.job, of.surface, arguments.margin.shares(), arguments.means)?;
     let [profile, length] = placed.shares(counts);

@@ -1,6 +1,6 @@
 //! `flank solve --limits`: the lines at which a surface, or the tool's contact with it, ends.
 
-use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_chain_dsl::{GeneratedSurface, Job, Sample, spaced};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
 use flank_solver::{SurfacePoint, SurfaceProblem};
@@ -62,10 +62,8 @@ fn line<'j, 'g>(
 ) -> Line<'j, 'g> {
     let ends = sample.each_target().map(|target| target[k]);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let steps = sample.counts.into_iter().max().unwrap_or(1).max(2) - 1;
-    let share = |step: usize| step as f64 / steps as f64;
-    let targets: Vec<[f64; 2]> =
-        (0..=steps).map(|step| [0.0, low * (1.0 - share(step)) + high * share(step)]).collect();
+    let count = sample.counts.into_iter().max().unwrap_or(1).max(2);
+    let targets: Vec<[f64; 2]> = spaced((low, high), count).into_iter().map(|value| [0.0, value]).collect();
     let along = &sample.coordinates[k];
     let problem =
         SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())

@@ -4,6 +4,7 @@ mod arguments;
 mod branches;
 mod certify;
 mod check;
+mod console;
 mod convert;
 mod cost;
 mod cut;
@@ -45,6 +46,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
+use console::{eprint, print};
 use failure::Failure;
 
 /// How a command ended, as the exit codes say it.
@@ -74,12 +76,13 @@ impl Ending {
 fn main() -> ExitCode {
     let command = match Arguments::try_parse() {
         Ok(arguments) => arguments.command,
-        Err(error) => {
-            if error.use_stderr() && std::env::args_os().any(|argument| argument == "--json") {
-                let told = error.to_string();
-                Failure::of_usage(told.trim().trim_start_matches("error: ").to_string()).tell(true);
-            }
-            error.exit()
+        Err(error) if error.use_stderr() => {
+            let is_json = std::env::args_os().any(|argument| argument == "--json");
+            return ExitCode::from(Failure::of_parser(&error).tell(is_json).code());
+        }
+        Err(asked) => {
+            print(&asked.render().ansi().to_string());
+            return ExitCode::from(Ending::Done.code());
         }
     };
     let ending = run(&command).unwrap_or_else(|failure| failure.tell(command.is_json()));
@@ -105,10 +108,4 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Completions(arguments) => Ok(shell::completions(arguments)),
         Command::Man(arguments) => shell::man(arguments),
     }
-}
-
-/// Writes to stdout; a reader that has gone away is not an error.
-fn print(text: &str) {
-    use std::io::Write;
-    let _ = anstream::stdout().write_all(text.as_bytes());
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample, SampleGrid};
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample, SampleGrid, spaced};
 use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, Part, Patch, Point};
 use flank_expr::Graph;
 use flank_solver::SurfacePoint;
@@ -15,7 +15,7 @@ use crate::files::Folder;
 use crate::progress::Working;
 use crate::solve::Wanted;
 use crate::table::aligned;
-use crate::{Ending, deviation, print, solve, spec, units};
+use crate::{Ending, deviation, eprint, print, solve, spec, units};
 
 /// Rows and columns of the grid that tells how a flank lies.
 const TRIAL: usize = 5;
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
             continue;
         }
         let flanks = meant.iter().map(|surface| flank(job, surface, arguments)).collect::<Result<_, String>>()?;
-        let header = solve::header(&job.name, &arguments.which, &hash);
+        let header = solve::header(&[job], &arguments.which, &hash);
         let grid = MeasuringGrid { header, margins: arguments.margin.shares(), flanks };
         let mut folder = Folder::at(&arguments.out)?;
         for format in &arguments.format {
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
         let told = unsolved(&grid);
         print(&if arguments.json { as_json(&grid, &folder.written, &told) } else { as_text(&grid, &folder.written) });
         if !told.is_empty() {
-            anstream::eprint!("{told}");
+            eprint(&told);
             ending = Ending::Unsolved;
         }
     }
@@ -82,7 +82,7 @@ impl<'j, 'g> Placed<'j, 'g> {
                 sample.labels[k]
             ));
         }
-        let shares: Vec<f64> = spaced(TRIAL, 0.0);
+        let shares = spaced((0.0, 1.0), TRIAL);
         let trial = lattice(sample, false, [&shares, &shares]);
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
         let patch = solve::patch(job, name, surface, axes, &solve::points(job, surface, &trial, wanted(means)).points);
@@ -107,7 +107,7 @@ impl<'j, 'g> Placed<'j, 'g> {
 
     /// The shares of so many rows and columns within the margins.
     pub(crate) fn shares(&self, counts: [usize; 2]) -> [Vec<f64>; 2] {
-        [0, 1].map(|k| spaced(counts[k], self.margins[k]))
+        [0, 1].map(|k| within(self.margins[k], counts[k]))
     }
 
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Vec<SurfacePoint> {
@@ -129,10 +129,9 @@ fn wanted(means: Means) -> Wanted {
     Wanted { geometry: false, sensitivity: false, certificates: false, together: None, means }
 }
 
-/// So many shares from end to end, without the margins; a single one is the middle.
-fn spaced(count: usize, margin: f64) -> Vec<f64> {
-    let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
-    (0..count).map(|k| margin + (1.0 - 2.0 * margin) * share(k)).collect()
+/// So many shares from end to end, without the margins.
+fn within(margin: f64, count: usize) -> Vec<f64> {
+    spaced((0.0, 1.0), count).into_iter().map(|share| margin + (1.0 - 2.0 * margin) * share).collect()
 }
 
 /// Points of a sample's area at shares of the way along its rows and its columns; `across`: along its columns and its rows.
@@ -261,7 +260,7 @@ mod tests {
 
     #[test]
     fn the_middle_of_an_odd_grid_is_the_middle() {
-        assert_eq!(spaced(5, 0.1), [0.1, 0.30000000000000004, 0.5, 0.7000000000000001, 0.9]);
-        assert_eq!(spaced(1, 0.1), [0.5]);
+        assert_eq!(within(0.1, 5), [0.1, 0.30000000000000004, 0.5, 0.7000000000000001, 0.9]);
+        assert_eq!(within(0.1, 1), [0.5]);
     }
 }

@@ -42,8 +42,9 @@ fn all() -> BTreeMap<String, Shipped> {
 /// Which there are, if there is none of that name.
 fn find(all: &BTreeMap<String, Shipped>, name: &str) -> Result<&'static str, String> {
     let is_meant = |known: &str| {
-        let short = known.strip_prefix("flank.").unwrap_or(known);
-        [known, short].contains(&name) || short.split('/').next() == Some(name)
+        let bare = |name: &str| name.strip_prefix("flank.").unwrap_or(name).to_string();
+        let (known, name) = (bare(known), bare(name));
+        known == name || known.split('/').next() == Some(&name)
     };
     // the newest of several versions comes last
     let found = all.iter().rfind(|(known, _)| is_meant(known));

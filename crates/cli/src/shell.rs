@@ -24,10 +24,10 @@ pub(crate) fn completions(arguments: &Completions) -> Ending {
 
 /// Writes a page for the program and one for each command.
 pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
-    let mut program = Arguments::command();
+    // `flank help` has no page of its own for the program's page to name
+    let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
-    let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
-    let pages: Vec<clap::Command> = std::iter::once(&program).chain(commands).cloned().collect();
+    let pages: Vec<clap::Command> = std::iter::once(&program).chain(program.get_subcommands()).cloned().collect();
     let mut folder = Folder::at(&arguments.out)?;
     for page in pages {
         let page = clap_mangen::Man::new(page).date("");

@@ -20,8 +20,8 @@ use crate::step::{self, Smooth};
 use crate::stream::{self, Kept, Streamed};
 use crate::summary::Summary;
 use crate::table::{self, Solved, Table};
-use crate::{Ending, cut, print, spec, travel, trims};
-use crate::{branches, certify, geometry, reach, reasons, required};
+use crate::{Ending, cut, eprint, print, spec, travel, trims};
+use crate::{branches, certify, geometry, reach, reasons};
 
 pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
     let start = Instant::now();
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         // a trim that takes nothing has no line
         let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
-        let dataset = dataset(job, &solved, &lines, header(&job.name, &arguments.which, &hash));
+        let dataset = dataset(job, &solved, &lines, header(&[job], &arguments.which, &hash));
         let faces: Vec<Smooth> = arguments
             .faces
             .step
@@ -53,9 +53,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
             .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
             .collect();
         let written = write_files(&dataset, &solved, &faces, &job.name, arguments)?;
-        let told = branches::ambiguous(&solved)
-            + &required::text(&solved)
-            + &table::unsolved(job, &solved)
+        let told = table::failures(job, &solved)
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
             + &travel::beyond(job, &solved)
@@ -63,10 +61,12 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         let spec = spec::shown(&arguments.which.file);
         let table = Table { job, spec, solved: &solved, lines: &lines, faces: &faces, written, since: start };
         print(&if arguments.json { table.json(&told) } else { table.text() });
-        anstream::eprintln!("{}", table.time());
-        anstream::eprint!("{}{}{}", branches::undecided(&solved), limits::untold(&lines), step::told(&faces));
+        eprint(&format!("{}\n", table.time()));
+        eprint(
+            &(branches::begun(&solved) + &branches::undecided(&solved) + &limits::untold(&lines) + &step::told(&faces)),
+        );
         if !told.is_empty() {
-            anstream::eprint!("{told}");
+            eprint(&told);
             ending = Ending::Unsolved;
         }
     }
@@ -84,7 +84,7 @@ pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>>, Fai
     if asked.is_empty() {
         return Err(idle.iter().map(|job| told(job)).collect::<Vec<String>>().join("\n").into());
     }
-    idle.iter().for_each(|job| anstream::eprintln!("note: {}", told(job)));
+    idle.iter().for_each(|job| eprint(&format!("note: {}\n", told(job))));
     Ok(asked)
 }
 
@@ -112,9 +112,9 @@ pub(crate) fn solve_surface<'j, 'g>(
         Err(reason) => return Some(Err(reason)),
     }
     let _working = Working::on(format!("solving {}", surface.name));
-    let Found { problem, mut points, effort, trims } = points(job, surface, sample, wanted);
+    let Found { problem, points, effort, trims } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
-    let needed = reach::beyond(job, surface, sample, &mut points, wanted.means);
+    let needed = reach::needed(surface, &points);
     let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets(), &points));
     let mut fields = Vec::new();
     if wanted.geometry {
@@ -208,6 +208,7 @@ pub(crate) fn problem<'g>(
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
+        .map(|problem| problem.reaching(reach::followed(surface)))
         .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
         .expect("a job without errors leaves nothing unbound")
         .on(means.instructions())
@@ -234,14 +235,14 @@ pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'
     Dataset { header, patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect() }
 }
 
-/// Where the data of a job comes from.
-pub(crate) fn header(job: &str, which: &Which, hash: &str) -> Header {
-    let settings = which.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
+/// Where the data of a job comes from; of further jobs it is said what was set by hand.
+pub(crate) fn header(jobs: &[&Job<'_>], which: &Which, hash: &str) -> Header {
+    let settings = which.set_in(jobs).into_iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Header {
         program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
         spec: spec::shown(&which.file),
         spec_hash: format!("sha256:{hash}"),
-        job: job.to_string(),
+        job: jobs.first().map_or(String::new(), |job| job.name.clone()),
         conventions: settings.collect(),
     }
 }

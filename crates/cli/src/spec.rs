@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{Compilation, Diagnostic, Job, Sources, compile_file};
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Sources, compile_file, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
 use crate::arguments::Which;
+use crate::eprint;
 use crate::failure::{Failure, in_full};
 
 /// The jobs that are asked for. Warnings are told.
@@ -42,7 +43,7 @@ pub(crate) fn asked_for<'g>(compilation: &mut Compilation<'g>, which: &Which) ->
 
 /// Shows findings with the source underlined, and where to read more about the first error.
 pub(crate) fn tell(diagnostics: &[Diagnostic], sources: &Sources) {
-    anstream::eprint!("{}", in_full(diagnostics, sources));
+    eprint(&in_full(diagnostics, sources));
 }
 
 /// SHA-256 of all texts that a compilation read, in its order.
@@ -53,6 +54,18 @@ pub(crate) fn hash(compilation: &Compilation<'_>) -> String {
         hash.update(file.text.as_bytes());
     }
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The text of a file that is no spec, of at most so many bytes.
+///
+/// # Errors
+/// Why it cannot be read, in the words that are said of specs.
+pub(crate) fn other_text(path: &Path, most: usize) -> Result<String, Failure> {
+    let mut sources = Sources::default();
+    match read_other_file(&mut sources, path, most) {
+        Ok(file) => Ok(sources.file(file).text.clone()),
+        Err(finding) => Err(Failure::of_spec(&[finding], &sources)),
+    }
 }
 
 /// A path as messages show it: with forward slashes, the same on every system.

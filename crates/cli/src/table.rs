@@ -99,7 +99,7 @@ impl Row<'_, '_> {
         let mut first = [self.name.to_string(), self.summary.asked.to_string(), solved.to_string(), residual];
         if solved == 0 {
             let [name, asked, found, worst] = first;
-            return vec![[name, asked, found, worst, "none within the ranges".to_string()]];
+            return vec![[name, asked, found, worst, none(self.summary)]];
         }
         let reached = self.reached();
         let lines = reached.chunks(2).map(|pair| {
@@ -129,6 +129,19 @@ impl Row<'_, '_> {
             ("ranges_reached", json!(reached)),
         ];
         entries.map(|(key, value)| (key.to_string(), value)).into_iter().collect()
+    }
+}
+
+/// What has become of points none of which is solved.
+fn none(summary: &Summary) -> String {
+    let outcomes: Vec<(&&str, &usize)> = summary.outcomes.iter().collect();
+    match outcomes[..] {
+        [] | [(&"outside", _)] => "none within the ranges".to_string(),
+        [(word, _)] => format!("none: {word}"),
+        _ => {
+            let each: Vec<String> = outcomes.iter().map(|(word, count)| format!("{count} {word}")).collect();
+            format!("none: {}", each.join(", "))
+        }
     }
 }
 
@@ -181,8 +194,14 @@ impl Table<'_, '_, '_> {
     }
 }
 
+/// What was not done of points: branches that nothing chooses between, requirements that do not hold, points that are not solved;
+/// empty if all is well.
+pub(crate) fn failures(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+    branches::ambiguous(solved) + &required::text(solved) + &unsolved(job, solved)
+}
+
 /// What was asked for and not solved, in words; empty if nothing.
-pub(crate) fn unsolved(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+fn unsolved(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
     for solved in solved {
         let asked = solved.summary.asked;

@@ -10,6 +10,10 @@ use flank_solver::{Range, extent};
 use crate::table::Solved;
 use crate::units;
 
+/// An axis is beyond its travel if it is so by more than this share of it: laws of some hundred operations on numbers of the size of the
+/// travel round by far less, and no scale of a machine shows it.
+const SLACK: f64 = 1e-9;
+
 /// How far an axis goes over the motions that the solved points need.
 pub(crate) struct Run<'j, 'g> {
     pub(crate) axis: &'j Axis<'g>,
@@ -40,8 +44,7 @@ impl<'j> Run<'j, '_> {
     /// Whether it leaves its travel; `None` if it has none, or no place that could be told.
     pub(crate) fn is_beyond(&self) -> Option<bool> {
         let (found, (low, high)) = self.over.zip(self.axis.travel)?;
-        // rounding of the law itself
-        let slack = 1e-9 * (high - low);
+        let slack = SLACK * (high - low);
         Some(found.low < low - slack || found.high > high + slack)
     }
 }

@@ -159,3 +159,82 @@ fn errors_end_with_where_to_read_more() {
     let right = text(&flank(&["check", "specs/machines/cradle.chain"]).stderr);
     assert!(!right.contains("flank explain"), "{right}");
 }
+
+/// Who keeps what is printed must not find half of it and think that all is well.
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_finds_no_room_is_a_failure() {
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a disk that is always full");
+    let spec = "specs/hobbing/spur_gear.chain";
+    for arguments in [
+        &["derive", spec, "--latex"][..],
+        &["check", spec],
+        &["schema"],
+        &["explain"],
+        &["fmt", "-"],
+        &["completions", "bash"],
+        &["--help"],
+        &["solve", "--help"],
+        &["--version"],
+    ] {
+        let run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"))
+            .args(arguments)
+            .current_dir(top())
+            .stdin(std::fs::File::open(top().join(spec)).expect("it is shipped"))
+            .stdout(full())
+            .output()
+            .expect("the binary runs");
+        assert_eq!(run.status.code(), Some(1), "{arguments:?}");
+        assert_eq!(text(&run.stderr), "error: cannot write to stdout: the disk is full\n", "{arguments:?}");
+    }
+    // with nowhere to tell what is wrong the exit code still tells that something is
+    let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"));
+    let run = run.args(["check", "no_such_file.chain"]).stderr(full()).output().expect("the binary runs");
+    assert_eq!(run.status.code(), Some(1));
+}
+
+/// A number that cannot be is answered with those that can.
+#[test]
+fn numbers_of_the_command_line_say_what_they_may_be() {
+    let [spur, pinion] = ["specs/hobbing/spur_gear.chain", "specs/bevel/pinion_19x62.chain"];
+    let convert = ["convert", pinion, "--to", "specs/machines/free_form.chain"];
+    for (arguments, words) in [
+        (&["solve", spur, "--step=0um"][..], "a length above zero is needed"),
+        (&["solve", spur, "--step=-1um"], "a length above zero is needed"),
+        (&["solve", spur, "--step=1"], "write a length with its unit"),
+        (&[&convert[..], &["--tolerance", "0um"]].concat(), "a length above zero is needed"),
+        (&[&convert[..], &["--positions", "1.5"]].concat(), "write a whole number from 1 to 1000000"),
+        (&[&convert[..], &["--time", "-3"]].concat(), "write a number of seconds above zero"),
+    ] {
+        let run = flank(arguments);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&run.stderr).contains(words), "{arguments:?}: {}", text(&run.stderr));
+    }
+}
+
+#[test]
+fn a_schema_is_found_with_or_without_its_prefix_and_version() {
+    let whole = text(&flank(&["schema", "flank.solve/2"]).stdout);
+    assert!(whole.contains("\"title\": \"flank.solve/2\""), "{whole}");
+    for name in ["solve", "flank.solve", "solve/2"] {
+        assert_eq!(text(&flank(&["schema", name]).stdout), whole, "{name}");
+    }
+    assert_eq!(flank(&["schema", "flank.nothing"]).status.code(), Some(1));
+}
+
+#[test]
+fn help_says_that_one_job_is_carried_over() {
+    let help =
+        |command: &str| text(&flank(&[command, "--help"]).stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help("solve").contains("all of them otherwise"));
+    assert!(help("derive").contains("all of them otherwise, but with --to one at a time"));
+    assert!(!help("convert").contains("all of them otherwise"));
+}
+
+/// A name that cannot be is one mistake, not also a job without surfaces.
+#[test]
+fn a_job_without_a_name_is_one_mistake() {
+    let wrong = written(&folder("nameless"), "wrong.chain", "job 3d {\n    param a : length = 1 mm\n}\n");
+    let told = text(&flank(&["check", &wrong]).stderr);
+    assert!(told.contains("E0101") && !told.contains("makes no surface"), "{told}");
+}

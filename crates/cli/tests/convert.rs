@@ -140,6 +140,106 @@ fn a_tolerance_that_no_order_meets_is_told() {
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "no polynomials were found");
 }
 
+/// The pinion of the library with all that it uses, in a folder; its text, to be changed, and where variants of it belong.
+fn pinion_in(out: &std::path::Path) -> (String, std::path::PathBuf) {
+    let run = flank(&["new", "pinion_19x62", "--out", out.to_str().expect("a plain path")]);
+    assert!(run.status.success(), "{}", text_of(&run));
+    let here = out.join("bevel");
+    (std::fs::read_to_string(here.join("pinion_19x62.chain")).expect("written"), here)
+}
+
+/// Where no point says what a polynomial leaves, no tolerance is kept; nothing claims that one is.
+#[test]
+fn a_tolerance_without_solved_points_is_told() {
+    let out = folder("convert-pointless");
+    let (job, here) = pinion_in(&out);
+    let unsampled = job.split("    sample concave {").next().expect("a job").to_string() + "}\n";
+    let kept = |line: &&str| !line.contains("envelope(") || line.contains("surface concave ");
+    let edge: String = unsampled.lines().filter(kept).map(|line| format!("{line}\n")).collect();
+    let edge = edge
+        .replace("envelope(c.outside.blade, over: roll)", "sweep(k.edge, over: roll)")
+        .replace("    mount c on m.cutter", "    mount c on m.cutter\n    tool k = knife()\n    mount k on m.cutter")
+        + "tool knife { surface edge(u: length in 0 mm .. 3 mm) { at = [95 mm, 0 mm, u] body towards [1, 0, 0] } }\n";
+    // far outside: no roll and no place on the blade reach it
+    let beyond = job.split("    sample concave_fillet {").next().expect("a job").to_string() + "}\n";
+    let beyond = beyond
+        .replace("[92.01104639454321 mm, 25", "[992.01104639454321 mm, 925")
+        .replace("[127.37207511178428 mm, 35", "[1027.37207511178428 mm, 935")
+        .replace("[90.38697957449442 mm, 30", "[990.38697957449442 mm, 930")
+        .replace("[125.26744107470495 mm, 43", "[1025.26744107470495 mm, 943");
+    for (name, text, is_asked) in [("unsampled", &unsampled, false), ("edge", &edge, false), ("beyond", &beyond, true)]
+    {
+        let job = support::written(&here, &format!("{name}.chain"), text);
+        let files = out.join(name);
+        let files_there = || std::fs::read_dir(&files).map_or(0, Iterator::count);
+        let to = [
+            "--to",
+            "specs/machines/free_form.chain",
+            "--time",
+            "20",
+            "--nc",
+            "fanuc",
+            "--out",
+            files.to_str().unwrap(),
+        ];
+        let run = flank(&[&["convert", &job, "--tolerance", "0.1um"][..], &to].concat());
+        let told = text_of(&run);
+        assert_eq!(run.status.code(), Some(3), "{name}: {told}");
+        assert!(told.contains("no order is known to keep the flank within 1.000e-1 um"), "{name}: {told}");
+        assert!(!told.contains("off by up to 0.000000 um"), "{name}: {told}");
+        assert_eq!(told.contains("not solved: 465 of 465 points of concave\n"), is_asked, "{name}: {told}");
+        assert_eq!(files_there(), 0, "{name}");
+        // an order that is said is taken; points that are asked for and not solved are told all the same
+        let run = flank(&[&["convert", &job, "--order", "6"][..], &to].concat());
+        assert_eq!(run.status.code(), Some(if is_asked { 3 } else { 0 }), "{name}: {}", text_of(&run));
+        assert_eq!(files_there(), 2, "{name}");
+    }
+}
+
+fn text_of(run: &std::process::Output) -> String {
+    text(&run.stdout) + &text(&run.stderr)
+}
+
+/// Points that the job's own machine does not reach are told as `flank solve` tells them.
+#[test]
+fn points_that_are_not_solved_are_told() {
+    let out = folder("convert-unsolved");
+    let (job, here) = pinion_in(&out);
+    let job = support::written(&here, "job.chain", &job.replace("-20 deg .. 20 deg", "-20 deg .. 5 deg"));
+    let at = ["--out", out.to_str().unwrap()];
+    let solved = flank(&[&["solve", &job, "--no-picture"][..], &at].concat());
+    assert_eq!(solved.status.code(), Some(3));
+    let told = text(&solved.stderr);
+    let from = told.find("not solved: ").expect("some are not");
+    let of_concave = told[from..].split_inclusive('\n').take(4).collect::<String>();
+    assert!(of_concave.starts_with("not solved: ") && of_concave.contains(" points of concave\n"), "{told}");
+    let to = ["--to", "specs/machines/free_form.chain"];
+    let run = flank(&[&["convert", &job][..], &to, &at].concat());
+    assert_eq!(run.status.code(), Some(3), "{}", text_of(&run));
+    assert!(text(&run.stderr).contains(&of_concave), "{}\n{told}", text(&run.stderr));
+    let run = flank(&[&["convert", &job, "--json"][..], &to, &at].concat());
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert!(table["not_done"][0].as_str().expect("told").starts_with("not solved: "), "{}", table["not_done"]);
+    let run = flank(&["convert", &job, "--to", out.join("machines/cradle.chain").to_str().unwrap(), "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert!(found["not_done"][0].as_str().expect("told").starts_with("not solved: "), "{}", found["not_done"]);
+}
+
+/// What is only made of one motion is not passed over in silence where a job has two.
+#[test]
+fn a_tolerance_over_two_motions_is_told() {
+    let out = folder("convert-two");
+    let job = ["convert", "specs/hobbing/helical_gear.chain", "--to", "specs/machines/hobbing_6axis.chain"];
+    let asked = ["--tolerance", "1um", "--emit", "c", "--out", out.to_str().unwrap()];
+    let run = flank(&[&job[..], &asked].concat());
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(
+        told.contains("nothing is done for --tolerance, --out, --emit: there is that of one motion only"),
+        "{told}"
+    );
+}
+
 /// At a constant rate velocities are differences of positions in the limit; here of 1,001 of them, which the mean of the ends of each
 /// step meets to the third order.
 #[test]
@@ -210,6 +310,46 @@ fn settings_of_another_machine_are_found() {
     assert!(text(&run.stderr).contains("--fit cutter_tlit: there is no such setting"), "{}", text(&run.stderr));
     let run = flank(&[&target[..], &["--fit", "hypoid_offset"]].concat());
     assert!(text(&run.stderr).contains("it does not move the tool against the work"), "{}", text(&run.stderr));
+    let free = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain"];
+    let run = flank(&[&free[..], &["--fit", "nosuch"]].concat());
+    let told = text(&run.stderr);
+    assert!(told.contains("there is no such setting; free_form has no setting that can be looked for"), "{told}");
+}
+
+/// Settings have no files: what asks for one is refused, and not passed over.
+#[test]
+fn of_settings_there_are_no_files() {
+    let target = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/cradle.chain"];
+    let asked = ["--nc", "fanuc", "--time", "20", "--emit", "c", "--format", "json", "--order", "4", "--out", "x"];
+    let run = flank(&[&target[..], &["--fit", "sliding_base"], &asked].concat());
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(2), "{told}");
+    assert!(told.contains("leave out --order, --out, --format, --nc, --time, --emit, and ask"), "{told}");
+    // without --fit it is the settings without a value that are looked for
+    let run = flank(&[&target[..], &["--tolerance", "1um"]].concat());
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(2), "{told}");
+    assert!(told.contains("has no value") && told.contains("leave out --tolerance"), "{told}");
+}
+
+/// The work's axis stands at 145 to 219 degrees, and whole turns more or less: travels beyond half a turn hold that.
+#[test]
+fn a_rotary_travel_beyond_half_a_turn_is_used() {
+    let out = folder("convert-turns");
+    let free_form = support::self_contained(&["machines/free_form"]);
+    for (low, high) in [(140.0, 230.0), (500.0, 590.0), (-230.0, -130.0)] {
+        let machine =
+            format!("{free_form}machine far extends free_form {{ axis A : rotary in {low} deg .. {high} deg }}\n");
+        let target = support::written(&out, "target.chain", &machine);
+        let job =
+            ["convert", "specs/bevel/pinion_19x62.chain", "--to", &target, "--json", "--out", out.to_str().unwrap()];
+        let run = flank(&job);
+        assert_eq!(run.status.code(), Some(0), "{low} .. {high}: {}", text(&run.stderr));
+        let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let axis = table["axes"].as_array().unwrap().iter().find(|axis| axis["name"] == "A").expect("an axis");
+        let [from, to] = ["low", "high"].map(|end| axis[end].as_f64().unwrap());
+        assert!(low <= from && to <= high, "{axis}");
+    }
 }
 
 /// What no machine can do is told in words, with the place.
@@ -241,6 +381,40 @@ fn bad_targets_are_told() {
     // no axis at all
     let none = "machine none { axis X : linear fix X = 1 mm frame bed frame cutter in bed = translate_x(X) frame work in bed = rotate_z(0 deg) }\n";
     assert!(told(pinion, none, &[]).contains("no axis of none moves the tool against the work"));
+}
+
+/// The thesis gear's cutter points 165.6638 deg away from the work's axis. A head that nutates about an axis at 45 degrees turns its
+/// spindle by 90 at most: 75.6638 are missing. A fork head gets there, and stands beyond its travel in two axes.
+#[test]
+fn directions_beyond_reach_and_all_axes_beyond_travel_are_told() {
+    let out = folder("convert-directions");
+    let told = |target: &str| {
+        let run = flank(&["convert", "specs/bevel/thesis_gear.chain", "--to", target, "--out", out.to_str().unwrap()]);
+        assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+        (text(&run.stdout), text(&run.stderr))
+    };
+    let nutating = "machine nutating {
+        axis X : linear
+        axis Y : linear
+        axis Z : linear
+        axis B : rotary
+        axis C : rotary
+        frame ground
+        frame cross in ground = translate(-X, -Y, 0 mm)
+        frame work in cross = rotate_z(-C)
+        frame ram in ground = translate_z(Z)
+        frame head in ram = rotate([0, 1, 1], B)
+        frame cutter in head = translate_z(-180 mm) rotate_x(180 deg)
+    }";
+    let (printed, told_of) = told(&support::written(&out, "nutating.chain", nutating));
+    let missing = "101 of 101 positions: the tool's axis cannot point there: 75.6638 deg are missing, wherever B, C of nutating stand";
+    assert!(told_of.contains(missing), "{told_of}");
+    assert!(!printed.contains("travel"), "no positions: {printed}");
+    let (_, told_of) = told("specs/machines/five_axis_head_table.chain");
+    // 174 of 900 mm are a larger share than 46 of 240 degrees
+    let both = told_of.find("head_table.Z has to stand at -473.8846 mm, 173.8846 mm beyond");
+    let second = told_of.find("head_table.B has to stand at 165.6638 deg, 45.6638 deg beyond");
+    assert!(both.is_some() && both < second, "{told_of}");
 }
 
 /// A shaped gear and its cutter turn about parallel axes: two axes of the free-form machine do the same.

@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{flank, folder, text};
+use support::{flank, folder, text, written};
 
 #[test]
 fn deviation_of_two_flanks_is_told_and_drawn() {
@@ -37,4 +37,49 @@ fn a_worm_wheel_lies_off_the_conjugate_one() {
     let told = text(&run.stdout);
     assert_eq!(run.status.code(), Some(0), "{told}");
     assert!(told.contains("points       315 of 315") && told.contains("range        -36.448 .. 0.223 um"), "{told}");
+}
+
+/// A polar angle goes on beyond half a turn on both surfaces: cylinders of 15 mm and 14.9 mm lie 100 um apart all the way.
+#[test]
+fn a_deviation_is_told_across_half_a_turn() {
+    let out = folder("half_turn");
+    let spec = written(
+        &out,
+        "cylinders.chain",
+        "machine lathe { axis C : rotary frame bed frame work in bed = rotate_z(C) }
+        tool knife {
+            param reach : length
+            surface edge(u: length in 0 mm .. 3 mm) { at = [reach, 0 mm, u] body towards [1, 0, 0] }
+        }
+        job j {
+            machine m = lathe
+            tool one   = knife(reach: 15 mm)
+            tool other = knife(reach: 14.9 mm)
+            mount one   on m.bed
+            mount other on m.bed
+            motion turn : angle in -360 deg .. 0 deg
+            drive m.C = turn
+            surface ideal in m.work = sweep(one.edge, over: turn)
+            surface real  in m.work = sweep(other.edge, over: turn)
+            sample ideal { z: 1 mm .. 2 mm by 3, polar_angle: 150 deg .. 220 deg by 5 }
+        }",
+    );
+    let run = flank(&[
+        "deviation",
+        &spec,
+        "real",
+        "--from",
+        "ideal",
+        "--as-it-lies",
+        "--no-picture",
+        "--json",
+        "--out",
+        out.to_str().expect("a plain path"),
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!((told["asked"].as_u64(), told["known"].as_u64()), (Some(15), Some(15)));
+    for end in ["lowest_um", "highest_um"] {
+        assert!((told[end].as_f64().expect("a number").abs() - 100.0).abs() < 1e-6, "{told}");
+    }
 }

@@ -18,7 +18,7 @@ fn a_rexs_file_becomes_a_job() {
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let job = text(&run.stdout);
     for part in [
-        "//! Signs: left-hand-pinion: cutter_tilt, cutter_swivel and center_roll_position times -1.",
+        "//! Signs: left-hand-pinion: cutter_tilt, cutter_swivel and center_roll_position times -1, coefficients of motions as they are.",
         "//! helical_motion_coefficients, order 2: -1.5 times 2 is helical_motion_2.",
         "cradle_angle: -52.79674678267486 deg",
         "cutter_tilt: -2.5 deg",
@@ -37,6 +37,92 @@ fn a_rexs_file_becomes_a_job() {
     let run = flank(&["check", "target/imported.chain"]);
     let _ = std::fs::remove_file(&here);
     assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
+}
+
+/// The sheet of a published left-hand pinion with all joints moving, signs as printed there.
+const SHEET: &str = r#"<model version="1.4"><components>
+  <component id="1" type="bevel_gear_manufacturing_settings">
+    <attribute id="radial_distance" unit="mm">97.95940290780507</attribute>
+    <attribute id="center_roll_position" unit="deg">52.79674678267486</attribute>
+    <attribute id="cutter_tilt" unit="deg">2.5</attribute>
+    <attribute id="cutter_swivel" unit="deg">-20</attribute>
+    <attribute id="work_offset" unit="mm">-1.5</attribute>
+    <attribute id="sliding_base" unit="mm">0.8</attribute>
+    <attribute id="machine_root_angle" unit="deg">15.64096727073747</attribute>
+    <attribute id="machine_center_to_crossing_point" unit="mm">-0.6</attribute>
+    <attribute id="ratio_of_roll" unit="none">3.339685914944047</attribute>
+    <attribute id="modified_roll_coefficients"><array><c>0.03</c><c>-0.12</c><c>0.5</c><c>-2.0</c></array></attribute>
+    <attribute id="helical_motion_coefficients"><array><c>1.2</c><c>-3</c><c>4</c></array></attribute>
+    <attribute id="vertical_motion_coefficients"><array><c>0.7</c><c>-2</c></array></attribute>
+    <attribute id="radial_motion_coefficients"><array><c>-0.9</c><c>2.5</c><c>-6</c></array></attribute>
+    <attribute id="tilt_motion_coefficients"><array><c>0.01</c><c>-0.03</c></array></attribute>
+    <attribute id="swivel_motion_coefficients"><array><c>0.02</c><c>0.05</c></array></attribute>
+  </component>
+  <component id="2" type="bevel_gear_tool">
+    <attribute id="blade_point_radius" unit="mm">95.9517390193892</attribute>
+    <attribute id="blade_pressure_angle" unit="deg">20</attribute>
+    <attribute id="blade_spheric_radius" unit="mm">250</attribute>
+    <attribute id="tool_edge_radius_bevel_gear_tool" unit="mm">0.20845</attribute>
+  </component>
+</components></model>"#;
+
+/// The sheet as it is, read with the signs of a left-hand pinion, gives the flank of which there is an independent table.
+#[test]
+fn the_signs_of_a_left_hand_pinion_give_its_flank() {
+    let out = folder("rexs_flank");
+    let file = written(&out, "sheet.rexs", SHEET);
+    let made = flank(&["new", "pinion_19x62", "--out", out.to_str().unwrap()]);
+    assert!(made.status.success(), "for the library beside the job");
+    let of = ["import", &file, "--signs", "left-hand-pinion", "--coefficients", "taylor", "--outside", "2"];
+    let run = flank(&[&of[..], &["--library", "."]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let sample = "    sample concave.blade {\n        s: 1 mm .. 7 mm by 4, roll: -0.2 rad .. 0.2 rad by 5\n        \
+                  keep theta: 80 deg .. 170 deg\n    }\n}\n";
+    let job = text(&run.stdout).trim_end().strip_suffix('}').expect("a job").to_string() + sample;
+    let job = written(&out, "imported.chain", &job);
+    let run = flank(&["solve", &job, "--no-picture", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let numbers = |path: &std::path::Path, columns: [&str; 3]| -> Vec<[f64; 3]> {
+        let table = std::fs::read_to_string(path).expect("a table");
+        let mut lines = table.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(','));
+        let titles: Vec<&str> = lines.next().expect("titles").collect();
+        let places = columns.map(|column| titles.iter().position(|title| *title == column).expect("a column"));
+        let row = |cells: Vec<&str>| places.map(|place| cells[place].parse().expect("a number"));
+        lines.map(|line| row(line.collect())).collect()
+    };
+    let found = numbers(&out.join("imported.csv"), ["x", "y", "z"]);
+    let table = top().join("tests/reference/universal_19x62_pinion_concave_alljoints.csv");
+    // the first five points are the edge's
+    let expected = &numbers(&table, ["X", "Y", "Z"])[5..];
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        // the table is good to 1e-9 mm in its condition
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-8), "{found:?} instead of {expected:?}");
+    }
+}
+
+/// Whatever a text of the file holds, it stays within its comment.
+#[test]
+fn texts_of_the_file_write_no_lines() {
+    let out = folder("rexs_lines");
+    let hostile = "1&#10;job x {&#13;}&#133;";
+    let content = REXS
+        .replace("version=\"1.4\"", &format!("version=\"{hostile}\""))
+        .replace("id=\"12\"", &format!("id=\"12{hostile}\""))
+        .replace("name=\"pinion\"", &format!("name=\"{hostile}\""))
+        .replace("name=\"outside\"", &format!("name=\"{hostile}\""))
+        .replace("id=\"cutter_tilt\" unit=\"deg\"", &format!("id=\"{hostile}\" unit=\"{hostile}\""));
+    let file = written(&out, "hostile.rexs", &content);
+    let of = ["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"];
+    let run = flank(&of);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let job = text(&run.stdout);
+    assert!(job.contains("REXS 1 job x { } ,"), "{job}");
+    assert!(job.lines().all(|line| !line.starts_with("job x")) && !job.contains(['\r', '\u{85}']), "{job}");
+    for (option, value) in [("--name", "a b"), ("--name", "a {}\njob b"), ("--library", "specs\"\nuse \"x")] {
+        let run = flank(&[&of[..], &[option, value]].concat());
+        assert_eq!(run.status.code(), Some(2), "{option} {value}: {}", text(&run.stdout));
+    }
 }
 
 #[test]
@@ -149,5 +235,16 @@ fn a_rexs_file_as_programs_write_it_becomes_a_job() {
     ] {
         let (code, told) = import(&WHOLE.replace(from, to));
         assert!(code == Some(1) && told.contains(wanted), "{from}: {told}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn what_has_no_end_is_not_read() {
+    for (file, why) in support::endless(&folder("import_endless")) {
+        let run = flank(&["import", &file, "--signs", "frames"]);
+        assert_eq!(run.status.code(), Some(1), "{file}");
+        let told = text(&run.stderr);
+        assert!(told.contains(&format!("error[E0001]: cannot read `{file}`: {why}")), "{told}");
     }
 }

@@ -11,6 +11,10 @@ fn without_machine_code_the_bytes_are_the_same() {
         &["solve", "specs/bevel/pinion_19x62.chain", "--limits"][..],
         &["solve", "specs/hobbing/real_hob.chain", "--set", "points=9", "--no-picture"],
         &["deviation", "specs/bevel/ease_off_19x62.chain", "pinion.concave", "--from", "conjugate.concave"],
+        &["plot", "specs/bevel/pinion_19x62.chain", "--what", "curvature,section,contact-lines"],
+        &["plot", "specs/bevel/ease_off_19x62.chain", "--surface", "pinion.concave", "--from", "conjugate.concave"],
+        &["report", "specs/hobbing/spur_gear.chain", "--format", "md"],
+        &["view", "specs/hobbing/spur_gear.chain"],
         &["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/free_form.chain", "--positions", "11"],
     ];
     for (k, run) in runs.into_iter().enumerate() {

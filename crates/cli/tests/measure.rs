@@ -47,6 +47,36 @@ fn deviations(out: &Path, name: &str) -> Vec<f64> {
     lines.map(|line| line.rsplit(',').next().expect("cells").parse().expect("a number")).collect()
 }
 
+/// The two flanks of a space face each other, with their fillets; what lies between them, or on a tip, is neither.
+#[test]
+fn roots_and_tips_are_neither_left_nor_right() {
+    let out = folder("measure_hands");
+    for spec in
+        [PINION, "specs/bevel/hypoid_pinion.chain", "specs/bevel/formate_gear.chain", "specs/hobbing/worm_wheel.chain"]
+    {
+        let run = flank(&["measure", spec, "--json", "--out", out.to_str().expect("a plain path")]);
+        let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let hands: Vec<(&str, Option<&str>)> = told["flanks"]
+            .as_array()
+            .expect("flanks")
+            .iter()
+            .map(|one| (one["surface"].as_str().expect("a name"), one["flank"].as_str()))
+            .collect();
+        for (name, hand) in &hands {
+            let is_between = ["root", "tip"].iter().any(|part| name.ends_with(part));
+            assert_eq!(hand.is_none(), is_between, "{spec}: {name} {hand:?}");
+        }
+        let of = |side: &str, other: &str| -> Vec<Option<&str>> {
+            let is_meant = |name: &str| name.contains(side) && !name.contains(other);
+            hands.iter().filter(|(name, hand)| is_meant(name) && hand.is_some()).map(|(_, hand)| *hand).collect()
+        };
+        let sides = if spec.ends_with("worm_wheel.chain") { ["lower", "upper"] } else { ["concave", "convex"] };
+        let [one, two] = [of(sides[0], sides[1]), of(sides[1], sides[0])];
+        assert!(one.len() > 1 && one.iter().all(|hand| *hand == one[0]), "{spec}: {hands:?}");
+        assert!(two.len() > 1 && two.iter().all(|hand| *hand == two[0] && *hand != one[0]), "{spec}: {hands:?}");
+    }
+}
+
 #[test]
 fn a_bevel_grid_runs_from_root_to_tip_and_toe_to_heel_on_the_flank_that_is_sampled() {
     let out = folder("measure_bevel");
@@ -166,12 +196,12 @@ fn known_deviations_come_back() {
         let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
         assert!((told["turn_deg"].as_f64().expect("a turn").to_radians() - turn).abs() < 1e-10, "{told}");
         are_the_numbers_of(&told, &grid, &off);
-        let found = deviations(&out, "pinion_19x62.concave.measured.csv");
+        let found = deviations(&out, "pinion_19x62.concave.measured.deviation.csv");
         for (found, off) in found.iter().zip(&off) {
             assert!((1e-3 * found - off).abs() < 1e-9, "{found} um, {off} mm");
         }
         assert_eq!(found.len(), 45);
-        assert!(out.join("pinion_19x62.concave.measured.svg").exists());
+        assert!(out.join("pinion_19x62.concave.measured.deviation.svg").exists());
     }
 }
 
@@ -217,6 +247,34 @@ fn a_middle_that_is_missing_hides_nothing() {
     assert!(text(&run.stdout).contains("range        -4.000 .. 5.000 um, rms 3.536\n"), "{}", text(&run.stdout));
 }
 
+/// A last row and a last column that were not measured do not move the points that were.
+#[test]
+fn ends_that_were_not_measured_keep_their_place() {
+    let out = folder("measure_ends");
+    measure(&out, &[PINION, "--surface", "concave"]);
+    let grid = nominal(&out.join("pinion_19x62.grid.csv"), "concave", "grid");
+    let lines = grid.iter().map(|([row, column], [x, y, z], _)| match (row, column) {
+        (5, _) | (_, 9) => format!("concave,grid,{row},{column},,,\n"),
+        _ => format!("concave,grid,{row},{column},{x},{y},{z}\n"),
+    });
+    let table = "surface,part,row,column,x,y,z\n".to_string() + &lines.collect::<String>();
+    let file = written(&out, "measured.csv", &table);
+    let run = flank(
+        &[
+            &["deviation", PINION, "concave", "--measured", &file, "--as-it-lies", "--no-picture", "--json"][..],
+            &["--out", out.to_str().unwrap()],
+        ]
+        .concat(),
+    );
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("not measured: 13 of 45 points"), "{}", text(&run.stderr));
+    let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    for end in ["lowest_um", "highest_um"] {
+        // coordinates are written with all their digits
+        assert!(told[end].as_f64().expect("a number").abs() < 1e-6, "{told}");
+    }
+}
+
 /// What another setting leaves, measured against the nominal flank, is what the exact derivative says, to first order.
 #[test]
 fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
@@ -237,7 +295,7 @@ fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
         ["deviation", PINION, "concave", "--measured", file.to_str().unwrap(), "--margin", "0", "--as-it-lies"];
     let run = flank(&[&arguments[..], &["--no-picture", "--out", out.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
-    let found = deviations(&out, "pinion_19x62.concave.measured.csv");
+    let found = deviations(&out, "pinion_19x62.concave.measured.deviation.csv");
     let run =
         flank(&["solve", PINION, "--sensitivity", "--no-picture", "--format", "json", "--out", out.to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(0));
@@ -272,15 +330,51 @@ fn what_is_missing_or_wrong_is_told() {
     let partial = written(&out, "partial.csv", "row,column,deviation_um\n1,1,3\n2,2,4\n3,3,5\n");
     for (arguments, code, words) in [
         (&["measure", PINION, "--surface", "flank"][..], 1, "there is no surface `flank`"),
-        (&["measure", PINION, "--rows", "1"], 2, "1 is not in 2..=1000"),
+        (&["measure", PINION, "--rows", "1"], 2, "write a whole number from 2 to 1000"),
         (&["measure", PINION, "--margin", "0.5"], 2, "from 0 to below 0.5"),
-        (&["deviation", PINION, "concave"], 2, "--from"),
-        (&["deviation", PINION, "concave", "--measured", "none.csv"], 1, "cannot read none.csv"),
+        (&["deviation", PINION, "concave"], 2, "`concave` is held against: --from SURFACE or --measured FILE"),
+        (&["measure", PINION, "--rows", "-1"], 2, "write a whole number from 2 to 1000"),
+        (&["measure", PINION, "--margin", "-0.1"], 2, "write one share or two"),
+        (&["deviation", PINION, "concave", "--from", "convex", "--margin", "0.1"], 2, "--margin says where"),
+        (
+            &["deviation", PINION, "concave", "--measured", "none.csv"],
+            1,
+            "error[E0001]: cannot read `none.csv`: there is no such file",
+        ),
         (&["deviation", PINION, "concave", "--measured", PINION], 1, "there is no column `row`"),
         (&["deviation", PINION, "concave", "--measured", &partial], 3, "not measured: 6 of 9 points"),
     ] {
         let run = flank(&[arguments, &["--out", at]].concat());
         assert_eq!(run.status.code(), Some(code), "{arguments:?}: {}", text(&run.stderr));
         assert!(text(&run.stderr).contains(words), "{arguments:?}: {}", text(&run.stderr));
+    }
+}
+
+/// The file of a machine stays, whatever it is called.
+#[test]
+fn what_was_measured_is_not_written_over() {
+    let out = folder("measure_own_input");
+    let at = out.to_str().unwrap();
+    let table = "row,column,deviation_um\n1,1,3\n1,2,-4\n2,1,0\n2,2,5\n";
+    let file = written(&out, "pinion_19x62.concave.measured.csv", table);
+    let run = flank(&["deviation", PINION, "concave", "--measured", &file, "--no-picture", "--out", at]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert_eq!(std::fs::read_to_string(&file).expect("still there"), table);
+    assert!(out.join("pinion_19x62.concave.measured.deviation.csv").exists());
+    let file = written(&out, "pinion_19x62.concave.measured.deviation.csv", table);
+    let run = flank(&["deviation", PINION, "concave", "--measured", &file, "--no-picture", "--out", at]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("is what this command reads"), "{}", text(&run.stderr));
+    assert_eq!(std::fs::read_to_string(&file).expect("still there"), table);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_has_no_end_is_not_read() {
+    for (file, why) in support::endless(&folder("measured_endless")) {
+        let run = flank(&["deviation", PINION, "concave", "--measured", &file]);
+        assert_eq!(run.status.code(), Some(1), "{file}");
+        let told = text(&run.stderr);
+        assert!(told.contains(&format!("error[E0001]: cannot read `{file}`: {why}")), "{told}");
     }
 }

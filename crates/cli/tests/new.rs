@@ -60,6 +60,39 @@ fn a_new_job_has_its_name_and_values() {
     assert_eq!(std::fs::read_to_string(out.join("hobbing/my_gear.chain")).expect("still there"), made);
 }
 
+/// As on every other command, of several values for one parameter the last one counts.
+#[test]
+fn of_values_for_one_parameter_the_last_counts() {
+    let out = folder("new-last");
+    let set = ["--set", "teeth=100", "--set", "helix_angle=15 deg", "--set", "teeth=37"];
+    let run = flank(&[&["new", "helical_gear", "--out", out.to_str().unwrap()], &set[..]].concat());
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let made = std::fs::read_to_string(out.join("hobbing/helical_gear.chain")).expect("written");
+    assert!(made.contains("= 37\n") && made.contains("= 15 deg\n"), "{made}");
+    assert!(!made.contains("100\n") && !made.contains("370"), "{made}");
+}
+
+/// What is no text, or cannot be read, is not taken for absent.
+#[test]
+fn what_stands_there_stays_whatever_it_is() {
+    let out = folder("new-there");
+    std::fs::create_dir_all(out.join("hobbing")).unwrap();
+    let file = out.join("hobbing/helical_gear.chain");
+    let told = |wanted: &str| {
+        let run = flank(&["new", "helical_gear", "--out", out.to_str().unwrap()]);
+        assert_eq!(run.status.code(), Some(1), "{}", text(&run.stdout));
+        assert!(text(&run.stderr).contains(wanted), "{}", text(&run.stderr));
+    };
+    std::fs::write(&file, b"Z\xe4hne").unwrap();
+    told("is there already and says something else");
+    assert_eq!(std::fs::read(&file).unwrap(), b"Z\xe4hne");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1, "nothing else is written either");
+    // a folder by that name cannot be read as a file
+    std::fs::remove_file(&file).unwrap();
+    std::fs::create_dir(&file).unwrap();
+    told("is there already and cannot be read");
+}
+
 #[test]
 fn questions_are_answered_line_by_line() {
     let out = folder("new-ask");
@@ -94,10 +127,57 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
         text(&run.stderr)
     };
     assert!(wrong(&["helical_gaer"], 1).contains("did you mean `helical_gear`?"));
+    assert!(wrong(&["xyz"], 1).contains("the library has no job `xyz`; `flank new` lists them"));
     assert!(
         wrong(&["helical_gear", "--set", "tooth=3"], 1).contains("has no parameter `tooth`; it has: `normal_module`")
     );
     assert!(wrong(&["helical_gear", "--set", "teeth=3 mm"], 1).contains("E0"), "the value is checked as in a file");
     assert!(wrong(&["helical_gear", "--set", "teeth=}"], 1).contains("error"));
     assert!(wrong(&["helical_gear", "--name", "my gear"], 2).contains("a letter first"));
+    for flag in [&["--name", "mine"][..], &["--set", "teeth=3"], &["--ask"]] {
+        assert!(wrong(flag, 2).contains("<TEMPLATE>"), "{flag:?} without a job to start from");
+    }
+}
+
+/// What is wrong with a value or a name is shown where it was given, and nothing of it in a folder that is gone.
+#[test]
+fn errors_are_shown_where_they_were_given() {
+    let out = folder("new-places");
+    let path = out.to_str().expect("a plain path");
+    for (given, place) in [
+        (["--set", "teeth=3 mm"], "--> --set:1:7"),
+        (["--set", "teeth=3 +"], "--> --set:1:9"),
+        (["--set", "teeth=2"], "--> --set:1:7"),
+        (["--name", "job"], "--> --name:1:1"),
+        (["--name", "hob_zi"], "--> --name:1:1"),
+    ] {
+        let run = flank(&[&["new", "helical_gear", "--out", path][..], &given].concat());
+        assert_eq!(run.status.code(), Some(1), "{given:?}");
+        let told = text(&run.stderr);
+        assert!(told.contains(place) && !told.contains(".tmp"), "{given:?}: {told}");
+    }
+    let run = flank(&["new", "helical_gear", "--out", path, "--set", "teeth=2"]);
+    assert!(text(&run.stderr).contains(&format!("{path}/hobbing/helical_gear.chain:")), "{}", text(&run.stderr));
+}
+
+/// A folder of its own is a project: its files are found from wherever the program is called.
+#[test]
+fn a_new_project_works_from_inside() {
+    let out = tempfile::tempdir().expect("a folder that is in no project");
+    let run = flank(&["new", "helical_gear", "--out", out.path().to_str().expect("a plain path")]);
+    assert!(text(&run.stdout).contains("flank.toml"), "{}", text(&run.stdout));
+    let check = || {
+        let mut run = Command::new(env!("CARGO_BIN_EXE_flank"));
+        run.args(["check", "helical_gear.chain"]).current_dir(out.path().join("hobbing")).output().expect("it runs")
+    };
+    assert_eq!(check().status.code(), Some(0), "{}", text(&check().stderr));
+    // a machine that the user has changed stays, and the way out is one
+    let machine = out.path().join("machines/hobbing_6axis.chain");
+    let mine = std::fs::read_to_string(&machine).expect("written") + "// mine\n";
+    std::fs::write(&machine, &mine).expect("it can be");
+    let again = flank(&["new", "helical_gear", "--name", "other", "--out", out.path().to_str().expect("a plain path")]);
+    assert_eq!(again.status.code(), Some(1));
+    let told = text(&again.stderr);
+    assert!(told.contains("take another folder with --out") && !told.contains("--name"), "{told}");
+    assert_eq!(std::fs::read_to_string(&machine).expect("still there"), mine);
 }

@@ -32,7 +32,7 @@ fn without_a_wish_there_are_the_three_that_matter() {
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--json", "--out", out.to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
-    assert_eq!((&table["schema"], &table["job"]), (&"flank.plot/1".into(), &"spur_gear".into()));
+    assert_eq!((&table["schema"], &table["job"]), (&"flank.plot/2".into(), &"spur_gear".into()));
     let pictures = table["pictures"].as_array().expect("pictures");
     let kinds: Vec<&str> = pictures.iter().map(|one| one["what"].as_str().unwrap()).collect();
     assert_eq!(kinds, ["surface", "section", "contact-lines"]);
@@ -64,11 +64,11 @@ fn each_kind_says_what_it_shows() {
     ]);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let of = |kind: &str| labels(&out.join(format!("pinion_19x62.{kind}.svg")));
-    has(&of("surface"), &["concave", "convex", "root", "tip", "toe", "heel", "z (gear axis)"]);
+    has(&of("surface"), &["concave", "convex", "root", "tip", "toe", "heel", "z axis"]);
     has(&of("topography"), &["height over the plane", "root", "tip", "toe", "heel", "mm"]);
     has(&of("curvature"), &["k1", "k2", "Gaussian curvature", "mean curvature", "1/mm\u{b2}", "toe", "heel"]);
     has(&of("sensitivity"), &["d_normal/d_m.radial_distance", "\u{b5}m/mm", "root", "tip"]);
-    has(&of("residual"), &["residual", "mm", "z, mm", "radius, mm"]);
+    has(&of("residual"), &["residual", "mm or mm/rad", "z, mm", "radius, mm"]);
     has(&of("contact-lines"), &["roll", "concave, deg; in the axial plane", "0", "toe", "heel"]);
     has(&of("section"), &["concave", "root", "convex_fillet", "mm, towards the tip"]);
     has(&of("machine"), &["cradle in bed", "cutter in swivel", "work", "97.959 mm", "about \u{2212}x"]);
@@ -165,4 +165,45 @@ fn pictures_are_the_same_at_each_run() {
             .map(|kind| std::fs::read(out.join(format!("helical_gear.{kind}.png"))).unwrap())
     });
     assert!(files[0] == files[1]);
+}
+
+/// What fits is told whatever it takes to draw it.
+#[test]
+fn what_fits_includes_what_takes_more_to_know() {
+    let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--what", "left"]);
+    let told = text(&run.stderr);
+    let fits = told.lines().find(|line| line.starts_with("what fits: ")).expect("a list").to_string();
+    assert!(fits.contains("curvature") && fits.contains("sensitivity") && !fits.contains("deviation"), "{fits}");
+}
+
+/// Points that are not on a picture are told as elsewhere, with the same exit code.
+#[test]
+fn what_is_not_solved_is_told() {
+    let out = folder("plot_unsolved");
+    let arguments = ["specs/hobbing/undercut_gear.chain", "--no-picture", "--out", out.to_str().unwrap()];
+    let solved = flank(&[&["solve"], &arguments[..]].concat());
+    let arguments = ["plot", arguments[0], "--what", "machine", "--json", "--out", arguments[3]];
+    let run = flank(&arguments);
+    assert_eq!((run.status.code(), solved.status.code()), (Some(3), Some(3)), "{}", text(&run.stderr));
+    let told = text(&run.stderr);
+    assert!(told.contains("not solved: ") && text(&solved.stderr).contains(&told), "{told}");
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let first = table["not_done"][0].as_str().expect("a message");
+    assert!(told.starts_with(first), "{first}");
+    assert!(out.join("undercut_gear.machine.svg").exists());
+}
+
+/// A flag that would change nothing is refused, or does what it says.
+#[test]
+fn flags_are_heeded_or_refused() {
+    let found = plotted(
+        "plot_one_surface",
+        &["specs/hobbing/spur_gear.chain", "--what", "surface", "--surface", "fillet_plus"],
+        "spur_gear.surface.svg",
+    );
+    has(&found, &["fillet_plus"]);
+    assert!(!found.iter().any(|label| label.contains("flank_")), "{found:?}");
+    let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--of", "teeth"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("--of names what `sensitivity` shows"), "{}", text(&run.stderr));
 }

@@ -103,8 +103,9 @@ fn other_machines() {
     judge.run(&[&["convert", PINION, "--to", FREE_FORM, "--time", "20", "--nc", "linuxcnc"][..], &at].concat(), 0);
     judge.file(&out.join("pinion_19x62_on_free_form.json"));
     judge.run(&[&["convert", PINION, "--to", FREE_FORM, "--tolerance", "1e-15um"][..], &at].concat(), 3);
-    judge.run(&[&["convert", THESIS, "--to", CRADLE, "--fit", "work_offset"][..], &at].concat(), 0);
-    judge.run(&[&["convert", THESIS, "--to", CRADLE, "--fit", "work_ofset"][..], &at].concat(), 1);
+    judge.run(&["convert", THESIS, "--to", CRADLE, "--fit", "work_offset", "--json"], 0);
+    judge.run(&["convert", THESIS, "--to", CRADLE, "--fit", "work_ofset", "--json"], 1);
+    judge.run(&[&["convert", THESIS, "--to", CRADLE, "--fit", "work_offset"][..], &at].concat(), 2);
     judge.run(&["derive", PINION, "--json"], 0);
     judge.run(&["derive", PINION, "--json", "--latex"], 0);
     judge.run(&["derive", PINION, "--json", "--cost"], 0);
@@ -138,7 +139,7 @@ fn comparisons_and_pictures() {
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
     judge.has_met(&[
         "flank.deviation/1",
-        "flank.plot/1",
+        "flank.plot/2",
         "flank.view/1",
         "flank.measure/1",
         "flank.grid/1",

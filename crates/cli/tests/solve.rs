@@ -34,6 +34,41 @@ fn solve_writes_points_and_pictures() {
     assert_eq!(csv.lines().filter(|line| line.ends_with(",solved")).count(), 1302);
 }
 
+/// A table says as much of the points as the spec: another cell is another hash.
+#[test]
+fn the_hash_of_a_spec_is_also_that_of_its_tables() {
+    let at = folder("hash");
+    let out = at.to_str().expect("a plain path");
+    let spec = written(
+        &at,
+        "relieved.chain",
+        "machine lathe { axis C : rotary frame bed frame work in bed = rotate_z(C) }
+        tool pick {
+            let relief = curve(\"relief.csv\", s: length, depth: length)
+            surface edge(s: length in 0 mm .. 4 mm) { at = [15 mm - relief(s), 0 mm, s] body towards [1, 0, 0] }
+        }
+        job j {
+            machine m = lathe
+            tool p = pick
+            mount p on m.bed
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            surface s in m.work = sweep(p.edge, over: turn)
+            sample s { z: 1 mm .. 3 mm by 2, turn: 10 deg .. 80 deg by 2 }
+        }",
+    );
+    let hash = |depth: &str| {
+        written(&at, "relief.csv", &format!("s, depth\n0, 0\n2, {depth}\n4, 0\n"));
+        let run = flank(&["solve", &spec, "--no-picture", "--format", "json", "--out", out]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let points = std::fs::read(at.join("j.json")).expect("it is written");
+        let points: serde_json::Value = serde_json::from_slice(&points).expect("JSON");
+        points["spec_hash"].as_str().expect("a hash").to_string()
+    };
+    assert_eq!(hash("0.5"), hash("0.5"));
+    assert_ne!(hash("0.5"), hash("0.6"));
+}
+
 /// Ten teeth are cut under: the singular line is on the base circle, at u = r sin²α / cos α.
 #[test]
 fn limits_are_listed_and_written() {
@@ -372,12 +407,13 @@ fn wrong_settings_of_hobbing_machines_are_told() {
             1,
             "with this swivel the hob's thread lies across the teeth and mills them away",
         ),
+        ("skived_internal_gear", "cutter_helix_angle=0 deg", 1, "the axes of cutter and gear are parallel"),
         ("worm_wheel", "starts=6", 1, "plunged radially, a hob of so many starts cuts the ends of the flanks away"),
         ("beveloid", "m.swivel=50 deg", 1, "`swivel` is 50 deg, outside its range -45 deg .. 45 deg"),
         ("crowned_gear", "h.starts=12", 1, "each thread of a hob cuts with several teeth: more gashes than starts"),
         ("crowned_gear", "h.addendum=9 mm", 1, "the hob's teeth are pointed below their tip"),
         ("worm_wheel_tangential", "face_width=40 mm", 3, "infeed outside its range, by up to 11.9"),
-        ("beveloid", "teeth=250", 3, "beyond its travel: axis m.X runs from 413.4"),
+        ("beveloid", "teeth=250", 3, "beyond its travel: axis m.X runs from 413.6"),
     ] {
         let file = format!("specs/hobbing/{spec}.chain");
         let run = flank(&["solve", &file, "--set", set, "--no-picture", "--out", out]);
@@ -461,4 +497,57 @@ fn bevel_gears_of_wrong_settings_are_told_as_such() {
         assert_eq!(code, Some(3), "{spec}, {to}: {told}");
         assert!(told.contains(wanted), "{spec}, {to}: {told}");
     }
+}
+
+/// Files name what was set by hand in their own job; a value of another job is none of theirs.
+#[test]
+fn what_is_set_by_hand_is_told_where_it_is() {
+    let out = folder("set_by_hand");
+    let spec = "specs/bevel/ease_off_19x62.chain";
+    let set = ["--set", "m.hypoid_offset=1 um", "--no-picture", "--out", out.to_str().unwrap()];
+    let run = flank(&[&["solve", spec], &set[..]].concat());
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", text(&run.stderr));
+    let head = |job: &str| std::fs::read_to_string(out.join(format!("{job}.csv"))).expect("written");
+    assert!(head("conjugate").contains("# set by hand: m.hypoid_offset = 1 um\n"));
+    assert!(!head("basic").contains("set by hand"));
+    let run = flank(&[&["solve", spec, "--job", "basic"], &set[..]].concat());
+    assert_eq!(run.status.code(), Some(1));
+    let told = text(&run.stderr);
+    assert!(told.contains("E0201") && told.contains("job `basic` has no parameter `m.hypoid_offset`"), "{told}");
+}
+
+/// Points that are there, but not taken, are not said to be outside the ranges.
+#[test]
+fn why_a_surface_has_no_point_is_told_in_its_row() {
+    let out = folder("none_solved");
+    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
+    let unsaid = written(&out, "unsaid.chain", &(unsaid.join("\n") + "\n"));
+    let solve = |arguments: &[&str]| {
+        let run = flank(&[&["solve", "--no-picture", "--out", out.to_str().unwrap()], arguments].concat());
+        assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+        (text(&run.stdout), text(&run.stderr))
+    };
+    let (table, _) = solve(&[&unsaid]);
+    assert!(table.contains("-  none: ambiguous\n") && !table.contains("none within the ranges"), "{table}");
+    // without roll the cutter turns about its own parallel: all points lie at one angle of it
+    let (_, told) = solve(&["specs/bevel/pinion_19x62.chain", "--set", "m.ratio_of_roll=0"]);
+    assert!(told.contains("theta of c.outside.edge at 0.0000 deg would reach them all"), "{told}");
+}
+
+/// Surfaces of different bodies do not lie over each other at one origin: each frame has its own mesh.
+#[test]
+fn each_frame_has_its_own_mesh() {
+    let out = folder("meshes_of_frames");
+    let spec = "specs/bevel/pair_from_blank.chain";
+    let run = flank(&["solve", spec, "--no-picture", "--format", "csv,obj,stl", "--out", out.to_str().unwrap()]);
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", text(&run.stderr));
+    for frame in ["p.work", "g.work"] {
+        let mesh = std::fs::read_to_string(out.join(format!("pair_from_blank.{frame}.obj"))).expect("written");
+        let frames: Vec<&str> = mesh.lines().filter_map(|line| line.strip_prefix("# frame ")).collect();
+        assert!(!frames.is_empty() && frames.iter().all(|known| *known == frame), "{frames:?}");
+        assert!(out.join(format!("pair_from_blank.{frame}.stl")).exists());
+        assert!(text(&run.stdout).contains(&format!("pair_from_blank.{frame}.stl")));
+    }
+    assert!(!out.join("pair_from_blank.stl").exists() && out.join("pair_from_blank.csv").exists());
 }

@@ -15,7 +15,7 @@ const BUFFER: usize = 1 << 16;
 ///
 /// The content goes to a file in the same folder that has no name (a hidden one where the system knows no others), is forced to
 /// the disk, and gets its name at the end. On any error that file is gone and what was there before stays. A link is followed, so the file it names is
-/// replaced; a device or a pipe is written to as it is.
+/// replaced; a device or a pipe is written to as it is. A file that may not be written to is not replaced either.
 ///
 /// ```
 /// # let folder = tempfile::tempdir()?;
@@ -43,7 +43,11 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), Writ
     match existing {
         Some(found) if found.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory).into()),
         Some(found) if !found.is_file() => fill(File::options().write(true).open(path)?, content).map(|_| ()),
-        Some(found) => through_temporary(&fs::canonicalize(path)?, Some(found.permissions()), content),
+        Some(found) => {
+            // a folder may be written to where the file may not
+            File::options().append(true).open(path)?;
+            through_temporary(&fs::canonicalize(path)?, Some(found.permissions()), content)
+        }
         None => through_temporary(path, None, content),
     }
 }

@@ -2,16 +2,26 @@
 
 use crate::dataset::Header;
 
-/// What a reader must know to use the numbers, then the caller's own sentences.
+const UNITS: &str = "lengths in mm, angles in degrees, not reduced to one turn";
+const FRAMES: &str = "positions and unit normals are in the frame named with their surface";
+const NORMALS: &str = "a normal points out of the body that owns the surface: out of the gear's steel on a tooth flank";
+const PLACES: &str = "row i and column j count from 0; what each runs over is named with its surface";
+
+/// What a reader must know to use the numbers of all points, then the caller's own sentences.
 #[must_use]
 pub fn sentences(header: &Header) -> Vec<String> {
-    let fixed = [
-        "lengths in mm, angles in degrees, not reduced to one turn",
-        "positions and unit normals are in the frame named with their surface",
-        "a normal points out of the body that owns the surface: out of the gear's steel on a tooth flank",
-        "row i and column j count from 0; what each runs over is named with its surface",
-        "a point that was not solved has a status that says why, the residual of the best attempt, and no other numbers",
-    ];
+    let unsolved = "a point that was not solved has a status that says why, the residual of the best attempt, and no other numbers";
+    with_own(&[UNITS, FRAMES, NORMALS, PLACES, unsolved], header)
+}
+
+/// The same for a mesh of the solved points, with their places in the grid or without.
+pub(crate) fn sentences_of_mesh(header: &Header, has_places: bool) -> Vec<String> {
+    let solved = "only solved points are in this file; triangles face where the normals point";
+    let places = if has_places { &[PLACES][..] } else { &[] };
+    with_own(&[&[UNITS, FRAMES, NORMALS][..], places, &[solved]].concat(), header)
+}
+
+fn with_own(fixed: &[&str], header: &Header) -> Vec<String> {
     fixed.iter().map(|&sentence| sentence.to_owned()).chain(header.conventions.iter().map(|s| one_line(s))).collect()
 }
 

@@ -95,8 +95,8 @@ pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unk
 pub use error::{FileError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
 pub use measuring::{
-    FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredPoint, MeasuringGrid, NominalFlank, Part,
-    read_measured, write_grid_csv, write_grid_json,
+    FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,
+    Part, read_measured, write_grid_csv, write_grid_json,
 };
 pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,

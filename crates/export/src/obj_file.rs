@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crate::bands::{Banded, Seen, Surfaces};
-use crate::conventions::{one_line, sentences};
+use crate::conventions::{one_line, sentences_of_mesh};
 use crate::dataset::Point;
 use crate::error::WriteError;
 use crate::facets::each_facet;
@@ -19,7 +19,7 @@ use crate::number::push_shortest;
 pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     writeln!(out, "# {}; spec: {}; job: {}", one_line(&header.program), one_line(&header.spec), one_line(&header.job))?;
-    sentences(header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
+    sentences_of_mesh(header, false).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
     let mut before = 0;
     for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {
         let outline = surface.outline();

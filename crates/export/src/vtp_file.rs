@@ -2,7 +2,7 @@
 
 use crate::bands::{Banded, Seen, Surfaces};
 use crate::columns::{union_of_fields, union_of_unknowns};
-use crate::conventions::{one_line, sentences};
+use crate::conventions::{one_line, sentences_of_mesh};
 use crate::dataset::{Field, Patch, Point, Unknown, Values};
 use crate::error::WriteError;
 use crate::facets::{Mesh, count_facets};
@@ -241,11 +241,9 @@ impl Array<'_> {
 /// The conventions, as lines that may stand in an XML comment.
 fn head(surfaces: &Surfaces<'_>, seen: &Seen) -> String {
     let header = surfaces.header;
-    let mut lines = vec![
-        format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job),
-        "only solved points are in this file".to_owned(),
-    ];
-    lines.extend(sentences(header));
+    let mut lines =
+        vec![format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job)];
+    lines.extend(sentences_of_mesh(header, true));
     lines.extend(surfaces.outlines().zip(&seen.tallies).enumerate().map(|(k, (patch, tally))| {
         format!("surface {k} `{}`: frame {}; {}", patch.name, patch.frame, tally.verdict())
     }));

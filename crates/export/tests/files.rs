@@ -83,3 +83,18 @@ fn permissions_links_and_devices_are_respected() {
     write_atomically(Path::new("/dev/null"), |out| Ok(out.write_all(b"new")?)).unwrap();
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
 }
+
+/// A folder that may be written to says nothing of its files: one that may not be written to stays. (The system's owner may always.)
+#[cfg(unix)]
+#[test]
+fn a_file_that_may_not_be_written_to_stays() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let path = folder.path().join("points.csv");
+    std::fs::write(&path, "old").expect("the test's file");
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o444)).expect("it is the test's own");
+    let may = std::fs::File::options().append(true).open(&path).is_ok();
+    let done = flank_export::write_atomically(&path, |out| Ok(out.write_all(b"new")?));
+    assert_eq!(done.is_ok(), may);
+    assert_eq!(std::fs::read_to_string(&path).expect("it is there"), if may { "new" } else { "old" });
+}

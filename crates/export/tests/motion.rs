@@ -321,22 +321,6 @@ fn malformed_tables_are_refused() {
 }
 
 #[test]
-fn turns_are_unwound() {
-    let mut table = table();
-    let whole = table.clone();
-    for row in &mut table.rows {
-        row.axes[3] = row.axes[3].rem_euclid(TAU);
-    }
-    table.unwind();
-    let shift = whole.rows[0].axes[3] - table.rows[0].axes[3];
-    assert!((shift / TAU - (shift / TAU).round()).abs() < 1e-12);
-    for (row, whole) in table.rows.iter().zip(&whole.rows) {
-        assert!((row.axes[3] + shift - whole.axes[3]).abs() < 1e-12);
-        assert_eq!(row.axes[..3], whole.axes[..3]);
-    }
-}
-
-#[test]
 fn csv_has_the_numbers() {
     let table = table();
     let text = written(|out| write_motion_csv(&table, out));

@@ -158,13 +158,49 @@ fn the_figure_says_what_it_shows() {
         "y",
         "5 mm",
         "frame m.table",
-        "z (gear axis)",
+        "z axis",
     ] {
         assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
     }
     let all = labels.join(" ");
     assert!(all.contains("Solved 343 of 375 points asked for; worst residual 1.1e-14."), "{all}");
     assert!(all.contains("not converged 6, outside 25, singular 1"), "{all}");
+}
+
+/// Patches of two frames do not lie over each other, and all of many patches are named.
+#[test]
+fn frames_have_their_own_views() {
+    let patch = |k: usize| {
+        let plane = synthetic::plane([5, 5], [30.0, 0.0, 0.0], 8.0);
+        flank_export::Patch { name: format!("side {k}"), frame: format!("m.body{}", k % 2), ..plane }
+    };
+    let labels = labels(&drawn(&synthetic::dataset("pair", (0..10).map(patch).collect())).0);
+    for frame in ["m.body0", "m.body1"] {
+        for wanted in [format!("in {frame}"), format!("frame {frame}")] {
+            assert_eq!(labels.iter().filter(|label| **label == wanted).count(), 1, "{wanted} in {labels:?}");
+        }
+    }
+    for k in 0..10 {
+        let wanted = format!("side {k} in m.body{}", k % 2);
+        assert!(labels.contains(&wanted), "{wanted} in {labels:?}");
+    }
+}
+
+/// A cylinder's second curvature is zero but for rounding.
+#[test]
+fn rounding_is_not_drawn_as_data() {
+    let mut patch = synthetic::plane([9, 9], [30.0, 0.0, 0.0], 8.0);
+    let values = (0..81).map(|k| Some(if k % 2 == 0 { 3e-17 } else { -2e-17 })).collect();
+    patch.fields = vec![flank_export::Field {
+        name: "k2".into(),
+        unit: "1/mm".into(),
+        meaning: String::new(),
+        values: flank_export::Values::Scalars(values),
+    }];
+    let dataset = synthetic::dataset("cylinder", vec![patch]);
+    let labels = labels(&field_maps(&dataset, "curvature", &[(0, 0)], "", &PictureOptions::default()).svg());
+    assert!(labels.iter().any(|label| label == "0 within rounding"), "{labels:?}");
+    assert!(!labels.iter().any(|label| label.contains("e\u{2212}17")), "{labels:?}");
 }
 
 #[test]

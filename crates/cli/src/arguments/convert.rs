@@ -1,14 +1,15 @@
 //! The arguments of `flank convert`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use flank_export::Dialect;
 use flank_expr::Language;
 
-use super::{Means, Which, length};
+use super::{Means, Which, count, length};
 
 #[derive(Args, Debug)]
+#[command(mut_arg("job", |job| job.help("The job that is carried over, where the file holds several")))]
 #[command(after_help = "\
 The tool stands to the work on the target machine as it does on the job's own, up to what the tool does not see: a cutter of
 revolution may turn about its axis.
@@ -32,25 +33,25 @@ pub(crate) struct Convert {
     #[arg(long, value_delimiter = ',', value_name = "SETTING")]
     pub(crate) fit: Vec<String>,
     /// How many positions, over the motion as far as the sampled points need it
-    #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]
     pub(crate) positions: u32,
-    /// The order of the polynomials
-    #[arg(long, value_name = "ORDER", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=30), conflicts_with = "tolerance")]
-    pub(crate) order: u32,
+    /// The order of the polynomials; 6 otherwise
+    #[arg(long, value_name = "ORDER", value_parser = count(0..=30), allow_hyphen_values = true, conflicts_with = "tolerance")]
+    order: Option<u32>,
     /// Take the smallest order that keeps the flank this near, for example 0.1um or 0.002mm
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
-    /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
-    pub(crate) out: PathBuf,
-    /// Files with positions and polynomials: csv, json, or both with a comma
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
-    pub(crate) format: Vec<TableFormat>,
+    /// Folder for the files, made if it is not there; build otherwise
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Files with positions and polynomials: csv, json, or both with a comma; csv otherwise
+    #[arg(long, value_enum, value_delimiter = ',')]
+    format: Vec<TableFormat>,
     /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
     #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
     /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) time: Option<f64>,
     /// Write a function of the motion that returns the axes and their first derivatives: c, rust, javascript
     #[arg(long, value_enum, value_delimiter = ',')]
@@ -61,6 +62,37 @@ pub(crate) struct Convert {
     /// Print everything as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl Convert {
+    /// The order of the polynomials where no tolerance chooses it.
+    pub(crate) fn order(&self) -> usize {
+        self.order.unwrap_or(6) as usize
+    }
+
+    /// The folder for the files.
+    pub(crate) fn out(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("build"))
+    }
+
+    /// What files with positions and polynomials there are to be.
+    pub(crate) fn formats(&self) -> &[TableFormat] {
+        if self.format.is_empty() { &[TableFormat::Csv] } else { &self.format }
+    }
+
+    /// What is asked for that there is only of a motion, not of settings.
+    pub(crate) fn of_a_motion(&self) -> Vec<&'static str> {
+        let asked = [
+            (self.order.is_some(), "--order"),
+            (self.tolerance.is_some(), "--tolerance"),
+            (self.out.is_some(), "--out"),
+            (!self.format.is_empty(), "--format"),
+            (!self.nc.is_empty(), "--nc"),
+            (self.time.is_some(), "--time"),
+            (!self.emit.is_empty(), "--emit"),
+        ];
+        asked.into_iter().filter_map(|(is_asked, name)| is_asked.then_some(name)).collect()
+    }
 }
 
 /// What is carried over, and which frames of the target stand for the job's.
@@ -139,5 +171,7 @@ impl EmitLanguage {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let found = text.trim().trim_end_matches('s').trim().parse::<f64>().ok();
-    found.filter(|x| x.is_finite() && *x > 0.0).ok_or("write a number of seconds, for example 30".to_string())
+    found
+        .filter(|x| x.is_finite() && *x > 0.0)
+        .ok_or("write a number of seconds above zero, for example 30".to_string())
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Format, Means, TableFormat, Which};
+use super::{Format, Means, TableFormat, Which, count};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -23,15 +23,15 @@ pub(crate) struct Measure {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) surface: Vec<String>,
     /// Rows of the grid
-    #[arg(long, value_name = "COUNT", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 5, value_parser = count(2..=1000), allow_hyphen_values = true)]
     pub(crate) rows: u32,
     /// Columns of the grid
-    #[arg(long, value_name = "COUNT", default_value_t = 9, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 9, value_parser = count(2..=1000), allow_hyphen_values = true)]
     pub(crate) columns: u32,
     #[command(flatten)]
     pub(crate) margin: Margin,
     /// Also the profile line and the lead line through the middle, with so many points each
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    #[arg(long, value_name = "COUNT", value_parser = count(2..=100_000), allow_hyphen_values = true)]
     pub(crate) lines: Option<u32>,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build")]
@@ -50,15 +50,19 @@ pub(crate) struct Measure {
 #[derive(Args, Debug)]
 pub(crate) struct Margin {
     /// What a measuring grid leaves out at each end of the sampled area, as a share of it: from root to tip and along the tooth
-    /// if there are two numbers
-    #[arg(long, value_name = "SHARE[,SHARE]", default_value = "0.05", value_parser = margins)]
-    margin: [f64; 2],
+    /// if there are two numbers; 0.05 otherwise
+    #[arg(long, value_name = "SHARE[,SHARE]", value_parser = margins, allow_hyphen_values = true)]
+    margin: Option<[f64; 2]>,
 }
 
 impl Margin {
     /// From root to tip, along the tooth.
     pub(crate) fn shares(&self) -> [f64; 2] {
-        self.margin
+        self.margin.unwrap_or([0.05; 2])
+    }
+
+    pub(crate) fn is_given(&self) -> bool {
+        self.margin.is_some()
     }
 }
 
@@ -90,7 +94,7 @@ pub(crate) struct Deviation {
     /// The surface
     pub(crate) surface: String,
     /// The surface that it is held against; it is sampled in the spec
-    #[arg(long, value_name = "SURFACE", required_unless_present = "measured", conflicts_with = "measured")]
+    #[arg(long, value_name = "SURFACE", conflicts_with = "measured")]
     pub(crate) from: Option<String>,
     /// Measured points that are held against the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]

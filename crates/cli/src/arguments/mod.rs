@@ -4,10 +4,11 @@ mod convert;
 mod measuring;
 mod report;
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use flank_chain_dsl::Code;
+use flank_chain_dsl::{Code, Job};
 use flank_expr::InstructionSet;
 
 pub(crate) use convert::{Convert, EmitForm, Onto, TableFormat};
@@ -111,6 +112,13 @@ pub(crate) struct Which {
     pub(crate) set: Vec<(String, String)>,
 }
 
+impl Which {
+    /// The values that were set by hand, of parameters and settings of these jobs.
+    pub(crate) fn set_in(&self, jobs: &[&Job<'_>]) -> Vec<&(String, String)> {
+        self.set.iter().filter(|(name, _)| jobs.iter().any(|job| job.has_parameter(name))).collect()
+    }
+}
+
 /// How the numbers are worked out; it changes no bit of them.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Means {
@@ -121,9 +129,6 @@ pub(crate) struct Means {
 }
 
 impl Means {
-    /// The fastest that there is.
-    pub(crate) const MACHINE_CODE: Means = Means { no_machine_code: false };
-
     pub(crate) fn instructions(self) -> InstructionSet {
         if self.no_machine_code { InstructionSet::widest() } else { InstructionSet::fastest() }
     }
@@ -219,7 +224,7 @@ pub(crate) struct Plot {
     /// What is drawn, several with commas
     #[arg(long, value_enum, value_delimiter = ',')]
     pub(crate) what: Vec<What>,
-    /// The surfaces that maps show, several with commas
+    /// The surfaces that pictures show, several with commas; otherwise maps show the first that is sampled
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) surface: Vec<String>,
     /// The surface that the one of --surface is held against: for deviation and topography
@@ -243,6 +248,8 @@ pub(crate) struct Plot {
     /// Print what the files show as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -303,7 +310,19 @@ fn length(text: &str) -> Result<f64, String> {
         (None, Some(digits)) => number(digits, 1.0),
         (None, None) => None,
     };
-    found.filter(|x| x.is_finite() && *x > 0.0).ok_or("write a length with its unit, for example 0.1um".to_string())
+    match found.filter(|x| x.is_finite()) {
+        Some(length) if length > 0.0 => Ok(length),
+        Some(_) => Err("a length above zero is needed, for example 0.1um".to_string()),
+        None => Err("write a length with its unit, for example 0.1um".to_string()),
+    }
+}
+
+/// A whole number within a range.
+fn count(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
+    move |text| {
+        let found = text.trim().parse::<u32>().ok().filter(|count| range.contains(count));
+        found.ok_or(format!("write a whole number from {} to {}", range.start(), range.end()))
+    }
 }
 
 #[derive(Args, Debug)]
@@ -322,6 +341,7 @@ pub(crate) struct Check {
 }
 
 #[derive(Args, Debug)]
+#[command(mut_arg("job", |job| job.help("The job, where the file holds several; all of them otherwise, but with --to one at a time")))]
 #[command(after_help = "\
 Examples:
   flank derive specs/hobbing/helical_gear.chain
@@ -367,8 +387,8 @@ pub(crate) struct Explain {
 The job goes to stdout. REXS says neither in which frames its signs are nor what its coefficients multiply, so both must be said;
 they are written at the head of the job. Signs:
   frames            as they are in the file, taken for those of the frames of cradle_generator
-  left-hand-pinion  of machine summaries: tilt, swivel and cradle angle of a left-hand pinion are reversed
-  right-hand-gear   of machine summaries: tilt and work offset of its right-hand gear are reversed
+  left-hand-pinion  of machine summaries: tilt, swivel and cradle angle of a left-hand pinion are reversed, coefficients are not
+  right-hand-gear   of machine summaries: tilt and work offset of its right-hand gear are reversed, coefficients are not
 
 Examples:
   flank import pinion.rexs --signs left-hand-pinion --outside 21 --inside 22 > pinion.chain
@@ -392,10 +412,10 @@ pub(crate) struct Import {
     #[arg(long, value_name = "ID")]
     pub(crate) inside: Option<String>,
     /// The name of the job
-    #[arg(long, default_value = "imported")]
+    #[arg(long, default_value = "imported", value_parser = job_name)]
     pub(crate) name: String,
     /// Where the library lies, seen from the job's file
-    #[arg(long, value_name = "DIR", default_value = "specs")]
+    #[arg(long, value_name = "DIR", default_value = "specs", value_parser = quotable)]
     pub(crate) library: String,
     /// Print the job within JSON
     #[arg(long)]
@@ -453,6 +473,8 @@ pub(crate) struct View {
     /// Print files and sizes as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Args, Debug)]
@@ -510,20 +532,26 @@ pub(crate) struct New {
     /// The job to start from; without one, all are listed
     pub(crate) template: Option<String>,
     /// What the new job is called
-    #[arg(long, value_name = "NAME", value_parser = job_name)]
+    #[arg(long, value_name = "NAME", value_parser = job_name, requires = "template")]
     pub(crate) name: Option<String>,
     /// Give a parameter another value
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value, requires = "template")]
     pub(crate) set: Vec<(String, String)>,
     /// Ask for each parameter that is not set
-    #[arg(long)]
+    #[arg(long, requires = "template")]
     pub(crate) ask: bool,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = ".")]
+    #[arg(long, value_name = "DIR", default_value = ".", requires = "template")]
     pub(crate) out: PathBuf,
     /// Print the jobs to start from, or the files, as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What may stand between the quotes of `use`.
+fn quotable(text: &str) -> Result<String, String> {
+    let breaks = |letter: char| letter.is_control() || letter == '"';
+    if text.contains(breaks) { Err("it stands between quotes in the job".to_owned()) } else { Ok(text.to_owned()) }
 }
 
 fn job_name(text: &str) -> Result<String, String> {

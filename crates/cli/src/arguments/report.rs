@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Faces, Which};
+use super::{Faces, Means, Which};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -36,6 +36,8 @@ pub(crate) struct Report {
     /// Print what is on the page as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

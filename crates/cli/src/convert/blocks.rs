@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Axis;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem};
+use flank_solver::{PoseProblem, Range, Tube};
 
 use super::Carried;
 use super::files::decimals;
@@ -13,31 +13,34 @@ use crate::units;
 /// worse way at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Blocks {
-    /// Left by straight lines between positions.
-    pub(super) straight: f64,
+    /// Left by straight lines between positions; nothing where no proof bounds how far the axes are off them.
+    pub(super) straight: Option<f64>,
     /// Left by the rounding of positions.
     pub(super) rounding: f64,
 }
 
 impl Blocks {
-    /// For positions of one motion in order.
-    pub(super) fn of(carried: &Carried<'_, '_>) -> Option<Blocks> {
+    /// For positions of one motion in order; `tube` is where the axes are proven to stand.
+    pub(super) fn of(carried: &Carried<'_, '_>, tube: Option<&Tube>) -> Option<Blocks> {
         let Carried { problem, source, free: axes, positions, line, .. } = carried;
         let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
         let series: Vec<Vec<Vec<f64>>> = each.collect::<Option<_>>()?;
-        let blocks = positions.windows(2).zip(series.windows(2)).map(|(ends, series)| {
-            let step = ends[1][0] - ends[0][0];
-            // a chord is off by x'' step² / 8 at the most; x'' is twice the coefficient
-            let bend = |k: usize| 0.25 * step * step * series[0][k][2].abs().max(series[1][k][2].abs());
-            Block { from: ends[0][0], step, start: &series[0], bends: (0..axes.len()).map(bend).collect() }
+        let ends = positions.windows(2).zip(line.windows(2));
+        let blocks = ends.zip(&series).map(|((at, postures), start)| {
+            let range = Range { low: at[0][0], high: at[1][0] };
+            let step = range.high - range.low;
+            let [from, to] = [&postures[0].axes, &postures[1].axes];
+            let chords: Vec<Vec<f64>> = from.iter().zip(to).map(|(a, b)| vec![*a, (b - a) / step]).collect();
+            let bends = tube.map_or(vec![0.0; axes.len()], |tube| tube.distances_over(range, range.low, &chords));
+            Block { from: range.low, step, start, bends }
         });
         let blocks: Vec<Block<'_>> = blocks.collect();
         let halves: Vec<f64> = axes.iter().map(|axis| half_increment(axis)).collect();
         let mut most: Option<Blocks> = None;
-        for flank in source.flanks.iter().filter(|flank| !flank.points.is_empty()) {
+        for flank in &source.flanks {
             for (straight, rounding) in Influence::new(problem, source, flank, axes.len()).off(&blocks, &halves) {
                 let worst = most.get_or_insert_default();
-                worst.straight = worst.straight.max(straight);
+                worst.straight = tube.map(|_| straight.max(worst.straight.unwrap_or(0.0)));
                 worst.rounding = worst.rounding.max(rounding);
             }
         }
@@ -46,11 +49,17 @@ impl Blocks {
 
     /// For the head of a program.
     pub(super) fn sentence(self) -> String {
-        format!(
-            "where points were sampled, straight blocks leave the flank off by up to {:.4} um, rounded positions by up to {:.4} um",
-            self.straight * 1e3,
-            self.rounding * 1e3
-        )
+        let rounding = format!("rounded positions by up to {:.4} um", self.rounding * 1e3);
+        match self.straight {
+            Some(straight) => format!(
+                "where points were sampled, straight blocks leave the flank off by up to {:.4} um, {rounding}",
+                straight * 1e3
+            ),
+            None => format!(
+                "where points were sampled, {rounding}; how far straight blocks leave the flank off is not bounded: there is no proof \
+                 where the axes stand between positions"
+            ),
+        }
     }
 }
 
@@ -60,7 +69,7 @@ struct Block<'s> {
     step: f64,
     /// Series of all unknowns about its first position.
     start: &'s [Vec<f64>],
-    /// How far each axis is off in between, mm or rad.
+    /// How far each axis is off the straight line in between, mm or rad, at most; zero without a proof.
     bends: Vec<f64>,
 }
 
@@ -112,7 +121,6 @@ impl<'f, 'j, 'g> Influence<'f, 'j, 'g> {
     fn off(&self, blocks: &[Block<'_>], halves: &[f64]) -> Vec<(f64, f64)> {
         let mut evaluator = ScalarEvaluator::new(&self.tape);
         let mut slopes = vec![0.0; 3 * self.axes];
-        let solved = self.flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
         let of = |point: &flank_solver::SurfacePoint| {
             let at = point.unknowns[self.motion];
             let block = &blocks[blocks.partition_point(|block| block.from + block.step < at).min(blocks.len() - 1)];
@@ -122,6 +130,6 @@ impl<'f, 'j, 'g> Influence<'f, 'j, 'g> {
             let sum = |off: &[f64]| (0..self.axes).map(|k| along(k) * off[k]).sum::<f64>();
             (sum(&block.bends), sum(halves))
         };
-        if blocks.is_empty() { Vec::new() } else { solved.map(of).collect() }
+        if blocks.is_empty() { Vec::new() } else { self.flank.solved().map(of).collect() }
     }
 }

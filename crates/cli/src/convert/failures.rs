@@ -10,6 +10,9 @@ use crate::units;
 /// Of what all axes can do together: below it they turn fast.
 const NEARLY_SINGULAR: f64 = 1e-3;
 
+/// An orientation that is missed by less (rad) is met: the angle comes from the cosine, with the root of its rounding.
+const TURNED: f64 = 1e-6;
+
 /// Of a pose: three displacements, three turns.
 const FREEDOMS: usize = 6;
 
@@ -41,13 +44,13 @@ pub(super) fn told(carried: &Carried<'_, '_>) -> String {
     for (k, (position, posture)) in positions.iter().zip(line).enumerate() {
         let (kind, told) = match (posture.outcome, posture.missing) {
             (Outcome::Solved, None) => continue,
-            (Outcome::Outside { unknown, by }, _) => beyond(carried, posture, unknown, by),
+            (Outcome::Outside { .. }, _) => beyond(carried, posture),
             (Outcome::Solved, Some(missing)) => lacking(carried, missing),
             (outcome, _) => {
                 let before = k.checked_sub(1).map(|k| (&positions[k], &line[k]));
                 let near = before.filter(|(_, posture)| posture.outcome == Outcome::Solved);
                 let (at, near) = near.unwrap_or((position, posture));
-                lost(carried, outcome == Outcome::Singular, near, at)
+                misdirected(carried, position).unwrap_or_else(|| lost(carried, outcome == Outcome::Singular, near, at))
             }
         };
         match kinds.iter_mut().find(|(known, ..)| *known == kind) {
@@ -58,13 +61,36 @@ pub(super) fn told(carried: &Carried<'_, '_>) -> String {
     kinds.iter().map(|(_, told, count)| format!("not reached: {count} of {} positions: {told}\n", line.len())).collect()
 }
 
-fn beyond(carried: &Carried<'_, '_>, posture: &Posture, unknown: usize, by: f64) -> (String, String) {
-    let axis = carried.free[unknown];
-    let [at, by] = [posture.axes[unknown], by].map(|x| units::text(axis.dimension, x, 4));
-    let name = format!("{}.{}", carried.machine.name, axis.name);
-    let radius = tool_radius(&carried.source).filter(|_| !units::is_angle(axis.dimension));
-    let radius = radius.map_or(String::new(), |radius| format!(" (the tool cuts at a radius of up to {radius:.3} mm)"));
-    (format!("beyond {}", axis.name), format!("axis {name} has to stand at {at}, {by} beyond its travel{radius}"))
+/// All axes that have to stand beyond their travels, that which is farthest beyond, as a share of its travel, first.
+fn beyond(carried: &Carried<'_, '_>, posture: &Posture) -> (String, String) {
+    let farthest = carried.problem.beyond(&posture.axes);
+    let mut kind: Vec<&str> = farthest.iter().map(|(k, _)| carried.free[*k].name.as_str()).collect();
+    kind.sort_unstable();
+    let kind = format!("beyond {}", kind.join(", "));
+    let told = farthest.iter().map(|&(k, by)| {
+        let axis = carried.free[k];
+        let [at, by] = [posture.axes[k], by].map(|x| units::text(axis.dimension, x, 4));
+        let radius = tool_radius(&carried.source).filter(|_| !units::is_angle(axis.dimension));
+        let radius =
+            radius.map_or(String::new(), |radius| format!(" (the tool cuts at a radius of up to {radius:.3} mm)"));
+        format!("axis {}.{} has to stand at {at}, {by} beyond its travel{radius}", carried.machine.name, axis.name)
+    });
+    let told: Vec<String> = told.collect();
+    (kind, told.join("; "))
+}
+
+/// The orientation of the tool is one that the rotary axes do not reach.
+fn misdirected(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, String)> {
+    let (missed, turning) = carried.problem.turn_missed(position).ok().filter(|(missed, _)| *missed > TURNED)?;
+    let is_round = carried.source.symmetries.iter().any(|screw| screw.angular != [0.0; 3]);
+    let what = if is_round { "axis" } else { "frame" };
+    let name = &carried.machine.name;
+    let missed = format!("{:.4} deg", missed.to_degrees());
+    let told = match turning.iter().map(|&k| carried.free[k].name.as_str()).collect::<Vec<_>>().join(", ") {
+        axes if axes.is_empty() => format!("{name} does not turn the tool, and its {what} lies {missed} off"),
+        axes => format!("the tool's {what} cannot point there: {missed} are missing, wherever {axes} of {name} stand"),
+    };
+    Some(("misdirected".to_string(), told))
 }
 
 fn lacking(carried: &Carried<'_, '_>, missing: Missing) -> (String, String) {

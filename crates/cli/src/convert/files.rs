@@ -29,9 +29,9 @@ pub(super) fn write(
     arguments: &Convert,
 ) -> Result<Vec<String>, String> {
     let name = format!("{}_on_{}", table.job, table.machine);
-    let mut folder = Folder::at(&arguments.out)?;
+    let mut folder = Folder::at(arguments.out())?;
     let motion = motion_table(table, header);
-    for format in &arguments.format {
+    for format in arguments.formats() {
         folder.motion(&name, &motion, *format)?;
     }
     for dialect in &arguments.nc {

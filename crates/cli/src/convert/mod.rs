@@ -19,7 +19,7 @@ use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, P
 use crate::arguments::{Convert, Onto, Which};
 use crate::failure::Failure;
 use crate::progress::Working;
-use crate::{Ending, print, spec, units};
+use crate::{Ending, eprint, print, spec, units};
 use blocks::Blocks;
 use rates::Rates;
 use series::Series;
@@ -37,11 +37,30 @@ pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
         let (table, told) = carry(&job, target, &hash, arguments)?;
         (if arguments.json { table.json(&told) } else { table.text() }, told)
     } else {
+        check_settings_alone(&target, arguments)?;
         settings::find(&job, &target, arguments)?
     };
     print(&shown);
-    anstream::eprint!("{told}");
+    eprint(&told);
     Ok(if told.is_empty() { Ending::Done } else { Ending::Unsolved })
+}
+
+/// # Errors
+/// If something is asked for that there is only of a motion, while settings are looked for.
+fn check_settings_alone(target: &Target<'_, '_>, arguments: &Convert) -> Result<(), Failure> {
+    let [first, ..] = target.settings[..] else { return Ok(()) };
+    let dropped = arguments.of_a_motion();
+    if dropped.is_empty() {
+        return Ok(());
+    }
+    let why = if arguments.fit.is_empty() { format!(", because {} has no value", first.name) } else { String::new() };
+    Err(Failure::of_usage(format!(
+        "settings of {} are looked for{why}, and of them there are no files: leave out {}, and ask for it when the settings have \
+         their values: --set {}=…",
+        target.machine.name,
+        dropped.join(", "),
+        first.name
+    )))
 }
 
 /// The hash of the text, the one job and the machine as a job without tool.
@@ -50,8 +69,8 @@ pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
 /// What is wrong with the texts, or that it is not clear which job is meant.
 pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(String, Job<'g>, Job<'g>), Failure> {
     let mut compilation = spec::sound(compile_with_machine(graph, &which.file, to, &which.set))?;
-    let target = compilation.machine.take().expect("a compilation without errors has the machine");
     let mut jobs = spec::asked_for(&mut compilation, which)?;
+    let target = compilation.machine.take().expect("a compilation without errors has the machine");
     let hash = spec::hash(&compilation);
     match jobs.len() {
         1 => Ok((hash, jobs.remove(0), target)),
@@ -70,23 +89,48 @@ fn carry<'g>(
     hash: &str,
     arguments: &Convert,
 ) -> Result<(Table, String), String> {
+    let jobs = [job, target.job];
     let carried = Carried::on(target, arguments.positions)?;
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
     let working = Working::on(format!("polynomials and their proof on {}", carried.machine.name));
     let series = is_followed.then(|| Series::of(&carried, arguments)).flatten();
     drop(working);
-    told.extend(series.as_ref().and_then(|series| series.unmet(arguments.tolerance)));
+    match &series {
+        Some(series) => told.extend(series.unmet(arguments.tolerance)),
+        None if told.is_empty() => told.extend(without_series(&carried, arguments)),
+        None => {}
+    }
     let is_series = is_followed && told.is_empty();
     let rates = arguments.time.filter(|_| is_series).and_then(|seconds| Rates::of(&carried, seconds));
     let mut table = Table::new(job, &carried, (series, rates), arguments);
-    table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried)).flatten();
+    let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
+    table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried, tube)).flatten();
     // a table of one motion; what the target cannot do is no program
     if is_series {
-        let header = crate::solve::header(&job.name, &arguments.which, hash);
+        let header = crate::solve::header(&jobs, &arguments.which, hash);
         table.written = files::write(&table, &carried, header, arguments)?;
     }
-    Ok((table, told))
+    Ok((table, carried.source.unsolved() + &told))
+}
+
+/// In words, which of the things that are asked for there are not without power series of the axes; nothing if none is.
+fn without_series(carried: &Carried<'_, '_>, arguments: &Convert) -> Option<String> {
+    let motions: Vec<&str> = carried.source.motions.iter().map(|motion| motion.name.as_str()).collect();
+    let (asked, why) = match motions[..] {
+        [one] => (
+            arguments.tolerance.iter().map(|_| "--tolerance").collect(),
+            format!("the axes have no power series in the middle of {one}, where they are singular"),
+        ),
+        _ => (
+            arguments.of_a_motion(),
+            format!(
+                "there is that of one motion only, and the job runs over {}, each by itself",
+                motions.join(" and ")
+            ),
+        ),
+    };
+    (!asked.is_empty()).then(|| format!("not reached: nothing is done for {}: {why}\n", asked.join(", ")))
 }
 
 /// The machine that a job is carried over to.

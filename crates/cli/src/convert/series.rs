@@ -1,7 +1,7 @@
 //! The axes as polynomials of the motion, and what cutting them off leaves on the flank.
 
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Unproven};
+use flank_solver::{PoseProblem, Tube, Unproven};
 
 use super::Carried;
 use super::source::{Flank, Source};
@@ -19,7 +19,7 @@ pub(crate) struct Series {
     /// Of each axis the coefficients up to the order, mm or rad per rad (or mm) of the motion to the power.
     pub(crate) axes: Vec<Vec<f64>>,
     /// The largest normal distance between the flank and what polynomials of each order leave of it, from order 0 to the last
-    /// that was tried, mm; none where no points are sampled.
+    /// that was tried, mm; none where no points are solved.
     pub(crate) deviations: Vec<f64>,
     /// Whether the tolerance is met.
     pub(crate) meets: bool,
@@ -27,6 +27,8 @@ pub(crate) struct Series {
     pub(crate) seen: Vec<f64>,
     /// What they leave of it anywhere on the way, at most.
     pub(crate) remainders: Result<Vec<f64>, Unproven>,
+    /// Where the axes are proven to stand.
+    pub(crate) tube: Result<Tube, Unproven>,
 }
 
 impl Series {
@@ -34,17 +36,18 @@ impl Series {
         let Carried { source, problem, positions, line, .. } = carried;
         let middle = positions.len() / 2;
         let about = positions[middle][0];
-        let highest = if arguments.tolerance.is_some() { HIGHEST } else { arguments.order as usize };
+        let highest = if arguments.tolerance.is_some() { HIGHEST } else { arguments.order() };
         let all = problem.series(&line[middle], &positions[middle], 0, highest)?;
         let mut flanks: Vec<Moved<'_, '_, '_>> = source
             .flanks
             .iter()
-            .filter(|flank| !flank.points.is_empty())
+            .filter(|flank| flank.solved().next().is_some())
             .map(|flank| Moved::new(problem, source, flank))
             .collect();
         let mut deviations = Vec::new();
-        let mut order = arguments.order as usize;
-        let mut meets = true;
+        let mut order = arguments.order();
+        // where nothing is solved nothing shows what an order leaves
+        let mut meets = arguments.tolerance.is_none();
         if !flanks.is_empty() {
             for tried in 0..=highest {
                 let most = flanks.iter_mut().map(|flank| flank.deviation(&all, tried, about)).fold(0.0, f64::max);
@@ -66,8 +69,8 @@ impl Series {
         };
         let seen = (0..axes.len()).map(off).collect();
         let tube = problem.tube(&line[middle], about, source.ranges[0]);
-        let remainders = tube.map(|tube| tube.distances(about, &axes));
-        Some(Series { about, order, axes, deviations, meets, seen, remainders })
+        let remainders = tube.as_ref().map(|tube| tube.distances(about, &axes)).map_err(|unproven| *unproven);
+        Some(Series { about, order, axes, deviations, meets, seen, remainders, tube })
     }
 }
 
@@ -77,7 +80,13 @@ impl Series {
         /// Nearer than this the flank is not computed, mm.
         const ROUNDING: f64 = 1e-11;
         let tolerance = tolerance.filter(|_| !self.meets)?;
-        let (order, least) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
+        let Some((order, least)) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
+            return Some(format!(
+                "not reached: no order is known to keep the flank within {:.3e} um: the points of the flank tell, and none is sampled \
+                 and solved on a surface that a face of the tool makes; add a `sample`, or say the order (--order)\n",
+                tolerance * 1e3
+            ));
+        };
         let why = if *least < ROUNDING {
             "nearer than rounding lets it: ask for a larger tolerance"
         } else {
@@ -126,7 +135,6 @@ impl<'s, 'j, 'g> Moved<'s, 'j, 'g> {
     fn deviation(&mut self, series: &[Vec<f64>], order: usize, about: f64) -> f64 {
         let mut evaluator = ScalarEvaluator::new(&self.tape);
         let mut moved = [0.0; 3];
-        let solved = self.flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
         let of = |point: &flank_solver::SurfacePoint| {
             let h = point.unknowns[self.motion] - about;
             let axes = series.iter().map(|c| value(&c[..=order], h));
@@ -134,6 +142,6 @@ impl<'s, 'j, 'g> Moved<'s, 'j, 'g> {
             evaluator.run(&inputs, &mut moved);
             (0..3).map(|k| point.normal[k] * (moved[k] - point.position[k])).sum::<f64>().abs()
         };
-        solved.map(of).fold(0.0, f64::max)
+        self.flank.solved().map(of).fold(0.0, f64::max)
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use flank_chain_dsl::{Bounded, Dimension, Job};
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Adjustable, Outcome, Range, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
+use flank_solver::{Adjustable, Range, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
 use serde_json::{Value, json};
 
 use super::Target;
@@ -18,6 +18,9 @@ use crate::{spec, units};
 
 /// Positions that the settings are found from; all others follow.
 const FITTED: usize = 21;
+/// A setting is outside its range if it is so by more than this share of 1 mm or 1 rad and of itself: found from the exact Jacobian, it
+/// is known to some thousand roundings, so that a default on the end of its range comes back inside.
+const ROUNDING: f64 = 1e-9;
 
 /// The settings that move the tool against the work and have no value, and those that are asked for.
 ///
@@ -42,7 +45,10 @@ pub(super) fn wanted<'t, 'g>(
         };
         let can = target.settings.iter().filter(|setting| !setting.is_count && matters(setting));
         let can: Vec<String> = can.map(short).collect();
-        return Err(format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")));
+        return Err(match &can[..] {
+            [] => format!("--fit {name}: {reason}; {machine} has no setting that can be looked for"),
+            can => format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")),
+        });
     }
     let has_value = |setting: &Bounded<'g>| target.parameters.iter().any(|p| p.variable == setting.variable);
     let is_asked = |setting: &Bounded<'g>| asked.iter().any(|name| short(setting) == *name || setting.name == *name);
@@ -79,7 +85,8 @@ pub(super) fn find(job: &Job<'_>, target: &Target<'_, '_>, arguments: &Convert) 
     let [file, to] = [&arguments.which.file, &arguments.to].map(|path| spec::shown(path));
     let title =
         format!("job {} ({file}) on {} ({to}): {} against {}", job.name, target.machine.name, source.tool, source.work);
-    let found = Found { title, job: &job.name, target, positions: some, fit, deviation };
+    let unsolved = source.unsolved();
+    let found = Found { title, job: &job.name, target, positions: some, fit, deviation, unsolved };
     Ok((if arguments.json { found.json() } else { found.text() }, found.told()))
 }
 
@@ -124,8 +131,7 @@ fn deviation(
     let tape = Tape::new(&moved.0, &inputs.collect::<Vec<_>>()).expect("a job without errors leaves nothing unbound");
     let mut evaluator = ScalarEvaluator::new(&tape);
     let mut out = [0.0; 3];
-    let solved = flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
-    let off = solved.map(|point| {
+    let off = flank.solved().map(|point| {
         let at: Vec<f64> = motions.iter().map(|&k| point.unknowns[k]).collect();
         let apart = |k: &usize| positions[*k].iter().zip(&at).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         let near = (0..positions.len()).min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("there are positions");
@@ -143,8 +149,10 @@ struct Found<'f, 't, 'g> {
     target: &'f Target<'t, 'g>,
     positions: Vec<Vec<f64>>,
     fit: SettingsFit,
-    /// mm; none where no points are sampled.
+    /// mm; none where no points are solved.
     deviation: Option<f64>,
+    /// Which points are not, as `flank solve` tells.
+    unsolved: String,
 }
 
 impl Found<'_, '_, '_> {
@@ -175,19 +183,19 @@ impl Found<'_, '_, '_> {
     fn told(&self) -> String {
         let Found { target, fit, .. } = self;
         let name = &target.machine.name;
-        let mut told = String::new();
+        let mut told = self.unsolved.clone();
         if !fit.is_exact {
             let more =
                 target.job.settings.iter().filter(|s| !s.is_count && target.settings.iter().all(|w| w.name != s.name));
             let more: Vec<String> = more.map(short).collect();
-            let _ = writeln!(
-                told,
-                "not reached: no values of these settings make all poses on {name}; perhaps with others: --fit {}",
-                more.join(" or ")
-            );
+            let others = match more.is_empty() {
+                true => format!("{name} has no others"),
+                false => format!("perhaps with others: --fit {}", more.join(" or ")),
+            };
+            let _ = writeln!(told, "not reached: no values of these settings make all poses on {name}; {others}");
         }
         for (setting, value) in target.settings.iter().zip(&fit.settings) {
-            let margin = 1e-9 * (1.0 + value.abs());
+            let margin = ROUNDING * (1.0 + value.abs());
             if *value < setting.low - margin || *value > setting.high + margin {
                 let [value, low, high] =
                     [*value, setting.low, setting.high].map(|x| units::text(setting.dimension, x, 6));

@@ -1,12 +1,13 @@
 //! What is carried over: a tool that moves against a work.
 
-use flank_chain_dsl::{Bounded, GeneratedSurface, Job, ToolShape};
+use flank_chain_dsl::{Bounded, GeneratedSurface, Job, ToolShape, spaced};
 use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
 use crate::arguments::Means;
-use crate::{solve, units};
+use crate::solve::{self, Wanted};
+use crate::{table, units};
 
 /// Surfaces of a job that one tool makes in one work.
 pub(crate) struct Source<'j, 'g> {
@@ -30,6 +31,8 @@ pub(crate) struct Flank<'j, 'g> {
     /// The tool's surface with numbers for its parameters.
     pub(crate) tool: Surface<'g>,
     pub(crate) points: Vec<SurfacePoint>,
+    /// What `flank solve` tells of them beside numbers: which are not solved, and why; empty if all is well.
+    told: String,
 }
 
 impl<'j, 'g> Source<'j, 'g> {
@@ -67,7 +70,8 @@ impl<'j, 'g> Source<'j, 'g> {
         let mates = all
             .iter()
             .filter(|surface| path(surface) == path(first) && surface.generation.motions == generation.motions);
-        let flanks: Vec<Flank<'j, 'g>> = mates.filter_map(|&surface| flank(job, surface, means)).collect();
+        let flanks = mates.filter_map(|&surface| flank(job, surface, means));
+        let flanks: Vec<Flank<'j, 'g>> = flanks.collect::<Result<_, String>>()?;
         let tools: Vec<(&Surface<'g>, Vec<Range>)> = flanks
             .iter()
             .filter(|flank| flank.tool.unknowns.len() == 2)
@@ -87,14 +91,10 @@ impl<'j, 'g> Source<'j, 'g> {
 
     /// Positions evenly over the motions: one after the other for one motion; for two, row by row, there and back.
     pub(crate) fn positions(&self, count: usize) -> Vec<Vec<f64>> {
-        let even = |range: &Range, count: usize| -> Vec<f64> {
-            let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
-            (0..count).map(|k| (1.0 - share(k)) * range.low + share(k) * range.high).collect()
-        };
         let each = (count as f64).powf(1.0 / self.ranges.len() as f64).ceil() as usize;
         let mut positions: Vec<Vec<f64>> = vec![Vec::new()];
         for range in &self.ranges {
-            let values = even(range, each.max(1));
+            let values = spaced((range.low, range.high), each.max(1));
             let extended = positions.iter().enumerate().flat_map(|(k, row)| {
                 let values: Vec<f64> = if k % 2 == 0 { values.clone() } else { values.iter().rev().copied().collect() };
                 values.into_iter().map(move |value| row.iter().copied().chain([value]).collect())
@@ -102,6 +102,11 @@ impl<'j, 'g> Source<'j, 'g> {
             positions = extended.collect();
         }
         positions
+    }
+
+    /// The points that were not solved, in the words of `flank solve`; empty if all were.
+    pub(crate) fn unsolved(&self) -> String {
+        self.flanks.iter().map(|flank| flank.told.as_str()).collect()
     }
 
     /// `roll = 3.2000 deg`.
@@ -114,6 +119,10 @@ impl<'j, 'g> Source<'j, 'g> {
 }
 
 impl Flank<'_, '_> {
+    pub(crate) fn solved(&self) -> impl Iterator<Item = &SurfacePoint> {
+        self.points.iter().filter(|point| point.outcome == Outcome::Solved)
+    }
+
     /// The largest distance of the tool's points that touch from the axis of a turn, mm.
     pub(crate) fn tool_radius(&self, turn: &Screw) -> Option<f64> {
         let graph = self.tool.position.0[0].graph();
@@ -123,8 +132,7 @@ impl Flank<'_, '_> {
             Tape::new(&[arm.dot(arm)], &self.tool.unknowns).expect("a job without errors leaves nothing unbound");
         let mut evaluator = ScalarEvaluator::new(&tape);
         let mut out = [0.0];
-        let solved = self.points.iter().filter(|point| point.outcome == Outcome::Solved);
-        let radii = solved.map(|point| {
+        let radii = self.solved().map(|point| {
             evaluator.run(&point.unknowns[..self.tool.unknowns.len()], &mut out);
             out[0].sqrt()
         });
@@ -132,16 +140,31 @@ impl Flank<'_, '_> {
     }
 }
 
-fn flank<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Option<Flank<'j, 'g>> {
+/// The points of a surface that the tool makes with a face of its own; nothing for an edge.
+fn flank<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    means: Means,
+) -> Option<Result<Flank<'j, 'g>, String>> {
     let tool = match &surface.generation.tool {
         ToolShape::Surface(tool) => tool.bound(&job.bindings()),
         ToolShape::Edge(_) => return None,
     };
-    let points = surface.sample.as_ref().map_or(Vec::new(), |sample| {
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-        solve::problem(job, surface, coordinates, means).solve(&sample.targets(), sample.counts).0
-    });
-    Some(Flank { surface, tool, points })
+    let wanted = Wanted {
+        geometry: false,
+        sensitivity: false,
+        certificates: false,
+        together: Some("carrying its tool over"),
+        means,
+    };
+    Some(match solve::solve_surface(job, surface, wanted) {
+        None => Ok(Flank { surface, tool, points: Vec::new(), told: String::new() }),
+        Some(Ok(solved)) => {
+            let told = table::failures(job, std::slice::from_ref(&solved));
+            Ok(Flank { surface, tool, points: solved.points, told })
+        }
+        Some(Err(reason)) => Err(reason),
+    })
 }
 
 /// As far as the solved points need a motion; all of it where there are none.
@@ -151,8 +174,7 @@ fn reached(motion: &Bounded<'_>, flanks: &[Flank<'_, '_>]) -> Range {
     };
     let values = flanks.iter().flat_map(|flank| {
         let at = place(flank.surface, motion.variable);
-        let solved = flank.points.iter().filter(|point| point.outcome == Outcome::Solved);
-        solved.filter_map(move |point| at.map(|at| point.unknowns[at]))
+        flank.solved().filter_map(move |point| at.map(|at| point.unknowns[at]))
     });
     let ends = values.fold(None, |ends: Option<Range>, x| {
         Some(ends.map_or(Range { low: x, high: x }, |ends| Range { low: ends.low.min(x), high: ends.high.max(x) }))

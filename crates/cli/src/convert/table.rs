@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{Axis, Dimension, Job, NcWord};
-use flank_solver::{Posture, Screw};
-use serde_json::{Value, json};
+use flank_solver::{Outcome, Posture, Screw, Unproven};
+use serde_json::{Map, Value, json};
 
 use super::Carried;
 use super::blocks::Blocks;
@@ -93,7 +93,9 @@ impl Table {
             let [low, high] = [low, high].map(|x| units::text(axis.dimension, x, 6));
             [axis.name.clone(), low, high, travel.unwrap_or_default()]
         }));
-        let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
+        if self.reached().next().is_some() {
+            let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
+        }
         if let Some(series) = &self.series {
             self.series_text(series, &mut out);
         }
@@ -192,8 +194,15 @@ impl Table {
         format!("{} from {low} to {high}", motion.name)
     }
 
+    /// Postures that the tool stands in as it should, or as nearly as the axes take it, within travel or beyond. Where none was found
+    /// the axes say nothing.
+    fn reached(&self) -> impl Iterator<Item = &Posture> {
+        self.line.iter().filter(|posture| matches!(posture.outcome, Outcome::Solved | Outcome::Outside { .. }))
+    }
+
+    /// Of the positions that are reached.
     fn ends(&self, k: usize) -> (f64, f64) {
-        let values = self.line.iter().map(|posture| posture.axes[k]);
+        let values = self.reached().map(|posture| posture.axes[k]);
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     }
 
@@ -204,7 +213,27 @@ impl Table {
     /// With what the target cannot do, as told.
     pub(crate) fn json(&self, told: &str) -> String {
         let named = |named: &Named| json!({ "name": named.name, "unit": units::symbol(named.dimension) });
-        let axes = self.axes.iter().enumerate().map(|(k, axis)| {
+        let symmetries = self.symmetries.iter();
+        let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
+        let table = json!({
+            "schema": "flank.convert/1",
+            "job": self.job,
+            "machine": self.machine,
+            "motions": self.motions.iter().map(named).collect::<Vec<Value>>(),
+            "axes": self.axes_json(),
+            "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
+            "positions": self.positions_json(),
+            "polynomials": self.series.as_ref().map(|series| self.series_json(series)),
+            "rates": self.rates.as_ref().map(|rates| self.rates_json(rates)),
+            "nc_deviation": self.blocks.map(|b| json!({ "straight_mm": b.straight, "rounding_mm": b.rounding })),
+            "files": self.written,
+            "not_done": not_done(told),
+        });
+        format!("{table:#}\n")
+    }
+
+    fn axes_json(&self) -> Vec<Value> {
+        let of = |(k, axis): (usize, &Named)| {
             let (low, high) = self.ends(k);
             let shown = |x: f64| units::shown(axis.dimension, x);
             let travel = axis.travel.map(|(low, high)| json!({ "low": shown(low), "high": shown(high) }));
@@ -212,67 +241,56 @@ impl Table {
                 "name": axis.name, "unit": units::symbol(axis.dimension),
                 "low": shown(low), "high": shown(high), "travel": travel,
             })
-        });
-        let positions = self.positions.iter().zip(&self.line).map(|(position, posture)| {
-            let shown = |values: &[f64], of: &[Named]| {
-                of.iter().zip(values).map(|(named, x)| units::shown(named.dimension, *x)).collect::<Vec<f64>>()
-            };
+        };
+        self.axes.iter().enumerate().map(of).collect()
+    }
+
+    fn positions_json(&self) -> Vec<Value> {
+        let shown = |values: &[f64], of: &[Named]| -> Vec<f64> {
+            of.iter().zip(values).map(|(named, x)| units::shown(named.dimension, *x)).collect()
+        };
+        let of = |(position, posture): (&Vec<f64>, &Posture)| {
             json!({
                 "motions": shown(position, &self.motions),
                 "axes": shown(&posture.axes, &self.axes),
                 "status": posture.outcome.word(),
                 "missing": posture.missing.map(|missing| json!({ "direction": missing.direction, "by": missing.by })),
             })
-        });
-        let symmetries = self.symmetries.iter();
-        let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
-        let series = self.series.as_ref().map(|series| {
-            let bounds = series.remainders.as_ref().ok();
-            json!({
-                "about": series.about,
-                "order": series.order,
-                "units": "mm and rad per rad (mm) of the motion to the power",
-                "coefficients": self.axes.iter().zip(&series.axes)
-                    .map(|(axis, c)| (axis.name.clone(), json!(c))).collect::<serde_json::Map<String, Value>>(),
-                "deviation_mm_by_order": series.deviations,
-                "remainders": {
-                    "units": "mm and rad",
-                    "seen": self.by_axis(&series.seen),
-                    "proven": bounds.map(|bounds| self.by_axis(bounds)),
-                    "not_proven_at": series.remainders.as_ref().err()
-                        .map(|unproven| units::shown(self.motions[0].dimension, unproven.at)),
-                },
-            })
-        });
-        let rates = self.rates.as_ref().map(|rates| {
-            let shown = |axis: usize, of: [f64; 3]| of.map(|rate| units::shown(self.axes[axis].dimension, rate));
-            let row = |row: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
-                row.iter().enumerate().map(|(axis, of)| shown(axis, *of)).collect()
-            };
-            let most =
-                self.axes.iter().enumerate().map(|(k, axis)| (axis.name.clone(), json!(shown(k, rates.most(k)))));
-            json!({
-                "seconds": rates.seconds,
-                "units": "velocity, acceleration, jerk: mm or deg per s, s^2, s^3",
-                "most": most.collect::<serde_json::Map<String, Value>>(),
-                "positions": rates.rows.iter().map(row).collect::<Vec<_>>(),
-            })
-        });
-        let table = json!({
-            "schema": "flank.convert/1",
-            "job": self.job,
-            "machine": self.machine,
-            "motions": self.motions.iter().map(named).collect::<Vec<Value>>(),
-            "axes": axes.collect::<Vec<Value>>(),
-            "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
-            "positions": positions.collect::<Vec<Value>>(),
-            "polynomials": series,
-            "rates": rates,
-            "nc_deviation": self.blocks.map(|b| json!({ "straight_mm": b.straight, "rounding_mm": b.rounding })),
-            "files": self.written,
-            "not_done": not_done(told),
-        });
-        format!("{table:#}\n")
+        };
+        self.positions.iter().zip(&self.line).map(of).collect()
+    }
+
+    fn series_json(&self, series: &Series) -> Value {
+        let coefficients = self.axes.iter().zip(&series.axes).map(|(axis, c)| (axis.name.clone(), json!(c)));
+        let bounds = series.remainders.as_ref();
+        let not_proven_at = |unproven: &Unproven| units::shown(self.motions[0].dimension, unproven.at);
+        json!({
+            "about": series.about,
+            "order": series.order,
+            "units": "mm and rad per rad (mm) of the motion to the power",
+            "coefficients": coefficients.collect::<Map<String, Value>>(),
+            "deviation_mm_by_order": series.deviations,
+            "remainders": {
+                "units": "mm and rad",
+                "seen": self.by_axis(&series.seen),
+                "proven": bounds.ok().map(|bounds| self.by_axis(bounds)),
+                "not_proven_at": bounds.err().map(not_proven_at),
+            },
+        })
+    }
+
+    fn rates_json(&self, rates: &Rates) -> Value {
+        let shown = |axis: usize, of: [f64; 3]| of.map(|rate| units::shown(self.axes[axis].dimension, rate));
+        let row = |row: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
+            row.iter().enumerate().map(|(axis, of)| shown(axis, *of)).collect()
+        };
+        let most = self.axes.iter().enumerate().map(|(k, axis)| (axis.name.clone(), json!(shown(k, rates.most(k)))));
+        json!({
+            "seconds": rates.seconds,
+            "units": "velocity, acceleration, jerk: mm or deg per s, s^2, s^3",
+            "most": most.collect::<Map<String, Value>>(),
+            "positions": rates.rows.iter().map(row).collect::<Vec<_>>(),
+        })
     }
 }
 

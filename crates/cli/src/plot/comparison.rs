@@ -3,16 +3,16 @@
 use flank_chain_dsl::Job;
 use flank_export::{Dataset, PictureOptions, field_maps, topography};
 
-use super::{Drawing, name, options, told, with_origin, write};
-use crate::arguments::{Means, Plot, What};
-use crate::deviation::{self, Measured, NOTE};
+use super::{Drawing, Drawn, name, options, told, with_origin, write};
+use crate::arguments::{Plot, What};
+use crate::deviation::{self, Measured};
 
 /// What there is to draw of a comparison.
 const KINDS: [What; 2] = [What::Deviation, What::Topography];
 
 /// # Errors
 /// In words: what is missing, or does not fit.
-pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -> Result<String, String> {
+pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -> Result<Drawn, String> {
     let [surface] = &arguments.surface[..] else {
         return Err("--from holds one surface against another one: name one with --surface".to_string());
     };
@@ -21,14 +21,12 @@ pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -
         return Err(format!("--what {} does not compare surfaces\nwhat fits with --from: {kinds}", name(*other)));
     }
     let surface = deviation::find(jobs, surface)?;
-    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, Means::MACHINE_CODE)?;
-    let missing = measured.missing();
-    anstream::eprint!("{missing}");
+    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, arguments.means)?;
     let asked = if arguments.what.is_empty() { &KINDS[..] } else { &arguments.what };
     let drawings: Vec<(What, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, arguments, hash, &options(arguments)))).collect();
     let written = write(&drawings, &surface.whole_name(), arguments)?;
-    Ok(told(&surface.job.name, &written, arguments))
+    Ok(told(&surface.job.name, &written, measured.missing(), arguments))
 }
 
 fn draw(measured: &Measured<'_, '_>, what: What, arguments: &Plot, hash: &str, options: &PictureOptions) -> Drawing {
@@ -36,8 +34,8 @@ fn draw(measured: &Measured<'_, '_>, what: What, arguments: &Plot, hash: &str, o
     let dataset = Dataset { header: with_origin(dataset.header, arguments), ..dataset };
     let title = measured.title();
     let picture = match what {
-        What::Topography => topography(&dataset, &title, &[(0, 0)], NOTE, options),
-        _ => field_maps(&dataset, &title, &[(0, 0)], NOTE, options),
+        What::Topography => topography(&dataset, &title, &[(0, 0)], &measured.note(), options),
+        _ => field_maps(&dataset, &title, &[(0, 0)], &measured.note(), options),
     };
     Drawing { picture, shows: format!("deviation of {title}") }
 }

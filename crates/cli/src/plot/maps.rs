@@ -155,7 +155,7 @@ pub(super) fn residual(subject: &Subject<'_, '_>, options: &PictureOptions) -> R
         let points = &subject.solved[at].points;
         vec![Field {
             name: "residual".to_string(),
-            unit: "mm".to_string(),
+            unit: "mm or mm/rad".to_string(),
             meaning: "largest residual of the equations".to_string(),
             values: Values::Scalars(
                 points.iter().map(|point| Some(point.residual).filter(|x| x.is_finite())).collect(),
@@ -164,7 +164,7 @@ pub(super) fn residual(subject: &Subject<'_, '_>, options: &PictureOptions) -> R
     };
     let shown = Shown::of(subject, field);
     let note = "Largest residual of the solved equations: meshing, in mm per mm or radian of its motion, and the two \
-        coordinates that the point was asked for by.";
+        coordinates that the point was asked for by, in mm.";
     let picture = field_maps(&shown.dataset, &title(subject, "residual"), shown.first(), &shown.note(note), options);
     Ok(Drawing { picture, shows: "what the solved equations leave".to_string() })
 }

@@ -8,20 +8,18 @@ mod section;
 mod subject;
 mod tool;
 
-use std::fmt::Write;
-
 use clap::ValueEnum;
 use flank_chain_dsl::Job;
-use flank_export::{Header, Picture, PictureOptions};
+use flank_export::{Dataset, Header, Picture, PictureOptions};
 use flank_expr::Graph;
 use serde_json::json;
 
 use crate::arguments::{Plot, What};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::files::Folder;
-use crate::table::aligned;
-use crate::{Ending, deviation, print, solve, spec};
-pub(crate) use subject::{Subject, first_sampled};
+use crate::table::{self, aligned};
+use crate::{Ending, cut, deviation, eprint, print, solve, spec, travel};
+pub(crate) use subject::Subject;
 
 /// Without `--what` the first of these that fit are drawn, and no more than so many.
 const DEFAULTS: [What; 6] =
@@ -45,18 +43,34 @@ struct Written {
 pub(crate) type Unfit = String;
 
 pub(crate) fn run(arguments: &Plot) -> Result<Ending, Failure> {
+    if !arguments.of.is_empty() && !arguments.what.contains(&What::Sensitivity) {
+        return Err(Failure::of_usage("--of names what `sensitivity` shows, and that is not among --what".to_string()));
+    }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let hash = spec::hash(&compilation);
-    let told = match &arguments.from {
+    let done = match &arguments.from {
         Some(from) => vec![comparison::plot(&jobs, from, arguments, &hash)?],
         None => plot_jobs(&jobs, arguments, &hash)?,
     };
-    told.iter().for_each(|text| print(text));
-    Ok(Ending::Done)
+    let mut ending = Ending::Done;
+    for Drawn { shown, not_done } in done {
+        print(&shown);
+        eprint(&not_done);
+        if !not_done.is_empty() {
+            ending = Ending::Unsolved;
+        }
+    }
+    Ok(ending)
 }
 
-fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<String>, String> {
+/// What became of a job: what is printed of its pictures, and in words what is not on them because it could not be solved.
+struct Drawn {
+    shown: String,
+    not_done: String,
+}
+
+fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<Drawn>, String> {
     let named = arguments.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
@@ -74,24 +88,33 @@ fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<Strin
     }
     let plot = |job: &&Job<'_>| {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
-        let header = with_origin(solve::header(&job.name, &arguments.which, hash), arguments);
-        let subject = Subject::new(job, &names, header, arguments)?;
-        let written = write(&drawings(&subject, arguments)?, &job.name, arguments)?;
-        Ok(told(&job.name, &written, arguments))
+        let header = with_origin(solve::header(&[job], &arguments.which, hash), arguments);
+        let solved = |kinds: &[What]| Subject::new(job, &names, header.clone(), kinds, arguments.means);
+        let subject = solved(&arguments.what)?;
+        // what fits is known of what is solved with all that pictures show
+        let drawings = drawings(&subject, arguments).map_err(|(what, why)| {
+            solved(What::value_variants()).map_or_else(|e| e, |all| unfit(&all, what, &why, arguments))
+        })?;
+        let written = write(&drawings, &job.name, arguments)?;
+        let not_done = table::failures(job, &subject.solved)
+            + &cut::unknown(&subject.solved)
+            + &travel::beyond(job, &subject.solved);
+        Ok(told(&job.name, &written, not_done, arguments))
     };
     meant.iter().map(plot).collect()
 }
 
 /// What is asked for.
-fn drawings(subject: &Subject<'_, '_>, arguments: &Plot) -> Result<Vec<(What, Drawing)>, String> {
+///
+/// # Errors
+/// The first kind that does not fit, and why.
+fn drawings(subject: &Subject<'_, '_>, arguments: &Plot) -> Result<Vec<(What, Drawing)>, (What, Unfit)> {
     let options = options(arguments);
     if arguments.what.is_empty() {
         return Ok(defaults(subject, options));
     }
     let asked = arguments.what.iter().map(|&what| {
-        draw(subject, what, &arguments.of, options)
-            .map(|drawing| (what, drawing))
-            .map_err(|why| unfit(subject, what, &why, arguments))
+        draw(subject, what, &arguments.of, options).map(|drawing| (what, drawing)).map_err(|why| (what, why))
     });
     asked.collect()
 }
@@ -110,10 +133,12 @@ pub(crate) fn draw(
     options: PictureOptions,
 ) -> Result<Drawing, Unfit> {
     match what {
-        What::Surface => Ok(Drawing {
-            picture: flank_export::picture(&subject.dataset, &options),
-            shows: format!("{} in space", counted(subject.solved.len(), "surface")),
-        }),
+        What::Surface => {
+            let patches = subject.in_space.iter().map(|at| subject.dataset.patches[*at].clone()).collect();
+            let shown = Dataset { header: subject.dataset.header.clone(), patches };
+            let picture = flank_export::picture(&shown, &options);
+            Ok(Drawing { picture, shows: format!("{} in space", counted(shown.patches.len(), "surface")) })
+        }
         What::Topography => maps::topography(subject, &options),
         What::Curvature => maps::curvature(subject, &options),
         What::Sensitivity => maps::sensitivity(subject, of, &options),
@@ -167,8 +192,8 @@ fn write(drawings: &[(What, Drawing)], stem: &str, arguments: &Plot) -> Result<V
     Ok(written)
 }
 
-/// What was written, as text or JSON.
-fn told(job: &str, written: &[Written], arguments: &Plot) -> String {
+/// What was written, as text or JSON, with what was not done.
+fn told(job: &str, written: &[Written], not_done: String, arguments: &Plot) -> Drawn {
     let spec = spec::shown(&arguments.which.file);
     if arguments.json {
         let pictures: Vec<serde_json::Value> = written
@@ -177,13 +202,13 @@ fn told(job: &str, written: &[Written], arguments: &Plot) -> String {
             .collect();
         let [width, height] = [arguments.size.0, arguments.size.1];
         let table = json!({
-            "schema": "flank.plot/1", "job": job, "spec": spec, "width": width, "height": height, "pictures": pictures,
+            "schema": "flank.plot/2", "job": job, "spec": spec, "width": width, "height": height, "pictures": pictures,
+            "not_done": failure::not_done(&not_done),
         });
-        return format!("{table:#}\n");
+        return Drawn { shown: format!("{table:#}\n"), not_done };
     }
     let rows: Vec<[String; 3]> =
         written.iter().map(|one| [name(one.what), one.shows.clone(), one.files.join(", ")]).collect();
-    let mut out = format!("job {job} ({spec})\n\n");
-    let _ = write!(out, "{}", aligned(&rows, ""));
-    out
+    let shown = format!("job {job} ({spec})\n\n{}", aligned(&rows, ""));
+    Drawn { shown, not_done }
 }

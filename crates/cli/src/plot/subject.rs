@@ -5,7 +5,7 @@ use flank_export::{Dataset, Header};
 use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
-use crate::arguments::{Means, Plot, What};
+use crate::arguments::{Means, What};
 use crate::solve::{self, Wanted};
 use crate::table::Solved;
 
@@ -16,31 +16,33 @@ pub(crate) struct Subject<'j, 'g> {
     pub(crate) dataset: Dataset,
     /// The surfaces that maps show, as indices of `solved`; there is one at least.
     pub(super) chosen: Vec<usize>,
+    /// The surfaces that are drawn in space.
+    pub(super) in_space: Vec<usize>,
 }
 
 impl<'j, 'g> Subject<'j, 'g> {
-    /// Solves what is to be drawn.
+    /// Solves what is to be drawn: surfaces by their names, or all of them if none is named; all kinds but sensitivity, if none
+    /// is asked for.
     ///
     /// # Errors
     /// In words, if a surface that is named is not sampled.
     pub(super) fn new(
         job: &'j Job<'g>,
-        names: &[&str],
+        names: &[&'j str],
         header: Header,
-        arguments: &Plot,
+        kinds: &[What],
+        means: Means,
     ) -> Result<Subject<'j, 'g>, String> {
-        let first = first_sampled(job);
-        let names = if names.is_empty() { &first[..] } else { names };
-        let is_asked = |what: What| arguments.what.contains(&what);
+        let mapped = mapped(job, names);
         let wanted = Wanted {
-            geometry: is_asked(What::Curvature) || arguments.what.is_empty(),
-            sensitivity: is_asked(What::Sensitivity),
+            geometry: kinds.contains(&What::Curvature) || kinds.is_empty(),
+            sensitivity: kinds.contains(&What::Sensitivity),
             certificates: false,
             together: Some("a picture"),
-            means: Means::MACHINE_CODE,
+            means,
         };
         let solve_one = |surface: usize| {
-            let is_chosen = names.contains(&&*job.surfaces[surface].name);
+            let is_chosen = mapped.contains(&&*job.surfaces[surface].name);
             let points_only = Wanted { geometry: false, sensitivity: false, ..wanted };
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
@@ -48,23 +50,24 @@ impl<'j, 'g> Subject<'j, 'g> {
         Subject::of(job, solved, names, header)
     }
 
-    /// Of surfaces that are solved.
+    /// Of surfaces that are solved; all of them if none is named.
     ///
     /// # Errors
     /// In words, if a surface that is named is not among them.
     pub(crate) fn of(
         job: &'j Job<'g>,
         solved: Vec<Solved<'j, 'g>>,
-        names: &[&str],
+        names: &[&'j str],
         header: Header,
     ) -> Result<Subject<'j, 'g>, String> {
         let place = |name: &&str| {
             let found = solved.iter().position(|solved| solved.surface.name == *name);
             found.ok_or(format!("`{name}` is not sampled: add `sample {name} {{ … }}`, which says at which points"))
         };
-        let chosen = names.iter().map(place).collect::<Result<Vec<usize>, String>>()?;
+        let chosen = mapped(job, names).iter().map(place).collect::<Result<Vec<usize>, String>>()?;
+        let in_space = if names.is_empty() { (0..solved.len()).collect() } else { chosen.clone() };
         let dataset = solve::dataset(job, &solved, &[], header);
-        Ok(Subject { job, solved, dataset, chosen })
+        Ok(Subject { job, solved, dataset, chosen, in_space })
     }
 
     /// The first of the surfaces that maps show.
@@ -134,8 +137,11 @@ impl<'j, 'g> Subject<'j, 'g> {
     }
 }
 
-/// The surface that maps show where nobody names one.
-pub(crate) fn first_sampled<'j>(job: &'j Job<'_>) -> Vec<&'j str> {
+/// The surfaces that maps show: those that are named, or the first that is sampled.
+fn mapped<'j>(job: &'j Job<'_>, names: &[&'j str]) -> Vec<&'j str> {
+    if !names.is_empty() {
+        return names.to_vec();
+    }
     let first = job.surfaces.iter().find(|surface| surface.sample.is_some());
     first.map(|surface| surface.name.as_str()).into_iter().collect()
 }

@@ -4,7 +4,6 @@ use flank_export::{Block, ReportSection};
 use flank_solver::TOLERANCE;
 
 use super::Findings;
-use crate::arguments::Which;
 use crate::spec;
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
@@ -38,10 +37,10 @@ pub(super) fn sentences(findings: &Findings<'_, '_>) -> Vec<String> {
 
 /// The command that makes this page again, without where to.
 pub(super) fn command(findings: &Findings<'_, '_>) -> String {
-    let Which { file, set, .. } = &findings.arguments.which;
-    let mut words = vec!["flank".to_string(), "report".to_string(), spec::shown(file)];
+    let which = &findings.arguments.which;
+    let mut words = vec!["flank".to_string(), "report".to_string(), spec::shown(&which.file)];
     words.extend(["--job".to_string(), findings.job.name.clone()]);
-    for (name, value) in set {
+    for (name, value) in which.set_in(&[findings.job]) {
         words.extend(["--set".to_string(), format!("{name}={value}")]);
     }
     words.extend(findings.is_certified.then(|| "--certify".to_string()));

@@ -17,15 +17,15 @@ use flank_expr::Graph;
 use flank_solver::TOLERANCE;
 use serde_json::{Value, json};
 
-use crate::arguments::{Means, Report, What};
+use crate::arguments::{Report, What};
 use crate::failure::{Failure, not_done};
 use crate::limits::{self, Line};
-use crate::plot::{self, Drawing, Subject, first_sampled};
+use crate::plot::{self, Drawing, Subject};
 use crate::solve::{self, Wanted};
 use crate::step::{self, Smooth};
 use crate::table::{self, Solved};
 use crate::travel::{self, Run};
-use crate::{Ending, branches, certify, cut, print, required, spec};
+use crate::{Ending, certify, cut, eprint, print, required, spec};
 use target::Target;
 
 pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
         print(&if arguments.json { findings.json(&document, &written) } else { findings.told(&written) });
         let failures = findings.failures();
         if !failures.is_empty() {
-            anstream::eprint!("{failures}");
+            eprint(&failures);
             ending = Ending::Unsolved;
         }
     }
@@ -73,7 +73,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             sensitivity: true,
             certificates: arguments.certify,
             together: Some("a report"),
-            means: Means::MACHINE_CODE,
+            means: arguments.means,
         };
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
@@ -86,10 +86,10 @@ impl<'j, 'g> Findings<'j, 'g> {
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
         let faces = arguments.faces.step.into_iter().flat_map(smooth).collect();
         let runs = travel::runs(job, &solved);
-        let header = solve::header(&job.name, &arguments.which, hash);
+        let header = solve::header(&[job], &arguments.which, hash);
         // the page says once where all its pictures come from
         let unsigned = Header { spec: String::new(), ..header.clone() };
-        let subject = Subject::of(job, solved, &first_sampled(job), unsigned)?;
+        let subject = Subject::of(job, solved, &[], unsigned)?;
         let drawings = plot::defaults(&subject, PictureOptions::default());
         Ok(Findings {
             job,
@@ -112,9 +112,7 @@ impl<'j, 'g> Findings<'j, 'g> {
     /// What was asked for and not found; empty if nothing.
     fn failures(&self) -> String {
         let solved = self.solved();
-        branches::ambiguous(solved)
-            + &required::text(solved)
-            + &table::unsolved(self.job, solved)
+        table::failures(self.job, solved)
             + &cut::unknown(solved)
             + &certify::failed(solved)
             + &travel::beyond(self.job, solved)
@@ -159,13 +157,8 @@ impl<'j, 'g> Findings<'j, 'g> {
         }
         let header = &self.header;
         let mut facts = vec![("spec".to_string(), header.spec.clone())];
-        facts.extend(
-            self.arguments
-                .which
-                .set
-                .iter()
-                .map(|(name, value)| ("set by hand".to_string(), format!("{name} = {value}"))),
-        );
+        let set = self.arguments.which.set_in(&[self.job]).into_iter();
+        facts.extend(set.map(|(name, value)| ("set by hand".to_string(), format!("{name} = {value}"))));
         facts.extend(self.arguments.date.iter().map(|date| ("date".to_string(), date.clone())));
         facts.push(("made by".to_string(), header.program.clone()));
         blocks.push(Block::Facts(facts));

@@ -19,17 +19,14 @@ use crate::files::Folder;
 use crate::limits::Line;
 use crate::solve::{self, Wanted};
 use crate::table::{self, Solved};
-use crate::{Ending, branches, print, required, spec};
+use crate::{Ending, eprint, print, spec};
 use functions::Functions;
 
 /// What a surface can be coloured by and what a click tells of a point.
-const WANTED: Wanted = Wanted {
-    geometry: true,
-    sensitivity: true,
-    certificates: false,
-    together: Some("a page"),
-    means: Means::MACHINE_CODE,
-};
+fn wanted(means: Means) -> Wanted {
+    Wanted { geometry: true, sensitivity: true, certificates: false, together: Some("a page"), means }
+}
+
 /// Share of what a motion passes over that its slider goes beyond.
 const BEYOND: f64 = 0.15;
 
@@ -39,14 +36,15 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
     let hash = spec::hash(&compilation);
     let mut ending = Ending::Done;
     for job in solve::asked(&jobs)? {
-        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, WANTED));
+        let solved =
+            job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted(arguments.means)));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let trims = solved.iter().flat_map(|solved| &solved.trims);
         let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
-        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&job.name, &arguments.which, &hash));
+        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &arguments.which, &hash));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = Tally::of(&dataset.patches);
-        let mut told = branches::ambiguous(&solved) + &required::text(&solved) + &table::unsolved(job, &solved);
+        let mut told = table::failures(job, &solved);
         let written = if tally.solved == 0 {
             told += &format!("no page: job `{}` has no point to show\n", job.name);
             None
@@ -59,7 +57,7 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
             print(&written.text(job, &tally));
         }
         if !told.is_empty() {
-            anstream::eprint!("{told}");
+            eprint(&told);
             ending = Ending::Unsolved;
         }
     }
@@ -100,7 +98,7 @@ fn write<'g>(
     let mut scene = scene(graph, job, solved);
     if step > 1 {
         let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
-        anstream::eprintln!("note: {note}");
+        eprint(&format!("note: {note}\n"));
         scene.notes.push(note);
         for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
             surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();

@@ -30,6 +30,21 @@ pub fn written(folder: &Path, name: &str, content: &str) -> String {
     path.to_str().expect("a plain path").to_string()
 }
 
+/// What a command must not read to its end, with what is said of it: a device, a pipe that nobody writes to, a file beyond 256 MiB.
+#[cfg(unix)]
+pub fn endless(folder: &Path) -> [(String, &'static str); 3] {
+    let pipe = folder.join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+    let large = folder.join("large");
+    // holes, of which the disk holds nothing
+    std::fs::File::create(&large).and_then(|file| file.set_len((256 << 20) + 1)).expect("the test's file");
+    [
+        ("/dev/zero".to_string(), "it is not a plain file"),
+        (pipe.to_str().expect("a plain path").to_string(), "it is not a plain file"),
+        (large.to_str().expect("a plain path").to_string(), "it has more than"),
+    ]
+}
+
 /// Specs of the library as one file that uses no other.
 pub fn self_contained(specs: &[&str]) -> String {
     let read = |name: &&str| std::fs::read_to_string(top().join(format!("specs/{name}.chain"))).expect("it is shipped");

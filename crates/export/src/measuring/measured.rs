@@ -2,6 +2,15 @@
 
 use std::collections::BTreeSet;
 
+/// What was measured of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredGrid {
+    /// Rows and columns: the largest that a line speaks of, with or without values.
+    pub counts: [usize; 2],
+    /// The points that have values, in the order of their lines.
+    pub points: Vec<MeasuredPoint>,
+}
+
 /// A point of the grid with what was measured there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPoint {
@@ -51,19 +60,19 @@ pub enum MeasuredFault {
         /// From 1.
         column: usize,
     },
-    /// No line speaks of the surface.
+    /// No line with values speaks of the surface.
     #[error("no line is about the grid of `{0}`")]
     Nothing(String),
 }
 
 /// Reads measured points of a surface's grid from CSV with a line of titles. `row` and `column` count from 1, as in the file of the nominal
 /// points; `x, y, z` are mm, `deviation_um` is along the normal and stands for them where there is such a column. Lines that begin with
-/// `#` are passed over; lines of other surfaces (`surface`) and parts (`part`), too, and lines whose cells for the measured values
-/// are empty.
+/// `#` are passed over; lines of other surfaces (`surface`) and parts (`part`), too. A line whose cells for the measured values are empty
+/// says that there is such a point, which was not measured.
 ///
 /// # Errors
 /// What is wrong with the file, and where.
-pub fn read_measured(text: &str, surface: &str) -> Result<Vec<MeasuredPoint>, MeasuredFault> {
+pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, MeasuredFault> {
     let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let titles = table.headers().map_err(|error| MeasuredFault::NoTable(error.to_string()))?.clone();
     let place = |name: &str| titles.iter().position(|title| title == name);
@@ -73,34 +82,38 @@ pub fn read_measured(text: &str, surface: &str) -> Result<Vec<MeasuredPoint>, Me
         Some(deviation) => vec![deviation],
         None => ["x", "y", "z"].into_iter().map(needed).collect::<Result<Vec<usize>, MeasuredFault>>()?,
     };
-    let mut points: Vec<MeasuredPoint> = Vec::new();
+    let mut grid = MeasuredGrid { counts: [0; 2], points: Vec::new() };
     let mut places = BTreeSet::new();
     for record in table.records() {
         let record = record.map_err(|error| MeasuredFault::NoTable(error.to_string()))?;
         let cell = |k: usize| record.get(k).unwrap_or_default();
         let is_other = |name: &str, own: &str| place(name).is_some_and(|k| cell(k) != own);
-        if is_other("surface", surface) || is_other("part", "grid") || numbers.iter().all(|&k| cell(k).is_empty()) {
+        if is_other("surface", surface) || is_other("part", "grid") {
             continue;
         }
         let line = record.position().map_or(0, csv::Position::line);
         let fault = |k: usize, wanted| MeasuredFault::NoNumber { line, text: cell(k).to_string(), wanted };
         let index = |k: usize| {
             let index = cell(k).parse::<usize>().ok().filter(|index| (1..=MOST_LINES).contains(index));
-            index.map(|index| index - 1).ok_or_else(|| fault(k, "row or column, which count from 1"))
+            index.map(|index| index - 1).ok_or_else(|| fault(k, "row or column, which count from 1 to at most 10000"))
         };
         let number = |k: usize| cell(k).parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| fault(k, "number"));
+        let [row, column] = [index(row)?, index(column)?];
+        grid.counts = [grid.counts[0].max(row + 1), grid.counts[1].max(column + 1)];
+        if numbers.iter().all(|&k| cell(k).is_empty()) {
+            continue;
+        }
         let measured = match numbers[..] {
             [x, y, z] => Measured::Position([number(x)?, number(y)?, number(z)?]),
             [deviation, ..] => Measured::Deviation(number(deviation)? / 1e3),
             [] => continue,
         };
-        let point = MeasuredPoint { row: index(row)?, column: index(column)?, measured };
-        if !places.insert((point.row, point.column)) {
-            return Err(MeasuredFault::Twice { line, row: point.row + 1, column: point.column + 1 });
+        if !places.insert((row, column)) {
+            return Err(MeasuredFault::Twice { line, row: row + 1, column: column + 1 });
         }
-        points.push(point);
+        grid.points.push(MeasuredPoint { row, column, measured });
     }
-    if points.is_empty() { Err(MeasuredFault::Nothing(surface.to_string())) } else { Ok(points) }
+    if grid.points.is_empty() { Err(MeasuredFault::Nothing(surface.to_string())) } else { Ok(grid) }
 }
 
 /// No grid has more rows or columns.
@@ -115,9 +128,22 @@ mod tests {
         let text = "# from the machine\nsurface,part,row,column,x,y,z,probe\nleft,grid,1,2, 1.5 ,-2,3e1,P1\nright,grid,1,1,0,0,0,P1\n\
                     left,profile,1,1,0,0,0,P1\nleft,grid,2,1,,,,P1\n";
         let found = read_measured(text, "left").expect("a table");
-        assert_eq!(found, [MeasuredPoint { row: 0, column: 1, measured: Measured::Position([1.5, -2.0, 30.0]) }]);
+        assert_eq!(
+            found.points,
+            [MeasuredPoint { row: 0, column: 1, measured: Measured::Position([1.5, -2.0, 30.0]) }]
+        );
         let found = read_measured("column,row,deviation_um\n3,1,-4.5\n", "left").expect("a table");
-        assert_eq!(found, [MeasuredPoint { row: 0, column: 2, measured: Measured::Deviation(-0.0045) }]);
+        assert_eq!(found.points, [MeasuredPoint { row: 0, column: 2, measured: Measured::Deviation(-0.0045) }]);
+    }
+
+    #[test]
+    fn lines_without_values_are_part_of_the_grid() {
+        let text = "surface,part,row,column,deviation_um\nleft,grid,1,1,2\nleft,grid,3,1,\nleft,grid,1,4,\n\
+                    right,grid,9,9,1\nleft,profile,8,8,1\n";
+        let found = read_measured(text, "left").expect("a table");
+        assert_eq!((found.counts, found.points.len()), ([3, 4], 1));
+        let nowhere = read_measured("row,column,deviation_um\n1,1,2\n2,last,\n", "left").expect_err("no column");
+        assert_eq!(nowhere.to_string(), "line 3: `last` is no row or column, which count from 1 to at most 10000");
     }
 
     #[test]
@@ -127,9 +153,12 @@ mod tests {
         assert!(told("row,column,x,y\n1,1,0,0\n").contains("no column `z`"));
         assert_eq!(
             told("row,column,deviation_um\n1,1,2\n1,two,3\n"),
-            "line 3: `two` is no row or column, which count from 1"
+            "line 3: `two` is no row or column, which count from 1 to at most 10000"
         );
-        assert_eq!(told("row,column,deviation_um\n0,1,2\n"), "line 2: `0` is no row or column, which count from 1");
+        assert_eq!(
+            told("row,column,deviation_um\n0,1,2\n"),
+            "line 2: `0` is no row or column, which count from 1 to at most 10000"
+        );
         assert_eq!(told("row,column,deviation_um\n1,1,nan\n"), "line 2: `nan` is no number");
         assert_eq!(told("row,column,deviation_um\n1,1,1\n1,1,2\n"), "line 3: row 1, column 1 is there already");
         assert_eq!(told("row,column,deviation_um\n"), "no line is about the grid of `left`");

@@ -1,7 +1,5 @@
 //! The positions of a machine's axes over a motion.
 
-use std::f64::consts::TAU;
-
 use crate::conventions::one_line;
 use crate::dataset::{Header, Unit, Unknown};
 use crate::error::Malformed;
@@ -117,19 +115,6 @@ impl MachineAxis {
 }
 
 impl MotionTable {
-    /// Takes whole turns out of what rotary axes jump by from row to row: for positions that were reduced to one turn. No axis
-    /// may turn by half a turn or more between two rows.
-    pub fn unwind(&mut self) {
-        for index in (0..self.axes.len()).filter(|&index| self.axes[index].is_rotary) {
-            let mut before = None;
-            for position in self.rows.iter_mut().filter_map(|row| row.axes.get_mut(index)) {
-                let turns = ((before.unwrap_or(*position) - *position) / TAU).round();
-                *position += turns * TAU;
-                before = Some(*position);
-            }
-        }
-    }
-
     /// Whether every row and the series have one finite number for each axis. The writers refuse what fails.
     ///
     /// # Errors

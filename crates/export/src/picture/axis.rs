@@ -1,4 +1,4 @@
-//! The gear axis, dash-dotted as in a drawing.
+//! The axis z, dash-dotted as in a drawing.
 
 use super::camera::View;
 use super::occupancy::Occupancy;
@@ -6,7 +6,7 @@ use super::paint::{Anchor, Item, Place, Rect, Sheet, clipped, text_rect};
 use super::palette::{GREY, INK};
 use super::surface::Layers;
 
-const LABEL: &str = "z (gear axis)";
+const LABEL: &str = "z axis";
 const SIZE: f64 = 14.0;
 
 /// Dash, gap, dot, gap; sheet units.
@@ -55,15 +55,6 @@ pub(super) fn add_between(view: &View, low: f64, high: f64, layers: &mut Layers)
             layers.push(view.depth(at(along)), Item::Line { points, colour: INK, width: 1.3 });
         }
         along += stroke;
-    }
-}
-
-/// Keeps labels off the axis.
-pub(super) fn take_line(ends: [Place; 2], taken: &mut Occupancy) {
-    let [from, to] = ends;
-    for step in 0..=200 {
-        let t = f64::from(step) / 200.0;
-        taken.take_shape(&[[from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])]]);
     }
 }
 

@@ -49,10 +49,10 @@ impl Chart {
         Chart { rect, low, scale }
     }
 
-    /// The same axes in a larger rectangle: what it has more goes on in the same scales.
-    pub(super) fn grown_to(&self, rect: Rect) -> Chart {
-        let beyond = [(self.rect.left - rect.left) / self.scale[0], (rect.bottom - self.rect.bottom) / self.scale[1]];
-        Chart { rect, low: [self.low[0] - beyond[0], self.low[1] - beyond[1]], ..*self }
+    /// The same scales in another rectangle, around the same middle.
+    pub(super) fn moved_to(&self, rect: Rect) -> Chart {
+        let more = [rect.width() - self.rect.width(), rect.height() - self.rect.height()];
+        Chart { rect, low: [0, 1].map(|k| self.low[k] - 0.5 * more[k] / self.scale[k]), ..*self }
     }
 
     pub(super) fn place(&self, [across, up]: [f64; 2]) -> Place {
@@ -80,7 +80,7 @@ impl Chart {
         let down = bottom + if across.numbered { 35.0 } else { 18.0 };
         sheet.text([0.5 * (left + right), down], Anchor::Middle, SIZE, GREY, across.text);
         let from = (left - if up.numbered { MARGINS[0] - 8.0 } else { 0.0 }).max(0.0);
-        sheet.text([from, top - 8.0], Anchor::Start, SIZE, GREY, up.text);
+        sheet.text([from, top - 11.0], Anchor::Start, SIZE, GREY, up.text);
     }
 
     /// Faint lines across the rectangle where the numbers stand.
@@ -100,7 +100,11 @@ impl Chart {
     fn ticks(&self, axis: usize) -> Vec<(f64, String)> {
         let room = [self.rect.width(), self.rect.height()][axis];
         let (low, span) = (self.low[axis], room / self.scale[axis]);
-        let step = round_up(span / (room / SPACING[axis]).max(1.0));
+        let mut step = round_up(span / (room / SPACING[axis]).max(1.0));
+        // a single number is no scale
+        while span / step < 2.0 {
+            step = round_up(0.4 * step);
+        }
         if !(step > 0.0 && step.is_finite() && (low / step).abs() < 1e12) {
             return Vec::new();
         }

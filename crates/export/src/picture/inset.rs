@@ -1,10 +1,11 @@
-//! The patches on the gear: with its axis and the circles they lie between, in true proportion.
+//! The patches on their body: with its axis and the circles they lie between, in true proportion.
 
 use std::f64::consts::PI;
 
 use super::axis;
 use super::camera::{Camera, View};
 use super::figure::Drawn;
+use super::font;
 use super::mesh::Node;
 use super::occupancy::Occupancy;
 use super::paint::{Anchor, Item, Place, Rect, Sheet};
@@ -20,7 +21,7 @@ const CELLS: usize = 24;
 /// A patch this small on the sheet gets a ring around it.
 const SMALL: f64 = 14.0;
 
-/// An arc around the gear axis: radius and height, mm; middle and half its angle, radians.
+/// An arc around the axis z: radius and height, mm; middle and half its angle, radians.
 struct Arc {
     radius: f64,
     height: f64,
@@ -29,7 +30,7 @@ struct Arc {
 }
 
 /// Draws the inset in a thin frame.
-pub(super) fn draw(drawn: &[Drawn<'_>], nodes: &[Node], camera: Camera, rect: Rect, sheet: &mut Sheet) {
+pub(super) fn draw(drawn: &[&Drawn<'_>], nodes: &[Node], camera: Camera, rect: Rect, sheet: &mut Sheet) {
     let title = draw_frame(rect, sheet);
     let arcs = arcs(nodes);
     let (low, high) = axis_ends(nodes);
@@ -50,7 +51,7 @@ pub(super) fn draw(drawn: &[Drawn<'_>], nodes: &[Node], camera: Camera, rect: Re
     layers.shapes().for_each(|shape| taken.take_shape(shape));
     axis::add_between(&view, low, high, &mut layers);
     let ends = [view.place([0.0, 0.0, low]), view.place([0.0, 0.0, high])];
-    axis::take_line(ends, &mut taken);
+    taken.take_line(ends);
     layers.into_items().for_each(|item| sheet.push(item));
     ring_if_small(nodes, &view, sheet);
     axis::label(ends, rect.shrunk(6.0), &mut taken, sheet);
@@ -61,7 +62,8 @@ fn draw_frame(rect: Rect, sheet: &mut Sheet) -> Rect {
     let corners = [[rect.left, rect.top], [rect.right, rect.top], [rect.right, rect.bottom], [rect.left, rect.bottom]];
     sheet.polygon(&corners, palette::WHITE, FAINT, 1.0);
     let at = [rect.left + 12.0, rect.top + 21.0];
-    sheet.text(at, Anchor::Start, 13.0, GREY, "place on the gear, true proportion")
+    let title = font::fitted("place about the z axis, true proportion", 13.0, rect.width() - 24.0);
+    sheet.text(at, Anchor::Start, 13.0, GREY, &title)
 }
 
 /// The part of the axis that is shown: the heights of the patches and some more.

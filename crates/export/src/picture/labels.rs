@@ -33,7 +33,7 @@ struct Candidate {
 
 /// Writes each distinct label once, at the border with the most room: `toe -> heel` as two words at the ends, any other
 /// with an arrow.
-pub(super) fn draw(drawn: &[Drawn<'_>], view: &View, rect: Rect, taken: &mut Occupancy, sheet: &mut Sheet) {
+pub(super) fn draw(drawn: &[&Drawn<'_>], view: &View, rect: Rect, taken: &mut Occupancy, sheet: &mut Sheet) {
     let mut labels: Vec<&str> = Vec::new();
     for drawn in drawn {
         for label in [&drawn.patch.columns.label, &drawn.patch.rows.label] {
@@ -112,7 +112,8 @@ fn crowding(candidate: &Candidate, rect: Rect, taken: &Occupancy) -> f64 {
         right: a[0].max(b[0]),
         bottom: a[1].max(b[1]),
     });
-    let cost = |covered: Rect| 30.0 * taken.share(&covered) + if rect.contains(&covered) { 0.0 } else { 100.0 };
+    let cost =
+        |covered: Rect| 0.05 * taken.load(&covered.shrunk(-2.0)) + if rect.contains(&covered) { 0.0 } else { 100.0 };
     texts.chain(arrows).map(cost).sum()
 }
 

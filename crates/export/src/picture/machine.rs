@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 
+use super::calls::{self, Call};
 use super::camera::{Camera, View};
 use super::figure::{self, Figure, MARGIN};
 use super::font;
 use super::mesh::Mesh;
-use super::occupancy::Occupancy;
-use super::paint::{Anchor, Colour, Item, Place, Rect, Sheet, text_rect};
+use super::occupancy::{BODY, BORDER, LINE, Occupancy};
+use super::paint::{Anchor, Colour, Item, Place, Rect, Sheet};
 use super::palette::{FAINT, GREY, INK, RED};
 use super::surface::{Detail, Layers, add_mesh};
 use crate::conventions::one_line;
@@ -15,7 +16,9 @@ use crate::dataset::{Header, Patch};
 use crate::number::with_minus;
 use crate::vector::{Vector, add, cross, scale, unit};
 
+/// How wide the list is beside the diagram, and how high below it on a sheet that is higher than wide.
 const COLUMN: f64 = 430.0;
+const BELOW: f64 = 420.0;
 const TOOL: Colour = Colour([196, 205, 214]);
 const WORK: Colour = Colour([230, 159, 0]);
 /// An axis that stands still.
@@ -100,13 +103,20 @@ pub(super) fn compose(machine: &MachineDrawing, [width, height]: [f64; 2]) -> Fi
     let title = format!("{}: machine {}", one_line(&machine.header.job), one_line(&machine.name));
     let mut sheet = Sheet::default();
     figure::write_heading(&title, &machine.header, width - 2.0 * MARGIN, &mut sheet);
-    let column = width - MARGIN - COLUMN;
-    let main = Rect { left: MARGIN, top: 118.0, right: column - 24.0, bottom: height - 92.0 };
+    let [right, bottom] = figure::useful(width, height);
+    let whole = Rect { left: MARGIN, top: 118.0, right: right - MARGIN, bottom: bottom - 92.0 };
+    let [main, list] = if height > width {
+        let between = whole.bottom - BELOW;
+        [Rect { bottom: between - 24.0, ..whole }, Rect { top: between, ..whole }]
+    } else {
+        let between = whole.right - COLUMN;
+        [Rect { right: between - 24.0, ..whole }, Rect { left: between, ..whole }]
+    };
     if machine.frames.is_empty() {
         sheet.text(main.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw: the machine has no frame");
     } else {
         draw_space(machine, main, &mut sheet);
-        draw_list(machine, Rect { left: column, right: width - MARGIN, ..main }, &mut sheet);
+        draw_list(machine, list, &mut sheet);
     }
     let caption = with_minus(&one_line(&machine.note));
     figure::write_caption(&caption, [width, height], &mut sheet);
@@ -126,51 +136,15 @@ fn draw_space(machine: &MachineDrawing, rect: Rect, sheet: &mut Sheet) {
     for (bodies, colour) in [(&tool, TOOL), (&work, WORK)] {
         let mut layers = Layers::default();
         bodies.iter().for_each(|mesh| add_mesh(mesh, colour, &view, DETAIL, &mut layers));
-        layers.shapes().for_each(|shape| taken.take_shape(shape));
+        for shape in layers.shapes() {
+            taken.take_shape_as(if shape.len() > 2 { BODY } else { BORDER }, shape);
+        }
         layers.into_items().for_each(|item| sheet.push(item));
     }
     let mut calls = draw_links(machine, &view, &mut taken, sheet);
     calls.extend(draw_frames(machine, &view, &mut taken, sheet));
     calls.extend(draw_axes(machine, &view, &mut taken, sheet));
-    calls.sort_by_key(|call| call.rank);
-    for call in &calls {
-        call.draw(rect, &mut taken, sheet);
-    }
-}
-
-/// A text that belongs to a place and is written beside it.
-struct Call {
-    at: Place,
-    text: String,
-    size: f64,
-    colour: Colour,
-    rank: u8,
-}
-
-impl Call {
-    /// Writes the text where it covers the least, with a thin line if it is far.
-    fn draw(&self, rect: Rect, taken: &mut Occupancy, sheet: &mut Sheet) {
-        let mut best: Option<(f64, Rect, Place, f64)> = None;
-        for distance in [10.0, 16.0, 24.0, 36.0, 52.0, 72.0, 96.0, 130.0] {
-            for step in 0..16 {
-                let (sin, cos) = (TAU * f64::from(step) / 16.0).sin_cos();
-                let half = 0.5 * font::width(&self.text, self.size);
-                let base = [self.at[0] + (distance + half) * cos, self.at[1] + distance * sin + 0.35 * self.size];
-                let covered = text_rect(base, Anchor::Middle, self.size, &self.text);
-                let cost = 20.0 * taken.share(&covered.shrunk(-2.0)) + 0.02 * distance;
-                if rect.contains(&covered) && best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                    best = Some((cost, covered, base, distance));
-                }
-            }
-        }
-        let Some((_, covered, base, distance)) = best else { return };
-        if distance > 30.0 {
-            let near = [self.at[0].clamp(covered.left, covered.right), self.at[1].clamp(covered.top, covered.bottom)];
-            sheet.line(&[self.at, near], GREY, 0.7);
-        }
-        sheet.text(base, Anchor::Middle, self.size, self.colour, &self.text);
-        taken.take(&covered);
-    }
+    calls::write(calls, rect, &mut taken, sheet);
 }
 
 /// Lines from frame to frame; distances that stand still carry their names.
@@ -183,10 +157,17 @@ fn draw_links(machine: &MachineDrawing, view: &View, taken: &mut Occupancy, shee
             continue;
         }
         sheet.line(&[from, to], GREY, if link.kind == LinkKind::Linear { 5.0 } else { 2.6 });
-        take_line([from, to], taken);
+        taken.take_line([from, to]);
         let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
         if link.kind == LinkKind::Shift && length > 12.0 {
-            calls.push(Call { at: middle, text: one_line(&link.name), size: 12.0, colour: INK, rank: 2 });
+            calls.push(Call {
+                at: middle,
+                text: one_line(&link.name),
+                size: 12.0,
+                colour: INK,
+                rank: 2,
+                farthest: f64::INFINITY,
+            });
         }
     }
     calls
@@ -207,23 +188,31 @@ fn draw_frames(machine: &MachineDrawing, view: &View, taken: &mut Occupancy, she
         let is_clear = taken_by_triads.iter().all(|other: &Place| (other[0] - at[0]).hypot(other[1] - at[1]) > TRIAD);
         if (is_last || frame.parent.is_none()) && is_clear {
             taken_by_triads.push(at);
-            letters.extend(draw_triad(frame, view, sheet));
-            taken.take(&Rect { left: at[0], top: at[1], right: at[0], bottom: at[1] }.shrunk(-0.6 * TRIAD));
+            letters.extend(draw_triad(frame, view, taken, sheet));
         }
         sheet.line(&[at, at], INK, 8.0);
+        taken.take_as(LINE, &around(at, 5.0));
     }
-    let names = places.into_iter().map(|(at, text)| Call { at, text, size: 14.0, colour: INK, rank: 1 });
+    let names = places.into_iter().map(|(at, text)| Call {
+        at,
+        text,
+        size: 14.0,
+        colour: INK,
+        rank: 1,
+        farthest: f64::INFINITY,
+    });
     letters.into_iter().chain(names).collect()
 }
 
 /// The three directions of a frame, and calls for their letters.
-fn draw_triad(frame: &DrawnFrame, view: &View, sheet: &mut Sheet) -> Vec<Call> {
+fn draw_triad(frame: &DrawnFrame, view: &View, taken: &mut Occupancy, sheet: &mut Sheet) -> Vec<Call> {
     let from = view.place(frame.origin);
     let arm = |(axis, name): (&Vector, &str)| {
         let [right, up, _] = view.camera.seen(*axis);
         let tip = [from[0] + TRIAD * right, from[1] - TRIAD * up];
         sheet.line(&[from, tip], INK, 1.8);
-        Call { at: tip, text: name.to_owned(), size: 12.0, colour: GREY, rank: 3 }
+        taken.take_line([from, tip]);
+        Call { at: tip, text: name.to_owned(), size: 12.0, colour: GREY, rank: 3, farthest: 16.0 }
     };
     frame.axes.iter().zip(["x", "y", "z"]).map(arm).collect()
 }
@@ -247,18 +236,23 @@ fn draw_axes(machine: &MachineDrawing, view: &View, taken: &mut Occupancy, sheet
         let start = SHAFT * (1.0 + 0.8 * before as f64);
         let place = |by: f64| [at[0] + by * along[0], at[1] + by * along[1]];
         let end = if link.kind == LinkKind::Rotary {
-            draw_ring(link.direction, place(start), colour, view, sheet);
-            sheet.dashes(&[place(-0.6 * SHAFT), place(start + 10.0)], [9.0, 4.0], colour, 1.2);
+            let ring = draw_ring(link.direction, place(start), colour, view, sheet);
+            ring.windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
+            let shaft = [place(-0.6 * SHAFT), place(start + 10.0)];
+            sheet.dashes(&shaft, [9.0, 4.0], colour, 1.2);
+            taken.take_line(shaft);
             place(start)
         } else {
             let (from, to) = if before == 0 { (-0.5 * ARROW, 0.5 * ARROW) } else { (start, start + ARROW) };
             draw_arrow([place(from), place(to)], colour, sheet);
+            for end in [from, to] {
+                taken.take_as(LINE, &around(place(end), 8.0));
+            }
+            taken.take_line([place(from), place(to)]);
             place(to)
         };
-        take_line([at, end], taken);
-        taken.take(&Rect { left: end[0], top: end[1], right: end[0], bottom: end[1] }.shrunk(-RING));
         let text = one_line(&link.name);
-        calls.push(Call { at: end, text, size: 16.0, colour, rank: 0 });
+        calls.push(Call { at: end, text, size: 16.0, colour, rank: 0, farthest: f64::INFINITY });
     }
     calls
 }
@@ -280,10 +274,10 @@ fn draw_arrow([from, to]: [Place; 2], colour: Colour, sheet: &mut Sheet) {
     sheet.arrow_head([from[0] - 6.0 * along[0], from[1] - 6.0 * along[1]], along.map(|x| -x), 12.0, colour);
 }
 
-/// Most of a circle about the axis, right-handed.
-fn draw_ring(axis: Vector, at: Place, colour: Colour, view: &View, sheet: &mut Sheet) {
+/// Draws most of a circle about the axis, right-handed, and says where it runs.
+fn draw_ring(axis: Vector, at: Place, colour: Colour, view: &View, sheet: &mut Sheet) -> Vec<Place> {
     let aside = if axis[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
-    let Some(first) = unit(cross(axis, aside)) else { return };
+    let Some(first) = unit(cross(axis, aside)) else { return Vec::new() };
     let second = cross(axis, first);
     let place = |angle: f64| {
         let (sin, cos) = angle.sin_cos();
@@ -295,15 +289,14 @@ fn draw_ring(axis: Vector, at: Place, colour: Colour, view: &View, sheet: &mut S
     let (tip, before) = (points[40], points[38]);
     let length = (tip[0] - before[0]).hypot(tip[1] - before[1]).max(1e-9);
     let along = [(tip[0] - before[0]) / length, (tip[1] - before[1]) / length];
-    sheet.arrow_head([tip[0] + 7.0 * along[0], tip[1] + 7.0 * along[1]], along, 12.0, colour);
+    let head = [tip[0] + 7.0 * along[0], tip[1] + 7.0 * along[1]];
+    sheet.arrow_head(head, along, 12.0, colour);
+    points.into_iter().chain([head]).collect()
 }
 
-/// Keeps texts off a line.
-fn take_line([from, to]: [Place; 2], taken: &mut Occupancy) {
-    for step in 0..=40 {
-        let t = f64::from(step) / 40.0;
-        taken.take_shape(&[[from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])]]);
-    }
+/// A square about a place.
+fn around([x, y]: Place, half: f64) -> Rect {
+    Rect { left: x - half, top: y - half, right: x + half, bottom: y + half }
 }
 
 /// The chain, frame by frame: each with its parent and what leads to it.

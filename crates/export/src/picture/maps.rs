@@ -15,18 +15,23 @@ use super::projection::{Projection, middle};
 use super::relief;
 use crate::conventions::one_line;
 use crate::dataset::{Dataset, Field, Patch, Values};
-use crate::number::{dimension, levelled, shown_unit};
+use crate::number::{dimension, levelled, shown_unit, with_minus};
 
 /// A grid is drawn in at least so many cells, up and across, and in at most so many.
 const CELLS: [usize; 2] = [40, 60];
 const MOST_CELLS: usize = 200;
 /// A relief has cells that lie behind each other, so it has fewer.
 const MOST_OF_RELIEF: usize = 100;
-const GAP: f64 = 40.0;
+pub(super) const GAP: f64 = 40.0;
 /// Above a map: its name and the line below it; below it: the key.
 const HEAD: f64 = 66.0;
 const FOOT: f64 = 40.0;
 const KEY: f64 = 12.0;
+/// A map is drawn at least so wide and so high, where there is room.
+const LEAST: f64 = 160.0;
+/// A number of which all that it can change over a flank is so many units in the last place of 1 is rounding of the coordinates:
+/// curvatures come out of some ten operations on derivatives, each good to one.
+const UNITS_IN_LAST_PLACE: f64 = 64.0;
 /// Times as large as across, z or the radius may be drawn upwards where a flank is long.
 const STRETCHES: [f64; 5] = [10.0, 5.0, 3.0, 2.0, 1.0];
 
@@ -49,6 +54,8 @@ pub(super) struct Panel<'a> {
     /// Values at the nodes of the mesh.
     pub(super) values: Vec<Option<f64>>,
     levels: Option<Levels>,
+    /// Whether all values are zero but for rounding; then they are taken as zero.
+    is_rounding: bool,
     pub(super) projection: Projection,
 }
 
@@ -68,10 +75,10 @@ pub(super) fn compose(
     if panels.is_empty() {
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw");
     }
-    for (panel, rect) in panels.iter().zip(places(panels.len(), area)) {
+    for (panel, rect) in panels.iter().zip(figure::places(panels.len(), area, GAP)) {
         panel.draw(rect, style, &mut sheet);
     }
-    let caption = caption(note, &panels);
+    let caption = with_minus(&caption(note, &panels));
     figure::write_caption(&caption, [width, height], &mut sheet);
     Figure { title, caption, items: sheet.items }
 }
@@ -79,19 +86,6 @@ pub(super) fn compose(
 fn caption(note: &str, panels: &[Panel<'_>]) -> String {
     let thinned = panels.iter().filter_map(|panel| panel.mesh.thinned_from(panel.patch)).next();
     [Some(one_line(note)).filter(|note| !note.is_empty()), thinned].into_iter().flatten().collect::<Vec<_>>().join(" ")
-}
-
-/// Equal rectangles, row by row, as near to landscape as their number allows.
-pub(super) fn places(count: usize, area: Rect) -> impl Iterator<Item = Rect> {
-    let across = [(1, 1), (4, 2), (9, 3)].iter().find(|(most, _)| count <= *most).map_or(4, |(_, across)| *across);
-    let down = count.div_ceil(across).max(1);
-    let width = (area.width() + GAP) / across as f64 - GAP;
-    let height = (area.height() + GAP) / down as f64 - GAP;
-    (0..count).map(move |k| {
-        let left = area.left + (k % across) as f64 * (width + GAP);
-        let top = area.top + (k / across) as f64 * (height + GAP);
-        Rect { left, top, right: left + width, bottom: top + height }
-    })
 }
 
 impl<'a> Panel<'a> {
@@ -105,15 +99,19 @@ impl<'a> Panel<'a> {
             return None;
         }
         let known = || values.iter().zip(&patch.points).filter(|(_, point)| point.is_solved()).filter_map(|(v, _)| *v);
+        let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain(patch, field));
+        let taken = |value: f64| if is_rounding { 0.0 } else { value };
         let mesh = Mesh::of(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
         let projection = Projection::of(patch, &mesh);
-        let known_at = |at: usize| values[at].filter(|value| value.is_finite() && patch.points[at].is_solved());
+        let known_at =
+            |at: usize| values[at].filter(|value| value.is_finite() && patch.points[at].is_solved()).map(taken);
         let picked = mesh.picked(patch).map(known_at).collect();
         Some(Panel {
             patch,
             field,
             values: picked,
-            levels: Levels::over(known(), if style == Style::Lines { LINES } else { BANDS }),
+            is_rounding,
+            levels: Levels::over(known().map(taken), if style == Style::Lines { LINES } else { BANDS }),
             projection,
             mesh,
         })
@@ -136,8 +134,12 @@ impl<'a> Panel<'a> {
                 let below = if style == Style::Lines { 0.0 } else { FOOT };
                 let chart = self.chart(Rect { bottom: rect.bottom - below, ..map });
                 self.draw_on(&chart, style, sheet);
-                if let (Some(levels), Style::Bands) = (&self.levels, style) {
-                    draw_key(levels, &shown_unit(&self.field.unit), Rect { left: chart.rect.left, ..key }, sheet);
+                if let (Some(levels), Style::Bands) = (&self.levels, style)
+                    && levels.single() != Some(0.0)
+                {
+                    let top = chart.rect.bottom + chart::MARGINS[3] + 6.0;
+                    let key = Rect { left: chart.rect.left, top, right: key.right, bottom: top + KEY };
+                    draw_key(levels, &shown_unit(&self.field.unit), key, sheet);
                 }
                 self.about(&chart)
             }
@@ -151,6 +153,10 @@ impl<'a> Panel<'a> {
         chart.draw_axes(titles.map(|text| Title { text, numbered: self.projection.is_axial }), sheet);
         let grid = self.grid(chart);
         match &self.levels {
+            Some(levels) if levels.single() == Some(0.0) => {
+                grid.silhouette(PALE, sheet);
+                self.draw_border(&grid, 1.2, sheet);
+            }
             Some(levels) if style == Style::Lines => self.draw_lines(&grid, levels, chart.rect, sheet),
             Some(levels) => self.draw_bands(&grid, levels, sheet),
             None => {
@@ -158,11 +164,16 @@ impl<'a> Panel<'a> {
             }
         }
         if let Some(value) = self.levels.as_ref().and_then(Levels::single) {
-            let text = format!("{} everywhere", dimension(value));
+            let text = match self.is_rounding {
+                true => "0 within rounding".to_owned(),
+                false => format!("{} everywhere", dimension(value)),
+            };
             let known = self.projection.nodes.iter().flatten().map(|place| chart.place(*place)).collect::<Vec<Place>>();
-            let ground = if style == Style::Lines { INK } else { WHITE };
+            let ground = if style == Style::Lines || value == 0.0 { INK } else { WHITE };
             let [x, y] = middle(&known);
-            sheet.text([x, y + 5.0], Anchor::Middle, 15.0, ground, &text);
+            let [[left, right], _] = chart::bounds(known.into_iter());
+            let size = (15.0 * 0.6 * (right - left) / font::width(&text, 15.0)).clamp(11.0, 15.0);
+            sheet.text([x, y + 5.0], Anchor::Middle, size, ground, &text);
         }
         if self.levels.is_some() {
             self.draw_missing(chart, sheet);
@@ -178,15 +189,17 @@ impl<'a> Panel<'a> {
         let aside = (widest + 26.0).min(0.24 * rect.width());
         let above = 30.0_f64.min(0.2 * rect.height());
         let room = rect.inside([aside, above, aside, above]);
-        let inner = if self.projection.is_axial {
-            let [across, up] = bounds.map(|[low, high]| (high - low).max(1e-9));
-            let fits = |stretch: &&f64| room.height() / (up * **stretch) >= 0.8 * room.width() / across;
-            let stretch = STRETCHES.iter().find(fits).copied().unwrap_or(1.0);
-            Chart::in_proportion(room, bounds, stretch)
-        } else {
-            Chart::filling(room, bounds)
-        };
-        inner.grown_to(rect)
+        if !self.projection.is_axial {
+            return Chart::filling(room, bounds).moved_to(rect);
+        }
+        let [across, up] = bounds.map(|[low, high]| (high - low).max(1e-9));
+        let fits = |stretch: &&f64| room.height() / (up * **stretch) >= 0.8 * room.width() / across;
+        let stretch = STRETCHES.iter().find(fits).copied().unwrap_or(1.0);
+        let inner = Chart::in_proportion(room, bounds, stretch);
+        // no farther than words stand
+        let wide = (inner.scale[0] * across + 2.0 * aside).clamp(LEAST.min(rect.width()), rect.width());
+        let high = (inner.scale[1] * up + 2.0 * above).clamp(LEAST.min(rect.height()), rect.height());
+        inner.moved_to(Rect { right: rect.left + wide, bottom: rect.top + high, ..rect })
     }
 
     /// How the flank is laid flat.
@@ -289,6 +302,23 @@ impl<'a> Panel<'a> {
             }
         }
     }
+}
+
+/// What a value can be by rounding alone: a curvature that bends the patch by less than its coordinates are rounded is none, nor is a
+/// product of curvatures that turns its normals by less than a direction is rounded. Zero where the unit has no such bound.
+fn grain(patch: &Patch, field: &Field) -> f64 {
+    let solved = patch.points.iter().filter(|point| point.is_solved());
+    let size = solved.flat_map(|point| point.position).fold(0.0, |size: f64, x| size.max(x.abs()));
+    let power = match field.unit.as_str() {
+        "1/mm" => 1,
+        "1/mm^2" => 2,
+        _ => return 0.0,
+    };
+    // where nothing is away from the origin there is no curvature to bound
+    if size == 0.0 {
+        return 0.0;
+    }
+    UNITS_IN_LAST_PLACE * f64::EPSILON / size.powi(power)
 }
 
 /// What the colours mean: bands with the numbers between them, as many as there is room for, and the unit.

@@ -1,12 +1,17 @@
 //! The small triad of the frame's axes, and the scale.
 
+use std::f64::consts::TAU;
+
 use super::camera::Camera;
 use super::font;
-use super::paint::{Anchor, Place, Rect, Sheet};
-use super::palette::{GREY, INK};
+use super::occupancy::Occupancy;
+use super::paint::{Anchor, Place, Rect, Sheet, text_rect};
+use super::palette::{GREY, INK, WHITE};
 use crate::number::dimension;
 
 const ARM: f64 = 38.0;
+/// An arm that is seen at less than this share of its length points to the eye or away from it.
+const END_ON: f64 = 0.12;
 
 /// Draws the directions x, y, z of the frame as the camera sees them, in the left of the rectangle.
 pub(super) fn draw_triad(camera: &Camera, frame: &str, rect: Rect, sheet: &mut Sheet) {
@@ -21,11 +26,27 @@ pub(super) fn draw_triad(camera: &Camera, frame: &str, rect: Rect, sheet: &mut S
     });
     let origin = [rect.left + 56.0 + shift[0], rect.middle()[1] - 14.0 + shift[1]];
     let free = opposite(arms.iter().map(|arm| arm.1));
-    for (_, along, name) in arms {
-        draw_arm(origin, along, free, name, sheet);
+    let mut taken = Occupancy::new(rect.right + 3.0 * ARM, rect.bottom + 3.0 * ARM);
+    for (towards, along, _) in &arms {
+        draw_arm(origin, *along, *towards, &mut taken, sheet);
     }
-    let text = font::fitted(frame, 13.0, 0.35 * rect.width());
+    for (_, along, name) in &arms {
+        write_letter(
+            [0, 1].map(|k| origin[k] + ARM * along[k]),
+            direction(*along).unwrap_or(free),
+            name,
+            &mut taken,
+            sheet,
+        );
+    }
+    let text = font::fitted(frame, 13.0, (0.35 * rect.width()).max(120.0));
     sheet.text([rect.left, rect.bottom], Anchor::Start, 13.0, GREY, &text);
+}
+
+/// `None` for an arm that points to the eye, or away from it.
+fn direction(along: Place) -> Option<Place> {
+    let length = along[0].hypot(along[1]);
+    (length > END_ON).then(|| along.map(|x| x / length))
 }
 
 /// The direction away from all arms.
@@ -35,17 +56,45 @@ fn opposite(arms: impl Iterator<Item = Place>) -> Place {
     if length > 0.05 { sum.map(|x| x / length) } else { [0.0, -1.0] }
 }
 
-/// An arm that points to the eye has no direction on the sheet; its letter goes where it is `free`.
-fn draw_arm(origin: Place, along: Place, free: Place, name: &str, sheet: &mut Sheet) {
-    let length = along[0].hypot(along[1]);
-    let direction = if length > 0.05 { along.map(|x| x / length) } else { free };
-    let tip = [origin[0] + ARM * along[0], origin[1] + ARM * along[1]];
-    sheet.line(&[origin, tip], INK, 1.8);
-    if ARM * length > 12.0 {
-        sheet.arrow_head([tip[0] + 5.0 * direction[0], tip[1] + 5.0 * direction[1]], direction, 10.0, INK);
+/// An arrow; for an arm that points to the eye a dot in a ring, away from it a cross in a ring.
+fn draw_arm(origin: Place, along: Place, towards: f64, taken: &mut Occupancy, sheet: &mut Sheet) {
+    let tip = [0, 1].map(|k| origin[k] + ARM * along[k]);
+    if let Some(direction) = direction(along) {
+        sheet.line(&[origin, tip], INK, 1.8);
+        taken.take_line([origin, tip]);
+        if ARM * along[0].hypot(along[1]) > 12.0 {
+            let head = [0, 1].map(|k| tip[k] + 5.0 * direction[k]);
+            sheet.arrow_head(head, direction, 10.0, INK);
+            taken.take_line([tip, head]);
+        }
+        return;
     }
-    let beside = [tip[0] + 14.0 * direction[0], tip[1] + 14.0 * direction[1] + 5.0];
-    sheet.text(beside, Anchor::Middle, 15.0, INK, name);
+    let at = |angle: f64, radius: f64| [origin[0] + radius * angle.cos(), origin[1] + radius * angle.sin()];
+    let ring: Vec<Place> = (0..=24).map(|k| at(TAU * f64::from(k) / 24.0, 6.0)).collect();
+    sheet.polygon(&ring, WHITE, INK, 1.5);
+    taken.take_shape(&ring);
+    if towards > 0.0 {
+        sheet.line(&[origin, origin], INK, 4.0);
+    } else {
+        for angle in [0.125 * TAU, 0.375 * TAU] {
+            sheet.line(&[at(angle, 6.0), at(angle, -6.0)], INK, 1.5);
+        }
+    }
+}
+
+/// Beyond the tip, or around it where that place is taken.
+fn write_letter(tip: Place, direction: Place, name: &str, taken: &mut Occupancy, sheet: &mut Sheet) {
+    let around = [0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0].map(|eighths| 0.125 * TAU * eighths);
+    let places = [14.0, 20.0].into_iter().flat_map(|far| around.map(|angle| (far, angle)));
+    let place = |(far, angle): (f64, f64)| {
+        let (sin, cos) = angle.sin_cos();
+        let [x, y] = direction;
+        [tip[0] + far * (cos * x - sin * y), tip[1] + far * (sin * x + cos * y) + 5.0]
+    };
+    let load = |at: &Place| taken.load(&text_rect(*at, Anchor::Middle, 15.0, name));
+    if let Some(at) = places.map(place).min_by(|a, b| load(a).total_cmp(&load(b))) {
+        taken.take(&sheet.text(at, Anchor::Middle, 15.0, INK, name));
+    }
 }
 
 /// Draws a bar of a round length. `scale` is sheet units per mm.

@@ -8,6 +8,7 @@
 //! there are some. `svg` and `png` write.
 
 mod axis;
+mod calls;
 mod camera;
 mod chart;
 mod contours;
@@ -44,8 +45,8 @@ use maps::Style;
 use paint::Item;
 pub use section::{Section, SectionLine, ToolPosition};
 
-/// Size of the sheet that line widths and letters are made for.
-const SHEET: [f64; 2] = [1200.0, 900.0];
+/// Sizes of the sheets that line widths and letters are made for: wide and high ones.
+const SHEETS: [[f64; 2]; 2] = [[1200.0, 900.0], [900.0, 1200.0]];
 
 /// Sides that are drawn as they are asked for, pixels; others are brought to the nearest end.
 const SIDES: std::ops::RangeInclusive<u32> = 64..=16_384;
@@ -79,11 +80,11 @@ pub struct Picture {
     items: Vec<Item>,
 }
 
-/// Draws all patches of a dataset, looked at from the side their normals point to, with the gear axis, dimensions, the
+/// Draws all patches of a dataset, looked at from the side their normals point to, with the axis z, dimensions, the
 /// directions of rows and columns, a scale, and what was solved.
 ///
 /// There is a picture of any dataset: points without a finite position are left out, and a dataset with no point to draw
-/// becomes a sheet that says so. Patches are drawn in one coordinate system, whatever frames they name.
+/// becomes a sheet that says so. Patches of each frame have a view of their own.
 ///
 /// ```
 /// use flank_export::{Dataset, Header, PictureOptions, picture};
@@ -257,7 +258,8 @@ pub(crate) fn letters<'a>(pictures: impl IntoIterator<Item = &'a Picture>) -> St
 fn on_sheet(options: &PictureOptions, compose: impl FnOnce([f64; 2]) -> figure::Figure) -> Picture {
     let width = options.width.clamp(*SIDES.start(), *SIDES.end());
     let height = options.height.clamp(*SIDES.start(), *SIDES.end());
-    let unit = (f64::from(width) / SHEET[0]).min(f64::from(height) / SHEET[1]);
+    let [wide, high] = SHEETS[usize::from(height > width)];
+    let unit = (f64::from(width) / wide).min(f64::from(height) / high);
     let figure = compose([f64::from(width) / unit, f64::from(height) / unit]);
     Picture { width, height, unit, title: figure.title, description: figure.caption, items: figure.items }
 }

@@ -5,11 +5,17 @@ use super::paint::{Place, Rect};
 /// Side of one cell of the record, sheet units.
 const CELL: f64 = 4.0;
 
+/// How bad it is to write over what is there, from 0 to 1: bodies, their borders, lines, texts.
+pub(super) const BODY: f64 = 0.04;
+pub(super) const BORDER: f64 = 0.15;
+pub(super) const LINE: f64 = 0.7;
+pub(super) const TEXT: f64 = 1.0;
+
 /// A coarse record of where something is drawn already.
 pub(super) struct Occupancy {
     across: usize,
     down: usize,
-    taken: Vec<bool>,
+    taken: Vec<f64>,
 }
 
 impl Occupancy {
@@ -17,35 +23,63 @@ impl Occupancy {
     pub(super) fn new(width: f64, height: f64) -> Self {
         let across = (width / CELL).ceil() as usize + 1;
         let down = (height / CELL).ceil() as usize + 1;
-        Occupancy { across, down, taken: vec![false; across * down] }
+        Occupancy { across, down, taken: vec![0.0; across * down] }
     }
 
     /// Takes a rectangle.
     pub(super) fn take(&mut self, rect: &Rect) {
+        self.take_as(TEXT, rect);
+    }
+
+    /// Takes a rectangle, unless something heavier is there.
+    pub(super) fn take_as(&mut self, weight: f64, rect: &Rect) {
         for cell in self.cells(rect) {
-            self.taken[cell] = true;
+            self.taken[cell] = self.taken[cell].max(weight);
+        }
+    }
+
+    /// Takes what lies along a line.
+    pub(super) fn take_line(&mut self, line: [Place; 2]) {
+        for at in along(line) {
+            self.take_as(LINE, &at);
         }
     }
 
     /// Takes the bounding box of a shape; right for small ones.
     pub(super) fn take_shape(&mut self, points: &[Place]) {
+        self.take_shape_as(TEXT, points);
+    }
+
+    /// The same, unless something heavier is there.
+    pub(super) fn take_shape_as(&mut self, weight: f64, points: &[Place]) {
         let Some(&[x, y]) = points.first() else {
             return;
         };
         let start = Rect { left: x, top: y, right: x, bottom: y };
-        self.take(&points.iter().fold(start, |rect, &[x, y]| Rect {
+        let bounds = points.iter().fold(start, |rect, &[x, y]| Rect {
             left: rect.left.min(x),
             top: rect.top.min(y),
             right: rect.right.max(x),
             bottom: rect.bottom.max(y),
-        }));
+        });
+        self.take_as(weight, &bounds);
     }
 
     /// How much of a rectangle is taken, from 0 to 1.
     pub(super) fn share(&self, rect: &Rect) -> f64 {
         let cells = self.cells(rect);
-        let taken = cells.iter().filter(|&&cell| self.taken[cell]).count();
-        taken as f64 / cells.len().max(1) as f64
+        cells.iter().map(|&cell| self.taken[cell]).sum::<f64>() / cells.len().max(1) as f64
+    }
+
+    /// How much of a rectangle is taken, square sheet units.
+    pub(super) fn load(&self, rect: &Rect) -> f64 {
+        self.cells(rect).into_iter().map(|cell| self.taken[cell]).sum::<f64>() * CELL * CELL
+    }
+
+    /// How much text lies under a line, sheet units.
+    pub(super) fn text_under(&self, line: [Place; 2]) -> f64 {
+        let cells = along(line).flat_map(|at| self.cells(&at));
+        CELL * cells.filter(|&cell| self.taken[cell] >= TEXT).count() as f64
     }
 
     fn cells(&self, rect: &Rect) -> Vec<usize> {
@@ -58,6 +92,17 @@ impl Occupancy {
         }
         cells
     }
+}
+
+/// Points of a line, a cell from each other.
+fn along([from, to]: [Place; 2]) -> impl Iterator<Item = Rect> {
+    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+    // A cast of a float to an integer saturates; no line on a sheet has more points.
+    let steps = ((length / CELL).ceil() as usize).clamp(1, 10_000);
+    (0..=steps).map(move |step| {
+        let [x, y] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * step as f64 / steps as f64);
+        Rect { left: x, top: y, right: x, bottom: y }
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::chart::{self, Chart, Title};
 use super::figure::{self, Figure, MARGIN};
 use super::font;
-use super::maps::places;
+use super::maps::GAP;
 use super::paint::{Anchor, Place, Rect, Sheet};
 use super::palette::{self, GREY, INK};
 use crate::conventions::one_line;
@@ -35,7 +35,7 @@ pub(super) fn compose(tables: &[MotionTable], [width, height]: [f64; 2]) -> Figu
     if moving.is_empty() {
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw: no axis moves");
     }
-    for (curve, rect) in moving.iter().zip(places(moving.len(), area)) {
+    for (curve, rect) in moving.iter().zip(figure::places(moving.len(), area, GAP)) {
         curve.draw(rect, &mut sheet);
     }
     let caption = caption(&moving, &resting);
@@ -106,11 +106,12 @@ impl Curve<'_> {
         if off > ROUNDING * (1.0 + size) {
             format!("up to {} {unit} off a straight line", levelled(off, 0.01 * off))
         } else {
-            format!(
-                "a straight line, {} {unit} per {}",
-                levelled(slope, 1e-4 * slope.abs()),
-                self.table.motion.unit.symbol()
-            )
+            let motion = &self.table.motion;
+            let per = match motion.unit {
+                Unit::One => format!("unit of {}", one_line(&motion.name)),
+                unit => unit.symbol().to_owned(),
+            };
+            format!("a straight line, {} {unit} per {per}", levelled(slope, 1e-4 * slope.abs()))
         }
     }
 }

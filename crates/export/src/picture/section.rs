@@ -55,16 +55,13 @@ pub(super) fn compose(section: &Section, [width, height]: [f64; 2]) -> Figure {
     let title = format!("{}: section", one_line(&section.header.job));
     let mut sheet = Sheet::default();
     figure::write_heading(&title, &section.header, width - 2.0 * MARGIN, &mut sheet);
-    let column = width - MARGIN - COLUMN;
-    let main = Rect { left: MARGIN, top: 118.0, right: column - 36.0, bottom: height - 84.0 }.inside(chart::MARGINS);
+    let [main, list, side] = parts(width, height);
     let points: Vec<[f64; 2]> = section.surfaces.iter().flat_map(|line| line.points.iter().copied()).collect();
     if points.is_empty() {
         sheet.text(main.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw: the plane meets no solved surface");
     } else {
         let bounds = chart::bounds(points.into_iter()).map(|ends| chart::wider(ends, 0.12));
         draw(section, &Chart::in_proportion(main, bounds, 1.0), 1.0, &mut sheet);
-        let side = Rect { left: column, top: height - 396.0, right: width - MARGIN, bottom: height - 96.0 };
-        let list = Rect { left: column, top: 122.0, right: width - MARGIN, bottom: side.top - 40.0 };
         draw_list(section, list, &mut sheet);
         if let Some((middle, wide)) = detail(section) {
             let bounds = middle.map(|x| [x - 0.5 * wide, x + 0.5 * wide]);
@@ -76,6 +73,21 @@ pub(super) fn compose(section: &Section, [width, height]: [f64; 2]) -> Figure {
     let caption = with_minus(&one_line(&section.note));
     figure::write_caption(&caption, [width, height], &mut sheet);
     Figure { title, caption, items: sheet.items }
+}
+
+/// Where the section stands, its list, and its detail: beside it, or below it on a sheet that is higher than wide.
+fn parts(width: f64, height: f64) -> [Rect; 3] {
+    let [width, height] = figure::useful(width, height);
+    let right = width - MARGIN;
+    let main = Rect { left: MARGIN, top: 118.0, right, bottom: height - 84.0 };
+    let side = Rect { left: right - COLUMN, top: height - 396.0, right, bottom: height - 96.0 };
+    let [main, list] = if height > width {
+        let list = Rect { left: MARGIN, top: side.top, right: side.left - 40.0, bottom: side.bottom };
+        [Rect { bottom: side.top - 50.0, ..main }, list]
+    } else {
+        [Rect { right: side.left - 36.0, ..main }, Rect { top: 122.0, bottom: side.top - 40.0, ..side }]
+    };
+    [main.inside(chart::MARGINS), list, side]
 }
 
 /// A contact and a width that shows some of its neighbours, mm.

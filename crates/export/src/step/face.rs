@@ -77,6 +77,12 @@ impl Face {
         Face { deviation: Some(deviation), ..self }
     }
 
+    /// The frame that it is in.
+    #[must_use]
+    pub fn frame(&self) -> &str {
+        &self.frame
+    }
+
     /// How many rows and columns of points it goes through.
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {

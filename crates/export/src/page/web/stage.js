@@ -6,6 +6,8 @@ import { lineOf } from "./meshes.js";
 const AXIS_COLOURS = [0xd55e00, 0x009e73, 0x0072b2];
 /** A label is moved down until it is so many pixels free of those placed before it. */
 const LABEL_GAP = 2;
+/** How wide a letter is at most on average, pixels: labels are not measured, but kept apart and within the view. */
+const LETTER = 7.6;
 /** Frames nearer to each other, in pixels, have one label. */
 const SAME_PLACE = 10;
 
@@ -159,7 +161,8 @@ export class Stage {
         this.labels.forEach(({ element }) => (element.hidden = true));
         const placed = [];
         const put = (element, text, x, y, moves) => {
-            const box = { left: x + 4, top: y - 7, width: 6.6 * text.length + 4, height: 14 };
+            const room = LETTER * text.length + 4;
+            const box = { left: Math.max(Math.min(x + 4, width - room), 0), top: y - 7, width: room, height: 14 };
             for (let at = 0; at < placed.length; ++at) {
                 if (!overlap(placed[at], box)) continue;
                 if (!moves) return;
