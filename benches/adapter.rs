@@ -43,7 +43,11 @@ fn arguments() -> Result<Arguments, String> {
 }
 
 fn set_threads(count: usize) -> Result<(), String> {
-    rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|error| error.to_string())
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(count)
+        .use_current_thread()
+        .build_global()
+        .map_err(|error| error.to_string())
 }
 
 fn main() -> ExitCode {

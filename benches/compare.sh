@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flank beside hand-written C++ and CasADi on the common job, run in turns: `benches/compare.sh [repetitions]`. Needs g++, and for
-# CasADi python3 with venv and pip. Prints nanoseconds a point (the fastest repetition) and shares of the hand-written program's time.
+# flank beside hand-written C++ and CasADi on the common jobs, run in turns: `benches/compare.sh [repetitions]`. Needs g++, and for
+# CasADi (the flank alone) python3 with venv and pip. Prints nanoseconds a point (the fastest repetition) and shares of the hand-written program's time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 repetitions=${1:-15}
@@ -25,20 +25,23 @@ fastest() { # points command…
     "$@" | sed 's/.*"solve_s":\[\([^]]*\)\].*/\1/' | tr ',' '\n' | sort -g | head -n 1 | awk -v n="$points" '{ printf "%.2f", $1 * 1e9 / n }'
 }
 
-printf '%-10s %8s %10s %10s %8s %10s %8s\n' grid threads peer flank share casadi share
-for size in "31 61" "501 501"; do
-    read -r rows columns <<<"$size"
+printf '%-16s %8s %10s %10s %8s %10s %8s\n' job threads peer flank share casadi share
+for case in "flank 31 61" "flank 501 501" "grid 501 501" "grid 1000 1000"; do
+    read -r job rows columns <<<"$case"
     for threads in 1 2; do
-        arguments=(--job flank --n1 "$rows" --n2 "$columns" --reps "$repetitions")
+        arguments=(--job "$job" --n1 "$rows" --n2 "$columns" --reps "$repetitions")
         points=$((rows * columns))
         before=$(fastest $points "$work/peer" "${arguments[@]}" --out "$work/peer.bin")
         ours=$(fastest $points "$flank" "${arguments[@]}" --threads $threads --out "$work/flank.bin")
         after=$(fastest $points "$work/peer" "${arguments[@]}")
-        theirs=0
-        if [ -n "$casadi" ] && [ $threads = 1 ]; then
+        theirs=
+        if [ -n "$casadi" ] && [ $threads = 1 ] && [ "$job" = flank ]; then
             theirs=$(fastest $points $casadi --job flank --n1 "$rows" --n2 "$columns" --reps 3)
         fi
-        awk -v a="$before" -v b="$after" -v f="$ours" -v c="$theirs" -v g="${rows}x$columns" -v t="$threads" \
-            'BEGIN { p = (a + b) / 2; printf "%-10s %8d %10.1f %10.1f %8.2f %10.1f %8.2f\n", g, t, p, f, f / p, c, c / p }'
+        awk -v a="$before" -v b="$after" -v f="$ours" -v c="$theirs" -v g="$job ${rows}x$columns" -v t="$threads" 'BEGIN {
+            p = (a + b) / 2
+            printf "%-16s %8d %10.1f %10.1f %8.2f", g, t, p, f, f / p
+            printf(c == "" ? "\n" : " %10.1f %8.2f\n", c, c / p)
+        }'
     done
 done

@@ -11,7 +11,7 @@ mkdir "$out/images" "$out/new"
 
 # Leaves the pictures of one call in $out/new, under the names that `flank plot` gives them.
 plot() {
-    "$flank" plot "$@" --no-origin --format png --size 800x600 --out "$out/new" >"$out/told" || { cat "$out/told"; exit 1; }
+    "$flank" plot "$@" --no-origin --format png --size 800x600 --out "$out/new" >"$out/told" || [ $? -eq 3 ] || { cat "$out/told"; exit 1; }
 }
 
 # picture NAME SPEC --what KIND …: draws one picture into images/NAME.png
@@ -22,7 +22,12 @@ picture() {
     mv "$out"/new/*.png "$out/images/$name.png"
 }
 
-# The gallery: each job of the library, in its folder's section, with the first line of its file.
+# sentence SPEC: the first sentence of its head, on one line
+sentence() {
+    awk '!/^\/\/!/ { exit } { sub("^//! *", ""); printf "%s%s", gap, $0; gap = " " } /\.$/ { exit }' "$1"
+}
+
+# The gallery: each job of the library, in its folder's section, with the first sentence of its file.
 {
     echo "# Gallery"
     echo
@@ -42,7 +47,7 @@ picture() {
         for file in "$out"/new/*."$kind".png; do
             name=$(basename "$file" ".$kind.png")
             mv "$file" "$out/images/$name.png"
-            printf '\n### %s\n\n%s\n\n' "$name" "$(sed -n '1s,^//! *,,p' "$spec")"
+            printf '\n### %s\n\n%s\n\n' "$name" "$(sentence "$spec")"
             printf '![%s](images/%s.png)\n\n' "${name//_/ }" "$name"
             printf '    flank plot %s --what %s\n' "$spec" "$kind"
         done

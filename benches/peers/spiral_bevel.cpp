@@ -1,5 +1,5 @@
-// The job `flank` of spiral_bevel.chain as one would write it by hand for this machine: Newton with the derivatives worked out
-// on paper, each point started from the one before.
+// The jobs of spiral_bevel.chain as one would write them by hand for this machine: Newton with the derivatives worked out
+// on paper, each point started from the one before. `flank` is sampled by z and rho, `grid` by phi and theta, with principal curvatures.
 //
 // In the bed's frame the cradle turns the cutter about e_z and the work turns by R(phi) about a through O. With P and N a point
 // of the cone and its normal, D = P - O:
@@ -81,11 +81,94 @@ static Point solve(const Machine& m, double s, double theta, double phi, double 
     }
 }
 
+// What a row of the grid has in common.
+struct Cradle {
+    double phi, sin, cos, roll, roll_f, turn_sin, turn_cos;
+    explicit Cradle(double phi) : phi(phi) {
+        sin = std::sin(64 * degree + phi), cos = std::cos(64 * degree + phi);
+        roll = ratio * (1 - phi * (0.02 + 0.015 * phi)), roll_f = -ratio * (0.02 + 0.03 * phi);
+        double turn = ratio * phi * (1 - phi * (0.01 + 0.005 * phi));
+        turn_sin = std::sin(turn), turn_cos = std::cos(turn);
+    }
+};
+
+// A point of the grid: s by Newton, then curvatures by the two fundamental forms. With v, the velocity of P in the work, tangents are
+// p_t - (f_t / f_s) p_s and v - (f_phi / f_s) p_s; the normal does not depend on s.
+static double curved(const Machine& m, const Cradle& c, double st, double ct, double s, double* row, double* evaluations) {
+    auto turned = [&](Vector a) { return Vector{c.cos * a.x - c.sin * a.y, c.sin * a.x + c.cos * a.y, a.z}; };
+    Vector radial = turned(ct * m.column[0] + st * m.column[1]), tangent = turned(ct * m.column[1] - st * m.column[0]);
+    Vector down = turned(m.column[2]), slide{74.8 * c.cos, 74.8 * c.sin, 0};
+    Vector n = m.cos_blade * radial - m.sin_blade * down, n_t = m.cos_blade * tangent;
+    Vector p_s = (-m.sin_blade) * radial - m.cos_blade * down;
+    auto velocity = [&](Vector at, Vector from) { return about_z(at) - c.roll * cross(m.axis, from); };
+    double f_s = dot(n, velocity(p_s, p_s));
+    Vector p, d, v;
+    for (int count = 1;; count++) {
+        p = 76.0 * radial + s * p_s + slide, d = p - m.origin, v = velocity(p, d);
+        double f = dot(n, v);
+        *evaluations += 1;
+        if (std::fabs(f) < 1e-11) break;
+        if (count > 40) return NAN;
+        s -= f / f_s;
+    }
+    Vector p_t = (76 - s * m.sin_blade) * tangent, n_f = velocity(n, n), p_f = about_z(p);
+    double f_t = dot(n_t, v) + dot(n, velocity(p_t, p_t));
+    double f_f = dot(about_z(n), v) + dot(n, velocity(p_f, p_f)) - c.roll_f * dot(n, cross(m.axis, d));
+    Vector one = p_t - (f_t / f_s) * p_s, two = v - (f_f / f_s) * p_s;
+    double e = dot(one, one), g = dot(one, two), h = dot(two, two);
+    double l = -dot(one, n_t), k = -dot(one, n_f), o = -dot(two, n_f), area = 1 / (e * h - g * g);
+    double mean = 0.5 * (e * o - 2 * g * k + h * l) * area, gauss = (l * o - k * k) * area;
+    double root_of = std::sqrt(std::fmax(mean * mean - gauss, 0));
+    double x = dot(m.across, d), nx = dot(m.across, n), sr = c.turn_sin, cr = c.turn_cos;
+    double found[9] = {s, cr * x + sr * d.y, cr * d.y - sr * x, dot(m.axis, d), cr * nx + sr * n.y, cr * n.y - sr * nx,
+                       dot(m.axis, n), mean + root_of, mean - root_of};
+    std::memcpy(row, found, sizeof found);
+    return s;
+}
+
+static double grid(const Machine& m, int rows, int columns, double* points) {
+    double evaluations = 0, s = 6;
+    std::vector<double> sines(columns), cosines(columns);
+    for (int j = 0; j < columns; j++) {
+        double theta = -2.55 + 0.2 * j / (columns - 1);
+        sines[j] = std::sin(theta), cosines[j] = std::cos(theta);
+    }
+    for (int i = 0; i < rows; i++) {
+        Cradle cradle(-0.34 + 0.14 * i / (rows - 1));
+        for (int j = 0; j < columns; j++)
+            s = curved(m, cradle, sines[j], cosines[j], s, points + 9 * ((size_t)i * columns + j), &evaluations);
+    }
+    return evaluations;
+}
+
+static double flank(const Machine& m, int rows, int columns, double* points) {
+    double evaluations = 0;
+    Point first{5.4, -2.45, -0.26, {}, {}, 0};
+    for (int i = 0; i < rows; i++) {
+        double h = 1 + 8.0 * i / (rows - 1);
+        Point at = first;
+        for (int c = 0; c < columns; c++) {
+            double along = 72.5 + 25.0 * c / (columns - 1);
+            at = solve(m, at.s, at.theta, at.phi, along * m.axis.x - h * m.axis.z, along * m.axis.z + h * m.axis.x);
+            if (c == 0) first = at;
+            evaluations += at.evaluations;
+            double turn = ratio * at.phi * (1 - at.phi * (0.01 + 0.005 * at.phi)), sr = std::sin(turn), cr = std::cos(turn);
+            Vector d = at.d, n = at.normal;
+            double x = dot(m.across, d), nx = dot(m.across, n);
+            double row[9] = {at.s, at.theta, at.phi, cr * x + sr * d.y, cr * d.y - sr * x, dot(m.axis, d),
+                             cr * nx + sr * n.y, cr * n.y - sr * nx, dot(m.axis, n)};
+            std::memcpy(points + 9 * ((size_t)i * columns + c), row, sizeof row);
+        }
+    }
+    return evaluations;
+}
+
 int main(int count, char** words) {
     int rows = 31, columns = 61, repetitions = 3;
-    std::string out;
+    std::string job = "flank", out;
     for (int k = 1; k + 1 < count; k += 2) {
         std::string key = words[k];
+        if (key == "--job") job = words[k + 1];
         if (key == "--n1") rows = std::atoi(words[k + 1]);
         if (key == "--n2") columns = std::atoi(words[k + 1]);
         if (key == "--reps") repetitions = std::atoi(words[k + 1]);
@@ -97,24 +180,7 @@ int main(int count, char** words) {
     double evaluations = 0;
     for (int k = 0; k < repetitions; k++) {
         auto start = std::chrono::steady_clock::now();
-        evaluations = 0;
-        Point first{5.4, -2.45, -0.26, {}, {}, 0};
-        for (int i = 0; i < rows; i++) {
-            double h = 1 + 8.0 * i / (rows - 1);
-            Point at = first;
-            for (int c = 0; c < columns; c++) {
-                double along = 72.5 + 25.0 * c / (columns - 1);
-                at = solve(m, at.s, at.theta, at.phi, along * m.axis.x - h * m.axis.z, along * m.axis.z + h * m.axis.x);
-                if (c == 0) first = at;
-                evaluations += at.evaluations;
-                double turn = ratio * at.phi * (1 - at.phi * (0.01 + 0.005 * at.phi)), sr = std::sin(turn), cr = std::cos(turn);
-                Vector d = at.d, n = at.normal;
-                double x = dot(m.across, d), nx = dot(m.across, n);
-                double row[9] = {at.s, at.theta, at.phi, cr * x + sr * d.y, cr * d.y - sr * x, dot(m.axis, d),
-                                 cr * nx + sr * n.y, cr * n.y - sr * nx, dot(m.axis, n)};
-                std::memcpy(&points[9 * ((size_t)i * columns + c)], row, sizeof row);
-            }
-        }
+        evaluations = (job == "grid" ? grid : flank)(m, rows, columns, points.data());
         std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
         std::printf("%s%.9f", k ? "," : "", time.count());
     }

@@ -115,6 +115,33 @@ fn special_arguments_meet_the_interpreter() {
     check(&[x, y], &outputs, &pairs);
 }
 
+/// Words of the languages and what their headers define, as names of arguments.
+#[test]
+fn reserved_words_may_be_names() {
+    const WORDS: [&str; 16] = [
+        "as",
+        "Self",
+        "self",
+        "None",
+        "Some",
+        "Ok",
+        "Err",
+        "gen",
+        "NAN",
+        "INFINITY",
+        "HUGE_VAL",
+        "FP_ZERO",
+        "M_PI",
+        "sinf",
+        "static_assert",
+        "under_test_min",
+    ];
+    let graph = Graph::new();
+    let arguments = WORDS.map(|word| graph.variable(word));
+    let sum = arguments.iter().fold(graph.constant(f64::INFINITY), |sum, x| sum.min(x.sin()));
+    check(&arguments, &[sum], &points(&mut Dice(5), -1.0, 1.0)[..100]);
+}
+
 /// The pose of a tilted cutter in its gear blank, as the cradle turns.
 #[test]
 fn a_machine_meets_the_interpreter() {

@@ -10,7 +10,7 @@ pub mod variants;
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, GeneratedSurface, Job, compile_file, compile_text, render};
+use flank_chain_dsl::{Compilation, Dimension, GeneratedSurface, Job, compile_file, compile_text, render};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem, solve_grid};
 use serde_json::Value;
@@ -159,6 +159,13 @@ fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect()
 }
 
+/// Where `flank solve` follows a surface beyond its ranges.
+fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+    let at_least = |dimension| if dimension == Dimension::ANGLE { std::f64::consts::TAU } else { 0.0 };
+    let wider = surface.unknowns.iter().zip(ranges(surface));
+    wider.map(|(u, range)| if u.is_count { range } else { range.beyond(at_least(u.dimension)) }).collect()
+}
+
 /// What `flank solve` solves: points of a surface at values of two coordinates, on the branch that its sample keeps.
 ///
 /// # Panics
@@ -167,6 +174,7 @@ pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings());
+    let problem = problem.map(|problem| problem.reaching(followed(surface)));
     let problem = problem.and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()));
     problem.expect("nothing is unbound")
 }

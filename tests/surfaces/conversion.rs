@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use flank_chain_dsl::ToolShape;
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PoseProblem, Range, Screw, TargetAxis, Unproven};
+use flank_solver::{Outcome, PoseProblem, Posture, Range, Screw, TargetAxis, Unproven};
 use flank_tests::conversion::{Conversion, compiled, target_axes};
 use flank_tests::machines::unseen;
 use flank_tests::{points, reference_json};
@@ -192,6 +192,43 @@ fn remainders_are_bounded() {
             let table = &reference["max_dev"][format!("order{order}")][if name == "C" { "Cc" } else { name }];
             if let Some(table) = table.as_f64() {
                 assert!(bound >= table && bound <= 1.01 * table + 2e-12, "{name}: {bound:e}, {table:e} in the table");
+            }
+        }
+    }
+}
+
+/// How far straight blocks are off the axes is bounded, never below what is seen and hardly above it.
+#[test]
+fn straight_blocks_are_bounded() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, TABLES);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
+    let range = Range { low: -0.3, high: 0.2 };
+    let first = conversion.problem.postures(&[0.0]).swap_remove(0);
+    let tube = conversion.problem.tube(&first, 0.0, range).expect("no singular pose");
+    for count in [1, 2, 7, 50] {
+        for block in 0..count {
+            let at = |k: usize| range.low + (range.high - range.low) * k as f64 / count as f64;
+            let (from, to) = (at(block), at(block + 1));
+            let between: Vec<Vec<f64>> = (0..=40).map(|k| vec![from + (to - from) * f64::from(k) / 40.0]).collect();
+            let way: Vec<Vec<f64>> = (0..=20).map(|k| vec![from * f64::from(k) / 20.0]).collect();
+            let start = conversion.problem.follow(&first, &way).swap_remove(20);
+            let line = conversion.problem.follow(&start, &between);
+            let chords: Vec<Vec<f64>> = (0..conversion.axes.len())
+                .map(|k| vec![line[0].axes[k], (line[40].axes[k] - line[0].axes[k]) / (to - from)])
+                .collect();
+            let proven = tube.distances_over(Range { low: from, high: to }, from, &chords);
+            for (k, name) in conversion.axes.iter().enumerate() {
+                let off = |(at, posture): (&Vec<f64>, &Posture)| {
+                    (posture.axes[k] - chords[k][0] - (at[0] - from) * chords[k][1]).abs()
+                };
+                let seen = between.iter().zip(&line).map(off).fold(0.0, f64::max);
+                // a block is bounded in sixteen parts, each by the sizes of its coefficients
+                assert!(
+                    proven[k] >= seen && proven[k] <= 1.02 * seen + 2e-12,
+                    "{name}, {count}: {:e}, {seen:e}",
+                    proven[k]
+                );
             }
         }
     }

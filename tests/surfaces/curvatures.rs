@@ -183,7 +183,7 @@ fn hobbed_gears() {
         ("helical_gear", &[][..], "helical_zi_hob"),
         ("crowned_gear", &[("crowning", "-0.064 mm")], "helical_crowned"),
         ("crowned_gear_quartic", &quartic, "helical_crowned_quartic"),
-        ("beveloid", &[], "beveloid"),
+        ("beveloid", &[("m.center_distance", "85 mm")], "beveloid"),
         ("chang_tsay_nagata", &[], "helical_six_axis"),
     ] {
         let reference = reference_json(&format!("{table}.json"));

@@ -32,7 +32,8 @@ fn wheels_of_any_starts_and_both_hands() {
             let graph = Graph::new();
             sampled(&job(&graph, SPEC, &[("starts", starts), ("left_hand", hand)]), name)
         };
-        for (a, b) in [("lower.flank", "upper.flank"), ("upper.flank", "lower.flank")] {
+        let parts = ["flank", "rounding", "tip"].map(|part| [format!("lower.{part}"), format!("upper.{part}")]);
+        for (a, b) in parts.iter().flat_map(|[lower, upper]| [(lower, upper), (upper, lower)]) {
             let (a, b) = (of_hand("0", a), of_hand("1", b));
             assert!(a.iter().chain(&b).all(|point| point.outcome == Outcome::Solved), "{starts} starts");
             let mirrored = |[x, y, z]: [f64; 3]| [x, -y, z];
