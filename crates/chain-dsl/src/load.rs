@@ -94,8 +94,8 @@ fn read_as(
     most: usize,
     report: impl Fn(&ReadError, &Path, Span) -> Diagnostic,
 ) -> Result<FileId, Diagnostic> {
-    match read_limited(path, most) {
-        Ok(text) => Ok(sources.add(path, text)),
+    match std::fs::canonicalize(path).map_err(ReadError::Io).and_then(|real| Ok((read_limited(&real, most)?, real))) {
+        Ok((text, real)) => Ok(sources.add_file(path, &real, text)),
         Err(error) => Err(report(&error, path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
     }
 }
@@ -138,7 +138,7 @@ impl Loader {
             Err(error) => return self.unreadable(shown, &error, used_at),
         };
         self.bytes += text.len();
-        let id = self.loaded.sources.add(shown, text);
+        let id = self.loaded.sources.add_file(shown, real, text);
         self.known.insert(real.to_path_buf(), id);
         let (file, diagnostics) = parse(&self.loaded.sources.file(id).text, id);
         self.loaded.diagnostics.extend(diagnostics);

@@ -41,6 +41,8 @@ pub type Name = Spanned<String>;
 pub struct SourceFile {
     /// The path as the user knows it: shown in messages.
     pub path: PathBuf,
+    /// The file that it was read from, without links and `..`; none of a text that is no file, as the command line gives them.
+    pub file: Option<PathBuf>,
     /// The whole text.
     pub text: String,
     /// Where its lines begin.
@@ -62,12 +64,20 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Adds a text.
+    /// Adds a text that is no file.
     pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<String>) -> FileId {
+        self.push(path.into(), None, text.into())
+    }
+
+    /// Adds the text of a file, with its path as the user knows it and as it really is.
+    pub fn add_file(&mut self, path: &Path, real: &Path, text: impl Into<String>) -> FileId {
+        self.push(path.to_path_buf(), Some(real.to_path_buf()), text.into())
+    }
+
+    fn push(&mut self, path: PathBuf, file: Option<PathBuf>, text: String) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).expect("fewer than 2^32 files"));
-        let text: String = text.into();
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        self.files.push(SourceFile { path: path.into(), text, lines });
+        self.files.push(SourceFile { path, file, text, lines });
         id
     }
 

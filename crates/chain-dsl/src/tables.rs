@@ -30,7 +30,7 @@ pub(crate) struct Tables {
     /// The folder of each source file, as the user knows it and as it really is.
     folders: HashMap<FileId, [PathBuf; 2]>,
     /// The files that have been read with their texts, in the order in which they were first needed.
-    texts: Vec<(PathBuf, Rc<str>)>,
+    texts: Vec<([PathBuf; 2], Rc<str>)>,
     /// Where a file is among them, by its real path.
     known: HashMap<PathBuf, usize>,
     /// Tables that have been read.
@@ -44,16 +44,15 @@ pub(crate) struct Tables {
 impl Tables {
     pub(crate) fn new(root: Option<PathBuf>, sources: &Sources) -> Tables {
         let folders = sources.files().filter_map(|(id, file)| {
-            let real = std::fs::canonicalize(&file.path).ok()?;
-            Some((id, [file.path.parent()?.to_path_buf(), real.parent()?.to_path_buf()]))
+            Some((id, [file.path.parent()?.to_path_buf(), file.file.as_ref()?.parent()?.to_path_buf()]))
         });
         Tables { root, folders: folders.collect(), ..Tables::default() }
     }
 
     /// Adds the texts that were read to those of the compilation.
     pub(crate) fn tell(&self, sources: &mut Sources) {
-        for (path, text) in &self.texts {
-            sources.add(path, &**text);
+        for ([shown, real], text) in &self.texts {
+            sources.add_file(shown, real, &**text);
         }
     }
 
@@ -76,7 +75,8 @@ impl Tables {
     }
 
     /// The text of a table, read once; each time counts.
-    fn text(&mut self, [shown, real]: &[PathBuf; 2]) -> Result<Rc<str>, Reason> {
+    fn text(&mut self, paths: &[PathBuf; 2]) -> Result<Rc<str>, Reason> {
+        let [_, real] = paths;
         if let Some(&known) = self.known.get(real) {
             let text = Rc::clone(&self.texts[known].1);
             self.count(text.len() as u64)?;
@@ -93,7 +93,7 @@ impl Tables {
         file.take(kind.len()).read_to_string(&mut text).map_err(|error| unreadable(&error))?;
         let text: Rc<str> = text.into();
         self.known.insert(real.clone(), self.texts.len());
-        self.texts.push((shown.clone(), Rc::clone(&text)));
+        self.texts.push((paths.clone(), Rc::clone(&text)));
         Ok(text)
     }
 

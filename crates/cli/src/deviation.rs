@@ -14,6 +14,7 @@ use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::progress::Working;
 use crate::solve::{header, patch, problem, ranges};
+use crate::spec::Origin;
 use crate::{Ending, eprint, inspect, print, spec};
 
 const NOTE: &str = "along the normal, plus is material";
@@ -88,9 +89,10 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
+    let mut origin = Origin::of(&compilation);
     let surface = find(&jobs, &arguments.surface)?;
     let measured = match (&arguments.measured, &arguments.from) {
-        (Some(file), _) => inspect::inspect(surface, file, arguments)?,
+        (Some(file), _) => inspect::inspect(surface, file, arguments, &mut origin)?,
         (None, Some(from)) => measure([surface, find(&jobs, from)?], arguments.as_it_lies, arguments.means)?,
         (None, None) => {
             let message =
@@ -98,7 +100,7 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
             return Err(Failure::of_usage(message));
         }
     };
-    let written = measured.write(arguments, &spec::hash(&compilation))?;
+    let written = measured.write(arguments, &origin)?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
     eprint(&format!("{} points in {:.0} ms\n", measured.points.len(), start.elapsed().as_secs_f64() * 1e3));
     let missing = measured.missing();
@@ -331,7 +333,7 @@ impl Measured<'_, '_> {
     }
 
     /// The points with their deviations as their one field.
-    pub(crate) fn dataset(&self, which: &Which, hash: &str) -> Dataset {
+    pub(crate) fn dataset(&self, which: &Which, origin: &Origin) -> Dataset {
         let axis = |k: usize| Axis { label: self.labels[k].clone(), count: self.counts[k] };
         let patch = patch(self.from.job, &self.from.surface.name, self.from.surface, [axis(0), axis(1)], &self.points);
         let field = Field {
@@ -345,7 +347,7 @@ impl Measured<'_, '_> {
             Held::File { .. } => None,
         };
         let jobs: Vec<&Job<'_>> = [self.from.job].into_iter().chain(held).collect();
-        let mut header = header(&jobs, which, hash);
+        let mut header = header(&jobs, which, origin);
         let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
         header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
         Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
@@ -369,12 +371,9 @@ impl Measured<'_, '_> {
         format!("{} from {}", self.held.whole_name(), self.from.whole_name())
     }
 
-    fn write(&self, arguments: &Deviation, hash: &str) -> Result<Vec<String>, String> {
-        let dataset = self.dataset(&arguments.which, hash);
-        let mut folder = Folder::at(&arguments.out)?;
-        if let Some(measured) = &arguments.measured {
-            folder = folder.sparing(measured);
-        }
+    fn write(&self, arguments: &Deviation, origin: &Origin) -> Result<Vec<String>, String> {
+        let dataset = self.dataset(&arguments.which, origin);
+        let mut folder = Folder::at(&arguments.out, origin)?;
         let map = || field_maps(&dataset, &self.title(), &[(0, 0)], &self.note(), &PictureOptions::default());
         let map = (!arguments.no_picture).then(map);
         folder.picture_after(&self.name(), map.as_ref(), |folder| {

@@ -1,6 +1,6 @@
 //! The files that a command leaves in its folder.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use flank_export::{
     Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target, WriteError,
@@ -10,7 +10,7 @@ use flank_export::{
 };
 
 use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
-use crate::spec;
+use crate::spec::{self, Origin};
 
 /// Extensions that no folder is made with.
 const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vtp", "step", "png", "svg", "html", "md"];
@@ -18,14 +18,14 @@ const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vt
 /// A folder that is written to, and the files that stand there now.
 pub(crate) struct Folder<'a> {
     path: &'a Path,
-    /// Files that are not written over.
-    spared: Vec<PathBuf>,
+    /// What is not written over.
+    origin: &'a Origin,
     pub(crate) written: Vec<String>,
 }
 
 impl<'a> Folder<'a> {
     /// The folder, made if it is not there; not one with the name of a file.
-    pub(crate) fn at(path: &'a Path) -> Result<Folder<'a>, String> {
+    pub(crate) fn at(path: &'a Path, origin: &'a Origin) -> Result<Folder<'a>, String> {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         if !path.is_dir() && OF_FILES.contains(&extension) {
             let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -36,13 +36,7 @@ impl<'a> Folder<'a> {
             ));
         }
         std::fs::create_dir_all(path).map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;
-        Ok(Folder { path, spared: Vec::new(), written: Vec::new() })
-    }
-
-    /// The same, in which a file that the command reads is not written over.
-    pub(crate) fn sparing(mut self, read: &Path) -> Folder<'a> {
-        self.spared.extend(std::fs::canonicalize(read));
-        self
+        Ok(Folder { path, origin, written: Vec::new() })
     }
 
     /// The points in the formats that are asked for. A mesh has one origin: of surfaces in several frames there is one for each.
@@ -162,7 +156,7 @@ impl<'a> Folder<'a> {
 
     fn write(&mut self, name: &str, content: impl Fn(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), String> {
         let path = self.path.join(name);
-        if std::fs::canonicalize(&path).is_ok_and(|there| self.spared.contains(&there)) {
+        if self.origin.holds(&path) {
             let path = spec::shown(&path);
             return Err(format!(
                 "`{path}` is what this command reads and would be written over: name another folder with --out"

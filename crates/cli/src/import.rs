@@ -7,6 +7,7 @@ use serde_json::json;
 
 use crate::arguments::{Coefficients, Import, Signs};
 use crate::failure::Failure;
+use crate::spec::Origin;
 use crate::{Ending, print, spec};
 
 /// No REXS file is larger.
@@ -81,7 +82,7 @@ mod orders {
 
 pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let file = spec::shown(&arguments.file);
-    let text = spec::other_text(&arguments.file, MOST_BYTES)?;
+    let text = Origin::default().other_text(&arguments.file, MOST_BYTES)?;
     let spec = job(&text, &file, arguments)?;
     if arguments.json {
         let imported = json!({ "schema": "flank.import/1", "file": file, "job": arguments.name, "spec": spec });

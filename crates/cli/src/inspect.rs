@@ -8,7 +8,8 @@ use crate::deviation::{Held, Measured, Named};
 use crate::failure::Failure;
 use crate::measure::Placed;
 use crate::progress::Working;
-use crate::{solve, spec};
+use crate::solve;
+use crate::spec::{self, Origin};
 
 /// A larger grid is not compared.
 const MOST_PLACES: usize = 1_000_000;
@@ -21,9 +22,10 @@ pub(crate) fn inspect<'j, 'g>(
     of: Named<'j, 'g>,
     file: &std::path::Path,
     arguments: &Deviation,
+    origin: &mut Origin,
 ) -> Result<Measured<'j, 'g>, Failure> {
     let shown = spec::shown(file);
-    let text = spec::other_text(file, MOST_BYTES)?;
+    let text = origin.other_text(file, MOST_BYTES)?;
     let read = read_measured(&text, &of.surface.name).map_err(|fault| format!("{shown}: {fault}"))?;
     let MeasuredGrid { counts, points: readings } = read;
     if counts[0] * counts[1] > MOST_PLACES {

@@ -14,6 +14,7 @@ use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::progress::Working;
 use crate::solve::Wanted;
+use crate::spec::Origin;
 use crate::table::aligned;
 use crate::{Ending, deviation, eprint, print, solve, spec, units};
 
@@ -23,7 +24,7 @@ const TRIAL: usize = 5;
 pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     let named =
         arguments.surface.iter().map(|name| deviation::find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
     let mut ending = Ending::Done;
@@ -37,9 +38,9 @@ pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
             continue;
         }
         let flanks = meant.iter().map(|surface| flank(job, surface, arguments)).collect::<Result<_, String>>()?;
-        let header = solve::header(&[job], &arguments.which, &hash);
+        let header = solve::header(&[job], &arguments.which, &origin);
         let grid = MeasuringGrid { header, margins: arguments.margin.shares(), flanks };
-        let mut folder = Folder::at(&arguments.out)?;
+        let mut folder = Folder::at(&arguments.out, &origin)?;
         for format in &arguments.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }

@@ -6,6 +6,7 @@ use serde_json::json;
 use crate::arguments::{Arguments, Completions, Man};
 use crate::failure::Failure;
 use crate::files::Folder;
+use crate::spec::Origin;
 use crate::{Ending, print};
 
 /// Prints what the shell has to read to complete the program's arguments.
@@ -28,7 +29,8 @@ pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
     let pages: Vec<clap::Command> = std::iter::once(&program).chain(program.get_subcommands()).cloned().collect();
-    let mut folder = Folder::at(&arguments.out)?;
+    let origin = Origin::default();
+    let mut folder = Folder::at(&arguments.out, &origin)?;
     for page in pages {
         let page = clap_mangen::Man::new(page).date("");
         let name = page.get_filename();

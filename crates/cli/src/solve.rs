@@ -16,6 +16,7 @@ use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::progress::Working;
 use crate::sensitivity::{self, Sensitivity};
+use crate::spec::Origin;
 use crate::step::{self, Smooth};
 use crate::stream::{self, Kept, Streamed};
 use crate::summary::Summary;
@@ -27,7 +28,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
     let start = Instant::now();
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     let wanted = Wanted {
         geometry: arguments.geometry,
         sensitivity: arguments.sensitivity,
@@ -45,14 +46,14 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         // a trim that takes nothing has no line
         let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
-        let dataset = dataset(job, &solved, &lines, header(&[job], &arguments.which, &hash));
+        let dataset = dataset(job, &solved, &lines, header(&[job], &arguments.which, &origin));
         let faces: Vec<Smooth> = arguments
             .faces
             .step
             .iter()
             .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
             .collect();
-        let written = write_files(&dataset, &solved, &faces, &job.name, arguments)?;
+        let written = write_files(&dataset, &solved, &faces, &job.name, (arguments, &origin))?;
         let told = table::failures(job, &solved)
             + &cut::unknown(&solved)
             + &certify::failed(&solved)
@@ -236,12 +237,12 @@ pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'
 }
 
 /// Where the data of a job comes from; of further jobs it is said what was set by hand.
-pub(crate) fn header(jobs: &[&Job<'_>], which: &Which, hash: &str) -> Header {
+pub(crate) fn header(jobs: &[&Job<'_>], which: &Which, origin: &Origin) -> Header {
     let settings = which.set_in(jobs).into_iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Header {
         program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
         spec: spec::shown(&which.file),
-        spec_hash: format!("sha256:{hash}"),
+        spec_hash: format!("sha256:{}", origin.hash),
         job: jobs.first().map_or(String::new(), |job| job.name.clone()),
         conventions: settings.collect(),
     }
@@ -299,9 +300,9 @@ fn write_files(
     solved: &[Solved<'_, '_>],
     faces: &[Smooth],
     name: &str,
-    arguments: &Solve,
+    (arguments, origin): (&Solve, &Origin),
 ) -> Result<Vec<String>, String> {
-    let mut folder = Folder::at(&arguments.out)?;
+    let mut folder = Folder::at(&arguments.out, origin)?;
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
     let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));

@@ -1,6 +1,6 @@
 //! From the command line's file to jobs, with the findings told on the way.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Compilation, Diagnostic, Job, Sources, compile_file, read_other_file};
 use flank_expr::Graph;
@@ -46,25 +46,45 @@ pub(crate) fn tell(diagnostics: &[Diagnostic], sources: &Sources) {
     eprint(&in_full(diagnostics, sources));
 }
 
-/// SHA-256 of all texts that a compilation read, in its order.
-pub(crate) fn hash(compilation: &Compilation<'_>) -> String {
-    let mut hash = Sha256::new();
-    for (_, file) in compilation.sources.files() {
-        hash.update((file.text.len() as u64).to_le_bytes());
-        hash.update(file.text.as_bytes());
-    }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+/// What a command read: where all that it writes comes from, and what it must not write over.
+#[derive(Debug, Default)]
+pub(crate) struct Origin {
+    /// SHA-256 of all texts of the compilation, in its order.
+    pub(crate) hash: String,
+    /// All files, without links.
+    files: Vec<PathBuf>,
 }
 
-/// The text of a file that is no spec, of at most so many bytes.
-///
-/// # Errors
-/// Why it cannot be read, in the words that are said of specs.
-pub(crate) fn other_text(path: &Path, most: usize) -> Result<String, Failure> {
-    let mut sources = Sources::default();
-    match read_other_file(&mut sources, path, most) {
-        Ok(file) => Ok(sources.file(file).text.clone()),
-        Err(finding) => Err(Failure::of_spec(&[finding], &sources)),
+impl Origin {
+    pub(crate) fn of(compilation: &Compilation<'_>) -> Origin {
+        let mut hash = Sha256::new();
+        for (_, source) in compilation.sources.files() {
+            hash.update((source.text.len() as u64).to_le_bytes());
+            hash.update(source.text.as_bytes());
+        }
+        let hash = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Origin { hash, files: compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect() }
+    }
+
+    /// Reads a file that is no spec, of at most so many bytes.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in the words that are said of specs.
+    pub(crate) fn other_text(&mut self, path: &Path, most: usize) -> Result<String, Failure> {
+        let mut sources = Sources::default();
+        match read_other_file(&mut sources, path, most) {
+            Ok(id) => {
+                let source = sources.file(id);
+                self.files.extend(source.file.clone());
+                Ok(source.text.clone())
+            }
+            Err(finding) => Err(Failure::of_spec(&[finding], &sources)),
+        }
+    }
+
+    /// Whether a path leads to something that was read.
+    pub(crate) fn holds(&self, path: &Path) -> bool {
+        std::fs::canonicalize(path).is_ok_and(|there| self.files.contains(&there))
     }
 }
 

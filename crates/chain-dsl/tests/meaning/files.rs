@@ -203,6 +203,28 @@ fn tables_are_among_the_texts_that_were_read() {
     assert_eq!(texts, [(known[0].clone(), TOOL), (known[1].clone(), TABLE)]);
 }
 
+/// What the command line gives is shown like a file and is none.
+#[test]
+fn texts_know_their_files() {
+    let folder = project("real", &[("tools/t.chain", TOOL), ("tools/tables/relief.csv", TABLE)]);
+    let graph = Graph::new();
+    let set = [("height".to_string(), "2 mm".to_string())];
+    let compilation = compile_file(&graph, &folder.join("tools/../tools/t.chain"), &set);
+    let files: Vec<Option<PathBuf>> = compilation.sources.files().map(|(_, source)| source.file.clone()).collect();
+    let real = |path: &str| Some(std::fs::canonicalize(folder.join(path)).expect("it is there"));
+    assert_eq!(files, [real("tools/t.chain"), None, real("tools/tables/relief.csv")]);
+}
+
+/// `link/..` is the folder above the one that the link leads to, not the one that holds the link.
+#[cfg(unix)]
+#[test]
+fn tables_are_found_behind_links_of_folders() {
+    let files = [("deep/t.chain", TOOL), ("deep/tables/relief.csv", TABLE), ("deep/sub/j.chain", "use \"../t.chain\"")];
+    let folder = project("linked_folder", &files);
+    std::os::unix::fs::symlink(folder.join("deep/sub"), folder.join("link")).expect("a link");
+    assert_eq!(codes(&folder.join("link/j.chain"), &[]), []);
+}
+
 /// Three points on a line in a row, one after the other at these places.
 fn splined(points: [&str; 3]) -> String {
     let points: Vec<String> = points.iter().map(|x| format!("[{x} mm, 0 mm]")).collect();

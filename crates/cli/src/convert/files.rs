@@ -9,6 +9,7 @@ use super::blocks::Blocks;
 use super::table::{Named, Table};
 use crate::arguments::{Convert, EmitForm};
 use crate::files::Folder;
+use crate::spec::Origin;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
 const DECIMALS: [u8; 2] = [4, 5];
@@ -26,10 +27,10 @@ pub(super) fn write(
     table: &Table,
     carried: &Carried<'_, '_>,
     header: Header,
-    arguments: &Convert,
+    (arguments, origin): (&Convert, &Origin),
 ) -> Result<Vec<String>, String> {
     let name = format!("{}_on_{}", table.job, table.machine);
-    let mut folder = Folder::at(arguments.out())?;
+    let mut folder = Folder::at(arguments.out(), origin)?;
     let motion = motion_table(table, header);
     for format in arguments.formats() {
         folder.motion(&name, &motion, *format)?;

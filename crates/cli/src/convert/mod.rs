@@ -19,6 +19,7 @@ use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, P
 use crate::arguments::{Convert, Onto, Which};
 use crate::failure::Failure;
 use crate::progress::Working;
+use crate::spec::Origin;
 use crate::{Ending, eprint, print, spec, units};
 use blocks::Blocks;
 use rates::Rates;
@@ -31,10 +32,10 @@ const REACH: f64 = 10_000.0;
 
 pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
     let graph = Graph::new();
-    let (hash, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
+    let (origin, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
     let target = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
     let (shown, told) = if target.settings.is_empty() {
-        let (table, told) = carry(&job, target, &hash, arguments)?;
+        let (table, told) = carry(&job, target, &origin, arguments)?;
         (if arguments.json { table.json(&told) } else { table.text() }, told)
     } else {
         check_settings_alone(&target, arguments)?;
@@ -63,17 +64,17 @@ fn check_settings_alone(target: &Target<'_, '_>, arguments: &Convert) -> Result<
     )))
 }
 
-/// The hash of the text, the one job and the machine as a job without tool.
+/// What was read, the one job and the machine as a job without tool.
 ///
 /// # Errors
 /// What is wrong with the texts, or that it is not clear which job is meant.
-pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(String, Job<'g>, Job<'g>), Failure> {
+pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(Origin, Job<'g>, Job<'g>), Failure> {
     let mut compilation = spec::sound(compile_with_machine(graph, &which.file, to, &which.set))?;
     let mut jobs = spec::asked_for(&mut compilation, which)?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     match jobs.len() {
-        1 => Ok((hash, jobs.remove(0), target)),
+        1 => Ok((origin, jobs.remove(0), target)),
         _ => {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
             let names = names.join(" or ");
@@ -86,7 +87,7 @@ pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result
 fn carry<'g>(
     job: &Job<'g>,
     target: Target<'_, 'g>,
-    hash: &str,
+    origin: &Origin,
     arguments: &Convert,
 ) -> Result<(Table, String), String> {
     let jobs = [job, target.job];
@@ -108,8 +109,8 @@ fn carry<'g>(
     table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried, tube)).flatten();
     // a table of one motion; what the target cannot do is no program
     if is_series {
-        let header = crate::solve::header(&jobs, &arguments.which, hash);
-        table.written = files::write(&table, &carried, header, arguments)?;
+        let header = crate::solve::header(&jobs, &arguments.which, origin);
+        table.written = files::write(&table, &carried, header, (arguments, origin))?;
     }
     Ok((table, carried.source.unsolved() + &told))
 }

@@ -6,13 +6,14 @@ use flank_export::{Dataset, PictureOptions, field_maps, topography};
 use super::{Drawing, Drawn, name, options, told, with_origin, write};
 use crate::arguments::{Plot, What};
 use crate::deviation::{self, Measured};
+use crate::spec::Origin;
 
 /// What there is to draw of a comparison.
 const KINDS: [What; 2] = [What::Deviation, What::Topography];
 
 /// # Errors
 /// In words: what is missing, or does not fit.
-pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -> Result<Drawn, String> {
+pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, origin: &Origin) -> Result<Drawn, String> {
     let [surface] = &arguments.surface[..] else {
         return Err("--from holds one surface against another one: name one with --surface".to_string());
     };
@@ -24,13 +25,19 @@ pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, hash: &str) -
     let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, arguments.means)?;
     let asked = if arguments.what.is_empty() { &KINDS[..] } else { &arguments.what };
     let drawings: Vec<(What, Drawing)> =
-        asked.iter().map(|&what| (what, draw(&measured, what, arguments, hash, &options(arguments)))).collect();
-    let written = write(&drawings, &surface.whole_name(), arguments)?;
+        asked.iter().map(|&what| (what, draw(&measured, what, arguments, origin, &options(arguments)))).collect();
+    let written = write(&drawings, &surface.whole_name(), arguments, origin)?;
     Ok(told(&surface.job.name, &written, measured.missing(), arguments))
 }
 
-fn draw(measured: &Measured<'_, '_>, what: What, arguments: &Plot, hash: &str, options: &PictureOptions) -> Drawing {
-    let dataset = measured.dataset(&arguments.which, hash);
+fn draw(
+    measured: &Measured<'_, '_>,
+    what: What,
+    arguments: &Plot,
+    origin: &Origin,
+    options: &PictureOptions,
+) -> Drawing {
+    let dataset = measured.dataset(&arguments.which, origin);
     let dataset = Dataset { header: with_origin(dataset.header, arguments), ..dataset };
     let title = measured.title();
     let picture = match what {

@@ -17,6 +17,7 @@ use serde_json::json;
 use crate::arguments::{Plot, What};
 use crate::failure::{self, Failure};
 use crate::files::Folder;
+use crate::spec::Origin;
 use crate::table::{self, aligned};
 use crate::{Ending, cut, deviation, eprint, print, solve, spec, travel};
 pub(crate) use subject::Subject;
@@ -48,10 +49,10 @@ pub(crate) fn run(arguments: &Plot) -> Result<Ending, Failure> {
     }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     let done = match &arguments.from {
-        Some(from) => vec![comparison::plot(&jobs, from, arguments, &hash)?],
-        None => plot_jobs(&jobs, arguments, &hash)?,
+        Some(from) => vec![comparison::plot(&jobs, from, arguments, &origin)?],
+        None => plot_jobs(&jobs, arguments, &origin)?,
     };
     let mut ending = Ending::Done;
     for Drawn { shown, not_done } in done {
@@ -70,7 +71,7 @@ struct Drawn {
     not_done: String,
 }
 
-fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<Drawn>, String> {
+fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, origin: &Origin) -> Result<Vec<Drawn>, String> {
     let named = arguments.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
@@ -88,14 +89,14 @@ fn plot_jobs(jobs: &[Job<'_>], arguments: &Plot, hash: &str) -> Result<Vec<Drawn
     }
     let plot = |job: &&Job<'_>| {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
-        let header = with_origin(solve::header(&[job], &arguments.which, hash), arguments);
+        let header = with_origin(solve::header(&[job], &arguments.which, origin), arguments);
         let solved = |kinds: &[What]| Subject::new(job, &names, header.clone(), kinds, arguments.means);
         let subject = solved(&arguments.what)?;
         // what fits is known of what is solved with all that pictures show
         let drawings = drawings(&subject, arguments).map_err(|(what, why)| {
             solved(What::value_variants()).map_or_else(|e| e, |all| unfit(&all, what, &why, arguments))
         })?;
-        let written = write(&drawings, &job.name, arguments)?;
+        let written = write(&drawings, &job.name, arguments, origin)?;
         let not_done = table::failures(job, &subject.solved)
             + &cut::unknown(&subject.solved)
             + &travel::beyond(job, &subject.solved);
@@ -178,8 +179,8 @@ fn options(arguments: &Plot) -> PictureOptions {
     PictureOptions { width: arguments.size.0, height: arguments.size.1 }
 }
 
-fn write(drawings: &[(What, Drawing)], stem: &str, arguments: &Plot) -> Result<Vec<Written>, String> {
-    let mut folder = Folder::at(&arguments.out)?;
+fn write(drawings: &[(What, Drawing)], stem: &str, arguments: &Plot, origin: &Origin) -> Result<Vec<Written>, String> {
+    let mut folder = Folder::at(&arguments.out, origin)?;
     let mut written = Vec::new();
     for (what, drawing) in drawings {
         let before = folder.written.len();

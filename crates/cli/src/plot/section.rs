@@ -273,7 +273,7 @@ mod tests {
         };
         let graph = Graph::new();
         let (_, jobs) = spec::jobs(&graph, &arguments.which).expect("it is shipped");
-        let header = solve::header(&[&jobs[0]], &arguments.which, "");
+        let header = solve::header(&[&jobs[0]], &arguments.which, &spec::Origin::default());
         let subject = Subject::new(&jobs[0], &[], header, &arguments.what, arguments.means).expect("it is sampled");
         of(&subject).expect("it has a section")
     }

@@ -14,12 +14,17 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
 
 fn facts(findings: &Findings<'_, '_>) -> [(&'static str, String); 5] {
     let header = &findings.header;
-    let files: Vec<String> = findings.sources.files().map(|(_, file)| spec::shown(&file.path)).collect();
+    let files: Vec<String> = findings
+        .sources
+        .files()
+        .filter(|(_, source)| source.file.is_some())
+        .map(|(_, source)| spec::shown(&source.path))
+        .collect();
     [
         ("command", command(findings)),
         ("program", header.program.clone()),
         ("files read", files.join(", ")),
-        ("their hash", header.spec_hash.clone()),
+        ("hash", header.spec_hash.clone()),
         ("tolerance", format!("{TOLERANCE:.0e} mm, or mm per radian of a motion, for each equation of a solved point")),
     ]
 }

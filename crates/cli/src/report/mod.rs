@@ -22,6 +22,7 @@ use crate::failure::{Failure, not_done};
 use crate::limits::{self, Line};
 use crate::plot::{self, Drawing, Subject};
 use crate::solve::{self, Wanted};
+use crate::spec::Origin;
 use crate::step::{self, Smooth};
 use crate::table::{self, Solved};
 use crate::travel::{self, Run};
@@ -32,11 +33,11 @@ pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let jobs = solve::asked(&jobs)?;
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     let target = Target::of(arguments, &jobs)?;
     let mut ending = Ending::Done;
     for job in jobs {
-        let findings = Findings::of(job, &compilation.sources, &hash, arguments)?;
+        let findings = Findings::of(job, &compilation.sources, &origin, arguments)?;
         let document = findings.document();
         let written = target.write(&findings, &document)?;
         print(&if arguments.json { findings.json(&document, &written) } else { findings.told(&written) });
@@ -53,6 +54,7 @@ pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
 struct Findings<'j, 'g> {
     job: &'j Job<'g>,
     sources: &'j Sources,
+    origin: &'j Origin,
     arguments: &'j Report,
     header: Header,
     subject: Subject<'j, 'g>,
@@ -67,7 +69,7 @@ struct Findings<'j, 'g> {
 }
 
 impl<'j, 'g> Findings<'j, 'g> {
-    fn of(job: &'j Job<'g>, sources: &'j Sources, hash: &str, arguments: &'j Report) -> Result<Self, String> {
+    fn of(job: &'j Job<'g>, sources: &'j Sources, origin: &'j Origin, arguments: &'j Report) -> Result<Self, String> {
         let wanted = Wanted {
             geometry: true,
             sensitivity: true,
@@ -86,7 +88,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
         let faces = arguments.faces.step.into_iter().flat_map(smooth).collect();
         let runs = travel::runs(job, &solved);
-        let header = solve::header(&[job], &arguments.which, hash);
+        let header = solve::header(&[job], &arguments.which, origin);
         // the page says once where all its pictures come from
         let unsigned = Header { spec: String::new(), ..header.clone() };
         let subject = Subject::of(job, solved, &[], unsigned)?;
@@ -94,6 +96,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         Ok(Findings {
             job,
             sources,
+            origin,
             arguments,
             header,
             subject,

@@ -44,7 +44,7 @@ impl Target {
     /// Writes the files of a job's report and names them.
     pub(super) fn write(&self, findings: &Findings<'_, '_>, document: &Document) -> Result<Vec<String>, String> {
         let job = &findings.job.name;
-        let mut folder = Folder::at(&self.folder)?;
+        let mut folder = Folder::at(&self.folder, findings.origin)?;
         let faces: Vec<&Face> = findings.faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
         if !faces.is_empty() {
             folder.step(job, &findings.header, &faces)?;

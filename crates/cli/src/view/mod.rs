@@ -18,6 +18,7 @@ use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::limits::Line;
 use crate::solve::{self, Wanted};
+use crate::spec::Origin;
 use crate::table::{self, Solved};
 use crate::{Ending, eprint, print, spec};
 use functions::Functions;
@@ -33,7 +34,7 @@ const BEYOND: f64 = 0.15;
 pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let hash = spec::hash(&compilation);
+    let origin = Origin::of(&compilation);
     let mut ending = Ending::Done;
     for job in solve::asked(&jobs)? {
         let solved =
@@ -41,7 +42,7 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let trims = solved.iter().flat_map(|solved| &solved.trims);
         let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
-        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &arguments.which, &hash));
+        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &arguments.which, &origin));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = Tally::of(&dataset.patches);
         let mut told = table::failures(job, &solved);
@@ -49,7 +50,7 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
             told += &format!("no page: job `{}` has no point to show\n", job.name);
             None
         } else {
-            Some(write(&graph, job, &solved, &dataset, arguments)?)
+            Some(write(&graph, job, &solved, &dataset, (arguments, &origin))?)
         };
         if arguments.json {
             print(&as_json(job, &tally, written.as_ref(), &told));
@@ -91,7 +92,7 @@ fn write<'g>(
     job: &Job<'g>,
     solved: &[Solved<'_, 'g>],
     dataset: &Dataset,
-    arguments: &View,
+    (arguments, origin): (&View, &Origin),
 ) -> Result<Written, String> {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
@@ -108,7 +109,7 @@ fn write<'g>(
         }
     }
     let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
-    let mut folder = Folder::at(&arguments.out)?;
+    let mut folder = Folder::at(&arguments.out, origin)?;
     folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
     let path = arguments.out.join(format!("{}.html", job.name));
     let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
