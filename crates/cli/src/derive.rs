@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use crate::arguments::Derive;
 use crate::convert::{self, Carried};
 use crate::cost::SurfaceCost;
-use crate::failure::Failure;
-use crate::{Ending, print, spec};
+use crate::failure::{Failure, not_done};
+use crate::{Ending, eprint, print, spec};
 
 pub(crate) fn run(arguments: &Derive) -> Result<Ending, Failure> {
     let graph = Graph::new();
@@ -24,22 +24,26 @@ pub(crate) fn run(arguments: &Derive) -> Result<Ending, Failure> {
         return cost(&jobs, arguments.json);
     }
     let pages = jobs.iter().map(|job| (job.name.as_str(), derivation(job, style(arguments))));
-    show(&pages.collect::<Vec<_>>(), arguments);
-    Ok(Ending::Done)
+    Ok(show(&pages.collect::<Vec<_>>(), "", arguments))
 }
 
 fn style(arguments: &Derive) -> Style {
     if arguments.latex { Style::Latex } else { Style::Text }
 }
 
-/// Prints the page of each job.
-fn show(pages: &[(&str, String)], arguments: &Derive) {
-    if !arguments.json {
-        return pages.iter().for_each(|(_, page)| print(page));
+/// Prints the page of each job, and tells what was not solved on the way.
+fn show(pages: &[(&str, String)], told: &str, arguments: &Derive) -> Ending {
+    if arguments.json {
+        let style = if arguments.latex { "latex" } else { "text" };
+        let jobs: Vec<Value> = pages.iter().map(|(job, page)| json!({ "job": job, "page": page })).collect();
+        let document =
+            json!({ "schema": "flank.derivation/2", "style": style, "jobs": jobs, "not_done": not_done(told) });
+        print(&format!("{document:#}\n"));
+    } else {
+        pages.iter().for_each(|(_, page)| print(page));
     }
-    let style = if arguments.latex { "latex" } else { "text" };
-    let jobs: Vec<Value> = pages.iter().map(|(job, page)| json!({ "job": job, "page": page })).collect();
-    print(&format!("{:#}\n", json!({ "schema": "flank.derivation/1", "style": style, "jobs": jobs })));
+    eprint(told);
+    if told.is_empty() { Ending::Done } else { Ending::Unsolved }
 }
 
 /// Postures from which the elbow of a closed form is taken.
@@ -49,15 +53,18 @@ const POSITIONS: u32 = 101;
 fn carried(graph: &Graph, to: &Path, arguments: &Derive) -> Result<Ending, Failure> {
     let carry = |job: &Job<'_>, target: &Job<'_>| {
         let carried = Carried::new(graph, job, target, &arguments.onto, POSITIONS)?;
-        match carried.failures() {
-            told if told.is_empty() => Ok(explicit_page(job, &carried, &carried.explicit(true)?, style(arguments))),
+        // the postures that tell which elbow is meant lie as far as points are solved
+        let unsolved = carried.source.unsolved();
+        let axes = match carried.failures() {
+            told if told.is_empty() => carried.explicit(true),
             told => Err(told.trim_end().to_string()),
-        }
+        };
+        let axes = axes.map_err(|reason| format!("{unsolved}{reason}"))?;
+        Ok((explicit_page(job, &carried, &axes, style(arguments)), unsolved))
     };
     let (_, job, target) = convert::compiled(graph, &arguments.which, to)?;
-    let page = carry(&job, &target).map_err(|reason| Failure::from(reason).unsolved())?;
-    show(&[(&job.name, page)], arguments);
-    Ok(Ending::Done)
+    let (page, unsolved) = carry(&job, &target).map_err(|reason: String| Failure::from(reason).unsolved())?;
+    Ok(show(&[(&job.name, page)], &unsolved, arguments))
 }
 
 /// The given vectors, then the axes from them.

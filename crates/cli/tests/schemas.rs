@@ -111,7 +111,7 @@ fn other_machines() {
     judge.run(&["derive", PINION, "--json", "--cost"], 0);
     judge.run(&["derive", PINION, "--json", "--to", FREE_FORM], 0);
     judge.run(&["derive", SPUR, "--json", "--to", FREE_FORM, "--tool-frame", "cutter", "--work-frame", "work"], 3);
-    judge.has_met(&["flank.convert/1", "flank.motion/1", "flank.settings/1", "flank.derivation/1", "flank.cost/1"]);
+    judge.has_met(&["flank.convert/1", "flank.motion/1", "flank.settings/1", "flank.derivation/2", "flank.cost/1"]);
 }
 
 #[test]
