@@ -84,4 +84,5 @@ codes! {
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";
     UnreachedFrame    = "W0003" Warning "a frame carries nothing";
+    Sliding           = "W0004" Warning "with these values, a motion lets the tool slide within itself";
 }

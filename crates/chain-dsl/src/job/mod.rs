@@ -3,6 +3,7 @@
 mod available;
 mod axes;
 mod cut;
+mod sliding;
 mod surfaces;
 mod sweep;
 
@@ -37,6 +38,8 @@ struct Builder<'a, 'g> {
     definitions: &'a Definitions<'a>,
     scope: Scope<'g>,
     names: HashMap<String, Span>,
+    /// The job's own.
+    parameters: Vec<Parameter<'g>>,
     machines: Vec<(Name, String, Built<'g>)>,
     tools: Vec<(Name, BuiltTool<'g>)>,
     motions: Vec<Bounded<'g>>,
@@ -62,6 +65,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             definitions,
             scope: Scope::new(),
             names: HashMap::new(),
+            parameters: Vec::new(),
             machines: Vec::new(),
             tools: Vec::new(),
             motions: Vec::new(),
@@ -89,7 +93,7 @@ pub(crate) fn standing<'g>(
     let (name, definition) = (machine.name.clone(), machine.name.clone());
     builder.machine(context, &ast::Instance { name, definition, settings: Vec::new() });
     let machines = builder.settle_axes(context);
-    builder.into_job(machine.name.node.clone(), machine.doc.clone(), Vec::new(), machines, file)
+    builder.into_job(machine.name.node.clone(), machine.doc.clone(), machines, file)
 }
 
 /// A job with all its names resolved; what is wrong in it is reported and left out.
@@ -114,7 +118,7 @@ pub(crate) fn build<'g>(
         builder.declare(context, statement, &mut binder);
     }
     binder.finish(context, &[]);
-    let parameters = binder.parameters;
+    builder.parameters = binder.parameters;
     for statement in &job.statements {
         match statement {
             JobStatement::Mount { tool, frame } => builder.mount(context, tool, frame, job),
@@ -143,18 +147,12 @@ pub(crate) fn build<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
-    builder.into_job(job.name.node.clone(), job.doc.clone(), parameters, machines, file)
+    builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file)
 }
 
 impl<'g> Builder<'_, 'g> {
-    fn into_job(
-        self,
-        name: String,
-        doc: Vec<String>,
-        mut parameters: Vec<Parameter<'g>>,
-        machines: Vec<Machine<'g>>,
-        file: &Path,
-    ) -> Job<'g> {
+    fn into_job(self, name: String, doc: Vec<String>, machines: Vec<Machine<'g>>, file: &Path) -> Job<'g> {
+        let mut parameters = self.parameters;
         let mut settings = Vec::new();
         for (_, _, built) in self.machines {
             parameters.extend(built.parameters);

@@ -75,6 +75,13 @@ impl<'g> Builder<'_, 'g> {
             available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
         let surface = made(context, process, call, &available, &driven, &over, flipped)?;
+        let what = match process {
+            Process::Sweep => format!("what `{}` sweeps", available.name),
+            Process::Envelope | Process::Move => format!("`{}`", available.name),
+        };
+        if !self.check_sliding(context, &surface, &unknowns, &motions, &what) {
+            return None;
+        }
         let generation = Generation {
             tool_name: available.name,
             process,

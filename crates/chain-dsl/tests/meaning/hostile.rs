@@ -74,7 +74,7 @@ fn sweeps(count: usize) -> String {
 fn envelopes(levels: usize) -> String {
     let axes = lines(levels, |k| {
         format!(
-            "axis A{k} : rotary\nframe f{} in f{k} = rotate_x(A{k}) translate(1 mm, 2 mm, 3 mm) rotate_z(30 deg)",
+            "axis A{k} : rotary\nframe f{} in f{k} = rotate_y(A{k}) translate(1 mm, 2 mm, 3 mm) rotate_z(30 deg)",
             k + 1
         )
     });
