@@ -40,7 +40,7 @@ impl Failure {
         Failure { ending: Ending::Usage, text: error.render().ansi().to_string(), message, findings: Vec::new() }
     }
 
-    /// A command line whose parts do not go together.
+    /// A command line whose parts do not go together, or with a name that the program does not know.
     pub(crate) fn of_usage(reason: String) -> Failure {
         Failure { ending: Ending::Usage, ..Failure::from(reason) }
     }

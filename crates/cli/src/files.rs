@@ -12,9 +12,6 @@ use flank_export::{
 use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
 use crate::spec::{self, Origin};
 
-/// Extensions that no folder is made with.
-const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vtp", "step", "png", "svg", "html", "md"];
-
 /// A folder that is written to, and the files that stand there now.
 pub(crate) struct Folder<'a> {
     path: &'a Path,
@@ -24,17 +21,8 @@ pub(crate) struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    /// The folder, made if it is not there; not one with the name of a file.
+    /// The folder, made if it is not there.
     pub(crate) fn at(path: &'a Path, origin: &'a Origin) -> Result<Folder<'a>, String> {
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        if !path.is_dir() && OF_FILES.contains(&extension) {
-            let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            return Err(format!(
-                "--out takes a folder, and {} looks like a file: say --out {}; files are named after the job",
-                path.display(),
-                folder.display()
-            ));
-        }
         std::fs::create_dir_all(path).map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;
         Ok(Folder { path, origin, written: Vec::new() })
     }

@@ -94,20 +94,21 @@ pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
 }
 
 /// The job that a REXS file describes, as text.
-fn job(text: &str, file: &str, arguments: &Import) -> Result<String, String> {
+fn job(text: &str, file: &str, arguments: &Import) -> Result<String, Failure> {
     let document = Document::parse(text).map_err(|error| format!("{file} is not XML: {error}"))?;
     let model = document.root_element();
     if model.tag_name().name() != "model" {
-        return Err(format!("{file} is no REXS file: it begins with `{}`, not with `model`", model.tag_name().name()));
+        let first = model.tag_name().name();
+        return Err(format!("{file} is no REXS file: it begins with `{first}`, not with `model`").into());
     }
     let settings = Component::one(model, SETTINGS, arguments.settings.as_deref(), "--settings")?;
     let tools = [("outside", &arguments.outside, "concave"), ("inside", &arguments.inside, "convex")];
     if tools.iter().all(|(_, id, _)| id.is_none()) {
         let known = Component::all(model, TOOL).map(|tool| tool.described()).collect::<Vec<_>>().join(", ");
         let known = if known.is_empty() { format!("{file} has no {TOOL}") } else { format!("there is: {known}") };
-        return Err(format!(
+        return Err(Failure::of_usage(format!(
             "say which tool has which blades: `--outside ID` for the concave flank, `--inside ID` for the convex one; {known}"
-        ));
+        )));
     }
     let version = model.attribute("version").map_or("without a version".to_string(), on_one_line);
     let mut out = format!("//! From {}, REXS {version}, {}.\n", on_one_line(file), settings.described());

@@ -54,9 +54,9 @@ use failure::Failure;
 enum Ending {
     /// 0
     Done,
-    /// 1: the spec is wrong, or a file cannot be read or written.
+    /// 1: what was read is wrong or has not what is asked of it, or a file cannot be read or written.
     Wrong,
-    /// 2: the command line is wrong.
+    /// 2: the command line is wrong, whatever the files say: also a name that only the program knows.
     Usage,
     /// 3: done, but something asked for could not be solved, and it is listed.
     Unsolved,

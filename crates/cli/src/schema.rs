@@ -40,7 +40,7 @@ fn all() -> BTreeMap<String, Shipped> {
 
 /// # Errors
 /// Which there are, if there is none of that name.
-fn find(all: &BTreeMap<String, Shipped>, name: &str) -> Result<&'static str, String> {
+fn find(all: &BTreeMap<String, Shipped>, name: &str) -> Result<&'static str, Failure> {
     let is_meant = |known: &str| {
         let bare = |name: &str| name.strip_prefix("flank.").unwrap_or(name).to_string();
         let (known, name) = (bare(known), bare(name));
@@ -50,7 +50,7 @@ fn find(all: &BTreeMap<String, Shipped>, name: &str) -> Result<&'static str, Str
     let found = all.iter().rfind(|(known, _)| is_meant(known));
     found.map(|(_, schema)| schema.text).ok_or_else(|| {
         let known: Vec<&str> = all.keys().map(String::as_str).collect();
-        format!("there is no schema `{name}`; there is: {}", known.join(", "))
+        Failure::of_usage(format!("there is no schema `{name}`; there is: {}", known.join(", ")))
     })
 }
 

@@ -219,7 +219,75 @@ fn a_schema_is_found_with_or_without_its_prefix_and_version() {
     for name in ["solve", "flank.solve", "solve/2"] {
         assert_eq!(text(&flank(&["schema", name]).stdout), whole, "{name}");
     }
-    assert_eq!(flank(&["schema", "flank.nothing"]).status.code(), Some(1));
+}
+
+/// 2 where the command line is wrong whatever the files say, 1 where what was read has not what is asked of it, for all commands.
+#[test]
+fn exit_codes_tell_the_command_line_from_what_it_names() {
+    const SPUR: &str = "specs/hobbing/spur_gear.chain";
+    const MACHINE: &str = "specs/machines/free_form.chain";
+    let folder = folder("exit_codes");
+    let rexs = written(&folder, "pinion.rexs", support::REXS);
+    let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n}\n");
+    let blocked = format!("{wrong}/here");
+    let usage: &[&[&str]] = &[
+        &["sovle"],
+        &["solve", SPUR, "--format", "docx"],
+        &["solve", SPUR, "--out", "spur.csv"],
+        &["check"],
+        &["convert", SPUR],
+        &["convert", SPUR, "--to", MACHINE, "--nc", "basic", "--time", "3"],
+        &["derive", SPUR, "--cost", "--latex"],
+        &["plot", SPUR, "--what", "nothing"],
+        &["plot", SPUR, "--what", "deviation"],
+        &["plot", SPUR, "--from", "flank_plus"],
+        &["plot", SPUR, "--surface", "flank_plus", "--from", "flank_minus", "--what", "left"],
+        &["report", SPUR, "--out", "spur.md", "--format", "html"],
+        &["report", SPUR, "--out", "spur.csv"],
+        &["deviation", SPUR, "flank_plus"],
+        &["measure", SPUR, "--rows", "1"],
+        &["explain", "E9999"],
+        &["import", &rexs, "--signs", "mine", "--outside", "21"],
+        &["import", &rexs, "--signs", "frames"],
+        &["fmt"],
+        &["view", SPUR, "--out", "spur.html"],
+        &["new", "nosuch"],
+        &["new", "spur_gear", "--name", "3d"],
+        &["schema", "nosuch"],
+        &["completions", "nosuch"],
+        &["man", "--out", "flank.md"],
+    ];
+    let lacking: &[&[&str]] = &[
+        &["solve", "nosuch.chain"],
+        &["solve", SPUR, "--job", "nosuch"],
+        &["solve", SPUR, "--out", &blocked],
+        &["check", "nosuch.chain"],
+        &["check", &wrong],
+        &["convert", SPUR, "--to", "nosuch.chain"],
+        &["convert", SPUR, "--to", MACHINE, "--surface", "nosuch"],
+        &["derive", SPUR, "--set", "nosuch=1"],
+        &["plot", SPUR, "--surface", "nosuch"],
+        &["plot", SPUR, "--what", "left"],
+        &["report", &wrong],
+        &["deviation", SPUR, "nosuch", "--from", "flank_plus"],
+        &["measure", SPUR, "--surface", "nosuch"],
+        &["import", &rexs, "--signs", "frames", "--outside", "nosuch"],
+        &["fmt", "nosuch.chain"],
+        &["view", MACHINE],
+        &["new", "spur_gear", "--set", "nosuch=1", "--out", folder.to_str().unwrap()],
+        &["man", "--out", &blocked],
+    ];
+    for (code, commands) in [(2, usage), (1, lacking)] {
+        for command in commands {
+            let run = flank(command);
+            assert_eq!(run.status.code(), Some(code), "{command:?}: {}", text(&run.stderr));
+            let has_own_document = ["check", "fmt"].contains(&command[0]) && code == 1;
+            let run = flank(&[command, &["--json"][..]].concat());
+            assert_eq!(run.status.code(), Some(code), "{command:?} --json");
+            let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("one document");
+            assert!(has_own_document || told["exit_code"] == code, "{command:?}: {told}");
+        }
+    }
 }
 
 #[test]

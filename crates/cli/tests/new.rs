@@ -126,8 +126,8 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
         assert_eq!(std::fs::read_dir(&out).expect("the folder").count(), 0);
         text(&run.stderr)
     };
-    assert!(wrong(&["helical_gaer"], 1).contains("did you mean `helical_gear`?"));
-    assert!(wrong(&["xyz"], 1).contains("the library has no job `xyz`; `flank new` lists them"));
+    assert!(wrong(&["helical_gaer"], 2).contains("did you mean `helical_gear`?"));
+    assert!(wrong(&["xyz"], 2).contains("the library has no job `xyz`; `flank new` lists them"));
     assert!(
         wrong(&["helical_gear", "--set", "tooth=3"], 1).contains("has no parameter `tooth`; it has: `normal_module`")
     );

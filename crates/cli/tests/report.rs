@@ -319,12 +319,12 @@ fn one_file_can_be_named() {
     let told = reported(&[spec], &file, 0);
     assert_eq!(told["files"].as_array().unwrap().len(), 1);
     assert!(read(&file).starts_with("<!DOCTYPE html>"));
-    let refused = |arguments: &[&str], why: &str| {
+    let refused = |arguments: &[&str], code: i32, why: &str| {
         let run = flank(&[&["report"], arguments].concat());
-        assert_eq!(run.status.code(), Some(1));
+        assert_eq!(run.status.code(), Some(code));
         assert!(text(&run.stderr).contains(why), "{}", text(&run.stderr));
     };
-    refused(&[spec, "--format", "md", "--out", file.to_str().unwrap()], "cannot hold md: name a folder with --out");
+    refused(&[spec, "--format", "md", "--out", file.to_str().unwrap()], 2, "cannot hold md: name a folder with --out");
     let several = written(
         &out,
         "several.chain",
@@ -335,8 +335,8 @@ fn one_file_can_be_named() {
             "hobbing/undercut_gear",
         ]) + &self_contained(&["hobbing/undercut_gear"]).replace("job undercut_gear", "job other")),
     );
-    refused(&[&several, "--out", file.to_str().unwrap()], "can hold one job of undercut_gear, other");
-    refused(&["specs/bevel/ease_off_19x62.chain", "--job", "pinion"], "asks for no points");
+    refused(&[&several, "--out", file.to_str().unwrap()], 1, "can hold one job of undercut_gear, other");
+    refused(&["specs/bevel/ease_off_19x62.chain", "--job", "pinion"], 1, "asks for no points");
 }
 
 /// What cannot be written is told, and what was there stays.

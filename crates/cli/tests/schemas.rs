@@ -198,10 +198,12 @@ fn failures_of_all_commands() {
         let told = judge.run(&[command, &at].concat(), 1);
         assert!(told[0]["message"].as_str().expect("text").contains("cannot make the folder"), "{command:?}: {told:?}");
     }
-    for command in [&["solve", CRADLE][..], &["import", "none.rexs", "--signs", "frames"], &["schema", "none"]] {
+    for command in [&["solve", CRADLE][..], &["import", "none.rexs", "--signs", "frames"]] {
         judge.run(&[command, &["--json"]].concat(), 1);
     }
-    for command in [&["solve"][..], &["explain", "E301"], &["plot", SPUR, "--what", "nothing"], &["sovle"]] {
+    for command in
+        [&["solve"][..], &["explain", "E301"], &["schema", "none"], &["plot", SPUR, "--what", "nothing"], &["sovle"]]
+    {
         let told = judge.run(&[command, &["--json"]].concat(), 2);
         assert!(!told[0]["message"].as_str().expect("text").starts_with("error"), "{told:?}");
     }

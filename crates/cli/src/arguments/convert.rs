@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use flank_export::Dialect;
 use flank_expr::Language;
 
-use super::{Means, Which, count, length};
+use super::{Means, Which, count, folder, length};
 
 #[derive(Args, Debug)]
 #[command(mut_arg("job", |job| job.help("The job that is carried over, where the file holds several")))]
@@ -42,7 +42,7 @@ pub(crate) struct Convert {
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// Folder for the files, made if it is not there; build otherwise
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder())]
     out: Option<PathBuf>,
     /// Files with positions and polynomials: csv, json, or both with a comma; csv otherwise
     #[arg(long, value_enum, value_delimiter = ',')]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Format, Means, TableFormat, Which, count};
+use super::{Format, Means, TableFormat, Which, count, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -34,7 +34,7 @@ pub(crate) struct Measure {
     #[arg(long, value_name = "COUNT", value_parser = count(2..=100_000), allow_hyphen_values = true)]
     pub(crate) lines: Option<u32>,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// csv, json, or both with a comma
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
@@ -105,7 +105,7 @@ pub(crate) struct Deviation {
     #[arg(long)]
     pub(crate) as_it_lies: bool,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Files with the points, several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]

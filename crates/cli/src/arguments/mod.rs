@@ -5,8 +5,9 @@ mod measuring;
 mod report;
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::{Code, Job};
 use flank_expr::InstructionSet;
@@ -31,8 +32,8 @@ Examples:
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain
   flank fmt specs/tools/*.chain                         the settled layout
 
-Exit codes: 0 done; 1 the spec is wrong, or a file cannot be read or written; 2 usage; 3 done, but something asked for
-could not be solved, and it is listed."
+Exit codes: 0 done; 1 what was read is wrong or has not what is asked of it, or a file cannot be read or written; 2 the
+command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -156,7 +157,7 @@ pub(crate) struct Solve {
     #[command(flatten)]
     pub(crate) which: Which,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Files with the points, several with commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
@@ -234,7 +235,7 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) of: Vec<String>,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// png, svg, or both with a comma
     #[arg(long, value_enum, value_delimiter = ',', default_value = "png,svg")]
@@ -299,6 +300,26 @@ pub(crate) struct Faces {
     /// surface (0.1um unless it says another)
     #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.1um", value_parser = length)]
     pub(crate) step: Option<f64>,
+}
+
+/// Extensions that no folder for results is made with.
+const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vtp", "step", "png", "svg", "html", "md"];
+
+/// The folder of `--out`.
+fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(no_file)
+}
+
+fn no_file(path: PathBuf) -> Result<PathBuf, String> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if path.is_dir() || !OF_FILES.contains(&extension) {
+        return Ok(path);
+    }
+    let above = path.parent().filter(|above| !above.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Err(format!(
+        "a folder is wanted, and that looks like a file; say --out {}, files are named after the job",
+        above.display()
+    ))
 }
 
 /// A length in mm.
@@ -468,7 +489,7 @@ pub(crate) struct View {
     #[command(flatten)]
     pub(crate) which: Which,
     /// Folder for the pages; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Print files and sizes as JSON
     #[arg(long)]
@@ -515,7 +536,7 @@ Examples:
   man flank-solve")]
 pub(crate) struct Man {
     /// Folder for the pages; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = "build")]
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Print the files as JSON
     #[arg(long)]
@@ -541,7 +562,7 @@ pub(crate) struct New {
     #[arg(long, requires = "template")]
     pub(crate) ask: bool,
     /// Folder for the files; made if it is not there
-    #[arg(long, value_name = "DIR", default_value = ".", requires = "template")]
+    #[arg(long, value_name = "DIR", default_value = ".", value_parser = folder(), requires = "template")]
     pub(crate) out: PathBuf,
     /// Print the jobs to start from, or the files, as JSON
     #[arg(long)]

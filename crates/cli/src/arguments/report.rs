@@ -1,10 +1,11 @@
 //! The arguments of `flank report`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
-use super::{Faces, Means, Which};
+use super::{Faces, Means, Which, no_file};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -20,7 +21,7 @@ pub(crate) struct Report {
     #[command(flatten)]
     pub(crate) which: Which,
     /// Folder for the files, made if it is not there; or a file that ends in .html or .md
-    #[arg(long, value_name = "PATH", default_value = "build")]
+    #[arg(long, value_name = "PATH", default_value = "build", value_parser = page_or_folder())]
     pub(crate) out: PathBuf,
     /// html, md, or both with a comma; html, or what the file of --out is, without it
     #[arg(long, value_enum, value_delimiter = ',')]
@@ -46,4 +47,20 @@ pub(crate) enum ReportFormat {
     Html,
     /// Markdown with its pictures beside it
     Md,
+}
+
+impl ReportFormat {
+    /// What a path says it is; nothing for a folder.
+    pub(crate) fn of(path: &Path) -> Option<ReportFormat> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match &*extension {
+            "html" | "htm" => Some(ReportFormat::Html),
+            "md" => Some(ReportFormat::Md),
+            _ => None,
+        }
+    }
+}
+
+fn page_or_folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| if ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
 }

@@ -83,12 +83,12 @@ fn list_as_json() -> String {
     format!("{:#}\n", json!({ "schema": "flank.templates/1", "templates": all }))
 }
 
-fn find(name: &str) -> Result<Template, String> {
+fn find(name: &str) -> Result<Template, Failure> {
     let mut templates = templates();
     templates.remove(name).ok_or_else(|| {
         let near = closest(name, templates.keys().map(String::as_str));
         let near = near.map_or(String::new(), |near| format!(", did you mean `{near}`?"));
-        format!("the library has no job `{name}`{near}; `flank new` lists them")
+        Failure::of_usage(format!("the library has no job `{name}`{near}; `flank new` lists them"))
     })
 }
 

@@ -6,22 +6,33 @@ use flank_export::{Dataset, PictureOptions, field_maps, topography};
 use super::{Drawing, Drawn, name, options, told, with_origin, write};
 use crate::arguments::{Plot, What};
 use crate::deviation::{self, Measured};
+use crate::failure::Failure;
 use crate::spec::Origin;
 
 /// What there is to draw of a comparison.
 const KINDS: [What; 2] = [What::Deviation, What::Topography];
 
 /// # Errors
+/// In words, if the arguments do not compare two surfaces.
+pub(super) fn check(arguments: &Plot) -> Result<(), Failure> {
+    if arguments.surface.len() != 1 {
+        let message = "--from holds one surface against another one: name one with --surface";
+        return Err(Failure::of_usage(message.to_string()));
+    }
+    match arguments.what.iter().find(|what| !KINDS.contains(what)) {
+        Some(other) => {
+            let (other, kinds) = (name(*other), KINDS.map(name).join(", "));
+            let message = format!("--what {other} does not compare surfaces\nwhat fits with --from: {kinds}");
+            Err(Failure::of_usage(message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// # Errors
 /// In words: what is missing, or does not fit.
 pub(super) fn plot(jobs: &[Job<'_>], from: &str, arguments: &Plot, origin: &Origin) -> Result<Drawn, String> {
-    let [surface] = &arguments.surface[..] else {
-        return Err("--from holds one surface against another one: name one with --surface".to_string());
-    };
-    if let Some(other) = arguments.what.iter().find(|what| !KINDS.contains(what)) {
-        let kinds = KINDS.map(name).join(", ");
-        return Err(format!("--what {} does not compare surfaces\nwhat fits with --from: {kinds}", name(*other)));
-    }
-    let surface = deviation::find(jobs, surface)?;
+    let surface = deviation::find(jobs, &arguments.surface[0])?;
     let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, arguments.means)?;
     let asked = if arguments.what.is_empty() { &KINDS[..] } else { &arguments.what };
     let drawings: Vec<(What, Drawing)> =

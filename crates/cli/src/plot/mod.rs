@@ -27,6 +27,9 @@ const DEFAULTS: [What; 6] =
     [What::Left, What::Surface, What::Section, What::ContactLines, What::Machine, What::Curvature];
 const MOST_DEFAULTS: usize = 3;
 
+/// What a deviation is of.
+const SECOND: &str = "takes a second surface: --surface NAME --from OTHER";
+
 /// A picture, and what it shows in a few words.
 pub(crate) struct Drawing {
     pub(crate) picture: Picture,
@@ -46,6 +49,14 @@ pub(crate) type Unfit = String;
 pub(crate) fn run(arguments: &Plot) -> Result<Ending, Failure> {
     if !arguments.of.is_empty() && !arguments.what.contains(&What::Sensitivity) {
         return Err(Failure::of_usage("--of names what `sensitivity` shows, and that is not among --what".to_string()));
+    }
+    match &arguments.from {
+        Some(_) => comparison::check(arguments)?,
+        None if arguments.what.contains(&What::Deviation) => {
+            let message = format!("--what deviation {SECOND}");
+            return Err(Failure::of_usage(message));
+        }
+        None => {}
     }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
@@ -143,7 +154,7 @@ pub(crate) fn draw(
         What::Topography => maps::topography(subject, &options),
         What::Curvature => maps::curvature(subject, &options),
         What::Sensitivity => maps::sensitivity(subject, of, &options),
-        What::Deviation => Err("it takes a second surface: --surface NAME --from OTHER".to_string()),
+        What::Deviation => Err(SECOND.to_string()),
         What::Left => maps::left(subject, &options),
         What::Residual => maps::residual(subject, &options),
         What::ContactLines => maps::contact_lines(subject, &options),

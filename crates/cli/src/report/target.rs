@@ -7,6 +7,7 @@ use flank_export::{Face, Report as Document};
 
 use super::Findings;
 use crate::arguments::{PictureFormat, Report, ReportFormat};
+use crate::failure::Failure;
 use crate::files::Folder;
 
 pub(super) struct Target {
@@ -19,14 +20,15 @@ pub(super) struct Target {
 impl Target {
     /// # Errors
     /// In words, if one file is to hold several reports or formats.
-    pub(super) fn of(arguments: &Report, jobs: &[&Job<'_>]) -> Result<Target, String> {
+    pub(super) fn of(arguments: &Report, jobs: &[&Job<'_>]) -> Result<Target, Failure> {
         let out = &arguments.out;
-        let Some(format) = format_of(out) else {
+        let Some(format) = ReportFormat::of(out) else {
             let formats = if arguments.format.is_empty() { vec![ReportFormat::Html] } else { arguments.format.clone() };
             return Ok(Target { folder: out.clone(), file: None, formats });
         };
         if let Some(other) = arguments.format.iter().find(|other| **other != format) {
-            return Err(format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other)));
+            let message = format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other));
+            return Err(Failure::of_usage(message));
         }
         if jobs.len() > 1 {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
@@ -34,7 +36,8 @@ impl Target {
             return Err(format!(
                 "{} can hold one job of {names}: choose it with --job, or name a folder",
                 out.display()
-            ));
+            )
+            .into());
         }
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = out.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -59,16 +62,6 @@ impl Target {
             folder.report(&name, document, *format)?;
         }
         Ok(folder.written)
-    }
-}
-
-/// What a path says it is; nothing for a folder.
-fn format_of(path: &Path) -> Option<ReportFormat> {
-    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    match &*extension {
-        "html" | "htm" => Some(ReportFormat::Html),
-        "md" => Some(ReportFormat::Md),
-        _ => None,
     }
 }
 
