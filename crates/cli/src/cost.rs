@@ -71,7 +71,7 @@ impl<'j> SurfaceCost<'j> {
             })
         };
         json!({
-            "surface": self.name,
+            "name": self.name,
             "equations": self.residuals,
             "per_spec": stage(&self.stages[0]),
             "per_motion_value": stage(&self.stages[1]),

@@ -113,7 +113,7 @@ fn cost(jobs: &[Job<'_>], as_json: bool) -> Result<Ending, Failure> {
         }
     }
     if as_json {
-        print(&format!("{:#}\n", json!({ "schema": "flank.cost/1", "jobs": told })));
+        print(&format!("{:#}\n", json!({ "schema": "flank.cost/2", "jobs": told })));
     }
     Ok(Ending::Done)
 }

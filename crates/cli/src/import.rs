@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let text = Origin::default().other_text(&arguments.file, MOST_BYTES)?;
     let spec = job(&text, &file, arguments)?;
     if arguments.json {
-        let imported = json!({ "schema": "flank.import/1", "file": file, "job": arguments.name, "spec": spec });
+        let imported = json!({ "schema": "flank.import/2", "file": file, "job": arguments.name, "text": spec });
         print(&format!("{imported:#}\n"));
     } else {
         print(&spec);

@@ -27,7 +27,7 @@ struct Shipped {
     about: String,
 }
 
-/// All schemas by the names of their documents, such as `flank.solve/2`.
+/// All schemas by the names of their documents, such as `flank.solve/3`.
 fn all() -> BTreeMap<String, Shipped> {
     let schemas = SCHEMAS.files().map(|file| {
         let text = file.contents_utf8().expect("schemas are UTF-8, as a test holds");

@@ -141,7 +141,7 @@ impl Sensitivity {
         let ranked: Vec<Value> = self
             .ranked()
             .iter()
-            .map(|(_, one)| json!({ "parameter": one.parameter, "unit": one.unit, "rms": one.rms, "largest": one.largest }))
+            .map(|(_, one)| json!({ "name": one.parameter, "unit": one.unit, "rms": one.rms, "largest": one.largest }))
             .collect();
         let (points, idle) = (self.points, self.idle());
         json!({ "points": points, "parameters": ranked, "no_influence": idle, "counts": self.counts })

@@ -181,7 +181,7 @@ impl Table<'_, '_, '_> {
     pub(crate) fn json(&self, told: &str) -> String {
         let surfaces: Vec<Value> = self.solved.iter().map(surface_json).collect();
         let table = json!({
-            "schema": "flank.solve/2",
+            "schema": "flank.solve/3",
             "job": self.job.name,
             "spec": self.spec,
             "surfaces": surfaces,

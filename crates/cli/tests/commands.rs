@@ -66,7 +66,7 @@ fn derive_counts_operations() {
     let run = flank(&["derive", "specs/bevel/pinion_19x62.chain", "--cost", "--json"]);
     let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let concave = &told["jobs"][0]["surfaces"][0];
-    assert_eq!((concave["surface"].as_str(), concave["equations"].as_u64()), (Some("concave"), Some(3)));
+    assert_eq!((concave["name"].as_str(), concave["equations"].as_u64()), (Some("concave"), Some(3)));
     let count = |stage: &str, what: &str| concave[stage][what].as_u64().expect("a count");
     let arithmetic = |stage: &str| {
         ["additions", "multiplications", "divisions", "square_roots"].iter().map(|what| count(stage, what)).sum::<u64>()
@@ -214,9 +214,9 @@ fn numbers_of_the_command_line_say_what_they_may_be() {
 
 #[test]
 fn a_schema_is_found_with_or_without_its_prefix_and_version() {
-    let whole = text(&flank(&["schema", "flank.solve/2"]).stdout);
-    assert!(whole.contains("\"title\": \"flank.solve/2\""), "{whole}");
-    for name in ["solve", "flank.solve", "solve/2"] {
+    let whole = text(&flank(&["schema", "flank.solve/3"]).stdout);
+    assert!(whole.contains("\"title\": \"flank.solve/3\""), "{whole}");
+    for name in ["solve", "flank.solve", "solve/3"] {
         assert_eq!(text(&flank(&["schema", name]).stdout), whole, "{name}");
     }
 }

@@ -25,10 +25,10 @@ fn convert_carries_a_job_over() {
     let run = flank(&[&arguments[..], &["--order", "9", "--positions", "21", "--json"]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
-    assert_eq!(table["schema"], "flank.convert/1");
+    assert_eq!(table["schema"], "flank.convert/2");
     assert_eq!(table["positions"].as_array().unwrap().len(), 21);
     let series = &table["polynomials"];
-    let h = table["positions"][20]["motions"][0].as_f64().unwrap().to_radians() - series["about"].as_f64().unwrap();
+    let h = table["positions"][20]["motions"][0].as_f64().unwrap().to_radians() - series["reference"].as_f64().unwrap();
     // the last position by the polynomials: what is left is of order ten
     for (k, axis) in table["axes"].as_array().unwrap().iter().enumerate() {
         let coefficients = series["coefficients"][axis["name"].as_str().unwrap()].as_array().unwrap();

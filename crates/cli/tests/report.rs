@@ -121,9 +121,9 @@ fn numbers_are_those_of_solve() {
     has_row(&rows, &["flank_plus", "largest, k1", &format!("{:.6}", k1["high"].as_f64().unwrap())]);
     let most = &first["sensitivity"]["parameters"][0];
     let moves = ["rms", "largest"].map(|key| most[key].as_f64().expect("a displacement"));
-    let row = rows.iter().find(|row| {
-        row.first().is_some_and(|name| name == "flank_plus") && row.len() == 5 && row[1] == most["parameter"]
-    });
+    let row = rows
+        .iter()
+        .find(|row| row.first().is_some_and(|name| name == "flank_plus") && row.len() == 5 && row[1] == most["name"]);
     let row = row.expect("the parameter that moves it most comes first");
     for (cell, value) in row[2..4].iter().zip(moves) {
         let shown: f64 = cell.replace('\u{2212}', "-").parse().expect("a number");
@@ -213,7 +213,7 @@ fn the_machine_is_as_it_was_built() {
     assert_eq!((&cradle["law"], &cradle["source"]), (&"m.cradle_angle + roll".into(), &"coupled".into()));
     // the work turns as the cradle does, by the ratio of roll
     let [work, roll] = ["work", "roll"].map(|name| named(&machine["axes"], name));
-    let wide = |axis: &Value| axis["to"].as_f64().unwrap() - axis["from"].as_f64().unwrap();
+    let wide = |axis: &Value| axis["high"].as_f64().unwrap() - axis["low"].as_f64().unwrap();
     assert!((wide(&work) / wide(&roll) - 3.339685914944047).abs() < 1e-9);
     assert_eq!(told["surfaces"][0]["chain"].as_array().unwrap().first(), Some(&"m.work".into()));
 }

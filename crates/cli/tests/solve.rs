@@ -348,7 +348,7 @@ fn branches_are_listed_as_json() {
     let run = flank(&["solve", &spec, "--json", "--no-picture", "--out", out.to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
     let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
-    assert_eq!(table["schema"], "flank.solve/2");
+    assert_eq!(table["schema"], "flank.solve/3");
     let found = table["surfaces"][0]["branches"]["found"].as_array().unwrap();
     assert!(found.len() > 1, "{found:?}");
     for branch in found {
@@ -389,8 +389,8 @@ fn a_folder_is_not_named_like_a_file() {
     let folder = folder("named");
     let named = folder.join("pinion.csv");
     let run = flank(&["solve", "specs/hobbing/spur_gear.chain", "--out", named.to_str().expect("a plain path")]);
-    assert_eq!(run.status.code(), Some(1));
-    assert!(text(&run.stderr).contains("--out takes a folder"), "{}", text(&run.stderr));
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("a folder is wanted, and that looks like a file"), "{}", text(&run.stderr));
     assert!(!named.exists());
 }
 

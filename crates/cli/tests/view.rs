@@ -18,7 +18,7 @@ fn page(spec: &str, out: &Path) -> (PathBuf, Value) {
     let run = flank(&["view", spec, "--out", out.to_str().expect("a plain path"), "--json"]);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
-    (top().join(told["file"].as_str().expect("a file")), told)
+    (top().join(told["files"][0].as_str().expect("a file")), told)
 }
 
 /// The points that `flank solve` writes for a spec.

@@ -13,7 +13,7 @@ use flank_export::{
 use schema::faults_of;
 use serde_json::Value;
 
-const SCHEMA_FILE: &str = include_str!("../../../schemas/motion-1.schema.json");
+const SCHEMA_FILE: &str = include_str!("../../../schemas/motion-2.schema.json");
 /// Seconds.
 const CUTTING_TIME: f64 = 12.0;
 const ROWS: usize = 101;
@@ -357,7 +357,7 @@ fn json_keeps_the_schema() {
         }
         let mut spoilt = document.clone();
         spoilt["axes"][0]["unit"] = "rad".into();
-        spoilt["schema"] = "flank.motion/2".into();
+        spoilt["schema"] = "flank.motion/1".into();
         assert_eq!(faults_of(&spoilt, SCHEMA_FILE), ["/axes/0/unit: enum", "/schema: const"]);
     }
 }

@@ -505,7 +505,7 @@ each job where a file holds several, and flank.failure/1 where the command fails
 
 Examples:
   flank schema                  all schemas
-  flank schema flank.solve/2    one of them, JSON Schema 2020-12
+  flank schema flank.solve/3    one of them, JSON Schema 2020-12
   flank schema solve            the same")]
 pub(crate) struct Schema {
     /// The schema, with or without `flank.` and version; without one, all are listed

@@ -216,7 +216,7 @@ impl Table {
         let symmetries = self.symmetries.iter();
         let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
         let table = json!({
-            "schema": "flank.convert/1",
+            "schema": "flank.convert/2",
             "job": self.job,
             "machine": self.machine,
             "motions": self.motions.iter().map(named).collect::<Vec<Value>>(),
@@ -265,7 +265,7 @@ impl Table {
         let bounds = series.remainders.as_ref();
         let not_proven_at = |unproven: &Unproven| units::shown(self.motions[0].dimension, unproven.at);
         json!({
-            "about": series.about,
+            "reference": series.about,
             "order": series.order,
             "units": "mm and rad per rad (mm) of the motion to the power",
             "coefficients": coefficients.collect::<Map<String, Value>>(),

@@ -27,10 +27,11 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
         print(&if arguments.json { list_as_json() } else { list() });
         return Ok(Ending::Done);
     };
+    let name = arguments.name.as_ref().unwrap_or(template);
     let made = find(template)?.named(arguments)?;
     let written = made.write(&arguments.out)?;
     print(&if arguments.json {
-        format!("{:#}\n", json!({ "schema": "flank.new/1", "job": written[0], "files": written }))
+        format!("{:#}\n", json!({ "schema": "flank.new/2", "job": name, "spec": written[0], "files": written }))
     } else {
         format!("wrote {}\n\nnow: flank solve {}\n", written.join(", "), written[0])
     });

@@ -114,7 +114,7 @@ pub(super) fn json(solved: &Solved<'_, '_>) -> Value {
     let entry = |bend: Bend| {
         let columns = solved.sample.counts[1];
         json!({
-            "name": bend.field, "unit": "1/mm", "value": bend.value, "row": bend.at / columns, "column": bend.at % columns,
+            "name": bend.field, "unit": "1/mm", "value": bend.value, "i": bend.at / columns, "j": bend.at % columns,
             "position": solved.points[bend.at].position,
         })
     };

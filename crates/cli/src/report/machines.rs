@@ -169,11 +169,11 @@ pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
 fn axis_json(findings: &Findings<'_, '_>, run: &Run<'_, '_>) -> Value {
     let axis = run.axis;
     let shown = |value: f64| units::shown(axis.dimension, value);
-    let (low, high) = axis.travel.unzip();
+    let travel = axis.travel.map(|(low, high)| json!({ "low": shown(low), "high": shown(high) }));
     json!({
         "name": axis.name, "address": axis.word.address, "kind": kind(axis), "source": source(axis), "law": text(axis.law), "law_with_values": with_values(findings, axis),
         "unit": units::symbol(axis.dimension),
-        "from": run.over.map(|range| shown(range.low)), "to": run.over.map(|range| shown(range.high)),
-        "travel_low": low.map(shown), "travel_high": high.map(shown), "beyond": run.is_beyond(),
+        "low": run.over.map(|range| shown(range.low)), "high": run.over.map(|range| shown(range.high)),
+        "travel": travel, "beyond": run.is_beyond(),
     })
 }

@@ -199,7 +199,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         let pictures: Vec<Value> =
             document.figures().map(|figure| json!({ "name": figure.name, "shows": figure.caption })).collect();
         let table = json!({
-            "schema": "flank.report/1", "job": self.job.name, "doc": self.job.doc, "spec": header.spec,
+            "schema": "flank.report/2", "job": self.job.name, "doc": self.job.doc, "spec": header.spec,
             "spec_hash": header.spec_hash, "program": header.program, "command": conventions::command(self),
             "date": self.arguments.date, "tolerance": TOLERANCE, "asked": asked, "solved": found,
             "undercut": ends::undercut_count(self),

@@ -67,8 +67,8 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
 
 fn as_json(job: &Job<'_>, tally: &Tally, written: Option<&Written>, told: &str) -> String {
     let value: Value = json!({
-        "schema": "flank.view/1", "job": job.name, "asked": tally.asked, "solved": tally.solved,
-        "file": written.map(|page| &page.file), "bytes": written.map(|page| page.bytes), "not_done": not_done(told),
+        "schema": "flank.view/2", "job": job.name, "asked": tally.asked, "solved": tally.solved,
+        "files": written.iter().map(|page| &page.file).collect::<Vec<_>>(), "bytes": written.map(|page| page.bytes), "not_done": not_done(told),
     });
     format!("{value:#}\n")
 }

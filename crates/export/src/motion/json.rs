@@ -1,4 +1,4 @@
-//! A motion table as JSON, by the schema `schemas/motion-1.schema.json`.
+//! A motion table as JSON, by the schema `schemas/motion-2.schema.json`.
 
 use std::io::Write;
 
@@ -10,7 +10,7 @@ use crate::json_layout::{Head, write_document};
 use crate::number::plain;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
-pub const MOTION_SCHEMA: &str = "flank.motion/1";
+pub const MOTION_SCHEMA: &str = "flank.motion/2";
 
 /// Writes a motion table as JSON, one row a line, keys in a fixed order. Lengths are mm, angles degrees.
 ///
@@ -54,8 +54,15 @@ struct AxisOut<'a> {
     address: &'a str,
     unit: &'a str,
     decimals: u8,
-    travel: Option<[f64; 2]>,
-    extent: Option<[f64; 2]>,
+    low: Option<f64>,
+    high: Option<f64>,
+    travel: Option<Ends>,
+}
+
+#[derive(Serialize)]
+struct Ends {
+    low: f64,
+    high: f64,
 }
 
 #[derive(Serialize)]
@@ -79,13 +86,19 @@ struct RowOut {
 
 fn axis_out(table: &MotionTable, index: usize) -> AxisOut<'_> {
     let axis = &table.axes[index];
+    let ends = |ends| {
+        let [low, high] = axis.written(ends);
+        Ends { low, high }
+    };
+    let extent = table.extent(index).map(ends);
     AxisOut {
         name: &axis.name,
         address: &axis.address,
         unit: axis.unit().symbol(),
         decimals: axis.decimals,
-        travel: axis.travel.map(|ends| axis.written(ends)),
-        extent: table.extent(index).map(|ends| axis.written(ends)),
+        low: extent.as_ref().map(|extent| extent.low),
+        high: extent.as_ref().map(|extent| extent.high),
+        travel: axis.travel.map(ends),
     }
 }
 
