@@ -72,9 +72,22 @@ fn in_place(path: &Path, check: bool) -> Result<LaidOut, Failure> {
     let file = read_file(&mut sources, path).map_err(|finding| Failure::of_spec(&[finding], &sources))?;
     let done = laid_out(&sources, file)?;
     if done.is_changed && !check {
+        #[cfg(unix)]
+        tell_other_names(path);
         write_atomically(path, |out| Ok(out.write_all(done.text.as_bytes())?)).map_err(|error| error.to_string())?;
     }
     Ok(done)
+}
+
+/// What is written gets its name when it is whole, so that other names of the same file keep what it was.
+#[cfg(unix)]
+fn tell_other_names(path: &Path) {
+    use std::os::unix::fs::MetadataExt;
+    let others = std::fs::metadata(path).map_or(0, |found| found.nlink().saturating_sub(1));
+    if others > 0 {
+        let names = if others == 1 { "another name".to_string() } else { format!("{others} other names") };
+        crate::eprint(&format!("note: {} has {names} (hard links), where the text stays as it was\n", shown(path)));
+    }
 }
 
 /// Lays out what comes from stdin.

@@ -109,3 +109,24 @@ fn from_stdin_to_stdout() {
 fn no_file_is_a_mistake_of_usage() {
     assert_eq!(fmt(&[], "").status.code(), Some(2));
 }
+
+/// What leads to a file stays, and what else is called by its name is told.
+#[cfg(unix)]
+#[test]
+fn links_and_permissions_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let files = folder("fmt-links", &[("linked.chain", NOT_YET), ("twice.chain", NOT_YET)]);
+    let beside = |name: &str| Path::new(&files[0]).with_file_name(name).to_str().expect("a plain path").to_owned();
+    let mode = |path: &str| std::fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
+    std::fs::set_permissions(&files[0], std::fs::Permissions::from_mode(0o640)).expect("it is the test's own");
+    let (link, other) = (beside("link.chain"), beside("other.chain"));
+    symlink("linked.chain", &link).expect("a link");
+    std::fs::hard_link(&files[1], &other).expect("another name");
+    let run = fmt(&[&link, &files[1]], "");
+    assert_eq!((run.status.code(), text(&run.stdout)), (Some(0), format!("{link}\n{}\n", files[1]).as_str()));
+    assert!(std::fs::symlink_metadata(&link).expect("it is there").is_symlink());
+    assert_eq!((read(&files[0]).as_str(), mode(&files[0])), (LAID_OUT, 0o640));
+    assert_eq!((read(&files[1]).as_str(), read(&other).as_str()), (LAID_OUT, NOT_YET));
+    let told = format!("note: {} has another name (hard links), where the text stays as it was\n", files[1]);
+    assert_eq!(text(&run.stderr), told);
+}

@@ -2,6 +2,8 @@
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
+#[cfg(unix)]
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use crate::error::{FileError, WriteError};
@@ -14,8 +16,9 @@ const BUFFER: usize = 1 << 16;
 /// Writes a file so that a reader sees the old one or the new one, never half of it.
 ///
 /// The content goes to a file in the same folder that has no name (a hidden one where the system knows no others), is forced to
-/// the disk, and gets its name at the end. On any error that file is gone and what was there before stays. A link is followed, so the file it names is
-/// replaced; a device or a pipe is written to as it is. A file that may not be written to is not replaced either.
+/// the disk, and gets its name at the end, with the permissions of what was there and its owner where the system lets that be given. On any
+/// error that file is gone and what was there before stays. A link is followed, so the file it names is replaced; further names of that
+/// file (hard links) keep what it was. A device or a pipe is written to as it is. A file that may not be written to is not replaced either.
 ///
 /// ```
 /// # let folder = tempfile::tempdir()?;
@@ -46,7 +49,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), Writ
         Some(found) => {
             // a folder may be written to where the file may not
             File::options().append(true).open(path)?;
-            through_temporary(&fs::canonicalize(path)?, Some(found.permissions()), content)
+            through_temporary(&fs::canonicalize(path)?, Some(&found), content)
         }
         None => through_temporary(path, None, content),
     }
@@ -54,14 +57,17 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), Writ
 
 fn through_temporary(
     path: &Path,
-    permissions: Option<fs::Permissions>,
+    before: Option<&fs::Metadata>,
     content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let folder = folder_of(path);
     let unfinished = Unfinished::within(&folder)?;
     let file = fill(unfinished.file()?, content)?;
-    if let Some(permissions) = permissions {
-        file.set_permissions(permissions)?;
+    if let Some(before) = before {
+        // who writes may not be who owns, and not every system lets a file be given away
+        #[cfg(unix)]
+        let _ = std::os::unix::fs::fchown(&file, Some(before.uid()), Some(before.gid()));
+        file.set_permissions(before.permissions())?;
     }
     file.sync_all()?;
     unfinished.finish(path)?;

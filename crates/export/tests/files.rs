@@ -61,7 +61,7 @@ fn errors_name_the_file_and_the_reason() {
 #[cfg(unix)]
 #[test]
 fn permissions_links_and_devices_are_respected() {
-    use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
+    use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
     let folder = tempfile::tempdir().unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
 
@@ -79,6 +79,13 @@ fn permissions_links_and_devices_are_respected() {
     write_atomically(&link, |out| Ok(out.write_all(b"new")?)).unwrap();
     assert_eq!((fs::read_to_string(&target).unwrap().as_str(), mode(&target)), ("new", 0o640));
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+
+    // only the system's owner may give a file away, and then it stays with whom it was given to
+    if std::os::unix::fs::chown(&target, Some(4711), Some(4712)).is_ok() {
+        write_atomically(&link, |out| Ok(out.write_all(b"newer")?)).unwrap();
+        let found = fs::metadata(&target).unwrap();
+        assert_eq!((found.uid(), found.gid(), mode(&target)), (4711, 4712, 0o640));
+    }
 
     write_atomically(Path::new("/dev/null"), |out| Ok(out.write_all(b"new")?)).unwrap();
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
