@@ -7,10 +7,34 @@ use std::process::{Command, Stdio};
 
 use support::{flank, folder, text, top};
 
+/// The names of all jobs in the files below a folder.
+fn jobs_in(folder: &std::path::Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("the library").map(|entry| entry.expect("an entry").path());
+    let of = |path: std::path::PathBuf| {
+        if path.is_dir() {
+            return jobs_in(&path);
+        }
+        let text = std::fs::read_to_string(path).expect("a spec");
+        let names = text.lines().filter_map(|line| line.strip_prefix("job ")?.split_whitespace().next());
+        names.map(String::from).collect()
+    };
+    entries.flat_map(of).collect()
+}
+
 #[test]
 fn every_job_of_the_library_can_be_started_from() {
     let listed = text(&flank(&["new"]).stdout);
-    let names: Vec<&str> = listed.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
+    let (offered, others) = listed.split_once("\n\n").expect("two lists");
+    let names: Vec<&str> = offered.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
+    // every job of the library is in one of them
+    let together: Vec<&str> =
+        others.lines().skip(1).filter_map(|line| line.split_once(": ")).map(|(_, jobs)| jobs).collect();
+    let together: Vec<&str> = together.iter().flat_map(|jobs| jobs.split(", ")).collect();
+    let mut known: Vec<&str> = names.iter().chain(&together).copied().collect();
+    known.sort_unstable();
+    let mut jobs = jobs_in(&top().join("specs"));
+    jobs.sort_unstable();
+    assert_eq!(known, jobs);
     assert!(names.len() > 25 && names.contains(&"helical_gear") && names.contains(&"pinion_19x62"), "{listed}");
     let out = folder("new-all");
     let path = out.to_str().expect("a plain path");
@@ -127,6 +151,12 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
         text(&run.stderr)
     };
     assert!(wrong(&["helical_gaer"], 2).contains("did you mean `helical_gear`?"));
+    let beside = wrong(&["conjugate"], 2);
+    assert!(
+        beside.contains("together with pinion, basic in specs/bevel/ease_off_19x62.chain: copy that file"),
+        "{beside}"
+    );
+    assert!(wrong(&["conjugat"], 2).contains("did you mean `conjugate`?"));
     assert!(wrong(&["xyz"], 2).contains("the library has no job `xyz`; `flank new` lists them"));
     assert!(
         wrong(&["helical_gear", "--set", "tooth=3"], 1).contains("has no parameter `tooth`; it has: `normal_module`")

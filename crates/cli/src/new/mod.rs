@@ -47,17 +47,32 @@ struct Template {
     job: Job,
 }
 
-/// The jobs of the library that stand alone in their file, by name.
-fn templates() -> BTreeMap<String, Template> {
-    let found = files(&LIBRARY).filter_map(|(path, text)| {
+/// What the library has to start from.
+struct Offer {
+    /// The jobs that stand alone in their file, by name.
+    templates: BTreeMap<String, Template>,
+    /// Files whose jobs belong together, with their names: none of them is made into a file of its own.
+    together: BTreeMap<&'static Path, Vec<String>>,
+}
+
+fn offer() -> Offer {
+    let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
+    for (path, text) in files(&LIBRARY) {
         let (file, _) = parse(text, FileId(0));
-        let mut jobs =
-            file.items.into_iter().filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
-        let (job, None) = (jobs.next()?, jobs.next()) else { return None };
-        let doc = first_sentence(&file.doc);
-        Some((job.name.node.clone(), Template { path, text, doc, job }))
-    });
-    found.collect()
+        let jobs = file.items.into_iter().filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
+        let mut jobs: Vec<Job> = jobs.collect();
+        match jobs.len() {
+            0 => {}
+            1 => {
+                let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
+                offer.templates.insert(job.name.node.clone(), Template { path, text, doc, job });
+            }
+            _ => {
+                offer.together.insert(path, jobs.into_iter().map(|job| job.name.node).collect());
+            }
+        }
+    }
+    offer
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
@@ -72,24 +87,49 @@ fn first_sentence(lines: &[String]) -> String {
 }
 
 fn list() -> String {
-    let templates = templates();
+    let Offer { templates, together } = offer();
     let width = templates.keys().map(String::len).max().unwrap_or(0);
-    let lines = templates.iter().map(|(name, template)| format!("  {name:width$}  {}\n", template.doc));
-    format!("Jobs to start from, as in `flank new {}`:\n{}", "helical_gear --name my_gear", lines.collect::<String>())
+    let mut out = "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string();
+    templates.iter().for_each(|(name, template)| out += &format!("  {name:width$}  {}\n", template.doc));
+    out += "\nJobs that belong together in one file are not made into files of their own; to start from them copy theirs:\n";
+    together.iter().for_each(|(path, jobs)| out += &format!("  {}: {}\n", in_library(path), jobs.join(", ")));
+    out
+}
+
+fn in_library(path: &Path) -> String {
+    format!("specs/{}", spec::shown(path))
 }
 
 fn list_as_json() -> String {
+    let Offer { templates, together } = offer();
     let all: Vec<Value> =
-        templates().iter().map(|(name, template)| json!({ "name": name, "about": template.doc })).collect();
-    format!("{:#}\n", json!({ "schema": "flank.templates/1", "templates": all }))
+        templates.iter().map(|(name, template)| json!({ "name": name, "about": template.doc })).collect();
+    let together: Vec<Value> =
+        together.iter().map(|(path, jobs)| json!({ "file": in_library(path), "jobs": jobs })).collect();
+    format!("{:#}\n", json!({ "schema": "flank.templates/2", "templates": all, "together": together }))
 }
 
+/// # Errors
+/// Why there is nothing to start from under that name.
 fn find(name: &str) -> Result<Template, Failure> {
-    let mut templates = templates();
+    let Offer { mut templates, together } = offer();
     templates.remove(name).ok_or_else(|| {
-        let near = closest(name, templates.keys().map(String::as_str));
-        let near = near.map_or(String::new(), |near| format!(", did you mean `{near}`?"));
-        Failure::of_usage(format!("the library has no job `{name}`{near}; `flank new` lists them"))
+        let beside = together.iter().find(|(_, jobs)| jobs.iter().any(|job| job == name));
+        Failure::of_usage(match beside {
+            Some((path, jobs)) => {
+                let others: Vec<&str> = jobs.iter().map(String::as_str).filter(|job| *job != name).collect();
+                format!(
+                    "`{name}` is not made into a file of its own, since it belongs together with {} in {}: copy that file",
+                    others.join(", "),
+                    in_library(path)
+                )
+            }
+            None => {
+                let near = closest(name, templates.keys().chain(together.values().flatten()).map(String::as_str));
+                let near = near.map_or(String::new(), |near| format!(", did you mean `{near}`?"));
+                format!("the library has no job `{name}`{near}; `flank new` lists them")
+            }
+        })
     })
 }
 
