@@ -46,7 +46,12 @@ pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>, me
         .filter_map(|(kind, quantity)| {
             let quantity = quantity?;
             // along the coordinate that follows the line farther: it may run across the other one
-            let [first, second] = [0, 1].map(|k| line(job, surface, sample, (kind, quantity), k, means));
+            let along = |k: usize| line(job, surface, sample, (kind, quantity), k, means);
+            let first = along(0);
+            if first.summary.solved() == first.points.len() {
+                return Some(first);
+            }
+            let second = along(1);
             Some(if second.summary.solved() > first.summary.solved() { second } else { first })
         })
         .collect()

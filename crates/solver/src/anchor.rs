@@ -4,6 +4,9 @@
 //! there and nothing is kept of several branches, other points are tried, ever closer together.
 
 use std::cmp::Ordering;
+use std::collections::VecDeque;
+
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::field::Field;
 use crate::grid::{Effort, Grid};
@@ -33,7 +36,7 @@ pub(crate) enum Several {
 /// Which branch is meant.
 pub(crate) struct Choice<'c> {
     /// All branches in ranges, at given targets.
-    pub(crate) roots: &'c dyn Fn(&[Range], &[f64; 2]) -> Roots,
+    pub(crate) roots: &'c (dyn Fn(&[Range], &[f64; 2]) -> Roots + Sync),
     /// What tells branches apart, if anything does.
     pub(crate) keep: Option<Keep<'c>>,
     pub(crate) several: Several,
@@ -163,7 +166,8 @@ fn begin(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, start: Option<&[f64]>, 
 /// At the point in the middle, within the ranges.
 fn begin_within(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &Choice<'_>) -> Option<Beginning> {
     let middle = grid.middle();
-    let mut branches = look_for(grid, middle, &choice.kept(grid.ranges), choice);
+    let found = (choice.roots)(&choice.kept(grid.ranges), &grid.targets[middle]);
+    let mut branches = branches_of(found, grid, middle, choice);
     branches.retain(|root| choice.keeps(&root.unknowns));
     grid.effort.branches.clone_from(&branches);
     match branches.len() {
@@ -195,7 +199,8 @@ fn begin_beyond(
     let (middle, ranges) = (grid.middle(), grid.ranges);
     // of the ranges themselves
     let undecided = std::mem::take(&mut grid.effort.undecided);
-    let mut branches = look_for(grid, middle, &choice.kept(&reach.searched), choice);
+    let found = (choice.roots)(&choice.kept(&reach.searched), &grid.targets[middle]);
+    let mut branches = branches_of(found, grid, middle, choice);
     grid.effort.undecided = undecided;
     branches.retain(|root| choice.keeps(&root.unknowns));
     let off = |root: &Solution| {
@@ -222,14 +227,17 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
     let (middle, ranges) = (grid.middle(), grid.ranges);
     let undecided = std::mem::take(&mut grid.effort.undecided);
     let mut follower = Follower::new(grid, choice.reach);
-    for (number, point) in anchors([grid.rows, grid.columns]).filter(|point| *point != middle).enumerate() {
+    let points: Vec<usize> = anchors([grid.rows, grid.columns]).filter(|point| *point != middle).collect();
+    let mut ahead = Ahead::default();
+    for (number, point) in points.iter().copied().enumerate() {
         if grid.effort.boxes >= MOST_BOXES_OF_ALL || number == MOST_ANCHORS {
             grid.effort.is_given_up = true;
             break;
         }
         let mut leads = Leads::default();
         let mut leads_to_middle = true;
-        for root in look_for(grid, point, ranges, choice) {
+        let found = ahead.roots(choice, ranges, grid.targets, &points[number..]);
+        for root in branches_of(found, grid, point, choice) {
             let (field, inside) = follower.follow(point, &root, (ranges, choice.periodic));
             let at_middle: Vec<f64> = field.unknowns(middle).collect();
             let has_middle = field.is_root(middle);
@@ -249,6 +257,23 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
     grid.effort.anchor = grid.targets[middle];
     grid.effort.undecided = undecided;
     None
+}
+
+/// Roots at the points that are tried next, looked for on all threads at once; they count in the order of the points, so that results
+/// do not depend on how many threads there are.
+#[derive(Default)]
+struct Ahead(VecDeque<Roots>);
+
+impl Ahead {
+    /// The roots at the first of the points that are left.
+    fn roots(&mut self, choice: &Choice<'_>, ranges: &[Range], targets: &[[f64; 2]], points: &[usize]) -> Roots {
+        if self.0.is_empty() {
+            let next = &points[..points.len().min(rayon::current_num_threads())];
+            let found: Vec<Roots> = next.par_iter().map(|&point| (choice.roots)(ranges, &targets[point])).collect();
+            self.0.extend(found);
+        }
+        self.0.pop_front().expect("a point is left")
+    }
 }
 
 /// What follows branches as far as they are followed at all.
@@ -302,9 +327,8 @@ impl Leads {
     }
 }
 
-/// All branches at a point, the one nearest the middle of the ranges first; those that are the same after a turn once.
-fn look_for(grid: &mut Grid<'_>, point: usize, searched: &[Range], choice: &Choice<'_>) -> Vec<Solution> {
-    let found = (choice.roots)(searched, &grid.targets[point]);
+/// All branches among the roots at a point, the one nearest the middle of the ranges first; those that are the same after a turn once.
+fn branches_of(found: Roots, grid: &mut Grid<'_>, point: usize, choice: &Choice<'_>) -> Vec<Solution> {
     let ranges = grid.ranges;
     let middle: Vec<f64> = ranges.iter().map(|range| range.middle()).collect();
     let off = |root: &Solution| distance(&root.unknowns, &middle, ranges);

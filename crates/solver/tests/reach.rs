@@ -61,6 +61,26 @@ fn points_in_range_are_found_wherever_the_middle_is() {
     }
 }
 
+/// Where nothing lies in the middle, other points are looked at on all threads at once; which of them count does not depend on that.
+#[test]
+fn a_branch_looked_for_elsewhere_is_the_same_on_any_number_of_threads() {
+    let graph = Graph::new();
+    let ranges = [range(-1.0, 1.0), range(0.0, 1.0)];
+    let problem = plane(&graph, |u, v| [u + 0.1 * v * v, v], ranges, None);
+    let counts = [24, 30];
+    for sample in [[range(0.4, 60.0), range(0.0, 90.0)], [range(9.0, 60.0), range(9.0, 90.0)]] {
+        let targets = grid(counts, sample);
+        let found = [1, 2, 5].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+            pool.install(|| problem.solve(&targets, counts))
+        });
+        assert!(found[0].1.boxes > 1, "{:?}", found[0].1);
+        // as texts: what was never reached is not a number, which does not equal itself
+        let [one, two, five] = found.map(|found| format!("{found:?}"));
+        assert!(one == two && one == five);
+    }
+}
+
 /// v = a - u, and sin u = b: the sample keeps the branch near u = 2 pi, which has v below its range in the middle, and within it
 /// farther on. The branches before it are within the range in the middle already.
 #[test]
