@@ -1,8 +1,8 @@
 //! How a surface moves when the numbers that it was made with change.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
-use nalgebra::{DMatrix, DMatrixView, Vector3};
+use flank_expr::{Expr, Interval, IntervalEvaluator, Tape, TapeError};
+use nalgebra::Vector3;
 
 /// A displacement of which the normal takes no more than this share is one along the surface: what is left is the rounding
 /// of a normal that follows from solved unknowns.
@@ -52,10 +52,12 @@ pub struct Parameter<'g> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct NormalSensitivity {
-    parameters: usize,
+    /// Their values.
+    parameters: Vec<Interval>,
+    /// The normal, then how a point moves with each parameter alone, from the unknowns and the parameters.
     tape: Tape,
-    /// How parameter i (row) follows parameter j (column).
-    following: DMatrix<f64>,
+    /// How parameter i (row) follows parameter j (column), with its rounding: row by row.
+    following: Vec<Interval>,
 }
 
 impl NormalSensitivity {
@@ -64,52 +66,72 @@ impl NormalSensitivity {
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor a parameter.
     pub fn new<'g>(surface: &Surface<'g>, parameters: &[Parameter<'g>]) -> Result<NormalSensitivity, TapeError> {
-        let graph = surface.position.0[0].graph();
-        let bindings: Vec<(Expr<'g>, Expr<'g>)> =
-            parameters.iter().map(|parameter| (parameter.variable, graph.constant(parameter.value))).collect();
+        // values stay inputs: folded into constants, what rounding leaves of terms that cancel would look exact
+        let variables = parameters.iter().map(|parameter| parameter.variable);
+        let inputs: Vec<Expr<'g>> = surface.unknowns.iter().copied().chain(variables).collect();
         let slopes = parameters.iter().flat_map(|parameter| surface.position.derivative(parameter.variable).0);
         let outputs: Vec<Expr<'g>> = surface.normal.0.into_iter().chain(slopes).collect();
         Ok(NormalSensitivity {
-            parameters: parameters.len(),
-            tape: Tape::new(&graph.substitute(&outputs, &bindings), &surface.unknowns)?,
-            following: following(parameters, &bindings)?,
+            parameters: parameters.iter().map(|parameter| Interval::point(parameter.value)).collect(),
+            tape: Tape::new(&outputs, &inputs)?,
+            following: following(parameters)?,
         })
     }
 
-    /// For each parameter, mm of normal displacement (plus is outwards, more material) per unit of the parameter: mm, radian or
-    /// 1. Exactly zero where the parameter moves the point along the surface or not at all. `None` where it is not finite.
+    /// For each parameter, mm of normal displacement (plus is outwards, more material) per unit of the parameter, which is mm,
+    /// radian or one. Exactly zero where the parameter moves the point along the surface or not at all, and where that cannot be
+    /// told from rounding: all is computed in intervals, so that terms which cancel leave one about zero, however large they were.
+    /// `None` where it is not finite.
     ///
     /// # Panics
     /// If there is not one number for each unknown.
     pub fn at(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
-        let mut out = vec![0.0; self.tape.output_count()];
-        ScalarEvaluator::new(&self.tape).run(unknowns, &mut out);
-        let normal = Vector3::from_column_slice(&out[..3]);
-        let displacements = DMatrixView::from_slice(&out[3..], 3, self.parameters) * &self.following;
-        let along_normal = |moved: Vector3<f64>| {
-            let share = normal.dot(&moved);
-            if share.abs() <= ALONG * moved.norm() { 0.0 } else { share }
-        };
-        let all: Vec<f64> =
-            displacements.fixed_rows::<3>(0).column_iter().map(|c| along_normal(c.into_owned())).collect();
+        assert_eq!(unknowns.len() + self.parameters.len(), self.tape.input_count(), "one number for each unknown");
+        let inputs: Vec<Interval> =
+            unknowns.iter().copied().map(Interval::point).chain(self.parameters.iter().copied()).collect();
+        let mut out = vec![Interval::WHOLE; self.tape.output_count()];
+        IntervalEvaluator::new(&self.tape).run(&inputs, &mut out);
+        let (normal, slopes) = out.split_at(3);
+        let moved = (0..self.parameters.len()).map(|k| self.displacement(slopes, k));
+        let all: Vec<f64> = moved.map(|moved| along_normal(normal, &moved)).collect();
         all.iter().all(|moved| moved.is_finite()).then_some(all)
     }
+
+    /// Of a point with unchanged unknowns, per unit of a parameter, from what each parameter alone does.
+    fn displacement(&self, slopes: &[Interval], parameter: usize) -> [Interval; 3] {
+        let (count, zero) = (self.parameters.len(), Interval::point(0.0));
+        std::array::from_fn(|axis| {
+            let moved = (parameter..count).map(|i| (self.following[i * count + parameter], i));
+            let moved = moved.filter(|(follows, _)| *follows != zero);
+            moved.fold(zero, |sum, (follows, i)| sum + follows * slopes[3 * i + axis])
+        })
+    }
+}
+
+/// The share of a displacement that the normal takes, if it is one.
+fn along_normal(normal: &[Interval], moved: &[Interval; 3]) -> f64 {
+    let share = normal.iter().zip(moved).fold(Interval::point(0.0), |sum, (n, moved)| sum + *n * *moved);
+    let length = Vector3::from(moved.map(|part| part.middle())).norm();
+    let is_nothing = share.contains(0.0) || share.magnitude() <= ALONG * length;
+    if is_nothing && share.magnitude().is_finite() { 0.0 } else { share.middle() }
 }
 
 /// The total derivatives of all parameters with respect to each of them, which is changed itself while its definition is left
 /// aside: as when it is given another value by hand.
-fn following<'g>(parameters: &[Parameter<'g>], bindings: &[(Expr<'g>, Expr<'g>)]) -> Result<DMatrix<f64>, TapeError> {
-    let mut total = DMatrix::identity(parameters.len(), parameters.len());
+fn following(parameters: &[Parameter<'_>]) -> Result<Vec<Interval>, TapeError> {
+    let (count, zero) = (parameters.len(), Interval::point(0.0));
+    let mut total = vec![zero; count * count];
+    let variables: Vec<Expr<'_>> = parameters.iter().map(|parameter| parameter.variable).collect();
+    let values: Vec<Interval> = parameters.iter().map(|parameter| Interval::point(parameter.value)).collect();
     for (i, parameter) in parameters.iter().enumerate() {
-        let graph = parameter.variable.graph();
-        let slopes: Vec<Expr<'g>> =
-            parameters[..i].iter().map(|earlier| parameter.definition.derivative(earlier.variable)).collect();
-        let tape = Tape::new(&graph.substitute(&slopes, bindings), &[])?;
-        let mut direct = vec![0.0; i];
-        ScalarEvaluator::new(&tape).run(&[], &mut direct);
-        for (k, slope) in direct.into_iter().enumerate().filter(|(_, slope)| *slope != 0.0) {
+        total[i * count + i] = Interval::point(1.0);
+        let earlier = &variables[..i];
+        let slopes: Vec<Expr<'_>> = earlier.iter().map(|earlier| parameter.definition.derivative(*earlier)).collect();
+        let mut direct = vec![zero; i];
+        IntervalEvaluator::new(&Tape::new(&slopes, earlier)?).run(&values[..i], &mut direct);
+        for (k, slope) in direct.into_iter().enumerate().filter(|(_, slope)| *slope != zero) {
             for j in 0..=k {
-                total[(i, j)] += slope * total[(k, j)];
+                total[i * count + j] = total[i * count + j] + slope * total[k * count + j];
             }
         }
     }
