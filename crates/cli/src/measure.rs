@@ -19,7 +19,7 @@ use crate::table::aligned;
 use crate::{Ending, deviation, eprint, print, solve, spec, units};
 
 /// Rows and columns of the grid that tells how a flank lies.
-const TRIAL: usize = 5;
+const TRIAL: usize = 13;
 
 pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
     let graph = Graph::new();

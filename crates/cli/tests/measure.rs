@@ -77,6 +77,42 @@ fn roots_and_tips_are_neither_left_nor_right() {
     }
 }
 
+/// Sides are called as what they are: a root has no tip, a fillet that is sampled by z no toe, and a thread no faces.
+#[test]
+fn sides_are_called_as_what_they_are() {
+    let out = folder("measure_sides");
+    let told = measure(&out, &[PINION]);
+    let ends = |told: &Value, surface: &str| {
+        let all = told["flanks"].as_array().expect("flanks");
+        let one = all.iter().find(|one| one["surface"] == surface).expect("it is measured");
+        [&one["rows"], &one["columns"]].map(|ends| format!("{} to {}", ends[0], ends[1]).replace('"', ""))
+    };
+    assert_eq!(ends(&told, "convex"), ["root to tip", "toe to heel"]);
+    assert_eq!(ends(&told, "convex_fillet"), ["root to tip", "inner end to outer end"]);
+    assert_eq!(ends(&told, "root"), ["left side to right side", "inner end to outer end"]);
+    // on the left, seen along the space, lies the flank that faces right
+    let file = out.join("pinion_19x62.grid.csv");
+    let grid = |surface: &str| nominal(&file, surface, "grid");
+    let middle = |grid: &[Nominal], row: usize| grid.iter().find(|(place, ..)| *place == [row, 5]).expect("a point").1;
+    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+    let (root, right) = (grid("root"), grid("convex_fillet"));
+    assert!(right.iter().all(|(_, [x, y, _], n)| x * n[1] - y * n[0] > 0.0), "it faces right");
+    assert!(apart(middle(&root, 1), middle(&right, 1)) < apart(middle(&root, 5), middle(&right, 1)));
+    let outwards = |grid: &[Nominal]| (1..9).all(|column| radius(grid[column].1) > radius(grid[column - 1].1));
+    assert!(outwards(&root) && outwards(&right));
+    // the worm is asked for over nearly two turns of its thread, in the direction of the rows
+    let told = measure(&out, &["specs/double_envelope/hourglass_worm_wheel.chain", "--surface", "worm"]);
+    assert_eq!(ends(&told, "worm"), ["root to tip", "lower end to upper end"]);
+    assert_eq!(told["flanks"][0]["flank"], Value::Null);
+    let worm = nominal(&out.join("hourglass_worm_wheel.grid.csv"), "worm", "grid");
+    assert!((9..45).all(|at| radius(worm[at].1) > radius(worm[at - 9].1)), "from root to tip");
+    assert!((1..9).all(|column| worm[column].1[2] > worm[column - 1].1[2]), "along the thread");
+}
+
+fn radius([x, y, _]: [f64; 3]) -> f64 {
+    x.hypot(y)
+}
+
 #[test]
 fn a_bevel_grid_runs_from_root_to_tip_and_toe_to_heel_on_the_flank_that_is_sampled() {
     let out = folder("measure_bevel");

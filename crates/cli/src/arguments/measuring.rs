@@ -8,8 +8,8 @@ use super::{Format, Means, TableFormat, Which, count, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Rows run from root to tip, columns along the tooth from toe to heel (from the lower to the upper face, from the inner to the outer
-end), both count from 1. The grid lies in the area that the job samples. Normals point out of the material: plus is material.
+Rows run from root to tip (of a root or a tip itself from its left side to its right one), columns along the tooth from toe to heel
+(from the lower to the upper face, from the inner to the outer end), both count from 1. The grid lies in the area that the job samples. Normals point out of the material: plus is material.
 
 Examples:
   flank measure specs/bevel/pinion_19x62.chain

@@ -5,8 +5,8 @@ mod json;
 mod measured;
 
 use crate::dataset::{Header, Patch, Point};
-use crate::picture::{Sides, sides};
-use crate::vector::{Vector, add, cross, dot, sub, unit};
+use crate::picture::{Seen, Sides, is_last, is_thread, sides};
+use crate::vector::{Vector, add, sub};
 
 pub use csv::write_grid_csv;
 pub use json::{GRID_SCHEMA, write_grid_json};
@@ -23,8 +23,9 @@ pub struct MeasuringGrid {
     pub flanks: Vec<NominalFlank>,
 }
 
-/// Nominal points of one flank. Rows follow each other from root to tip, columns along the tooth from toe to heel, from the lower face to
-/// the upper one, or from the inner end to the outer one.
+/// Nominal points of one flank. Rows follow each other from root to tip, of a root or a tip itself from its left side to its right one;
+/// columns along the tooth from toe to heel, from the lower face to the upper one, or from the inner end to the outer one, along a thread
+/// from the lower end to the upper one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NominalFlank {
     /// Which flank of a tooth it is; `None` where its points do not tell.
@@ -70,30 +71,19 @@ pub enum Hand {
     Right,
 }
 
-/// Of a flank's mean normal at least this much goes across the tooth, of a root's or a tip's less does. Of the jobs that ship, fillets,
-/// which lead from one to the other, have 0.4 or more, the most inclined root, of a hypoid pinion, has 0.3.
-const LEAST_ACROSS: f64 = 0.35;
-
 impl Hand {
-    /// Of a grid whose rows run from root to tip and whose columns run along the tooth; `None` where that does not tell, as at the root.
+    /// Of a grid whose rows run from root to tip and whose columns run along the tooth; `None` where that does not tell, as at the root
+    /// or on a thread.
     #[must_use]
     pub fn of(grid: &Patch) -> Option<Hand> {
         let [rows, columns] = [grid.rows.count, grid.columns.count];
         let solved = |at: [usize; 2]| grid.point(at[0], at[1]).filter(|point| point.is_solved());
         let up = sum((0..columns).filter_map(|j| way((0..rows).filter_map(|i| solved([i, j])))));
         let along = sum((0..rows).filter_map(|i| way((0..columns).filter_map(|j| solved([i, j])))));
-        let all = || grid.points.iter().filter(|point| point.is_solved());
-        let normal = unit(sum(all().map(|point| point.normal)))?;
-        let [x, y, _] = sum(all().map(|point| point.position));
-        // from root to tip, as the tooth lies and not as this surface leans: in the plane of the axis, where that has the tooth's length across
-        let height = cross(along, [-y, x, 0.0]);
-        let height = if dot(height, up) < 0.0 { height.map(|part| -part) } else { height };
-        let across = dot(normal, unit(cross(along, height))?);
-        match across {
-            _ if across >= LEAST_ACROSS => Some(Hand::Right),
-            _ if across <= -LEAST_ACROSS => Some(Hand::Left),
-            _ => None,
-        }
+        let solved = grid.points.iter().filter(|point| point.is_solved());
+        let seen = Seen::along(along, up, solved.map(|point| (point.position, Some(point.normal))))?;
+        let hand = if seen.to_the_right() > 0.0 { Hand::Right } else { Hand::Left };
+        (seen.is_flank() && !is_thread(grid)).then_some(hand)
     }
 
     /// As files have it.
@@ -121,9 +111,10 @@ fn sum(all: impl Iterator<Item = Vector>) -> Vector {
 pub struct FlankEnds {
     /// Whether the rows of the grid follow each other from root to tip or back, and not the columns.
     pub rows_are_profile: bool,
-    /// Whether the profile begins at the tip, and the other direction at the heel, the upper face or the outer end.
+    /// Whether the profile begins at the tip or the right side, and the other direction at the heel, the upper face, or the outer or
+    /// upper end.
     pub reversed: [bool; 2],
-    /// Root and tip.
+    /// Such as root and tip.
     pub profile: [String; 2],
     /// Such as toe and heel.
     pub length: [String; 2],
@@ -133,11 +124,10 @@ impl FlankEnds {
     /// Of a grid of solved points: by the labels of its rows and columns, else by the way the flank leans. `None` where they do not tell.
     #[must_use]
     pub fn of(patch: &Patch) -> Option<FlankEnds> {
-        const LAST: [&str; 4] = ["tip", "heel", "upper face", "outer end"];
         let Sides { rows, columns, rows_are_profile } = sides(patch)?;
         let (profile, length) = if rows_are_profile { (rows, columns) } else { (columns, rows) };
         let ordered = |[first, last]: [String; 2]| {
-            let reversed = LAST.contains(&first.as_str());
+            let reversed = is_last(&first);
             (reversed, if reversed { [last, first] } else { [first, last] })
         };
         let ((profile_reversed, profile), (length_reversed, length)) = (ordered(profile), ordered(length));
@@ -158,11 +148,12 @@ fn sentences(grid: &MeasuringGrid) -> Vec<String> {
     [
         "lengths in mm; z of the frame is the axis of the work".to_string(),
         "normals have unit length and point out of the material: a deviation along them is plus where there is too much of it".to_string(),
-        "rows count from 1 at the root to the tip, columns from 1 at the first end of the tooth's length to the other; points row by row"
+        "rows count from 1 at the root to the tip, of a root or a tip across it from its left side, columns from 1 at the first end of \
+         the tooth's length to the other; points row by row"
             .to_string(),
         "part `grid` is the flank, `profile` the middle column, `lead` the middle row, `middle` the point for pitch and tooth thickness"
             .to_string(),
-        "left and right flank: seen along the tooth from column 1 on, the tip up, the normal points to the left or to the right"
+        "left and right: seen along the tooth from column 1 on, the tip up; of a flank where its normal points to"
             .to_string(),
         format!(
             "left out at each end of the sampled area: {} % of it from root to tip, {} % along the tooth",

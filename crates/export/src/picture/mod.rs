@@ -31,11 +31,12 @@ mod positions;
 mod projection;
 mod relief;
 mod section;
+mod sides;
 mod surface;
 mod svg;
 
 pub(crate) use palette::{patch_colours, scale_colours};
-pub(crate) use projection::{Sides, sides};
+pub(crate) use sides::{Seen, Sides, is_last, is_thread, sides};
 
 use crate::dataset::{Dataset, Patch};
 use crate::error::PictureError;
@@ -232,7 +233,7 @@ pub fn section(section: &Section, options: &PictureOptions) -> Picture {
 /// does not tell. By the labels of rows and columns, else by the way the flank leans.
 #[must_use]
 pub fn rows_follow_profile(patch: &Patch) -> Option<bool> {
-    projection::rows_follow_profile(patch)
+    sides::rows_follow_profile(patch)
 }
 
 /// Draws a machine as a kinematic diagram: on the left its frames, links and axes where they are in space, an arrow along what
