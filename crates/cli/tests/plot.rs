@@ -75,6 +75,47 @@ fn each_kind_says_what_it_shows() {
     has(&of("motion"), &["cradle, rotary", "work, rotary", "roll, deg", "a straight line, 3.3397 deg per deg"]);
 }
 
+/// A gear ratio only multiplies what turns, so it is no link of its own; an angle that follows from a number of teeth is told as such.
+#[test]
+fn numbers_are_no_turns_of_a_machine() {
+    let folder = folder("plot_counts");
+    let spec = folder.join("indexed.chain");
+    let text = "
+machine planer {
+    param teeth : count
+    param index : count
+    param height : length
+    param swing : angle
+    axis Y : linear
+    axis C : rotary
+    frame bed
+    frame ram   in bed = translate(height * teeth, Y, 0 mm) rotate_x(swing * index)
+    frame table in bed = rotate_z(C / teeth) rotate_z(index * 360 deg / teeth)
+}
+tool rack {
+    surface flank(u: length in -3 mm .. 3 mm, v: length in -10 mm .. 10 mm) {
+        at = [u * cos(20 deg), -u * sin(20 deg), v]
+        body towards [0, 1, 0]
+    }
+}
+job spur_gear {
+    machine m = planer(teeth: 24, index: 3, height: 1.5 mm, swing: 0 deg)
+    tool    r = rack
+    mount r on m.ram
+    motion roll : angle in -30 deg .. 30 deg
+    drive m.Y = 36 mm * roll
+    drive m.C = 24 * roll
+    surface flank in m.table = envelope(r.flank, over: roll)
+    sample flank { rho: 36 mm .. 37 mm by 3, z: -5 mm .. 5 mm by 3 }
+}";
+    std::fs::write(&spec, text).unwrap();
+    let arguments = [spec.to_str().unwrap(), "--what", "machine"];
+    let found = plotted("plot_counts_drawn", &arguments, "spur_gear.machine.svg");
+    has(&found, &["height", "36.000 mm", "swing", "0.000 deg", "follows from teeth, index", "45.000 deg"]);
+    assert!(!found.iter().any(|label| label == "teeth" || label.contains("height, teeth")), "{found:?}");
+    assert_eq!(found.iter().filter(|label| label.contains("teeth")).count(), 1, "{found:?}");
+}
+
 /// The radial distance moves the flank as `flank solve --sensitivity` says; of others there is a list.
 #[test]
 fn sensitivity_is_to_what_is_named() {

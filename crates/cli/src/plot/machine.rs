@@ -1,6 +1,6 @@
 //! The machine of a job as a kinematic diagram, in the posture in which the middle of the first surface is made.
 
-use flank_chain_dsl::{Axis, Frame, Machine};
+use flank_chain_dsl::{Axis, Dimension, Frame, Machine, Parameter};
 use flank_export::{
     DrawnFrame, LinkKind, MachineDrawing, MachineLink, Outcome, Patch, PictureOptions, Point, machine as diagram,
 };
@@ -155,7 +155,7 @@ impl<'g> Reader<'_, '_, 'g> {
                 Step::Rigid(_) => {
                     let step = [0, 1, 2].map(|k| next.origin[k] - pose.origin[k]);
                     let direction = unit(step).unwrap_or([0.0, 0.0, 1.0]);
-                    let value = format!("{:.3} mm", dot(step, step).sqrt());
+                    let value = units::text(Dimension::LENGTH, dot(step, step).sqrt(), 3);
                     let link = (LinkKind::Shift, "given as a matrix".to_string(), String::new(), value);
                     links.push(placed(link, pose.origin, direction, step));
                 }
@@ -202,27 +202,22 @@ impl<'g> Reader<'_, '_, 'g> {
         motions.iter().any(|motion| motion.as_variable().is_some_and(|variable| used.contains(&variable)))
     }
 
-    /// The settings that an expression contains, by the names that they have in the machine.
-    fn settings_in(&self, of: Expr<'g>) -> Vec<&str> {
+    /// The settings that an expression contains.
+    fn settings_in(&self, of: Expr<'g>) -> Vec<&Parameter<'g>> {
         let used = of.graph().variables_of(&[of]);
         let parameters = self.subject.job.parameters.iter();
-        let is_used =
-            parameters.filter(|parameter| parameter.variable.as_variable().is_some_and(|v| used.contains(&v)));
-        let own = |name: &'_ str| name.rsplit('.').next().map_or(0, str::len);
-        is_used.map(|parameter| &parameter.name[parameter.name.len() - own(&parameter.name)..]).collect()
+        parameters.filter(|parameter| parameter.variable.as_variable().is_some_and(|v| used.contains(&v))).collect()
     }
 
-    /// What an expression is where its axes stand at zero.
-    fn at_rest(&self, of: Expr<'g>) -> f64 {
+    /// What an expression is where its axes stand at zero: what stands still of it, with its name, if there is anything.
+    fn resting(&self, of: Expr<'g>) -> (f64, Option<String>) {
         let zero = of.graph().constant(0.0);
         let resting: Vec<(Expr<'g>, Expr<'g>)> =
             self.axes_in(of).into_iter().map(|axis| (axis.variable, zero)).collect();
-        number(bound(of, &resting), self.posture)
-    }
-
-    /// The name of what stands still: of its settings, else none.
-    fn resting_name(&self, of: Expr<'g>) -> String {
-        self.settings_in(of).join(", ")
+        let rest = bound(of, &resting);
+        let (value, settings) = (number(rest, self.posture), self.settings_in(rest));
+        let is_there = value.abs() > ROUNDING || !settings.is_empty();
+        (value, is_there.then(|| named_after(&settings)))
     }
 
     /// Components one after the other: first what stands still, then what slides.
@@ -238,9 +233,9 @@ impl<'g> Reader<'_, '_, 'g> {
                 links.push(MachineLink { moves, ..placed(link, origin, along.map(|x| sign * x), step) });
                 origin = [0, 1, 2].map(|k| origin[k] + step[k]);
             };
-            let rest = self.at_rest(component);
-            if rest.abs() > ROUNDING || !self.settings_in(component).is_empty() {
-                push(LinkKind::Shift, self.resting_name(component), (rest, 1.0), format!("{rest:.3} mm"), false);
+            let (rest, name) = self.resting(component);
+            if let Some(name) = name {
+                push(LinkKind::Shift, name, (rest, 1.0), units::text(Dimension::LENGTH, rest, 3), false);
             }
             let axes = self.axes_in(component);
             let moved = number(component, self.posture) - rest;
@@ -249,16 +244,22 @@ impl<'g> Reader<'_, '_, 'g> {
                 // several axes in one component share what it moves
                 let share = if number_of == 0 { moved } else { 0.0 };
                 let sign = number(component.derivative(axis.variable), self.posture).signum();
-                push(LinkKind::Linear, axis.name.clone(), (share, sign), format!("{at:.3} mm"), self.moves(axis));
+                push(
+                    LinkKind::Linear,
+                    axis.name.clone(),
+                    (share, sign),
+                    units::text(Dimension::LENGTH, at, 3),
+                    self.moves(axis),
+                );
             }
         }
     }
 
     fn turns(&self, angle: Expr<'g>, direction: [f64; 3], pose: &Numbers, links: &mut Vec<MachineLink>) {
         let about = format!("about {}", letter(direction));
-        let rest = self.at_rest(angle);
-        if rest.abs() > ROUNDING || !self.settings_in(angle).is_empty() {
-            let link = (LinkKind::Turn, self.resting_name(angle), about.clone(), degrees(rest));
+        let (rest, name) = self.resting(angle);
+        if let Some(name) = name {
+            let link = (LinkKind::Turn, name, about.clone(), degrees(rest));
             links.push(placed(link, pose.origin, pose.direction(direction), [0.0; 3]));
         }
         for axis in self.axes_in(angle) {
@@ -282,8 +283,24 @@ fn placed(
     MachineLink { kind, name, moves: false, direction_name, value, origin, direction, step }
 }
 
+/// A distance or an angle by the settings that make it, as they are named in the machine; numbers alone (teeth, starts) are no angle
+/// themselves.
+fn named_after(settings: &[&Parameter<'_>]) -> String {
+    let names = |settings: &[&&Parameter<'_>]| {
+        let own = settings.iter().map(|setting| setting.name.rsplit('.').next().unwrap_or(&setting.name));
+        own.collect::<Vec<&str>>().join(", ")
+    };
+    let (numbers, sizes): (Vec<_>, Vec<_>) =
+        settings.iter().partition(|setting| setting.dimension == Dimension::NUMBER);
+    match (sizes.is_empty(), numbers.is_empty()) {
+        (false, _) => names(&sizes),
+        (true, false) => format!("follows from {}", names(&numbers)),
+        (true, true) => String::new(),
+    }
+}
+
 fn degrees(radians: f64) -> String {
-    format!("{:.3} deg", radians.to_degrees())
+    units::text(Dimension::ANGLE, radians, 3)
 }
 
 /// `x`, `-z`, or the components.
