@@ -1,4 +1,4 @@
-//! The page's data as it is embedded.
+//! The page's data as it is embedded: for the program in the same page and for nobody else, so without name, version and schema.
 
 use serde::Serialize;
 
@@ -10,12 +10,8 @@ use crate::json_file;
 use crate::picture::{patch_colours, scale_colours};
 use crate::tally::Tally;
 
-/// Name and version of the embedded data.
-const SCHEMA: &str = "flank.page/1";
-
 #[derive(Serialize)]
 pub(super) struct Document<'a> {
-    schema: &'a str,
     program: &'a str,
     spec: &'a str,
     spec_hash: &'a str,
@@ -88,7 +84,6 @@ impl<'a> Document<'a> {
         let (surfaces, lines) = dataset.patches.split_at(scene.surfaces.len().min(dataset.patches.len()));
         let tally = Tally::of(surfaces);
         Document {
-            schema: SCHEMA,
             program: &header.program,
             spec: &header.spec,
             spec_hash: &header.spec_hash,
