@@ -294,7 +294,12 @@ pub fn vector(row: &Value, key: &str) -> [f64; 3] {
 /// The largest difference of two vectors' components; NaN if any is.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "vectors of one length");
-    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, |worst, d| if d.is_nan() || d > worst { d } else { worst })
+    largest(a.iter().zip(b).map(|(x, y)| (x - y).abs()))
+}
+
+/// The largest of some sizes, zero of none; NaN if any is.
+pub fn largest(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    sizes.into_iter().fold(0.0, |most, size| if size.is_nan() || size > most { size } else { most })
 }
 
 /// Asserts that a point was solved, lies at `position` and has `normal`, to 1e-9 mm and 1e-9: the bound that every

@@ -8,7 +8,7 @@ use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PoseProblem, Posture, Range, Screw, TargetAxis, Unproven};
 use flank_tests::conversion::{Conversion, compiled, target_axes};
 use flank_tests::machines::unseen;
-use flank_tests::{points, reference_json};
+use flank_tests::{largest, points, reference_json};
 use serde_json::Value;
 
 #[test]
@@ -166,7 +166,7 @@ fn sampled_and_proven(conversion: &Conversion<'_>, range: Range, series: &[Vec<f
         for (posture, motion) in conversion.problem.follow(&first, &motions).iter().zip(&motions) {
             let h = motion[0] - about;
             for ((most, axis), c) in sampled.iter_mut().zip(&posture.axes).zip(series) {
-                *most = most.max((axis - c.iter().rev().fold(0.0, |sum, c| sum * h + c)).abs());
+                *most = largest([*most, (axis - c.iter().rev().fold(0.0, |sum, c| sum * h + c)).abs()]);
             }
         }
     }
@@ -222,7 +222,7 @@ fn straight_blocks_are_bounded() {
                 let off = |(at, posture): (&Vec<f64>, &Posture)| {
                     (posture.axes[k] - chords[k][0] - (at[0] - from) * chords[k][1]).abs()
                 };
-                let seen = between.iter().zip(&line).map(off).fold(0.0, f64::max);
+                let seen = largest(between.iter().zip(&line).map(off));
                 // a block is bounded in sixteen parts, each by the sizes of its coefficients
                 assert!(
                     proven[k] >= seen && proven[k] <= 1.02 * seen + 2e-12,
@@ -274,6 +274,28 @@ fn remainders_over_more_than_a_turn() {
     let series = conversion.problem.series(&first, &[0.0], 0, 3).expect("no singular pose");
     let [sampled, proven] = sampled_and_proven(&conversion, Range { low: -4.0, high: 5.0 }, &series, 0.0);
     assert!(sampled.iter().zip(&proven).all(|(seen, bound)| seen <= bound && *bound < 1e-11), "{sampled:?} {proven:?}");
+}
+
+/// Ranges of no width, and of one that rounding ends at once.
+#[test]
+fn a_range_of_one_value_proves_nothing_and_one_of_two_neighbours_ends() {
+    let graph = Graph::new();
+    let (job, target) = compiled(&graph, TABLES);
+    let conversion = Conversion::new(&graph, &job, &target, ["work", "cutter"]);
+    for about in [-0.2, 0.0, 0.1_f64] {
+        let first = conversion.problem.postures(&[about]).swap_remove(0);
+        let tube = |low: f64, high: f64| conversion.problem.tube(&first, about, Range { low, high });
+        assert_eq!(tube(about, about).map(|_| ()), Err(Unproven { at: about }));
+        for (low, high) in [(about, about.next_up()), (about.next_down(), about), (about.next_up(), about.next_up())] {
+            let distances = tube(low, high).expect("no singular pose").distances(about, &vec![vec![0.0]; 6]);
+            let axes = first.axes.iter().zip(&distances);
+            assert!(axes.clone().all(|(axis, off)| axis.abs() <= *off && *off < axis.abs() + 1e-9), "{distances:?}");
+        }
+        let elsewhere = Range { low: about + 0.2, high: about + 0.3 };
+        let tube = tube(about, about + 0.1).expect("no singular pose");
+        let outside = tube.distances_over(elsewhere, about, &vec![vec![0.0]; 6]);
+        assert!(outside.iter().all(|off| *off == f64::INFINITY), "{outside:?}");
+    }
 }
 
 /// The free-form machine holds its tool parallel to the work's axis in the middle of a tool's swing, or nearly.

@@ -218,10 +218,11 @@ fn values<'g>(
     }
 }
 
-/// `count` values evenly from end to end, both included; a single one is the middle.
+/// `count` values evenly from end to end, both included, none beyond them; a single one is the middle.
 pub fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
     let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
-    (0..count).map(|k| low * (1.0 - share(k)) + high * share(k)).collect()
+    let between = |share: f64| low * (1.0 - share) + high * share;
+    (0..count).map(|k| between(share(k)).max(low.min(high)).min(low.max(high))).collect()
 }
 
 fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {

@@ -472,3 +472,85 @@ fn printed_rates_are_those_of_an_even_turn() {
     near(&numbers(rates, "X "), [y * per_second, x * per_second.powi(2), y * per_second.powi(3)]);
     near(&numbers(rates, "Y "), [x * per_second, y * per_second.powi(2), x * per_second.powi(3)]);
 }
+
+/// A rack planer with a slide that the job drives, and one without it, whose Y and C are those of the former.
+const PLANERS: [&str; 2] = [
+    "machine planer {
+        axis X : linear
+        axis Y : linear in -60 mm .. 60 mm
+        axis C : rotary
+        frame bed
+        frame slide in bed = translate(40 mm + X, Y, 0 mm)
+        frame table in bed = rotate_z(C)
+    }
+    tool rack {
+        surface flank(u: length in -4 mm .. 4 mm, v: length in -10 mm .. 10 mm) {
+            at = [-u * cos(20 deg), -u * sin(20 deg), v]
+            body towards [0, -1, 0]
+        }
+    }
+    job planed {
+        machine m = planer
+        tool r = rack
+        mount r on m.slide
+        motion roll : angle in -40 deg .. 40 deg
+        drive m.C = roll
+        drive m.Y = 40 mm * roll
+        surface flank in m.table = envelope(r.flank, over: roll)
+    ",
+    "machine small {
+        axis Y : linear in -60 mm .. 60 mm
+        axis C : rotary
+        frame bed
+        frame slide in bed = translate(40 mm, Y, 0 mm)
+        frame table in bed = rotate_z(C)
+    }",
+];
+
+/// What is printed, what is told, and the exit code of a job of [`PLANERS`] with further statements, carried over.
+fn planed(name: &str, statements: &str, arguments: &[&str]) -> (String, String, Option<i32>) {
+    let out = folder(name);
+    let job = support::written(&out, "job.chain", &format!("{}{statements}\n}}\n", PLANERS[0]));
+    let machine = support::written(&out, "machine.chain", PLANERS[1]);
+    let files = ["convert", &job, "--to", &machine, "--out", out.to_str().expect("a plain path")];
+    let run = flank(&[&files[..], arguments].concat());
+    let programs = std::fs::read_dir(&out).expect("the test's folder").count() - 2;
+    assert_eq!(programs > 0, run.status.code() == Some(0), "files only of what is done: {}", text(&run.stderr));
+    (text(&run.stdout), text(&run.stderr), run.status.code())
+}
+
+/// Also where the other machine has no axis for what is no number.
+#[test]
+fn a_pose_that_is_no_number_is_met_by_none() {
+    let drive = "drive m.X = 1 mm * sqrt(roll / 1 rad - 5)";
+    let (printed, told, code) = planed("convert-undefined", drive, &["--nc", "linuxcnc", "--time", "5"]);
+    assert_eq!(code, Some(3), "{printed}{told}");
+    let what =
+        "101 of 101 positions: where m.slide stands against m.table is no number: an axis of the job is driven by what";
+    assert!(told.contains(what), "{told}");
+    assert!(!printed.contains("proven"), "{printed}");
+}
+
+/// One circle, or one line of contact, of the flank needs the motion at one value, where a machine would stand still.
+#[test]
+fn points_of_one_line_of_contact_are_made_by_all_of_the_motion() {
+    let samples = [
+        "sample flank { roll: 3 deg, v: -9 mm .. 9 mm by 25 }",
+        "sample flank { rho: 41.966 mm, z: -9 mm .. 9 mm by 5 }",
+        "sample flank { rho: 41.566 mm, z: -9 mm .. 9 mm by 5 }",
+    ];
+    for sample in samples {
+        let statements = format!("drive m.X = 0 mm\n{sample}");
+        let (printed, told, code) = planed("convert-still", &statements, &["--positions", "9"]);
+        assert_eq!(code, Some(0), "{told}");
+        let over = "9 positions over roll from -40.000000 deg to 40.000000 deg\nthat is all of it: the sampled points are all made at roll = ";
+        assert!(printed.contains(over), "{printed}");
+    }
+}
+
+#[test]
+fn a_time_in_which_nothing_can_move_is_told() {
+    let (_, told, code) = planed("convert-instant", "drive m.X = 0 mm", &["--time", "1e-300"]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("in 1e-300 s (--time) the axes would be faster than numbers go"), "{told}");
+}

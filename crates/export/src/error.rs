@@ -73,6 +73,9 @@ pub enum Malformed {
     /// A series or a travel of a motion table has an infinity or a NaN somewhere.
     #[error("the motion table's series and travels are not all finite")]
     AxisNumber,
+    /// The rates of a motion table are not three finite numbers for each row and axis.
+    #[error("the motion table's rates are not all there, or not all finite")]
+    RateNumber,
     /// A solved point has an infinity or a NaN somewhere.
     #[error("surface `{surface}`, point ({i}, {j}) is said to be solved, but not all of its numbers are finite")]
     NotANumber {

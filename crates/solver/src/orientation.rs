@@ -13,7 +13,10 @@ const MOST_ROUNDS: u32 = 10_000;
 
 /// The largest value of a function of angles, each taken over a turn.
 pub(crate) fn greatest(angles: usize, mut function: impl FnMut(&[f64]) -> f64) -> f64 {
-    let each = (2..=72).rev().find(|each: &usize| each.pow(angles as u32) <= LOOKS).unwrap_or(2);
+    // of many angles each is looked at in two places, but not all together
+    let fits = |each: &usize| each.checked_pow(angles as u32).is_some_and(|all| all <= LOOKS);
+    let each = (2..=72).rev().find(fits).unwrap_or(2);
+    let all = each.checked_pow(angles as u32).map_or(LOOKS, |all| all.min(LOOKS));
     let place = |mut k: usize| -> Vec<f64> {
         let mut next = || {
             let share = (k % each) as f64 / each as f64;
@@ -23,7 +26,7 @@ pub(crate) fn greatest(angles: usize, mut function: impl FnMut(&[f64]) -> f64) -
         (0..angles).map(|_| next()).collect()
     };
     let mut looks: Vec<(f64, Vec<f64>)> =
-        (0..each.pow(angles as u32)).map(place).map(|at| (function(&at), at)).filter(|look| !look.0.is_nan()).collect();
+        (0..all).map(place).map(|at| (function(&at), at)).filter(|look| !look.0.is_nan()).collect();
     looks.sort_by(|a, b| b.0.total_cmp(&a.0));
     looks.truncate(FOLLOWED);
     let first_step = TAU / each as f64;
@@ -68,5 +71,19 @@ mod tests {
         assert!((greatest(2, two) - 1.1).abs() < 1e-12);
         assert!((greatest(1, |x| (x[0] - 3.1).cos()) - 1.0).abs() < 1e-12);
         assert_eq!(greatest(0, |_| 0.5), 0.5);
+    }
+
+    /// More of them than there are places to look at, or than a number can count.
+    #[test]
+    fn of_many_angles_not_all_places_are_looked_at() {
+        for angles in [14, 70] {
+            let mut looks = 0;
+            let found = greatest(angles, |x| {
+                looks += 1;
+                x.iter().map(|x| (x - 0.3).cos()).sum()
+            });
+            assert!((found - angles as f64).abs() < 1e-12, "{found}");
+            assert!(looks < 100_000, "{looks}");
+        }
     }
 }

@@ -360,9 +360,11 @@ impl<'g> PoseProblem<'g> {
             ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
         }
         let rest = (0..6).filter(|k| !self.components.contains(k)).map(|k| Missing { direction: k, by: deviation[k] });
+        let is_defined = rest.clone().all(|rest| rest.by.is_finite());
         let missing = rest.max_by(|a, b| a.by.abs().total_cmp(&b.by.abs())).filter(|most| most.by.abs() > TOLERANCE);
         let axes = solution.unknowns[..self.axes].to_vec();
         let outcome = match (solution.outcome, self.beyond(&axes).first()) {
+            (Outcome::Solved, _) if !is_defined => Outcome::NotConverged { iterations: solution.iterations },
             (Outcome::Solved, Some(&(unknown, by))) => Outcome::Outside { unknown, by },
             (outcome, _) => outcome,
         };

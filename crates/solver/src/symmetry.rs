@@ -54,6 +54,7 @@ impl Screw {
 /// If a surface is not one of two free unknowns with a range each.
 pub fn symmetries(surfaces: &[(&Surface<'_>, Vec<Range>)]) -> Result<Vec<Screw>, TapeError> {
     let mut rows: Vec<[f64; 6]> = Vec::new();
+    let mut size = f64::MIN_POSITIVE;
     for (surface, ranges) in surfaces {
         assert_eq!((surface.unknowns.len(), ranges.len()), (2, 2), "two free unknowns");
         let outputs: Vec<Expr<'_>> = surface.position.0.into_iter().chain(surface.normal.0).collect();
@@ -66,17 +67,21 @@ pub fn symmetries(surfaces: &[(&Surface<'_>, Vec<Range>)]) -> Result<Vec<Screw>,
             let (r, n) = (Vector::new(out[0], out[1], out[2]), Vector::new(out[3], out[4], out[5]));
             if out.iter().all(|x| x.is_finite()) {
                 let moment = r.cross(&n);
+                size = size.max(r.norm());
                 rows.push([moment.x, moment.y, moment.z, n.x, n.y, n.z]);
             }
         }
     }
-    Ok(unseen(&rows))
+    Ok(unseen(&rows, size))
 }
 
-/// Basis of the motions that no row sees, reduced so that rotations come first and each has as few components as can be.
-fn unseen(rows: &[[f64; 6]]) -> Vec<Screw> {
-    // angular speeds count by the size of the surface, so that both kinds of motion are of one order
-    let size = rows.iter().flat_map(|row| &row[..3]).fold(0.0, |size: f64, x| size.max(x.abs())).max(f64::MIN_POSITIVE);
+/// Basis of the motions that no row sees, reduced so that rotations come first and each has as few components as can be; none where
+/// there are no rows: nothing shows then that a motion is not seen. Angular speeds count by the `size` of the surface, so that both kinds of
+/// motion are of one order.
+fn unseen(rows: &[[f64; 6]], size: f64) -> Vec<Screw> {
+    if rows.is_empty() {
+        return Vec::new();
+    }
     let scaled = Mat::from_fn(rows.len().max(6), 6, |i, j| {
         rows.get(i).map_or(0.0, |row| if j < 3 { row[j] / size } else { row[j] })
     });
@@ -116,4 +121,23 @@ fn screw(motion: [f64; 6], size: f64) -> Screw {
     let linear = Vector::new(motion[3], motion[4], motion[5]);
     let speed = if angular.norm() > 0.0 { angular.norm() } else { linear.norm() };
     Screw { angular: (angular / speed).into(), linear: (linear / speed).into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere, whose normals all go through its middle, does not see a turn about it; what is no number anywhere shows nothing.
+    #[test]
+    fn where_nothing_is_looked_at_nothing_is_unseen() {
+        let graph = Graph::new();
+        let (u, v) = (graph.variable("u"), graph.variable("v"));
+        let of = |radius: Expr<'_>| {
+            let position = Vector3([radius * u.cos() * v.cos(), radius * u.sin() * v.cos(), radius * v.sin()]);
+            let ranges = vec![Range { low: -1.0, high: 1.0 }; 2];
+            symmetries(&[(&Surface::parametric([u, v], position, false), ranges)]).expect("bound").len()
+        };
+        assert_eq!(of(graph.constant(20.0)), 3);
+        assert_eq!(of((u - 5.0).sqrt()), 0);
+    }
 }

@@ -58,7 +58,7 @@ impl PoseProblem<'_> {
     /// `|Y F(P)| + |1 − Y J(X)| ρ < ρ` shows that there is one root in X at each φ, and that it is no farther than ρ from P.
     ///
     /// # Errors
-    /// Where it could not be shown.
+    /// Where it could not be shown; a range of one value shows nothing.
     ///
     /// # Panics
     /// If there is more than one motion.
@@ -67,6 +67,9 @@ impl PoseProblem<'_> {
         let up = prover.towards(posture, about, range.high, range.width())?;
         let down = prover.towards(posture, about, range.low, range.width())?;
         let pieces: Vec<Piece> = down.into_iter().rev().chain(up).collect();
+        if pieces.is_empty() {
+            return Err(Unproven { at: about });
+        }
         let joint = |pair: &[Piece]| pair[0].middle + pair[0].half.min(pair[1].middle - pair[0].middle);
         match pieces.windows(2).find(|pair| !prover.joins(&pair[0], &pair[1])) {
             Some(pair) => Err(Unproven { at: joint(pair) }),
@@ -83,7 +86,7 @@ impl Tube {
         self.farthest(&windows.collect::<Vec<_>>(), about, polynomials)
     }
 
-    /// The same over a part of the range.
+    /// The same over a part of the range; infinite over what is no part of it.
     pub fn distances_over(&self, part: Range, about: f64, polynomials: &[Vec<f64>]) -> Vec<f64> {
         let windows = self.pieces.iter().filter_map(|piece| Some((piece, piece.window(part)?)));
         self.farthest(&windows.collect::<Vec<_>>(), about, polynomials)
@@ -92,7 +95,7 @@ impl Tube {
     fn farthest(&self, windows: &[(&Piece, Window)], about: f64, polynomials: &[Vec<f64>]) -> Vec<f64> {
         let of = |axis: usize| {
             let each = windows.iter().map(|(piece, window)| piece.distance(axis, *window, about, &polynomials[axis]));
-            each.fold(0.0, f64::max)
+            each.reduce(f64::max).unwrap_or(f64::INFINITY)
         };
         (0..self.axes).map(of).collect()
     }
@@ -198,7 +201,9 @@ impl<'p, 'g> Prover<'p, 'g> {
         let mut length = LONGEST * whole;
         while at != to {
             let left = (to - at).abs();
-            let next = if length < left { at + length.copysign(to - at) } else { to };
+            let step = at + length.copysign(to - at);
+            // what is too short to change the motion leads nowhere
+            let next = if length < left && step != at { step } else { to };
             let [middle, end] = [0.5 * at + 0.5 * next, next];
             let line = self.problem.follow(&posture, &[vec![at], vec![middle], vec![end]]);
             let piece = line.iter().all(Posture::is_root).then(|| self.piece(&line[1], middle, at, next)).flatten();

@@ -1,6 +1,7 @@
 //! What the target cannot do, in words.
 
 use flank_chain_dsl::{Axis, Machine};
+use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Missing, Outcome, Posture};
 
 use super::Carried;
@@ -50,7 +51,9 @@ pub(super) fn told(carried: &Carried<'_, '_>) -> String {
                 let before = k.checked_sub(1).map(|k| (&positions[k], &line[k]));
                 let near = before.filter(|(_, posture)| posture.outcome == Outcome::Solved);
                 let (at, near) = near.unwrap_or((position, posture));
-                misdirected(carried, position).unwrap_or_else(|| lost(carried, outcome == Outcome::Singular, near, at))
+                undefined(carried, position)
+                    .or_else(|| misdirected(carried, position))
+                    .unwrap_or_else(|| lost(carried, outcome == Outcome::Singular, near, at))
             }
         };
         match kinds.iter_mut().find(|(known, ..)| *known == kind) {
@@ -77,6 +80,23 @@ fn beyond(carried: &Carried<'_, '_>, posture: &Posture) -> (String, String) {
     });
     let told: Vec<String> = told.collect();
     (kind, told.join("; "))
+}
+
+/// The job itself does not say where its tool stands.
+fn undefined(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, String)> {
+    let Source { driven, motions, work, tool, .. } = &carried.source;
+    let pose = driven.substituted(&carried.bindings).pose();
+    let rows = pose.rotation.0.into_iter().chain([pose.translation]);
+    let numbers: Vec<Expr<'_>> = rows.flat_map(|row| row.0).collect();
+    let inputs: Vec<Expr<'_>> = motions.iter().map(|motion| motion.variable).collect();
+    let tape = Tape::new(&numbers, &inputs).ok()?;
+    let mut values = vec![0.0; numbers.len()];
+    ScalarEvaluator::new(&tape).run(position, &mut values);
+    let told = format!(
+        "where {tool} stands against {work} is no number: an axis of the job is driven by what is not defined there; let the motion \
+         run, or sample the flank, where it is"
+    );
+    (!values.iter().all(|x| x.is_finite())).then(|| ("undefined".to_string(), told))
 }
 
 /// The orientation of the tool is one that the rotary axes do not reach.

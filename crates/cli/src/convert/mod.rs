@@ -103,7 +103,7 @@ fn carry<'g>(
         None => {}
     }
     let is_series = is_followed && told.is_empty();
-    let rates = arguments.time.filter(|_| is_series).and_then(|seconds| Rates::of(&carried, seconds));
+    let rates = arguments.time.filter(|_| is_series).map(|seconds| Rates::of(&carried, seconds)).transpose()?.flatten();
     let mut table = Table::new(job, &carried, (series, rates), arguments);
     let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
     table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried, tube)).flatten();

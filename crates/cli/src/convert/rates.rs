@@ -15,7 +15,10 @@ pub(crate) struct Rates {
 
 impl Rates {
     /// At the positions of one motion, from their power series: exact but for rounding. `None` at a singular pose.
-    pub(crate) fn of(carried: &Carried<'_, '_>, seconds: f64) -> Option<Rates> {
+    ///
+    /// # Errors
+    /// In words, if the time is so short that they are no numbers.
+    pub(crate) fn of(carried: &Carried<'_, '_>, seconds: f64) -> Result<Option<Rates>, String> {
         let range = carried.source.ranges[0];
         let rate = (range.high - range.low) / seconds;
         let row = |(at, posture): (&Vec<f64>, &_)| -> Option<Vec<[f64; 3]>> {
@@ -27,7 +30,13 @@ impl Rates {
             Some(series[..carried.free.len()].iter().map(rates).collect())
         };
         let rows: Option<Vec<_>> = carried.positions.iter().zip(&carried.line).map(row).collect();
-        Some(Rates { seconds, rows: rows? })
+        let Some(rows) = rows else { return Ok(None) };
+        if !rows.iter().flatten().flatten().all(|rate| rate.is_finite()) {
+            return Err(format!(
+                "in {seconds:e} s (--time) the axes would be faster than numbers go: say the seconds that the motion takes"
+            ));
+        }
+        Ok(Some(Rates { seconds, rows }))
     }
 
     /// The largest velocity, acceleration and jerk of an axis, without sign.

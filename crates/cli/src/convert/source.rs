@@ -9,6 +9,9 @@ use crate::arguments::Means;
 use crate::solve::{self, Wanted};
 use crate::{table, units};
 
+/// Points that lie no farther apart than this share of a motion's range have it at one value: what differs is rounding.
+const STILL: f64 = 1e-9;
+
 /// Surfaces of a job that one tool makes in one work.
 pub(crate) struct Source<'j, 'g> {
     /// Frames of the work and of the tool, as `m.work`.
@@ -17,8 +20,10 @@ pub(crate) struct Source<'j, 'g> {
     /// From work to tool, in motions.
     pub(crate) driven: &'j Chain<'g>,
     pub(crate) motions: Vec<&'j Bounded<'g>>,
-    /// Over which the motions are carried over: as far as the sampled points need them.
+    /// Over which the motions are carried over: as far as the sampled points need them; all of them, where the points need none to move.
     pub(crate) ranges: Vec<Range>,
+    /// Where all sampled points have the motions, if that is at one value of each.
+    pub(crate) still: Option<Vec<f64>>,
     /// What the tool does not see of its own motion.
     pub(crate) symmetries: Vec<Screw>,
     /// The sampled points of each surface, with the tool's surface that made them.
@@ -85,8 +90,15 @@ impl<'j, 'g> Source<'j, 'g> {
             Vec::new()
         };
         let (work, tool) = path(first);
-        let ranges = motions.iter().map(|motion| reached(motion, &flanks)).collect();
-        Ok(Source { work, tool, driven: &generation.driven, motions, ranges, symmetries: unseen, flanks })
+        let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &flanks)).collect();
+        let whole: Vec<Range> = motions.iter().map(|motion| Range { low: motion.low, high: motion.high }).collect();
+        let stands = |(needed, whole): (&Range, &Range)| needed.high - needed.low <= STILL * (whole.high - whole.low);
+        let (ranges, still) = if needed.iter().zip(&whole).all(stands) {
+            (whole, Some(needed.iter().map(|needed| needed.low).collect()))
+        } else {
+            (needed, None)
+        };
+        Ok(Source { work, tool, driven: &generation.driven, motions, ranges, still, symmetries: unseen, flanks })
     }
 
     /// Positions evenly over the motions: one after the other for one motion; for two, row by row, there and back.

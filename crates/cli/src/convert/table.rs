@@ -36,6 +36,8 @@ pub(crate) struct Table {
     pub(super) positions: Vec<Vec<f64>>,
     pub(super) line: Vec<Posture>,
     symmetries: Vec<Screw>,
+    /// Where all sampled points are made, if nothing moves between them.
+    still: Option<String>,
     pub(super) series: Option<Series>,
     /// Over the cutting time, if there is one.
     pub(super) rates: Option<Rates>,
@@ -71,6 +73,7 @@ impl Table {
             positions: carried.positions.clone(),
             line: carried.line.clone(),
             symmetries: source.symmetries.clone(),
+            still: source.still.as_ref().map(|at| source.place(at)),
             series,
             rates,
             blocks: None,
@@ -81,6 +84,9 @@ impl Table {
     pub(crate) fn text(&self) -> String {
         let mut out = format!("{}\n\n", self.title);
         let _ = writeln!(out, "{} positions over {}", self.positions.len(), self.over());
+        if let Some(at) = &self.still {
+            let _ = writeln!(out, "that is all of it: the sampled points are all made at {at}");
+        }
         for screw in &self.symmetries {
             let _ = writeln!(out, "the tool does not see {}", unseen(screw));
         }

@@ -132,8 +132,10 @@ impl MotionTable {
         if let Some((row, given)) = rates.clone().find(|(_, given)| *given != named) {
             return Err(Malformed::AxisCount { row, given, named });
         }
-        if self.rates.is_some() && rates.count() != self.rows.len() {
-            return Err(Malformed::AxisNumber);
+        let mut of_rates =
+            self.rates.iter().flat_map(|rates| rates.rows.iter().flatten().flatten().chain([&rates.seconds]));
+        if self.rates.is_some() && rates.count() != self.rows.len() || !of_rates.all(|number| number.is_finite()) {
+            return Err(Malformed::RateNumber);
         }
         let is_finite = |row: &MotionRow| row.axes.iter().chain([&row.motion]).all(|number| number.is_finite());
         if let Some(row) = self.rows.iter().position(|row| !is_finite(row)) {
@@ -144,13 +146,7 @@ impl MotionTable {
             of_axes.chain([&series.reference])
         });
         let travels = self.axes.iter().flat_map(|axis| axis.travel.iter().flatten().chain([&axis.offset]));
-        let of_rates =
-            self.rates.iter().flat_map(|rates| rates.rows.iter().flatten().flatten().chain([&rates.seconds]));
-        if of_series.chain(travels).chain(of_rates).all(|number| number.is_finite()) {
-            Ok(())
-        } else {
-            Err(Malformed::AxisNumber)
-        }
+        if of_series.chain(travels).all(|number| number.is_finite()) { Ok(()) } else { Err(Malformed::AxisNumber) }
     }
 
     /// The lowest and the highest position of an axis, mm or radians; nothing without rows.
