@@ -12,6 +12,9 @@ use crate::system::System;
 
 /// A turn that changes by less, radians, has settled: 1e-9 um on a radius of a metre.
 const SETTLED: f64 = 1e-15;
+/// Where turning moves points along their normals by a smaller share of their radii (root of the mean of the squares), it moves none:
+/// rounding is left of a surface of revolution.
+const UNMOVED: f64 = 1e-9;
 /// The turn settles in a few steps: what it does to a deviation is known but for what the normal changes on the way to the foot.
 const MOST_STEPS: usize = 20;
 
@@ -71,10 +74,12 @@ impl Inspection {
         let mut turn = apart(measured, nominal)?;
         for _ in 0..MOST_STEPS {
             let deviations = self.deviations(measured, nominal, turn);
-            let known = deviations.iter().zip(nominal).filter_map(|(off, point)| Some(((*off)?, lever(point))));
-            let (off, levers) =
-                known.fold((0.0, 0.0), |(off, levers), (one, lever)| (off + one * lever, levers + lever * lever));
-            if levers == 0.0 {
+            let known = deviations.iter().zip(nominal).filter_map(|(off, point)| Some(((*off)?, point)));
+            let [off, levers, radii] = known.fold([0.0; 3], |[off, levers, radii], (one, point)| {
+                let ([x, y, _], lever) = (point.position, lever(point));
+                [off + one * lever, levers + lever * lever, radii + x * x + y * y]
+            });
+            if levers <= UNMOVED.powi(2) * radii {
                 return None;
             }
             let step = off / levers;
@@ -154,6 +159,39 @@ mod tests {
             "turning moves no point along its normal"
         );
         assert_eq!(inspection.deviations(&[None], &nominal, 0.0), [None]);
+    }
+
+    /// Of a surface of revolution a turn moves nothing but roundings: at these radii and angles they do not cancel.
+    #[test]
+    fn a_surface_of_revolution_is_not_turned() {
+        let graph = Graph::new();
+        let (angle, height) = (graph.variable("angle"), graph.variable("height"));
+        let radius = 17.3 + 0.1 * height;
+        let cone =
+            Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false);
+        let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -20.0, high: 20.0 }];
+        let inspection = Inspection::new(&cone, ranges, &[]).expect("bound");
+        let slope = 1.01f64.sqrt();
+        let places: Vec<[f64; 2]> = (0..24).map(|k| [0.137 * f64::from(k), 0.731 * f64::from(k % 7) - 1.9]).collect();
+        let nominal: Vec<SurfacePoint> = places
+            .iter()
+            .map(|&[angle, height]| {
+                let ((sine, cosine), radius) = (angle.sin_cos(), 17.3 + 0.1 * height);
+                let normal = [cosine / slope, sine / slope, -0.1 / slope];
+                solved(vec![angle, height], [radius * cosine, radius * sine, height], normal)
+            })
+            .collect();
+        assert!(nominal.iter().any(|point| lever(point) != 0.0), "roundings are there");
+        let off = |k: usize| 0.01 + 0.002 * (k % 5) as f64;
+        let measured: Vec<Option<[f64; 3]>> = nominal
+            .iter()
+            .enumerate()
+            .map(|(k, point)| Some(std::array::from_fn(|i| point.position[i] + off(k) * point.normal[i])))
+            .collect();
+        assert_eq!(inspection.best_turn(&measured, &nominal), None);
+        for (k, found) in inspection.deviations(&measured, &nominal, 0.0).into_iter().enumerate() {
+            assert!((found.expect("a foot") - off(k)).abs() < 1e-12, "{found:?}");
+        }
     }
 
     /// A plane through the axis at 0.3 rad, measured at 0.2 rad with an error that no turn takes away.
