@@ -1,7 +1,7 @@
 //! Gears from a rack whose profile is made of segments: against the tables of the plain rack, and in closed form.
 
 use flank_expr::Graph;
-use flank_tests::{assert_point, job, number, points, reference_json, reversed, vector};
+use flank_tests::{assert_point, difference, job, number, points, reference_json, reversed, vector};
 
 const SPEC: &str = "specs/hobbing/ground_stock_gear.chain";
 /// The plain rack's tip, and a protuberance that goes on as the flank does.
@@ -74,7 +74,7 @@ fn each_segment_gives_its_closed_form() {
     }
     for (one, next) in [("plus.protuberance", "plus.rounding"), ("plus.rounding", "plus.tip")] {
         let ((p, n), (q, m)) = (along(one, 1.0), along(next, 0.0));
-        let apart = (0..3).map(|k| (p[k] - q[k]).abs().max((n[k] - m[k]).abs())).fold(0.0, f64::max);
-        assert!(apart < 1e-9, "{one} and {next}: {p:?} {q:?}");
+        let apart = [difference(&p, &q), difference(&n, &m)];
+        assert!(apart.iter().all(|apart| *apart < 1e-9), "{one} and {next}: {p:?} {q:?}");
     }
 }

@@ -8,7 +8,7 @@ use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, PoseProblem, Posture, Screw, SurfacePoint, TargetAxis};
 use flank_tests::machines::{beside, target_axis, unseen};
-use flank_tests::{repository, sampled};
+use flank_tests::{largest, repository, sampled};
 
 /// File, tool's frame, work's frame.
 const TARGETS: [[&str; 3]; 5] = [
@@ -180,7 +180,7 @@ impl Moved {
             let slope = |i: usize| (0..self.unknowns).map(|k| out[6 + 3 * k + i] * series[k][1]).sum::<f64>();
             (0..3).map(|i| out[3 + i] * slope(i)).sum::<f64>().abs()
         });
-        position.max(normal).max(meshing.fold(0.0, f64::max))
+        largest([position, normal].into_iter().chain(meshing))
     }
 }
 

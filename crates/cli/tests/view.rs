@@ -159,31 +159,41 @@ fn the_page_solves_what_the_program_solves() {
             eprintln!("skipped 1 test: node is not installed");
             return;
         };
-        let compared = compared(&found, &solved(spec, set, &folder), spec);
+        let [compared, bent] = compared(&found, &solved(spec, set, &folder), spec);
         assert!(compared > least, "{compared} points of {spec} with {set:?}");
+        assert_eq!(
+            bent,
+            if moves.is_empty() { 0 } else { compared },
+            "what the page solves anew has curvatures: {spec}"
+        );
     }
 }
 
-/// How many points the page and the program both solve; they agree in all.
-fn compared(found: &Value, expected: &Value, of: &str) -> usize {
-    let mut compared = 0;
+/// How many points the page and the program both solve, and for how many of them the page has curvatures; they agree in all.
+fn compared(found: &Value, expected: &Value, of: &str) -> [usize; 2] {
+    let (mut compared, mut bent) = (0, 0);
     let list = |value: &Value| value.as_array().expect("a list").clone();
-    for (found, expected) in list(found).iter().zip(&list(&expected["surfaces"])) {
+    let (of_page, of_program) = (list(found), list(&expected["surfaces"]));
+    assert_eq!(of_page.len(), of_program.len(), "surfaces of {of}");
+    for (found, expected) in of_page.iter().zip(&of_program) {
         assert_eq!(found["name"], expected["name"]);
         let field = |name| expected["fields"].as_array().and_then(|all| all.iter().position(|one| one["name"] == name));
         let [k1, k2] = ["k1", "k2"].map(|name| field(name).expect("geometry is asked for"));
-        for (found, expected) in list(&found["points"]).iter().zip(&list(&expected["points"])) {
+        let (on_page, solved) = (list(&found["points"]), list(&expected["points"]));
+        assert_eq!(on_page.len(), solved.len(), "points of {of}");
+        for (found, expected) in on_page.iter().zip(&solved) {
             assert_eq!(found["status"], expected["status"], "{of} {expected}");
             assert!(off(&found["position"], &expected["position"]) < TOLERANCE, "{of} {found} {expected}");
             assert!(off(&found["normal"], &expected["normal"]) < TOLERANCE, "{of} {found} {expected}");
             if !found["curvatures"].is_null() {
+                bent += 1;
                 let bent = json!([expected["fields"][k1], expected["fields"][k2]]);
                 assert!(off(&found["curvatures"], &bent) < TOLERANCE, "{of} {bent}");
             }
             compared += usize::from(!found["position"].is_null());
         }
     }
-    compared
+    [compared, bent]
 }
 
 /// Opens, turns, clicks and moves as in `tests/page/browser.mjs`.

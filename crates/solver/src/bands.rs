@@ -4,7 +4,7 @@
 //! solved rows around, so that a band needs nothing but these. Where they have gaps, bands lead into each other, first upwards,
 //! then downwards; a point that is reached only by turning back once more counts as not converged.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::anchor::{Choice, Followed, follow};
 use crate::field::Field;
@@ -18,7 +18,7 @@ use crate::surface::SurfacePoint;
 use crate::system::System;
 
 /// Rows of a band, at the least and at the most.
-const ROWS: Range<usize> = 4..64;
+const ROWS: RangeInclusive<usize> = 4..=64;
 
 /// Some rows of a grid, solved.
 #[derive(Debug)]
@@ -93,7 +93,7 @@ impl Wanted<'_> {
 
 /// How far apart the rows are that are solved first, where a band should not have many more than `points`.
 fn spacing(points: usize, columns: usize) -> usize {
-    (points / columns.max(1)).clamp(ROWS.start, ROWS.end)
+    (points / columns.max(1)).clamp(*ROWS.start(), *ROWS.end())
 }
 
 /// Hands over a grid as fields of some rows, one after the other: the rows of the grid, and the first line of the field that
