@@ -224,7 +224,7 @@ impl Bands<'_> {
             let places: Vec<usize> = (0..columns).collect();
             grid.compute_strips(&mut field, &[own.start, own.end - 1], &places);
         }
-        grid.refine_strips(&mut field, solvers, &levels(&lines, &known_lines));
+        grid.refine_strips(&mut field, solvers, None, &levels(&lines, &known_lines));
         grid.finish(&mut field, solvers, own.clone());
         *evaluations += grid.effort.evaluations;
         (field, own, targets)

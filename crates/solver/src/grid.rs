@@ -8,9 +8,9 @@ use flank_expr::LANES;
 use rayon::prelude::*;
 
 use crate::Outcome;
-use crate::field::{Field, Lines, NEAR, OnLine, Strip};
+use crate::field::{Along, Field, Lines, NEAR, OnLine, Strip};
 use crate::lanes::LaneNewton;
-use crate::line::{Midpoint, divided_difference, lattice, levels};
+use crate::line::{Midpoint, denser, divided_difference, lattice, levels};
 use crate::newton::{LONGEST_STEP, solve_with};
 use crate::roots::Undecided;
 use crate::solution::{Range, Solution, distance};
@@ -22,6 +22,8 @@ const SUBSTEPS: [u32; 3] = [1, 4, 16];
 /// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
 /// branch, and the step is divided. The last step to where a branch turns back like a parabola has one.
 pub(crate) const ASTRAY: f64 = 0.75;
+/// Places on a line that are further apart than this get others between them before strips solve what is left of the line.
+const WIDEST: usize = LANES / 2;
 /// Grids with fewer points are not worth a second thread.
 const SHARED: usize = 4096;
 
@@ -142,14 +144,13 @@ impl<'s> Grid<'s> {
         if has_all_given {
             self.compute_strips(&mut field, count.1, length.1);
         }
-        let levels = |(count, known): (usize, &[usize])| levels(&(0..count).collect::<Vec<_>>(), known);
         if !(has_all_given && field.is_complete()) {
             let (newton, targets, is_shared) = (solvers.newton(), self.targets, self.is_shared());
-            let mut refine = || field.refine_lines(newton, count.1, &levels((length.0, length.1)), targets);
-            let down = || levels((count.0, count.1));
-            let (evaluations, down) = if is_shared { rayon::join(refine, down) } else { (refine(), down()) };
+            let mut refine = || refine_lines(&mut field, newton, count.1, (length.0, length.1), targets);
+            let down = || levels(&(0..count.0).collect::<Vec<_>>(), count.1);
+            let ((along, evaluations), down) = if is_shared { rayon::join(refine, down) } else { (refine(), down()) };
             self.effort.evaluations += evaluations;
-            self.refine_strips(&mut field, solvers, &down);
+            self.refine_strips(&mut field, solvers, along.as_ref(), &down);
         }
         self.finish(&mut field, solvers, 0..self.rows);
         field
@@ -228,12 +229,16 @@ impl<'s> Grid<'s> {
         self.effort.evaluations += self.on_strips(field, &mut on_line, new, compute);
     }
 
-    /// All lines, from those that are known.
-    pub(crate) fn refine_strips(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, levels: &[Vec<Midpoint>]) {
+    /// All lines, from those that are known, or known at some places.
+    pub(crate) fn refine_strips(
+        &mut self,
+        field: &mut Field,
+        solvers: &mut Solvers<'_>,
+        along: Option<&Along>,
+        levels: &[Vec<Midpoint>],
+    ) {
         let (targets, another) = (self.targets, solvers.another());
-        let shape = field.shape();
-        let number = |line, at| shape.point(line, at);
-        let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, levels, targets, number);
+        let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, along, levels, targets);
         self.effort.evaluations += self.on_strips(field, solvers.newton(), another, refine);
     }
 
@@ -412,6 +417,25 @@ impl<'s> Grid<'s> {
             back.1
         }
     }
+}
+
+/// Brings some lines so far, from places where they are known, that each strip can solve its part of them for itself; else all of
+/// them, for which strips need nothing then. Also the number of evaluations.
+fn refine_lines(
+    field: &mut Field,
+    newton: &mut LaneNewton<'_>,
+    lines: &[usize],
+    (length, known): (usize, &[usize]),
+    targets: &[[f64; 2]],
+) -> (Option<Along>, u64) {
+    let places = denser(known, WIDEST);
+    let mut evaluations = field.refine_lines(newton, lines, (&places, known), targets);
+    let along = field.along(lines, &places);
+    if along.is_none() {
+        let all: Vec<usize> = (0..length).collect();
+        evaluations += field.refine_lines(newton, lines, (&all, known), targets);
+    }
+    (along, evaluations)
 }
 
 /// The start for the next point in line, `ratio` times as far away as the one before: straight on.

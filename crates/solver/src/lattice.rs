@@ -51,9 +51,10 @@ impl Grid<'_> {
                 let index = places.partition_point(|place| *place < at);
                 [index.checked_sub(1), Some(index + 1)].map(|k| k.and_then(|k| places.get(k).copied()))
             };
-            let across = beside(columns, j).into_iter().flatten().map(|j| i * self.columns + j);
-            let along = beside(rows, i).into_iter().flatten().map(|i| i * self.columns + j);
-            for to in across.chain(along) {
+            let (across, along) = (beside(columns, j), beside(rows, i));
+            let corners = along.iter().flat_map(|i| across.iter().map(move |j| (*i, *j)));
+            let straight = across.iter().map(|j| (Some(i), *j)).chain(along.iter().map(|i| (*i, Some(j))));
+            for to in straight.chain(corners).filter_map(|(i, j)| Some(i? * self.columns + j?)) {
                 if !field.is_root(to) && leaps.iter().all(|leap| leap.to != to) {
                     leaps.push(Leap { from, to });
                 }

@@ -33,6 +33,17 @@ pub(crate) fn lattice(length: usize, anchor: usize) -> Vec<usize> {
     places
 }
 
+/// Some places on a line, and as many between them that none is further from the next one than `widest`.
+pub(crate) fn denser(known: &[usize], widest: usize) -> Vec<usize> {
+    let mut places = known.to_vec();
+    for gap in known.windows(2) {
+        let parts = (gap[1] - gap[0]).div_ceil(widest);
+        places.extend((1..parts).map(|part| gap[0] + (gap[1] - gap[0]) * part / parts));
+    }
+    places.sort_unstable();
+    places
+}
+
 /// The points of a line in the order in which they follow from the known ones: all of a level depend on earlier levels only.
 /// `places` tells where on the line each of them stands.
 pub(crate) fn levels(places: &[usize], known: &[usize]) -> Vec<Vec<Midpoint>> {
@@ -72,7 +83,7 @@ pub(crate) fn stencil(k: usize, count: usize) -> std::ops::Range<usize> {
 }
 
 /// The weights of values at some places, [`STENCIL`] at most, in the coefficient of the highest power of the polynomial through them.
-pub(crate) fn divided_difference(places: &[usize]) -> impl Iterator<Item = f64> {
+pub(crate) fn divided_difference(places: &[usize]) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
     products(places, [1.0; STENCIL]).into_iter().take(places.len()).map(|product| 1.0 / product)
 }
 

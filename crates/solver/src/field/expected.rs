@@ -184,7 +184,8 @@ mod tests {
             }
         }
         assert!(field.solved() > 6000);
-        assert!(effort.evaluations < 3 * targets.len() as u64, "{effort:?}");
+        // nearly half of the points are no solutions, and cost what it takes to say why
+        assert!(effort.evaluations < 4 * targets.len() as u64, "{effort:?}");
     }
 
     fn bisected(sum: f64) -> f64 {

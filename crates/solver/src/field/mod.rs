@@ -6,6 +6,7 @@
 
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
+mod along;
 mod expected;
 mod numbers;
 mod on_line;
@@ -15,9 +16,10 @@ mod strip;
 use flank_expr::LANES;
 
 use crate::lanes::{LaneNewton, Lanes, VITAL};
-use crate::line::Midpoint;
+use crate::line::levels;
 use crate::solution::{CutBy, Outcome, Range, Solution, verdict};
 
+pub(crate) use along::Along;
 pub(crate) use expected::{Expected, expected};
 use numbers::Numbers;
 pub(crate) use on_line::{OnLine, laid_out};
@@ -176,11 +178,6 @@ impl Field {
         let to = &mut self.values.as_chunks_mut::<LANES>().0[block * planes..][..planes];
         to.iter_mut().zip(numbers).for_each(|(to, numbers)| to[lane] = numbers[column]);
         self.marks[block][lane] = from.marks[other][column];
-    }
-
-    /// How it is divided.
-    pub(crate) fn shape(&self) -> Shape {
-        self.shape
     }
 
     /// Number of points.
@@ -352,30 +349,36 @@ impl Field {
         }
     }
 
-    /// Solves what follows from the known points of some lines, along these; what fails stays unknown, for the careful path.
-    /// Gives the number of evaluations.
+    /// Solves some places on some lines from those that are known; what fails stays unknown, for the careful path. Gives the
+    /// number of evaluations.
     pub(crate) fn refine_lines(
         &mut self,
         newton: &mut LaneNewton<'_>,
         lines: &[usize],
-        levels: &[Vec<Midpoint>],
+        (places, known): (&[usize], &[usize]),
         targets: &[[f64; 2]],
     ) -> u64 {
-        let Shape { length, size, planes, .. } = self.shape;
+        if places.len() == known.len() {
+            return 0;
+        }
+        let Shape { size, planes, .. } = self.shape;
         // beside each other these lines are lanes of lines that go across them
-        let shape = Shape::new(Lines::Columns, [lines.len(), length], size, planes);
+        let shape = Shape::new(Lines::Columns, [lines.len(), places.len()], size, planes);
         let mut across = Field::of(shape, &self.ranges, self.memory.take().map(|memory| *memory));
         let own = self.shape;
         // of what lies beside each other in either field, one after the other
         let pairs = || {
-            let places = (0..length).flat_map(|at| (0..lines.len()).map(move |k| (k, at)));
-            places.map(move |(k, at)| (own.place_on(lines[k], at), shape.place_on(at, k)))
+            let points = (0..places.len()).flat_map(|at| (0..lines.len()).map(move |k| (k, at)));
+            points.map(move |(k, at)| (own.place_on(lines[k], places[at]), shape.place_on(at, k)))
         };
-        let number = |at: usize, k: usize| own.point(lines[k], at);
+        let target = |line: usize| places.iter().map(move |at| targets[own.point(line, *at)]);
+        let targets: Vec<[f64; 2]> = lines.iter().flat_map(|line| target(*line)).collect();
         let is_root = |field: &Field, (block, lane): (usize, usize)| field.marks[block][lane].is_root();
         pairs().filter(|(own, _)| is_root(self, *own)).for_each(|(own, beside)| across.copy_place(beside, self, own));
+        let known: Vec<usize> = (0..places.len()).filter(|at| known.contains(&places[*at])).collect();
+        let levels = levels(places, &known);
         let evaluations =
-            across.strips().into_iter().map(|mut strip| strip.refine(newton, levels, targets, number)).sum();
+            across.strips().into_iter().map(|mut strip| strip.refine(newton, None, &levels, &targets)).sum();
         for (own, beside) in pairs() {
             if is_root(&across, beside) && !is_root(self, own) {
                 self.copy_place(own, &across, beside);

@@ -4,7 +4,7 @@
 
 use flank_expr::LANES;
 
-use super::{Mark, NEAR, OnLine, SAME_DETERMINANT, Shape, block_of, number, take};
+use super::{Along, Mark, NEAR, OnLine, SAME_DETERMINANT, Shape, block_of, number, take};
 use crate::lanes::{LaneNewton, Lanes};
 use crate::line::{Midpoint, STENCIL};
 use crate::solution::Range;
@@ -26,20 +26,21 @@ pub(crate) struct Strip<'f> {
 }
 
 impl Strip<'_> {
-    /// Solves what follows from the known lines; what fails stays unknown, for the careful path. `number` tells which target is that
-    /// of a line at a place on it; from line to line it grows by the same. Gives the number of evaluations.
+    /// Solves what follows from the known lines, of which those of `along` are known at some places; what fails stays unknown, for
+    /// the careful path. Gives the number of evaluations.
     pub(crate) fn refine(
         &mut self,
         newton: &mut LaneNewton<'_>,
+        along: Option<&Along>,
         levels: &[Vec<Midpoint>],
         targets: &[[f64; 2]],
-        number: impl Fn(usize, usize) -> usize,
     ) -> u64 {
-        let (mut evaluations, mut rough, mut plain) = (0, true, true);
+        let mut ordered = std::mem::take(newton.targets());
+        self.put_in_order(targets, &mut ordered);
+        let mut evaluations = along.map_or(0, |along| self.refine_along(newton, along, &ordered));
+        let (mut rough, mut plain) = (true, true);
         let mut full: Vec<bool> = (0..self.shape.count).map(|line| self.is_line_of_roots(line)).collect();
         let mut empty: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
-        let mut ordered = std::mem::take(newton.targets());
-        self.put_in_order(targets, number, &mut ordered);
         for midpoint in levels.iter().flatten() {
             let is_free = empty[midpoint.at] && midpoint.known().iter().all(|(line, _)| full[*line]);
             empty[midpoint.at] = false;
@@ -119,18 +120,14 @@ impl Strip<'_> {
     }
 
     /// The targets of all lines.
-    fn put_in_order(
-        &self,
-        targets: &[[f64; 2]],
-        number: impl Fn(usize, usize) -> usize,
-        ordered: &mut Vec<[Lanes; 2]>,
-    ) {
-        ordered.resize(self.shape.count, [[0.0; LANES]; 2]);
-        let step = number(1, self.first) - number(0, self.first);
+    fn put_in_order(&self, targets: &[[f64; 2]], ordered: &mut Vec<[Lanes; 2]>) {
+        let shape = self.shape;
+        ordered.resize(shape.count, [[0.0; LANES]; 2]);
+        let step = shape.point(1, self.first) - shape.point(0, self.first);
         // some lines at once, so that targets are read where they lie beside each other
         for (k, lines) in ordered.chunks_mut(LINES).enumerate() {
             for lane in 0..self.width.min(LANES) {
-                let targets = targets[number(k * LINES, self.first + lane)..].iter().step_by(step);
+                let targets = targets[shape.point(k * LINES, self.first + lane)..].iter().step_by(step);
                 for (ordered, target) in lines.iter_mut().zip(targets) {
                     [ordered[0][lane], ordered[1][lane]] = *target;
                 }
@@ -143,7 +140,7 @@ impl Strip<'_> {
         targets[self.shape.point(line, self.first)..].iter().step_by(next).take(self.width)
     }
 
-    fn is_line_of_roots(&self, line: usize) -> bool {
+    pub(super) fn is_line_of_roots(&self, line: usize) -> bool {
         self.marks[line][..self.width].iter().all(|mark| mark.is_root())
     }
 
@@ -213,7 +210,7 @@ impl Strip<'_> {
     }
 
     /// Takes what the lanes have come to if all are plain roots.
-    fn take_plain(&mut self, line: usize, newton: &mut LaneNewton<'_>) -> bool {
+    pub(super) fn take_plain(&mut self, line: usize, newton: &mut LaneNewton<'_>) -> bool {
         let (shape, width) = (self.shape, self.width);
         let are_plain = newton.all_plain(width, NEAR);
         if are_plain {
@@ -248,7 +245,7 @@ impl Strip<'_> {
 
 /// Whether a determinant between two others, and the way between them, cannot vanish. Not if one is no number.
 #[inline(always)]
-fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
+pub(super) fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
     is_same_side(before, behind) & is_same_side(before, between) & is_same_side(behind, between)
 }
 
@@ -270,6 +267,6 @@ fn repeat_lane(shape: Shape, newton: &mut LaneNewton<'_>, from: usize, active: &
 }
 
 /// Whether a point that came so far from its start may be on another branch than its neighbours, which are so far apart.
-fn is_astray(moved: f64, apart: impl Fn() -> f64) -> bool {
+pub(super) fn is_astray(moved: f64, apart: impl Fn() -> f64) -> bool {
     moved > NEAR && moved > ASTRAY * apart() + NEAR
 }
