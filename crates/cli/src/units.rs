@@ -1,6 +1,7 @@
 //! Values in the units that people read: mm, degrees, plain numbers.
 
 use flank_chain_dsl::Dimension;
+use flank_export::degrees;
 
 pub(crate) fn is_angle(dimension: Dimension) -> bool {
     dimension == Dimension::ANGLE
@@ -44,4 +45,10 @@ pub(crate) fn digits(dimension: Dimension, value: f64, decimals: usize) -> Strin
 /// The same with its unit.
 pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()
+}
+
+/// A value as it was given, with its unit: the shortest text that is the same value.
+pub(crate) fn as_given(dimension: Dimension, value: f64) -> String {
+    let shown = if is_angle(dimension) { degrees(value) } else { value };
+    format!("{} {}", if shown == 0.0 { 0.0 } else { shown }, symbol(dimension)).trim_end().to_string()
 }

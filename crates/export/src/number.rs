@@ -12,6 +12,17 @@ pub(crate) fn shortest(value: f64) -> String {
     String::from_utf8(text).expect("digits are ASCII")
 }
 
+/// An angle in degrees, by the shortest text that is the same angle but for one rounding: 120 deg are not 119.99999999999999 deg.
+#[must_use]
+pub fn degrees(radians: f64) -> f64 {
+    /// All digits that a number has.
+    const MOST: usize = 17;
+    let exact = radians.to_degrees();
+    let rounded = (0..MOST).filter_map(|decimals| format!("{exact:.decimals$}").parse::<f64>().ok());
+    let is_same = |degrees: &f64| (degrees.to_radians() - radians).abs() <= f64::EPSILON * radians.abs();
+    rounded.into_iter().find(is_same).unwrap_or(exact)
+}
+
 /// Puts [`shortest`] behind a text.
 pub(crate) fn push_shortest(value: f64, text: &mut Vec<u8>) {
     let size = value.abs();
@@ -103,6 +114,19 @@ mod tests {
         assert_eq!(shortest(-0.0), "0");
         assert_eq!(shortest(40.0), "40");
         assert_eq!(shortest(1e-300), "1e-300");
+    }
+
+    #[test]
+    fn degrees_have_the_shortest_text_of_their_angle() {
+        for (text, value) in
+            [("120", 120.0), ("-400.4567", -400.4567), ("15.1004", 15.1004), ("500", 500.0), ("0", 0.0)]
+        {
+            let radians = f64::to_radians(value);
+            assert_eq!(shortest(degrees(radians)), text);
+        }
+        for radians in [1.0, -0.3, 1e-9, 2e4] {
+            assert!((degrees(radians).to_radians() - radians).abs() <= 1e-15 * f64::abs(radians));
+        }
     }
 
     #[test]

@@ -46,6 +46,7 @@ pub struct PoseProblem<'g> {
     rest: Tape,
     components: Vec<usize>,
     axes: usize,
+    is_rotary: Vec<bool>,
     travels: Vec<Range>,
     /// Where postures are looked for: within travel and one turn of each rotary axis, and wherever else they may be.
     search: [Vec<Range>; 2],
@@ -160,6 +161,7 @@ impl<'g> PoseProblem<'g> {
             deviation,
             components,
             axes: axes.len(),
+            is_rotary: axes.iter().map(|axis| axis.is_rotary).collect(),
             travels,
             search,
         })
@@ -174,10 +176,12 @@ impl<'g> PoseProblem<'g> {
         if self.unknowns.len() == COMPONENTS {
             return None;
         }
-        let shares = [Range { low: -1.0, high: 1.0 }; COMPONENTS];
+        // Chebyshev's polynomials at their nodes: of the first n of them, any n components are independent
+        let share =
+            |k: usize, j: usize| ((k * (2 * j + 1)) as f64 * std::f64::consts::PI / (2 * COMPONENTS) as f64).cos();
         let mixture = |k: usize| {
-            let each = probe(&shares, k as u32 + 1).into_iter().zip(&self.deviation).enumerate();
-            let each = each.map(|(j, (share, part))| if j < 3 { share * *part } else { share * ARM * *part });
+            let each = self.deviation.iter().enumerate();
+            let each = each.map(|(j, part)| if j < 3 { share(k, j) * *part } else { share(k, j) * ARM * *part });
             each.reduce(|sum, part| sum + part).expect("six components")
         };
         let residuals: Vec<Expr<'g>> = (0..self.unknowns.len()).map(mixture).collect();
@@ -202,6 +206,19 @@ impl<'g> PoseProblem<'g> {
 
     pub(crate) fn system(&self) -> &System {
         &self.system
+    }
+
+    pub(crate) fn travels(&self) -> &[Range] {
+        &self.travels
+    }
+
+    pub(crate) fn is_rotary(&self, axis: usize) -> bool {
+        self.is_rotary[axis]
+    }
+
+    /// Of which differences of unknowns count as shares.
+    pub(crate) fn widths(&self) -> &[Range] {
+        &self.search[1]
     }
 
     /// Postures at one value of the motions within travel and one turn of each rotary axis, the least turned one first; if there
@@ -354,7 +371,7 @@ impl<'g> PoseProblem<'g> {
         Ok((missed, turning.into_iter().filter(|k| *k < self.axes).collect()))
     }
 
-    fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
+    pub(crate) fn posture(&self, motions: &[f64], solution: Solution) -> Posture {
         let mut deviation = [0.0; 6];
         if self.components.len() < deviation.len() {
             ScalarEvaluator::new(&self.rest).run(&[&solution.unknowns[..], motions].concat(), &mut deviation);
@@ -372,7 +389,7 @@ impl<'g> PoseProblem<'g> {
     }
 
     /// Ranges in which Newton may go anywhere: what lies beyond an axis's travel is told, not prevented.
-    fn wide(&self) -> Vec<Range> {
+    pub(crate) fn wide(&self) -> Vec<Range> {
         let wide = |range: &Range| range.wider_by(FREE_TURNS);
         self.search[1].iter().map(wide).collect()
     }
@@ -501,31 +518,62 @@ pub(crate) fn doubled<'g>(
     slips: &[Screw],
 ) -> Result<Option<usize>, TapeError> {
     let inputs: Vec<Expr<'g>> = axes.iter().chain(settings).copied().collect();
-    let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
     for axis in axes {
-        let Twist { angular, linear } = target.twist(*axis);
-        let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
-        let mut out = [0.0; 6];
-        ScalarEvaluator::new(&Tape::new(&twist, &inputs)?).run(&numbers, &mut out);
-        // velocities by the largest of them, so that they count as turns do
-        let velocities = slips.iter().flat_map(|slip| slip.linear).chain(out[3..].iter().copied());
-        let fastest = velocities.map(f64::abs).filter(|v| *v > 0.0).reduce(f64::max).unwrap_or(1.0);
-        let of = Mat::from_fn(6, 1, |i, _| if i < 3 { out[i] } else { out[i] / fastest });
-        let basis =
-            Mat::from_fn(
-                6,
-                slips.len(),
-                |i, j| {
-                    if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] / fastest }
-                },
-            );
-        let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
-        let left = &of - &basis * &shares;
-        if of.norm_l2() > 0.0 && left.norm_l2() <= ALONG * of.norm_l2() {
-            return Ok((0..slips.len()).max_by(|&a, &b| shares[(a, 0)].abs().total_cmp(&shares[(b, 0)].abs())));
+        if let Some(shares) = along(target, *axis, &inputs, slips)? {
+            return Ok((0..slips.len()).max_by(|&a, &b| shares[a].abs().total_cmp(&shares[b].abs())));
         }
     }
     Ok(None)
+}
+
+/// The motion of the tool that an axis makes, if the tool does not see it, wherever the other axes stand; and how much of it per mm
+/// or radian of the axis.
+///
+/// # Errors
+/// If something depends on a variable that is not given.
+pub fn unseen_motion<'g>(
+    target: &Chain<'g>,
+    axis: Expr<'g>,
+    axes: &[Expr<'g>],
+    symmetries: &[Screw],
+) -> Result<Option<(Screw, f64)>, TapeError> {
+    let shares = along(target, axis, axes, symmetries)?;
+    Ok(shares.map(|shares| {
+        let sum = |of: fn(&Screw) -> [f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|k| symmetries.iter().zip(&shares).map(|(screw, share)| share * of(screw)[k]).sum())
+        };
+        let (angular, linear) = (sum(|screw| screw.angular), sum(|screw| screw.linear));
+        let size = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let pace = if size(angular) > 0.0 { size(angular) } else { size(linear) };
+        (Screw { angular: angular.map(|x| x / pace), linear: linear.map(|x| x / pace) }, pace)
+    }))
+}
+
+/// The shares of the symmetries in what an axis does to the tool, if it does nothing else.
+fn along<'g>(
+    target: &Chain<'g>,
+    axis: Expr<'g>,
+    inputs: &[Expr<'g>],
+    slips: &[Screw],
+) -> Result<Option<Vec<f64>>, TapeError> {
+    if slips.is_empty() {
+        return Ok(None);
+    }
+    let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
+    let Twist { angular, linear } = target.twist(axis);
+    let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
+    let mut out = [0.0; 6];
+    ScalarEvaluator::new(&Tape::new(&twist, inputs)?).run(&numbers, &mut out);
+    // velocities by the largest of them, so that they count as turns do
+    let velocities = slips.iter().flat_map(|slip| slip.linear).chain(out[3..].iter().copied());
+    let fastest = velocities.map(f64::abs).filter(|v| *v > 0.0).reduce(f64::max).unwrap_or(1.0);
+    let of = Mat::from_fn(6, 1, |i, _| if i < 3 { out[i] } else { out[i] / fastest });
+    let entry = |i: usize, j: usize| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] / fastest };
+    let basis = Mat::from_fn(6, slips.len(), entry);
+    let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
+    let left = &of - &basis * &shares;
+    let is_along = of.norm_l2() > 0.0 && left.norm_l2() <= ALONG * of.norm_l2();
+    Ok(is_along.then(|| (0..slips.len()).map(|k| shares[(k, 0)]).collect()))
 }
 
 /// As many components of the deviation as there are unknowns: those that they change most independently, most everywhere within the

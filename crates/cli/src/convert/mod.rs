@@ -12,9 +12,11 @@ mod table;
 use std::path::Path;
 
 use flank_chain_dsl::{Axis, Bounded, Job, Machine, compile_with_machine};
-use flank_expr::geometry::Chain;
+use flank_expr::geometry::{Chain, Step};
 use flank_expr::{Expr, Graph};
-use flank_solver::{Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis};
+use flank_solver::{
+    Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis, unseen_motion,
+};
 
 use crate::arguments::{Convert, Onto, Which};
 use crate::failure::Failure;
@@ -183,24 +185,81 @@ impl<'t, 'g> Target<'t, 'g> {
         self.source.motions.iter().map(|motion| motion.variable).collect()
     }
 
-    fn problem(&self, unseen: &[Screw]) -> Result<PoseProblem<'g>, String> {
-        PoseProblem::new(&self.chain, &self.axes, self.source.driven, &self.motions(), unseen, REACH, &self.bindings)
+    fn problem(
+        &self,
+        (chain, axes): (&Chain<'g>, &[TargetAxis<'g>]),
+        unseen: &[Screw],
+    ) -> Result<PoseProblem<'g>, String> {
+        PoseProblem::new(chain, axes, self.source.driven, &self.motions(), unseen, REACH, &self.bindings)
             .map_err(|error| refused(&error, self.machine, &self.free))
     }
 
-    /// Postures at all positions.
-    fn postures(&self, positions: &[Vec<f64>]) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
+    /// Postures at all positions. Where an axis that the tool does not see would go beyond its travel, the tool is turned about itself
+    /// so that it need not.
+    fn postures(&mut self, positions: &[Vec<f64>]) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
+        let found = self.postures_of(&self.chain, &self.axes, positions)?;
+        if !found.1.iter().all(is_met) || found.1.iter().all(is_good) {
+            return Ok(found);
+        }
+        let unseen = self.unseen_motions();
+        if unseen.iter().all(Option::is_none) {
+            return Ok(found);
+        }
+        let endless = self.axes.iter().zip(&unseen);
+        let endless: Vec<TargetAxis<'g>> = endless
+            .map(|(axis, unseen)| TargetAxis { travel: axis.travel.filter(|_| unseen.is_none()), ..*axis })
+            .collect();
+        let (_, line) = self.postures_of(&self.chain, &endless, positions)?;
+        let turned = self.turned(&unseen, &line);
+        let other = self.postures_of(&turned, &self.axes, positions)?;
+        if other.1.iter().all(is_met) {
+            self.chain = turned;
+            return Ok(other);
+        }
+        Ok(found)
+    }
+
+    /// Of each axis that ends what it does to the tool, if the tool does not see it, and how much of it per mm or radian.
+    fn unseen_motions(&self) -> Vec<Option<(Screw, f64)>> {
+        let settled = self.chain.substituted(&self.bindings);
+        let axes: Vec<Expr<'g>> = self.axes.iter().map(|axis| axis.variable).collect();
+        let of = |axis: &TargetAxis<'g>| {
+            axis.travel.and_then(|_| unseen_motion(&settled, axis.variable, &axes, &self.source.symmetries).ok()?)
+        };
+        self.axes.iter().map(of).collect()
+    }
+
+    /// The chain with the tool moved along itself by as much as brings axes that it does not see to the middle of their travels.
+    fn turned(&self, unseen: &[Option<(Screw, f64)>], line: &[Posture]) -> Chain<'g> {
+        let graph = self.free[0].variable.graph();
+        let steps = self.axes.iter().zip(unseen).enumerate().flat_map(|(k, (axis, unseen))| {
+            let (Some((screw, pace)), Some(travel)) = (unseen, axis.travel) else { return Vec::new() };
+            let values = line.iter().map(|posture| posture.axes[k]);
+            let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+            let by = 0.5 * (low + high - travel.low - travel.high);
+            screw.steps(graph, graph.constant(by * pace))
+        });
+        self.chain.then(&Chain::new(graph, steps.collect::<Vec<Step<'g>>>()))
+    }
+
+    fn postures_of(
+        &self,
+        chain: &Chain<'g>,
+        axes: &[TargetAxis<'g>],
+        positions: &[Vec<f64>],
+    ) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
         let unseen = &self.source.symmetries;
-        let problem = self.problem(unseen)?;
-        let line = follow(&problem, positions, self.source.motions.len());
+        let problem = self.problem((chain, axes), unseen)?;
+        let ranges = &self.source.ranges;
+        let line = follow(&problem, positions, ranges);
         if line.iter().all(is_met) {
             return Ok((problem, line));
         }
         // an axis that only happens to move the tool along itself there does not know how far: as far as on the source
-        let exact = if unseen.is_empty() { None } else { Some(self.problem(&[])?) };
+        let exact = if unseen.is_empty() { None } else { Some(self.problem((chain, axes), &[])?) };
         let mixed = [Some(&problem), exact.as_ref()].map(|problem| problem.and_then(PoseProblem::mixed));
         for other in [exact].into_iter().chain(mixed).flatten() {
-            let line = follow(&other, positions, self.source.motions.len());
+            let line = follow(&other, positions, ranges);
             if line.iter().all(is_met) {
                 return Ok((other, line));
             }
@@ -250,7 +309,7 @@ impl<'j, 'g> Carried<'j, 'g> {
         }
     }
 
-    fn on(target: Target<'j, 'g>, positions: u32) -> Result<Carried<'j, 'g>, String> {
+    fn on(mut target: Target<'j, 'g>, positions: u32) -> Result<Carried<'j, 'g>, String> {
         let _working = Working::on(format!("following the tool on {}", target.machine.name));
         let positions = target.source.positions(positions as usize);
         let (problem, line) = target.postures(&positions)?;
@@ -324,18 +383,24 @@ fn frame(machine: &Machine<'_>, source: &str, asked: Option<&str>, option: &str)
 }
 
 /// Postures at all positions: of one motion from the middle to both ends, or from a quarter, if the middle has none; else row by row.
-fn follow(problem: &PoseProblem<'_>, positions: &[Vec<f64>], motions: usize) -> Vec<Posture> {
-    let starts: &[usize] = if motions == 1 { &[2, 1, 3, 0, 4] } else { &[0] };
-    let each = starts.iter().filter_map(|quarter| {
-        let at = quarter * (positions.len() - 1) / 4;
-        Some((at, problem.postures(&positions[at]).into_iter().next()?))
-    });
-    let mut each = each.peekable();
-    let Some(middle) = each.peek().cloned() else { return Vec::new() };
-    let (start, first) = each.find(|(_, posture)| is_good(posture)).unwrap_or(middle);
-    let down: Vec<Vec<f64>> = positions[..=start].iter().rev().cloned().collect();
-    let mut line: Vec<Posture> = problem.follow(&first, &down).into_iter().rev().collect();
-    line.pop();
-    line.extend(problem.follow(&first, &positions[start..]));
-    line
+fn follow(problem: &PoseProblem<'_>, positions: &[Vec<f64>], ranges: &[Range]) -> Vec<Posture> {
+    let [range] = ranges else {
+        return problem.walks(&positions[0], &[positions.to_vec()]).pop().unwrap_or_default();
+    };
+    let has_posture = |at: &f64| problem.postures(&[*at]).first().is_some_and(is_good);
+    let [middle, others @ ..] = [0.5, 0.25, 0.75, 0.0, 1.0].map(|share| at(*range, share));
+    let start = [middle].into_iter().chain(others).find(has_posture).unwrap_or(middle);
+    let from_start = |walk: Vec<Vec<f64>>| [vec![start]].into_iter().chain(walk).collect();
+    let (below, above): (Vec<Vec<f64>>, Vec<Vec<f64>>) = positions.iter().cloned().partition(|at| at[0] < start);
+    let walks = [below.into_iter().rev().collect(), above].map(from_start);
+    let mut lines = problem.walks(&[start], &walks).into_iter();
+    // each walk begins at the start, which need not be a position
+    let mut line = || lines.next().into_iter().flat_map(|line| line.into_iter().skip(1));
+    let below: Vec<Posture> = line().collect();
+    below.into_iter().rev().chain(line()).collect()
+}
+
+/// The value at a share of the way through a motion.
+pub(super) fn at(range: Range, share: f64) -> f64 {
+    range.low + share * (range.high - range.low)
 }

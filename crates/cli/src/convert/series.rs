@@ -1,10 +1,10 @@
 //! The axes as polynomials of the motion, and what cutting them off leaves on the flank.
 
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{PoseProblem, Tube, Unproven};
+use flank_solver::{PoseProblem, Posture, Tube, Unproven};
 
-use super::Carried;
 use super::source::{Flank, Source};
+use super::{Carried, at, is_met};
 use crate::arguments::Convert;
 
 /// The highest order that is tried.
@@ -34,10 +34,10 @@ pub(crate) struct Series {
 impl Series {
     pub(crate) fn of(carried: &Carried<'_, '_>, arguments: &Convert) -> Option<Series> {
         let Carried { source, problem, positions, line, .. } = carried;
-        let middle = positions.len() / 2;
-        let about = positions[middle][0];
+        let about = at(source.ranges[0], 0.5);
+        let middle = middle(carried, about)?;
         let highest = if arguments.tolerance.is_some() { HIGHEST } else { arguments.order() };
-        let all = problem.series(&line[middle], &positions[middle], 0, highest)?;
+        let all = problem.series(&middle, &[about], 0, highest)?;
         let mut flanks: Vec<Moved<'_, '_, '_>> = source
             .flanks
             .iter()
@@ -61,14 +61,13 @@ impl Series {
                 }
             }
         }
-        let axes: Vec<Vec<f64>> =
-            all[..line[middle].axes.len()].iter().map(|series| series[..=order].to_vec()).collect();
+        let axes: Vec<Vec<f64>> = all[..middle.axes.len()].iter().map(|series| series[..=order].to_vec()).collect();
         let off = |axis: usize| {
             let each = positions.iter().zip(line);
             each.map(|(at, posture)| (posture.axes[axis] - value(&axes[axis], at[0] - about)).abs()).fold(0.0, f64::max)
         };
         let seen = (0..axes.len()).map(off).collect();
-        let tube = problem.tube(&line[middle], about, source.ranges[0]);
+        let tube = problem.tube(&middle, about, source.ranges[0]);
         let remainders = tube.as_ref().map(|tube| tube.distances(about, &axes)).map_err(|unproven| *unproven);
         Some(Series { about, order, axes, deviations, meets, seen, remainders, tube })
     }
@@ -99,6 +98,14 @@ impl Series {
             least * 1e3
         ))
     }
+}
+
+/// The posture in the middle of the motion, which need not be one of the positions; nothing if it cannot be followed there.
+fn middle(carried: &Carried<'_, '_>, about: f64) -> Option<Posture> {
+    let Carried { problem, positions, line, .. } = carried;
+    let apart = |k: &usize| (positions[*k][0] - about).abs();
+    let nearest = (0..positions.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+    problem.follow(&line[nearest], &[positions[nearest].clone(), vec![about]]).pop().filter(is_met)
 }
 
 /// A polynomial at a distance from what it is about.

@@ -94,7 +94,7 @@ impl Table {
         rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {
             let (low, high) = self.ends(k);
             let travel = axis.travel.map(|(low, high)| {
-                format!("{} .. {}", units::text(axis.dimension, low, 0), units::text(axis.dimension, high, 0))
+                format!("{} .. {}", units::as_given(axis.dimension, low), units::as_given(axis.dimension, high))
             });
             let [low, high] = [low, high].map(|x| units::text(axis.dimension, x, 6));
             [axis.name.clone(), low, high, travel.unwrap_or_default()]
@@ -119,8 +119,10 @@ impl Table {
 
     fn series_text(&self, series: &Series, out: &mut String) {
         let motion = &self.motions[0];
-        let about = units::text(motion.dimension, series.about, 6);
-        let _ = writeln!(out, "\npolynomials in h = {} - {about}, mm and rad; order {}", motion.name, series.order);
+        let sign = if series.about < 0.0 { '+' } else { '-' };
+        let about = units::text(motion.dimension, series.about.abs(), 6);
+        let _ =
+            writeln!(out, "\npolynomials in h = {} {sign} {about}, mm and rad; order {}", motion.name, series.order);
         let power = |k: usize| if k == 0 { "1".to_string() } else { format!("h^{k}") };
         let mut rows = vec![["axis", "coefficient"].map(String::from)];
         for (axis, coefficients) in self.axes.iter().zip(&series.axes) {

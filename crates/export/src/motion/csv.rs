@@ -96,8 +96,12 @@ fn write_head(table: &MotionTable, out: &mut dyn Write) -> io::Result<()> {
         )?;
     }
     let Some(series) = table.written_series() else { return Ok(()) };
-    let reference = shortest(series.reference);
-    writeln!(out, "# polynomials: factors of the powers of ({motion} - {reference}), constant first, in these units")?;
+    let sign = if series.reference < 0.0 { '+' } else { '-' };
+    let reference = shortest(series.reference.abs());
+    writeln!(
+        out,
+        "# polynomials: factors of the powers of ({motion} {sign} {reference}), constant first, in these units"
+    )?;
     for (axis, of_axis) in table.axes.iter().zip(&series.axes) {
         let factors: Vec<String> = of_axis.coefficients.iter().copied().map(shortest).collect();
         write!(out, "# polynomial of `{}`: {}", one_line(&axis.name), factors.join(" "))?;

@@ -3,7 +3,7 @@
 use crate::conventions::one_line;
 use crate::dataset::{Header, Unit, Unknown};
 use crate::error::Malformed;
-use crate::number::plain;
+use crate::number::{degrees, plain};
 
 /// How positions of files of data are to be read.
 pub(crate) const AS_IN_THE_SPEC: &str = "axes are named, signed and counted as in the machine's spec";
@@ -93,9 +93,9 @@ impl MachineAxis {
         [a.min(b), a.max(b)]
     }
 
-    /// Two positions as files of data have them.
+    /// Two positions as files of data have them, by their shortest text.
     pub(crate) fn written(&self, ends: [f64; 2]) -> [f64; 2] {
-        ends.map(|end| plain(self.unit().written(end)))
+        ends.map(|end| plain(if self.is_rotary { degrees(end) } else { end }))
     }
 
     /// Where the control sees it, mm or radians.

@@ -1,5 +1,7 @@
 //! Settings and poses by least squares, from starts all over the ranges.
 
+use std::f64::consts::TAU;
+
 use faer::Mat;
 use faer::linalg::solvers::{Qr, SolveLstsq, Svd};
 use flank_expr::{ScalarEvaluator, Tape};
@@ -112,15 +114,32 @@ impl Search {
         self.unwound(state, motions)
     }
 
-    /// Angles without whole turns, where these make no difference.
+    /// Angles without whole turns, and rotary axes without jumps of whole turns, where these make no difference.
     fn unwound(&self, state: State, motions: &[Vec<f64>]) -> State {
-        let turn = std::f64::consts::TAU;
+        let whole = |angle: f64| (angle / TAU).round() * TAU;
         let mut settings = state.settings.clone();
         for (value, _) in settings.iter_mut().zip(&self.settings).filter(|(_, s)| s.kind == SettingKind::Angle) {
-            *value -= (*value / turn).round() * turn;
+            *value -= whole(*value);
         }
-        let cost = self.cost(&settings, &state.moving, motions);
-        if cost <= state.cost.max(self.rounding(motions.len())) { State { settings, cost, ..state } } else { state }
+        let state = self.kept(State { settings, ..state.clone() }, state, motions);
+        let mut moving = state.moving.clone();
+        let middle = moving.len() / 2;
+        for k in (0..self.is_rotary.len()).filter(|k| self.is_rotary[*k]) {
+            moving[middle][k] -= whole(moving[middle][k]);
+            for pose in middle + 1..moving.len() {
+                moving[pose][k] -= whole(moving[pose][k] - moving[pose - 1][k]);
+            }
+            for pose in (0..middle).rev() {
+                moving[pose][k] -= whole(moving[pose][k] - moving[pose + 1][k]);
+            }
+        }
+        self.kept(State { moving, ..state.clone() }, state, motions)
+    }
+
+    /// A state that is told otherwise, unless it leaves more of the poses.
+    fn kept(&self, otherwise: State, state: State, motions: &[Vec<f64>]) -> State {
+        let cost = self.cost(&otherwise.settings, &otherwise.moving, motions);
+        if cost <= state.cost.max(self.rounding(motions.len())) { State { cost, ..otherwise } } else { state }
     }
 
     fn start(&self, k: u32, motions: &[Vec<f64>], held: &[Option<f64>]) -> State {
