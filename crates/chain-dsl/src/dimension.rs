@@ -137,7 +137,9 @@ pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
 fn without_noise(value: f64) -> f64 {
     let short = format!("{value:.14e}").parse().unwrap_or(value);
     let rounding = value.abs().next_up() - value.abs();
-    if (short - value).abs() <= 2.0 * rounding { short } else { value }
+    let shown = if (short - value).abs() <= 2.0 * rounding { short } else { value };
+    // a zero has no sign
+    if shown == 0.0 { 0.0 } else { shown }
 }
 
 /// A base dimension by its name in the language.

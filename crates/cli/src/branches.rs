@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{Bounded, Dimension};
+use flank_export::fixed;
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
 use serde_json::{Value, json};
 
@@ -25,8 +26,8 @@ fn listed(solved: &Solved<'_, '_>) -> String {
     let chosen = tells_apart(&solved.branches, unknowns);
     for (number, branch) in solved.branches.iter().enumerate() {
         let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
-        let [x, y, z] = branch.position;
-        let _ = writeln!(out, "  {}: {}, at [{x:.4}, {y:.4}, {z:.4}] mm", number + 1, values.join(", "));
+        let [x, y, z] = branch.position.map(|x| fixed(x, DECIMALS));
+        let _ = writeln!(out, "  {}: {}, at [{x}, {y}, {z}] mm", number + 1, values.join(", "));
         if let Some(unknown) = chosen {
             let (low, high) = around(&solved.branches, number, &unknowns[unknown], unknown);
             let of = &unknowns[unknown];

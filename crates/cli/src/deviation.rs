@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps};
+use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps, fixed};
 use flank_expr::Graph;
 use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
@@ -248,29 +248,30 @@ impl Measured<'_, '_> {
             self.from.whole_name(),
             self.from.surface.frame
         );
+        let um = |value: f64| fixed(value, 3);
         let _ = writeln!(out, "  points       {known} of {}", self.points.len());
         if let Some(turn) = self.turn {
             let (radius, done) = (self.middle_radius(), if self.is_turned { "" } else { " (not done)" });
             let _ = writeln!(
                 out,
-                "  turn about z {:.6} deg, {:.6} mm on the circle through the middle{done}",
-                rounded(turn.to_degrees()),
-                rounded(radius * turn)
+                "  turn about z {} deg, {} mm on the circle through the middle{done}",
+                fixed(turn.to_degrees(), 6),
+                fixed(radius * turn, 6)
             );
         }
         if let Some([low, high, rms]) = self.spread() {
-            let middle = self.in_the_middle().map_or(String::new(), |middle| format!(", in the middle {middle:.3}"));
-            let _ = writeln!(out, "  range        {low:.3} .. {high:.3} um, rms {rms:.3}{middle}");
+            let middle = self.in_the_middle().map_or(String::new(), |middle| format!(", in the middle {}", um(middle)));
+            let _ = writeln!(out, "  range        {} .. {} um, rms {}{middle}", um(low), um(high), um(rms));
         }
         if let Some(ease_off) = self.ease_off() {
             for (k, label) in self.labels.iter().enumerate() {
                 let rise = ease_off.slopes[k];
                 let angle = self.lengths()[k].map(|length| arcmin(rise, length));
-                let angle = angle.map_or(String::new(), |angle| format!(" ({angle:.3} arcmin)"));
-                let _ =
-                    writeln!(out, "  {label:12} slope {rise:.3} um{angle}, crowning {:.3} um", ease_off.crownings[k]);
+                let angle = angle.map_or(String::new(), |angle| format!(" ({} arcmin)", um(angle)));
+                let crowning = um(ease_off.crownings[k]);
+                let _ = writeln!(out, "  {label:12} slope {} um{angle}, crowning {crowning} um", um(rise));
             }
-            let _ = writeln!(out, "  bias         {:.3} um", ease_off.bias);
+            let _ = writeln!(out, "  bias         {} um", um(ease_off.bias));
         }
         let _ = writeln!(out, "\nwrote {}", written.join(", "));
         out
@@ -358,10 +359,10 @@ impl Measured<'_, '_> {
         let turn = self.turn.filter(|_| self.is_turned);
         let turn = turn.map(|turn| {
             format!(
-                "; {} is turned by {:.6} deg about z, {:.6} mm on the circle through the middle",
+                "; {} is turned by {} deg about z, {} mm on the circle through the middle",
                 self.held.name(),
-                rounded(turn.to_degrees()),
-                rounded(self.middle_radius() * turn)
+                fixed(turn.to_degrees(), 6),
+                fixed(self.middle_radius() * turn, 6)
             )
         });
         format!("{NOTE}{}", turn.unwrap_or_default())
@@ -401,11 +402,6 @@ fn missing_of_file(of: &Measured<'_, '_>, [measured, known, unsolved]: [usize; 3
         );
     }
     out
-}
-
-/// To six decimals, never a negative zero.
-fn rounded(value: f64) -> f64 {
-    (1e6 * value).round() / 1e6 + 0.0
 }
 
 /// The angle of a rise in um over a length in mm.

@@ -1,6 +1,6 @@
 //! What `flank solve` tells of the further fields of points.
 
-use flank_export::Values;
+use flank_export::{Values, fixed};
 use flank_solver::Outcome;
 use serde_json::{Value, json};
 
@@ -12,6 +12,8 @@ struct FieldRange<'a> {
     unit: &'a str,
     /// The smallest and the largest.
     ends: Option<(f64, f64)>,
+    /// Whether all values are whole, as those of a number of a tooth are.
+    is_whole: bool,
     /// Points at which there is no value.
     undefined: usize,
 }
@@ -20,11 +22,14 @@ struct FieldRange<'a> {
 fn ranges<'a>(solved: &'a Solved<'_, '_>) -> impl Iterator<Item = FieldRange<'a>> {
     solved.fields.iter().filter_map(|field| {
         let Values::Scalars(values) = &field.values else { return None };
-        let mut range = FieldRange { name: &field.name, unit: &field.unit, ends: None, undefined: 0 };
+        let mut range = FieldRange { name: &field.name, unit: &field.unit, ends: None, is_whole: true, undefined: 0 };
         let of_solved = solved.points.iter().zip(values).filter(|(point, _)| point.outcome == Outcome::Solved);
         for (_, value) in of_solved {
             match value {
-                Some(x) => range.ends = Some(range.ends.map_or((*x, *x), |(low, high)| (low.min(*x), high.max(*x)))),
+                Some(x) => {
+                    range.ends = Some(range.ends.map_or((*x, *x), |(low, high)| (low.min(*x), high.max(*x))));
+                    range.is_whole &= x.fract() == 0.0;
+                }
                 None => range.undefined += 1,
             }
         }
@@ -38,7 +43,8 @@ pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
     for solved in solved {
         let mut name = solved.surface.name.clone();
         for range in ranges(solved) {
-            let ends = range.ends.map(|(low, high)| format!("{} .. {}", six_digits(low), six_digits(high)));
+            let shown = |x: f64| if range.is_whole && range.unit == "1" { fixed(x, 0) } else { six_digits(x) };
+            let ends = range.ends.map(|(low, high)| format!("{} .. {}", shown(low), shown(high)));
             let unit = if range.unit == "1" { "" } else { range.unit };
             let open = match range.undefined {
                 0 => String::new(),
@@ -59,12 +65,7 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
     all.collect()
 }
 
-/// Six digits behind the point; a zero has no sign, and what is small, but more than rounding, is no zero.
+/// Six digits behind the point; what is small, but more than rounding, is no zero.
 fn six_digits(x: f64) -> String {
-    if (1e-14..1e-6).contains(&x.abs()) {
-        return format!("{x:.1e}");
-    }
-    let text = format!("{x:.6}");
-    let zero = text.strip_prefix('-').filter(|digits| digits.chars().all(|c| matches!(c, '0' | '.')));
-    zero.map(str::to_string).unwrap_or(text)
+    if (1e-14..1e-6).contains(&x.abs()) { format!("{x:.1e}") } else { fixed(x, 6) }
 }

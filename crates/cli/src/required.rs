@@ -49,10 +49,10 @@ pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
             let of = &broken.limit.of;
             let (low, high) = broken.limit.ends;
             let [low, high, least, most] =
-                [low, high, broken.ends[0], broken.ends[1]].map(|x| units::shown(of.dimension, x));
+                [low, high, broken.ends[0], broken.ends[1]].map(|x| units::digits(of.dimension, x, 4));
             let unit = units::symbol(of.dimension);
             format!(
-                "not as required: {} of {} points of {}: {}\n  {}{} is {least:.4} .. {most:.4} {unit}, required is {low:.4} .. {high:.4} {unit}",
+                "not as required: {} of {} points of {}: {}\n  {}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
                 broken.places.count,
                 solved.points.len(),
                 solved.surface.name,
@@ -73,7 +73,7 @@ pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
 pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
     let entry = |broken: Broken<'_, '_>| {
         let of = &broken.limit.of;
-        let [least, most] = broken.ends.map(|x| units::shown(of.dimension, x));
+        let [least, most] = broken.ends.map(|x| units::digits(of.dimension, x, 4));
         json!({ "message": broken.limit.message, "name": of.name, "unit": units::symbol(of.dimension),
             "points": broken.places.count, "low": least, "high": most })
     };

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_export::Field;
+use flank_export::{Field, fixed};
 use flank_expr::Expr;
 use flank_solver::{Effort, SurfacePoint};
 use serde_json::{Map, Value, json};
@@ -230,7 +230,10 @@ pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> Stri
 impl Reached {
     fn text(&self) -> String {
         match self.ends {
-            Some((low, high)) => format!("{} {low:.4} .. {high:.4} {}", self.name, self.unit).trim_end().to_string(),
+            Some((low, high)) => {
+                let [low, high] = [low, high].map(|x| fixed(x, 4));
+                format!("{} {low} .. {high} {}", self.name, self.unit).trim_end().to_string()
+            }
             None => self.name.clone(),
         }
     }

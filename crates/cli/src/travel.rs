@@ -56,10 +56,10 @@ pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
         let (Some(found), Some((low, high))) = (run.over, run.axis.travel) else { continue };
         let unit = units::symbol(run.axis.dimension);
         let [from, to, low, high] =
-            [found.low, found.high, low, high].map(|value| units::shown(run.axis.dimension, value));
+            [found.low, found.high, low, high].map(|value| units::digits(run.axis.dimension, value, 4));
         let _ = writeln!(
             out,
-            "beyond its travel: axis {} runs from {from:.4} to {to:.4} {unit}, its travel is {low:.4} to {high:.4} {unit}",
+            "beyond its travel: axis {} runs from {from} to {to} {unit}, its travel is {low} to {high} {unit}",
             run.name()
         );
     }

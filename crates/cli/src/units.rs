@@ -1,7 +1,7 @@
 //! Values in the units that people read: mm, degrees, plain numbers.
 
 use flank_chain_dsl::Dimension;
-use flank_export::degrees;
+use flank_export::{degrees, fixed};
 
 pub(crate) fn is_angle(dimension: Dimension) -> bool {
     dimension == Dimension::ANGLE
@@ -35,14 +35,17 @@ pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
     if is_angle(dimension) { value.to_degrees() } else { value }
 }
 
-/// A value in that unit, with some decimals, without a negative zero.
+/// A value in that unit, with some decimals.
 pub(crate) fn digits(dimension: Dimension, value: f64, decimals: usize) -> String {
-    let shown = shown(dimension, value);
-    let visible = if shown.abs() < 0.5 * 10f64.powi(-(decimals as i32)) { 0.0 } else { shown };
-    format!("{visible:.decimals$}")
+    fixed(shown(dimension, value), decimals)
 }
 
-/// The same with its unit.
+/// A number of any size, with so many digits behind the first one; `0` for zero.
+pub(crate) fn scientific(value: f64, decimals: usize) -> String {
+    if value == 0.0 { "0".to_string() } else { format!("{value:.decimals$e}") }
+}
+
+/// A value in its unit, with some decimals.
 pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()
 }

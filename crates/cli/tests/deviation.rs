@@ -83,3 +83,14 @@ fn a_deviation_is_told_across_half_a_turn() {
         assert!((told[end].as_f64().expect("a number").abs() - 100.0).abs() < 1e-6, "{told}");
     }
 }
+
+/// A surface lies off itself by nothing, not by minus nothing.
+#[test]
+fn nothing_has_no_sign() {
+    let out = folder("deviation_of_itself");
+    let of = ["deviation", "specs/bevel/thesis_gear.chain", "concave", "--from", "concave", "--no-picture"];
+    let run = flank(&[&of[..], &["--out", out.to_str().unwrap()]].concat());
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(told.contains("range        0.000 .. 0.000 um, rms 0.000") && !told.contains("-0"), "{told}");
+}

@@ -216,6 +216,11 @@ fn what_single_edges_leave_is_listed_written_and_drawn() {
     for extension in ["png", "svg"] {
         assert!(out.join(format!("planed.plane.left.{extension}")).exists());
     }
+    // the edges are counted
+    let run = flank(&["solve", &spec, "--no-picture", "--set", "feed=0.5 mm", "--out", out.to_str().unwrap()]);
+    let listed = text(&run.stdout);
+    let strokes = listed.lines().find(|line| line.contains("left_by_stroke")).expect("it is listed");
+    assert!(!strokes.contains(".0") && strokes.contains(" .. "), "{strokes}");
     let run = solve("reach=1 deg");
     assert_eq!(run.status.code(), Some(3));
     let told = text(&run.stderr);

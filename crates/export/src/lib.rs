@@ -102,7 +102,7 @@ pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,
 };
-pub use number::degrees;
+pub use number::{degrees, fixed};
 pub use obj_file::write_obj;
 pub use page::{
     PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,

@@ -1,8 +1,20 @@
 //! Numbers as text.
 
+/// A length in mm below this is what rounding leaves of none.
+const ROUNDING: f64 = 1e-12;
+
 /// The number itself, but never a negative zero: it reads as a fault and differs in bytes only.
 pub(crate) fn plain(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
+}
+
+/// So many decimals, for people; what they show as zero has no sign.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
+        _ => text,
+    }
 }
 
 /// The shortest text that reads back as the same bits (a negative zero becomes `0`).
@@ -39,13 +51,12 @@ pub(crate) fn push_shortest(value: f64, text: &mut Vec<u8>) {
 
 /// A length for people: to the micrometre, without trailing zeros, with a real minus sign.
 pub(crate) fn dimension(millimetres: f64) -> String {
-    let text = if millimetres != 0.0 && !(1e-3..1e7).contains(&millimetres.abs()) {
+    let text = if millimetres.abs() > ROUNDING && !(1e-3..1e7).contains(&millimetres.abs()) {
         format!("{millimetres:.2e}")
     } else {
-        let fixed = format!("{millimetres:.3}");
-        fixed.trim_end_matches('0').trim_end_matches('.').to_owned()
+        fixed(millimetres, 3).trim_end_matches('0').trim_end_matches('.').to_owned()
     };
-    if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
+    text.replace('-', "\u{2212}")
 }
 
 /// A bound of bands that are `step` wide, for people: as many decimals as the step needs, with a real minus sign.
@@ -55,7 +66,7 @@ pub(crate) fn levelled(value: f64, step: f64) -> String {
         "0".to_owned()
     } else if (1e-3..1e6).contains(&size) {
         let decimals = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
-        format!("{:.decimals$}", plain(value))
+        fixed(value, decimals)
     } else {
         format!("{:.1e}", plain(value))
     };
@@ -130,10 +141,20 @@ mod tests {
     }
 
     #[test]
+    fn a_zero_has_no_sign() {
+        assert_eq!(
+            [-0.0, -4e-4, 4e-4, -6e-4, -12.0].map(|x| fixed(x, 3)),
+            ["0.000", "0.000", "0.000", "-0.001", "-12.000"]
+        );
+        assert_eq!([-0.4, -0.6].map(|x| fixed(x, 0)), ["0", "-1"]);
+    }
+
+    #[test]
     fn levels_have_the_decimals_of_their_step() {
         assert_eq!(levelled(-0.04, 0.02), "\u{2212}0.04");
         assert_eq!(levelled(0.1 + 0.2, 0.1), "0.3");
         assert_eq!(levelled(-0.0, 5.0), "0");
+        assert_eq!(levelled(-1e-17, 0.02), "0.00");
         assert_eq!(levelled(1500.0, 500.0), "1500");
         assert_eq!(levelled(2e-5, 1e-5), "2.0e\u{2212}5");
     }
@@ -149,6 +170,7 @@ mod tests {
         assert_eq!(dimension(-10.0), "\u{2212}10");
         assert_eq!(dimension(33.828_947_2), "33.829");
         assert_eq!(dimension(-0.0), "0");
+        assert_eq!(dimension(-1.7e-15), "0");
         assert_eq!(dimension(100.0), "100");
         assert_eq!(dimension(2.5e-5), "2.50e\u{2212}5");
     }

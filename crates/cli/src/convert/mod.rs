@@ -33,6 +33,7 @@ use table::Table;
 const REACH: f64 = 10_000.0;
 
 pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
+    check_positions(arguments)?;
     let graph = Graph::new();
     let (origin, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
     let target = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
@@ -46,6 +47,16 @@ pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
     print(&shown);
     eprint(&told);
     Ok(if told.is_empty() { Ending::Done } else { Ending::Unsolved })
+}
+
+/// # Errors
+/// If a program is asked for that would go nowhere: told before any file is written.
+fn check_positions(arguments: &Convert) -> Result<(), Failure> {
+    if arguments.nc.is_empty() || arguments.positions > 1 {
+        return Ok(());
+    }
+    let message = "an NC program moves from position to position: --nc needs --positions 2 or more";
+    Err(Failure::of_usage(message.to_string()))
 }
 
 /// # Errors

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{Axis, Dimension, Job, NcWord};
+use flank_export::fixed;
 use flank_solver::{Outcome, Posture, Screw, Unproven};
 use serde_json::{Map, Value, json};
 
@@ -129,9 +130,10 @@ impl Table {
             // what does not show in the last place anywhere on the way is rounding
             let reach = self.positions.iter().map(|position| (position[0] - series.about).abs()).fold(0.0, f64::max);
             let size = coefficients.iter().enumerate().map(|(k, c)| c.abs() * reach.powi(k as i32)).fold(1.0, f64::max);
-            let shows = |(k, c): &(usize, &f64)| *k == 0 || c.abs() * reach.powi(*k as i32) > 4.0 * f64::EPSILON * size;
-            for (k, c) in coefficients.iter().enumerate().filter(shows) {
-                rows.push([format!("{} {}", axis.name, power(k)), format!("{c:.15e}")]);
+            let is_rounding = |k: usize, c: f64| c.abs() * reach.powi(k as i32) <= 4.0 * f64::EPSILON * size;
+            for (k, c) in coefficients.iter().enumerate().filter(|(k, c)| *k == 0 || !is_rounding(*k, **c)) {
+                let visible = if is_rounding(k, *c) { 0.0 } else { *c };
+                rows.push([format!("{} {}", axis.name, power(k)), units::scientific(visible, 15)]);
             }
         }
         out.push_str(&aligned(&rows, "<>"));
@@ -148,7 +150,7 @@ impl Table {
             let each = rates.most(k);
             let unit = units::symbol(axis.dimension);
             let [velocity, acceleration, jerk] =
-                std::array::from_fn(|k| format!("{:.6} {unit}/{}", units::shown(axis.dimension, each[k]), SECONDS[k]));
+                std::array::from_fn(|k| format!("{} {unit}/{}", units::digits(axis.dimension, each[k], 6), SECONDS[k]));
             [axis.name.clone(), velocity, acceleration, jerk]
         }));
         out.push_str(&aligned(&rows, "<>>>"));
@@ -309,7 +311,7 @@ fn unbounded(motion: &Named, at: &str) -> String {
 
 /// A small amount with its unit.
 fn small(dimension: Dimension, amount: f64) -> String {
-    format!("{:.3e} {}", units::shown(dimension, amount), units::symbol(dimension))
+    format!("{} {}", units::scientific(units::shown(dimension, amount), 3), units::symbol(dimension))
 }
 
 /// The same, rounded up.
@@ -319,7 +321,7 @@ fn at_most(dimension: Dimension, bound: f64) -> String {
 }
 
 fn unseen(screw: &Screw) -> String {
-    let shown = |v: [f64; 3]| format!("[{:.6}, {:.6}, {:.6}]", v[0], v[1], v[2]);
+    let shown = |v: [f64; 3]| format!("[{}]", v.map(|x| fixed(x, 6)).join(", "));
     if screw.angular == [0.0; 3] {
         return format!("a shift along {}", shown(screw.linear));
     }

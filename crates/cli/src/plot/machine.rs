@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Axis, Dimension, Frame, Machine, Parameter};
 use flank_export::{
-    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Outcome, Patch, PictureOptions, Point, machine as diagram,
+    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Outcome, Patch, PictureOptions, Point, fixed, machine as diagram,
 };
 use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Pose, Step, Vector3};
@@ -310,6 +310,6 @@ fn letter(direction: [f64; 3]) -> String {
             return if direction[k] < 0.0 { format!("\u{2212}{name}") } else { name.to_string() };
         }
     }
-    let [x, y, z] = direction;
-    format!("({x:.3}, {y:.3}, {z:.3})")
+    let [x, y, z] = direction.map(|x| fixed(x, 3));
+    format!("({x}, {y}, {z})")
 }

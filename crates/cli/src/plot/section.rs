@@ -1,7 +1,7 @@
 //! A section through the tooth space, square to the tooth, with the tool at some moments.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_export::{Patch, PictureOptions, Section, SectionLine, ToolPosition, rows_follow_profile, section};
+use flank_export::{Patch, PictureOptions, Section, SectionLine, ToolPosition, fixed, rows_follow_profile, section};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, System, solve};
@@ -93,12 +93,11 @@ impl Cut {
         let is_counted = subject.motions().iter().any(|motion| motion.is_count);
         let counts = if is_counted { "; what counts is taken without gaps" } else { "" };
         format!(
-            "Plane square to the tooth through the middle of {}, at radius {:.3} mm and z {:.3} mm; exact points, strokes on the \
+            "Plane square to the tooth through the middle of {}, at radius {} mm and z {} mm; exact points, strokes on the \
              side of the steel, dots where the tool touches at that moment{counts}.",
             subject.first().surface.name,
-            x.hypot(y),
-            // no minus before a zero
-            (z * 1e3).round() / 1e3 + 0.0
+            fixed(x.hypot(y), 3),
+            fixed(z, 3)
         )
     }
 

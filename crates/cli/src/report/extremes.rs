@@ -1,7 +1,7 @@
 //! The largest and the smallest of what was found.
 
 use flank_chain_dsl::{Bounded, Dimension};
-use flank_export::{Block, Column, ReportSection, Values};
+use flank_export::{Block, Column, ReportSection, Values, fixed};
 use serde_json::{Value, json};
 
 use super::Findings;
@@ -63,7 +63,7 @@ fn curvatures(findings: &Findings<'_, '_>) -> Block {
             cells.extend(if bend.value.abs() < FLAT {
                 ["flat", "\u{2013}", "\u{2013}", "\u{2013}"].map(str::to_string)
             } else {
-                let radius = format!("{:.4}", 1.0 / bend.value);
+                let radius = fixed(1.0 / bend.value, 4);
                 let [rho, z] = [x.hypot(y), z].map(|length| units::digits(Dimension::LENGTH, length, 4));
                 [radius, format!("{row}, {column}"), rho, z]
             });

@@ -1,7 +1,7 @@
 //! What a job was given: parameters, settings and motions.
 
 use flank_chain_dsl::{Bounded, Dimension, Giver, Parameter};
-use flank_export::{Block, Column, ReportSection};
+use flank_export::{Block, Column, ReportSection, fixed};
 use serde_json::{Value, json};
 
 use super::Findings;
@@ -158,7 +158,7 @@ fn number(dimension: Dimension, value: f64) -> String {
         text.split_once('e')
             .map_or((text.clone(), String::new()), |(digits, power)| (digits.to_string(), format!("e{power}")))
     } else {
-        (format!("{shown:.6}"), String::new())
+        (fixed(shown, 6), String::new())
     };
     format!("{}{power}", digits.trim_end_matches('0').trim_end_matches('.'))
 }

@@ -3,7 +3,7 @@
 use crate::conventions::one_line;
 use crate::dataset::{Header, Unit, Unknown};
 use crate::error::Malformed;
-use crate::number::{degrees, plain};
+use crate::number::{degrees, fixed, plain};
 
 /// How positions of files of data are to be read.
 pub(crate) const AS_IN_THE_SPEC: &str = "axes are named, signed and counted as in the machine's spec";
@@ -106,11 +106,7 @@ impl MachineAxis {
     /// A position as NC programs write it: as the control counts, with the axis's decimals, without a negative zero.
     pub(crate) fn printed(&self, position: f64) -> String {
         let programmed = self.unit().written(self.programmed(position));
-        let text = format!("{:.*}", usize::from(self.decimals), programmed);
-        match text.strip_prefix('-') {
-            Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
-            _ => text,
-        }
+        fixed(programmed, usize::from(self.decimals))
     }
 }
 
