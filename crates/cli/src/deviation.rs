@@ -87,6 +87,11 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
             "--margin says where the points of --measured lie; with --from they are those of its sample".to_string();
         return Err(Failure::of_usage(message));
     }
+    if arguments.measured.is_none() && (arguments.rows.is_some() || arguments.columns.is_some()) {
+        let message =
+            "--rows and --columns are those of --measured; with --from the points are those of its sample".to_string();
+        return Err(Failure::of_usage(message));
+    }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let mut origin = Origin::of(&compilation);

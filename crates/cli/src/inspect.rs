@@ -1,7 +1,7 @@
 //! `flank deviation --measured`: measured points held against the nominal surface.
 
 use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
-use flank_solver::{Inspection, SurfacePoint};
+use flank_solver::{Inspection, Outcome, SurfacePoint, beside};
 
 use crate::arguments::Deviation;
 use crate::deviation::{Held, Measured, Named};
@@ -27,7 +27,8 @@ pub(crate) fn inspect<'j, 'g>(
     let shown = spec::shown(file);
     let text = origin.other_text(file, MOST_BYTES)?;
     let read = read_measured(&text, &of.surface.name).map_err(|fault| format!("{shown}: {fault}"))?;
-    let MeasuredGrid { counts, points: readings } = read;
+    let MeasuredGrid { counts: named, points: readings } = read;
+    let counts = counts(named, arguments).map_err(|reason| format!("{shown}: {reason}"))?;
     if counts[0] * counts[1] > MOST_PLACES {
         let [rows, columns] = counts;
         return Err(format!(
@@ -48,6 +49,16 @@ pub(crate) fn inspect<'j, 'g>(
         .expect("a job without errors leaves nothing unbound");
     let _working = Working::on(format!("holding {shown} against {}", of.surface.name));
     let turn = inspection.best_turn(&positions, &nominal);
+    if let Some((at, off, half)) = misplaced(&positions, &nominal, counts, turn.unwrap_or(0.0)) {
+        let [row, column] = [at / counts[1] + 1, at % counts[1] + 1];
+        let [rows, columns] = counts;
+        return Err(format!(
+            "{shown}: row {row}, column {column} lies {off:.4} mm beside its nominal point, and half the way to the next one is {half:.4} mm: \
+             is this a grid of {rows} rows and {columns} columns (--rows, --columns) with this --margin, and are x, y, z in the frame {}?",
+            of.surface.frame
+        )
+        .into());
+    }
     let done = if arguments.as_it_lies { 0.0 } else { turn.unwrap_or(0.0) };
     let deviations = inspection.deviations(&positions, &nominal, done);
     Ok(Measured {
@@ -62,11 +73,45 @@ pub(crate) fn inspect<'j, 'g>(
     })
 }
 
+/// Rows and columns of the grid: those that the file names, or as many more as there are said to be.
+fn counts(named: [usize; 2], arguments: &Deviation) -> Result<[usize; 2], String> {
+    let [rows, columns] =
+        [(arguments.rows, named[0], "rows"), (arguments.columns, named[1], "columns")].map(|(said, named, what)| {
+            let said = said.map_or(named, |said| said as usize);
+            if said < named { Err(format!("{named} {what} are named, more than --{what} {said}")) } else { Ok(said) }
+        });
+    Ok([rows?, columns?])
+}
+
+/// The first point that is nearer to where a neighbour should be than to its own nominal point: its place, how far beside it lies, and half
+/// the way to the nearest neighbour, mm.
+fn misplaced(
+    measured: &[Option<[f64; 3]>],
+    nominal: &[SurfacePoint],
+    [rows, columns]: [usize; 2],
+    turn: f64,
+) -> Option<(usize, f64, f64)> {
+    let half_gap = |at: usize| {
+        let (row, column) = (at / columns, at % columns);
+        let along = [(row > 0).then(|| at - columns), (row + 1 < rows).then_some(at + columns)];
+        let across = [(column > 0).then(|| at - 1), (column + 1 < columns).then_some(at + 1)];
+        let gap = |next: usize| {
+            let [from, to] = [at, next].map(|k| nominal[k].position);
+            (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        let solved = |next: &usize| nominal[*next].outcome == Outcome::Solved;
+        let next = along.into_iter().chain(across).flatten().filter(solved);
+        next.map(|next| 0.5 * gap(next)).reduce(f64::min)
+    };
+    let each = beside(measured, nominal, turn).into_iter().enumerate();
+    each.filter_map(|(at, off)| Some((at, off?, half_gap(at)?))).find(|(_, off, half)| off > half)
+}
+
 /// Where a machine found the surface.
 fn position(reading: Reading, nominal: &SurfacePoint) -> Option<[f64; 3]> {
     match reading {
         Reading::Position(position) => Some(position),
-        Reading::Deviation(off) => (nominal.outcome == flank_solver::Outcome::Solved)
+        Reading::Deviation(off) => (nominal.outcome == Outcome::Solved)
             .then(|| std::array::from_fn(|k| nominal.position[k] + off * nominal.normal[k])),
     }
 }

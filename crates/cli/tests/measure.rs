@@ -311,6 +311,50 @@ fn ends_that_were_not_measured_keep_their_place() {
     }
 }
 
+/// Without the lines of a last row the others would be spread over the flank: where the points say so that is an error, and in any case
+/// the number of rows can be said.
+#[test]
+fn lines_that_are_not_there_move_no_others() {
+    let out = folder("measure_fewer");
+    let at = out.to_str().expect("a plain path");
+    measure(&out, &[PINION, "--surface", "concave"]);
+    let grid = nominal(&out.join("pinion_19x62.grid.csv"), "concave", "grid");
+    // the lines of so many rows and columns
+    let table = |titles: &str, cells: &dyn Fn(&Nominal) -> String, there: [usize; 2]| {
+        let lines = grid.iter().filter(|(place, ..)| place[0] <= there[0] && place[1] <= there[1]);
+        let lines = lines.map(|point| format!("{},{},{}\n", point.0[0], point.0[1], cells(point)));
+        written(&out, "measured.csv", &(format!("row,column,{titles}\n") + &lines.collect::<String>()))
+    };
+    let run = |file: &str, more: &[&str]| {
+        let arguments = ["deviation", PINION, "concave", "--measured", file, "--no-picture", "--json", "--out", at];
+        flank(&[&arguments[..], more].concat())
+    };
+    let place = |point: &Nominal| point.1.map(|x| x.to_string()).join(",");
+    for (there, said) in [([4, 9], ["--rows", "5"]), ([5, 8], ["--columns", "9"]), ([5, 9], ["--margin", "0.05"])] {
+        let file = table("x,y,z", &place, there);
+        let wrong = if said[0] == "--margin" { &["--margin", "0.2"][..] } else { &[] };
+        for more in [&["--as-it-lies"][..], &[]] {
+            let refused = run(&file, &[wrong, more].concat());
+            let told = text(&refused.stderr);
+            assert_eq!(refused.status.code(), Some(1), "{told}");
+            assert!(told.contains(" mm beside its nominal point, and half the way to the next one is "), "{told}");
+        }
+        let good = run(&file, &said);
+        let told: Value = serde_json::from_slice(&good.stdout).expect("JSON");
+        // coordinates are written with all their digits
+        assert!(told["rms_um"].as_f64().expect("a number") < 1e-6, "{told}");
+    }
+    let file = table("deviation_um", &|point| point.0[0].to_string(), [4, 9]);
+    let told: Value = serde_json::from_slice(&run(&file, &["--rows", "5", "--as-it-lies"]).stdout).expect("JSON");
+    let number = |key: &str| told[key].as_f64().expect("a number");
+    assert_eq!((number("asked"), number("known")), (45.0, 36.0), "{told}");
+    assert!((number("lowest_um") - 1.0).abs().max((number("highest_um") - 4.0).abs()) < 1e-9, "{told}");
+    let few = run(&file, &["--rows", "3"]);
+    assert!(text(&few.stderr).contains("4 rows are named, more than --rows 3"), "{}", text(&few.stderr));
+    let without = flank(&["deviation", PINION, "concave", "--from", "convex", "--rows", "5"]);
+    assert_eq!(without.status.code(), Some(2), "{}", text(&without.stderr));
+}
+
 /// What another setting leaves, measured against the nominal flank, is what the exact derivative says, to first order.
 #[test]
 fn a_neighbouring_setting_is_measured_as_its_derivative_says() {

@@ -103,6 +103,24 @@ impl Inspection {
     }
 }
 
+/// How far each measured point, turned about the z axis by an angle in radians, lies beside its nominal one, mm: square to the normal
+/// there. `None` where there is no measured point or no solved nominal one.
+///
+/// # Panics
+/// If there are not as many points of the one as of the other.
+#[must_use]
+pub fn beside(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+    assert_eq!(measured.len(), nominal.len(), "one nominal point for each place");
+    let of = |(measured, nominal): (&Option<[f64; 3]>, &SurfacePoint)| {
+        let measured = turned((*measured)?, turn);
+        let way: [f64; 3] = std::array::from_fn(|k| measured[k] - nominal.position[k]);
+        let along: f64 = way.iter().zip(&nominal.normal).map(|(way, normal)| way * normal).sum();
+        let aside = way.iter().zip(&nominal.normal).map(|(way, normal)| (way - along * normal).powi(2)).sum::<f64>();
+        (nominal.outcome == Outcome::Solved).then(|| aside.sqrt())
+    };
+    measured.iter().zip(nominal).map(of).collect()
+}
+
 /// How far a point moves along its normal for a turn of one radian about z, mm.
 fn lever(point: &SurfacePoint) -> f64 {
     point.position[0] * point.normal[1] - point.position[1] * point.normal[0]

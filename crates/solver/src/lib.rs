@@ -61,7 +61,7 @@ pub use explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use extent::extent;
 pub use geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use grid::Effort;
-pub use inspection::Inspection;
+pub use inspection::{Inspection, beside};
 pub use intersection::{Intersection, Line, Meeting};
 pub use newton::{TOLERANCE, solve};
 pub use points::SurfacePoints;

@@ -99,6 +99,12 @@ pub(crate) struct Deviation {
     /// Measured points that are held against the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]
     pub(crate) measured: Option<PathBuf>,
+    /// Rows of the grid that was measured; the largest that the file names otherwise
+    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000), allow_hyphen_values = true)]
+    pub(crate) rows: Option<u32>,
+    /// Columns of that grid, the same way
+    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000), allow_hyphen_values = true)]
+    pub(crate) columns: Option<u32>,
     #[command(flatten)]
     pub(crate) margin: Margin,
     /// Do not turn it
