@@ -38,6 +38,20 @@ fn listed(solved: &Solved<'_, '_>) -> String {
     out
 }
 
+/// The branches that the sample's `keep` does not take, where it takes none: `keep` leaves out all that is at …: roll 3 deg, …; nothing
+/// otherwise.
+pub(crate) fn kept_out(solved: &Solved<'_, '_>) -> Option<String> {
+    let each = solved.kept_out.iter().map(|branch| {
+        let values: Vec<String> =
+            solved.surface.unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
+        values.join(", ")
+    });
+    let each: Vec<String> = each.collect();
+    let last = |count| if count == 1 { "the only branch" } else { "all branches" };
+    (!each.is_empty())
+        .then(|| format!("`keep` leaves out {} at {}: {}", last(each.len()), anchor(solved), each.join("; ")))
+}
+
 /// Where the branch of a surface was not looked for as it is meant: in the middle of its grid, until it is found; empty if it was.
 pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();

@@ -3,6 +3,7 @@
 use flank_chain_dsl::{Bounded, GeneratedSurface, Job};
 use flank_solver::{CutBy, Outcome};
 
+use crate::branches;
 use crate::summary::Places;
 use crate::table::Solved;
 use crate::units;
@@ -38,6 +39,7 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         summary.count(Outcome::NotConverged { iterations: 0 }),
         format!("not converged{near}: no point of this branch was found there{ends}"),
     );
+    reasons.extend(branches::kept_out(solved));
     reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
     reasons
 }

@@ -7,7 +7,7 @@ use flank_export::{
     Axis, Banded, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Surfaces, Unit, Unknown, picture,
 };
 use flank_expr::{Expr, Graph};
-use flank_solver::{Effort, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{Effort, Range, Solution, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::{Means, Solve, Which};
 use crate::cut::Cut;
@@ -108,7 +108,7 @@ pub(crate) fn solve_surface<'j, 'g>(
 ) -> Option<Result<Solved<'j, 'g>, String>> {
     let sample = surface.sample.as_ref()?;
     match stream::is_streamed(job, surface, sample, wanted) {
-        Ok(true) => return Some(Ok(in_bands(job, surface, sample, Streamed::new(job, surface, sample, wanted.means)))),
+        Ok(true) => return Some(Ok(in_bands(job, surface, sample, wanted.means))),
         Ok(false) => {}
         Err(reason) => return Some(Err(reason)),
     }
@@ -126,6 +126,7 @@ pub(crate) fn solve_surface<'j, 'g>(
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
     let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
+    let kept_out = kept_out(job, surface, (&effort, &summary), wanted.means);
     let (counts, streamed) = (sample.counts, None);
     Some(Ok(Solved {
         surface,
@@ -138,6 +139,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         needed,
         effort,
         branches,
+        kept_out,
         radii,
         fields,
         sensitivity,
@@ -148,21 +150,23 @@ pub(crate) fn solve_surface<'j, 'g>(
 
 /// What is kept of the points of a surface that has too many of them.
 fn in_bands<'j, 'g>(
-    job: &Job<'g>,
+    job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &'j Sample<'g>,
-    streamed: Streamed<'j, 'g>,
+    means: Means,
 ) -> Solved<'j, 'g> {
+    let streamed = Streamed::new(job, surface, sample, means);
     let Kept { summary, effort, drawn, counts } = streamed.look();
     Solved {
         surface,
         sample,
         bindings: job.bindings(),
         needed: Vec::new(),
-        summary,
         points: drawn,
         counts,
         branches: streamed.problem().points(&effort.branches),
+        kept_out: kept_out(job, surface, (&effort, &summary), means),
+        summary,
         streamed: Some(streamed),
         effort,
         radii: None,
@@ -208,11 +212,39 @@ pub(crate) fn problem<'g>(
 ) -> SurfaceProblem {
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
-    SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
-        .map(|problem| problem.reaching(reach::followed(surface)))
-        .and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()))
+    on_any_branch(job, surface, coordinates, means)
+        .keeping(&surface.surface.unknowns, &keep, &job.bindings())
         .expect("a job without errors leaves nothing unbound")
+}
+
+/// The same, whatever its sample keeps.
+fn on_any_branch<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    coordinates: [Expr<'g>; 2],
+    means: Means,
+) -> SurfaceProblem {
+    SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
+        .expect("a job without errors leaves nothing unbound")
+        .reaching(reach::followed(surface))
         .on(means.instructions())
+}
+
+/// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.
+fn kept_out<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    (effort, summary): (&Effort, &Summary),
+    means: Means,
+) -> Vec<SurfacePoint> {
+    let is_kept = |sample: &&Sample<'g>| !sample.keep.is_empty();
+    let is_nothing = summary.solved() == 0 && effort.branches.is_empty();
+    let Some(sample) = surface.sample.as_ref().filter(is_kept).filter(|_| is_nothing) else { return Vec::new() };
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = on_any_branch(job, surface, coordinates, means);
+    let found = problem.all_points(effort.anchor);
+    let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();
+    problem.points(&found)
 }
 
 /// Where the unknowns of a surface are looked for.

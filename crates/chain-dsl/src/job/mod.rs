@@ -3,6 +3,7 @@
 mod available;
 mod axes;
 mod cut;
+mod independence;
 mod sliding;
 mod surfaces;
 mod sweep;

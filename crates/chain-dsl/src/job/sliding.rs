@@ -12,7 +12,7 @@ use crate::source::Span;
 use super::Builder;
 
 /// Places at which an equation of meshing is looked at. Any other than zero ends it: most jobs are looked at once.
-const LOOKS: usize = 50;
+pub(super) const LOOKS: usize = 50;
 
 /// Of the speed along a motion, what rounding leaves across the surface where nothing moves across it.
 const NOTHING: f64 = 1e-9;
@@ -103,11 +103,11 @@ fn is_zero<'g>(
     })
 }
 
-fn value<'v>(values: &'v mut [f64], unknown: &Bounded<'_>) -> &'v mut f64 {
+pub(super) fn value<'v>(values: &'v mut [f64], unknown: &Bounded<'_>) -> &'v mut f64 {
     &mut values[unknown.variable.as_variable().expect("unknowns are variables").index()]
 }
 
 /// Shares between 0 and 1 that fill each direction evenly and do not fall on middles, where surfaces have their axes.
-fn share(look: usize, direction: usize) -> f64 {
+pub(super) fn share(look: usize, direction: usize) -> f64 {
     ((look + 1) as f64 * (direction as f64 + 2.0).powf(1.0 / 3.0) * std::f64::consts::E.sqrt()).fract()
 }

@@ -14,6 +14,7 @@ use crate::source::Span;
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 
 use super::available::{Available, joined, which_piece};
+use super::independence::check_independence;
 use super::{Builder, FrameRef, sweep};
 
 /// The ways to make a surface, by the names of their functions.
@@ -281,7 +282,9 @@ impl<'g> Builder<'_, 'g> {
             context.report(Diagnostic::new(Code::DuplicateName, written.surface.span, message));
             return;
         }
-        let sample = sample::build(context, written, &self.surfaces[index].0, &self.scope);
+        let surface = &self.surfaces[index].0;
+        let sample = sample::build(context, written, surface, &self.scope);
+        let sample = sample.filter(|sample| check_independence(context, surface, sample, written.surface.span));
         self.surfaces[index].0.sample = sample;
     }
 }

@@ -1,0 +1,93 @@
+//! Coordinates of a sample that do not tell the points of a surface apart: where one is given, the other follows.
+
+use flank_expr::Expr;
+
+use crate::codes::Code;
+use crate::context::Context;
+use crate::diagnostic::Diagnostic;
+use crate::model::{GeneratedSurface, Sample};
+use crate::source::Span;
+
+use super::sliding::{LOOKS, share, value};
+
+/// Of the determinant of rows of length one, what rounding leaves where it is zero.
+const NOTHING: f64 = 1e-9;
+
+/// Reports a sample whose coordinates depend on each other wherever the unknowns lie in their ranges.
+pub(super) fn check_independence<'g>(
+    context: &mut Context<'g>,
+    surface: &GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+    span: Span,
+) -> bool {
+    let [first, second] = &sample.coordinates;
+    if are_independent(surface, [first.value, second.value], context.values().to_vec()) {
+        return true;
+    }
+    let message = format!(
+        "`{}` and `{}` do not tell points of `{}` apart: where one is given, the other follows",
+        first.name, second.name, surface.name
+    );
+    let help = "sample by two coordinates that change by themselves over the surface, such as `rho` and `z` on the flank of a cylindrical gear";
+    context.report(Diagnostic::new(Code::SampleShape, span, message).help(help));
+    false
+}
+
+/// Whether there is a place where constraints and coordinates fix the unknowns, as far as it can be looked at.
+fn are_independent<'g>(surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2], mut values: Vec<f64>) -> bool {
+    let made = &surface.surface;
+    let (graph, size) = (coordinates[0].graph(), made.unknowns.len());
+    let slopes =
+        made.constraints.iter().chain(&coordinates).flat_map(|f| made.unknowns.iter().map(|p| f.derivative(*p)));
+    let slopes: Vec<Expr<'g>> = slopes.collect();
+    let widths: Vec<f64> = surface.unknowns.iter().map(|unknown| unknown.high - unknown.low).collect();
+    let mut is_seen = false;
+    for look in 0..LOOKS {
+        for (j, unknown) in surface.unknowns.iter().enumerate() {
+            *value(&mut values, unknown) = unknown.low + widths[j] * share(look, j);
+        }
+        let slopes = graph.evaluate(&slopes, &values);
+        let mut rows: Vec<Vec<f64>> = slopes
+            .chunks(size)
+            .map(|row| row.iter().zip(&widths).map(|(slope, width)| slope * width).collect())
+            .collect();
+        let lengths: Vec<f64> = rows.iter().map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+        // a motion that only slides is told elsewhere
+        if lengths[..made.constraints.len()].contains(&0.0) {
+            continue;
+        }
+        for (row, length) in rows.iter_mut().zip(lengths).filter(|(_, length)| *length > 0.0) {
+            row.iter_mut().for_each(|x| *x /= length);
+        }
+        let determinant = determinant(rows);
+        if determinant.abs() > NOTHING {
+            return true;
+        }
+        is_seen |= !determinant.is_nan();
+    }
+    !is_seen
+}
+
+/// By Gauss, the largest entry of each column first.
+fn determinant(mut rows: Vec<Vec<f64>>) -> f64 {
+    let size = rows.len();
+    let mut product = 1.0;
+    for k in 0..size {
+        let largest = (k..size).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()));
+        let pivot = largest.expect("a row is left");
+        if pivot != k {
+            rows.swap(pivot, k);
+            product = -product;
+        }
+        product *= rows[k][k];
+        if rows[k][k] == 0.0 {
+            break;
+        }
+        let above = rows[k].clone();
+        for row in &mut rows[k + 1..] {
+            let factor = row[k] / above[k];
+            row.iter_mut().zip(&above).skip(k).for_each(|(x, by)| *x -= factor * by);
+        }
+    }
+    product
+}
