@@ -72,12 +72,12 @@ impl<'b> Band<'b> {
 
 /// A grid whose targets are told one by one.
 #[derive(Clone, Copy)]
-pub(crate) struct Wanted<'w> {
+pub(crate) struct Targets<'w> {
     pub(crate) target: &'w dyn Fn(usize, usize) -> [f64; 2],
     pub(crate) counts: [usize; 2],
 }
 
-impl Wanted<'_> {
+impl Targets<'_> {
     fn of(&self, rows: impl IntoIterator<Item = usize>) -> Vec<[f64; 2]> {
         rows.into_iter().flat_map(|i| (0..self.counts[1]).map(move |j| (self.target)(i, j))).collect()
     }
@@ -101,7 +101,7 @@ fn spacing(points: usize, columns: usize) -> usize {
 pub(crate) fn solve_in_bands<E>(
     system: &System,
     ranges: &[solution::Range],
-    wanted: Wanted<'_>,
+    wanted: Targets<'_>,
     start: Option<&[f64]>,
     choice: &Choice<'_>,
     points: usize,
@@ -158,7 +158,7 @@ pub(crate) fn solve_in_bands<E>(
 struct Bands<'s> {
     system: &'s System,
     ranges: &'s [solution::Range],
-    wanted: Wanted<'s>,
+    wanted: Targets<'s>,
     solvers: Solvers<'s>,
     /// Where the known rows are.
     places: Vec<usize>,

@@ -16,7 +16,7 @@ use crate::system::{Evaluation, System};
 /// Halvings of a step along the motion until the axes follow.
 const MOST_HALVINGS: u32 = 12;
 /// Of its range, or of a turn, no axis moves farther in one step beyond where it was expected.
-const ASTRAY: f64 = 0.02;
+const FARTHEST_STEP: f64 = 0.02;
 /// Of a pose: displacements along x, y, z, turns about them.
 const COMPONENTS: usize = 6;
 /// Postures that the next one is expected from.
@@ -270,7 +270,7 @@ impl<'g> PoseProblem<'g> {
             walk.evaluation.set_parameters(&step);
             let solution = solve_with(&mut walk.evaluation, &walk.ranges, &expected);
             let moved = distance(&solution.unknowns, &expected, &self.search[1]);
-            let follows = solution.is_solved() && moved <= ASTRAY;
+            let follows = solution.is_solved() && moved <= FARTHEST_STEP;
             if follows {
                 walk.take(step, &solution.unknowns);
                 if share == 1.0 {

@@ -7,7 +7,7 @@ use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::anchor::{Choice, Keep, Several, solve_settled};
 use crate::angles::SearchSystem;
-use crate::bands::{Band, Wanted, solve_in_bands};
+use crate::bands::{Band, Targets, solve_in_bands};
 use crate::field::Field;
 use crate::grid::{Effort, Grid};
 use crate::points::SurfacePoints;
@@ -285,7 +285,7 @@ impl SurfaceProblem {
     ) -> (Field, Effort) {
         let mut whole = Field::new(&self.ranges, counts, self.system.extra_count(), memory);
         let target = |i: usize, j: usize| targets[i * counts[1] + j];
-        let taken = self.fields(Wanted { target: &target, counts }, start, &mut |rows, field, line| {
+        let taken = self.fields(Targets { target: &target, counts }, start, &mut |rows, field, line| {
             let [first, from] = [rows.start, line].map(|row| row * counts[1]);
             (0..rows.len() * counts[1]).for_each(|k| whole.copy(first + k, &field, from + k));
             Ok::<_, Infallible>(field)
@@ -311,7 +311,7 @@ impl SurfaceProblem {
         start: Option<&[f64]>,
         mut each: impl FnMut(&Band<'_>) -> Result<(), E>,
     ) -> Result<Effort, E> {
-        self.fields(Wanted { target: &target, counts }, start, &mut |rows, field, line| {
+        self.fields(Targets { target: &target, counts }, start, &mut |rows, field, line| {
             let points = self.with_middle(field);
             each(&Band::new(&points, rows, counts[1], line * counts[1]))?;
             Ok(points.field)
@@ -320,7 +320,7 @@ impl SurfaceProblem {
 
     fn fields<E>(
         &self,
-        wanted: Wanted<'_>,
+        wanted: Targets<'_>,
         start: Option<&[f64]>,
         each: &mut dyn FnMut(std::ops::Range<usize>, Field, usize) -> Result<Field, E>,
     ) -> Result<Effort, E> {
