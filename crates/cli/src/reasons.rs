@@ -23,11 +23,18 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     }
     let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
     for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(trims) {
-        tell(count, format!("cut away {}", by_what(job, solved.surface, cutter)));
+        let is_inside_out = cutter == CutBy::ItsTool && count == summary.asked;
+        let side = if is_inside_out {
+            "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
+        } else {
+            ""
+        };
+        tell(count, format!("cut away {}{side}", by_what(job, solved.surface, cutter)));
     }
     tell(
         summary.count(Outcome::Undecided),
-        "undecided, the lines of the grid disagree on what a trim leaves of them".to_string(),
+        "undecided, the lines of the grid disagree on what a trim leaves of them, or several branches of what trims lie beside them"
+            .to_string(),
     );
     let singular = "singular, the equations do not fix a single point there, or the surface has no normal";
     tell(summary.count(Outcome::Singular), singular.to_string());

@@ -159,6 +159,7 @@ fn begin(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, start: Option<&[f64]>, 
     begin_within(grid, solvers, choice)
         .or_else(|| choice.reach.and_then(|reach| begin_beyond(grid, reach, choice, &mut last_resort)))
         .or_else(|| begin_elsewhere(grid, choice))
+        .or_else(|| begin_cut_away(grid, solvers, choice))
         .or(last_resort)
         .unwrap_or(Beginning::Nowhere)
 }
@@ -257,6 +258,19 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
     grid.effort.anchor = grid.targets[middle];
     grid.effort.undecided = undecided;
     None
+}
+
+/// At the point in the middle, within the ranges, on a branch that has no point which is looked for, as far as is known, but one
+/// that is cut away: its points are told to be so rather than that there are none.
+fn begin_cut_away(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &Choice<'_>) -> Option<Beginning> {
+    let (middle, ranges) = (grid.middle(), grid.ranges);
+    let center: Vec<f64> = ranges.iter().map(|range| range.middle()).collect();
+    let off = |root: &Solution| distance(&root.unknowns, &center, ranges);
+    let is_sought = |root: &Solution| matches!(root.outcome, Outcome::CutAway(_)) && choice.keeps(&root.unknowns);
+    let found = grid.scanned(middle, is_sought).into_iter().filter(is_sought);
+    let root = found.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    grid.effort.is_given_up = false;
+    Some(Beginning::At(middle, grid.fill(solvers, middle, &root)))
 }
 
 /// Roots at the points that are tried next, looked for on all threads at once; they count in the order of the points, so that results
@@ -397,10 +411,15 @@ impl Grid<'_> {
 
     /// Why there is no root at a point, as far as a scan can tell.
     fn failure(&mut self, point: usize) -> Solution {
-        self.evaluation.set_parameters(&self.targets[point]);
-        let (found, evaluations) = scan(&mut self.evaluation, self.ranges, WIDELY);
-        self.effort.evaluations += evaluations;
-        let failure = found.into_iter().next().filter(|solution| !solution.is_solved());
+        let failure =
+            self.scanned(point, Solution::is_solved).into_iter().next().filter(|solution| !solution.is_solved());
         failure.unwrap_or_else(|| Solution::never_reached(self.ranges))
+    }
+
+    fn scanned(&mut self, point: usize, is_sought: impl Fn(&Solution) -> bool) -> Vec<Solution> {
+        self.evaluation.set_parameters(&self.targets[point]);
+        let (found, evaluations) = scan(&mut self.evaluation, self.ranges, WIDELY, is_sought);
+        self.effort.evaluations += evaluations;
+        found
     }
 }

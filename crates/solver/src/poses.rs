@@ -237,7 +237,7 @@ impl<'g> PoseProblem<'g> {
 
     /// Postures somewhere in ranges, those with the whole pose before those that lack some of it, the least turned one first.
     fn look(&self, motions: &[f64], ranges: &[Range]) -> Vec<Posture> {
-        let mut found = scan(&mut self.system.evaluation(motions), ranges, WIDELY).0;
+        let mut found = scan(&mut self.system.evaluation(motions), ranges, WIDELY, Solution::is_solved).0;
         let turned = |solution: &Solution| -> f64 {
             solution.unknowns.iter().zip(&self.search[1]).map(|(x, range)| (x / range.width()).powi(2)).sum()
         };

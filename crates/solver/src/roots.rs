@@ -85,12 +85,12 @@ pub fn all_roots(system: &System, ranges: &[Range], parameters: &[f64], most_box
             break;
         }
         looked_at += 1;
-        boxes.extend(search.look_at(boxed).into_iter().flatten());
+        boxes.extend(search.look_at(boxed));
     }
     search.small.extend(boxes.into_iter().map(|boxed| (boxed, Doubt::Budget)));
     let mut unproven = Vec::new();
     if !search.small.is_empty() {
-        let (found, _) = scan(&mut search.evaluation, ranges, WIDELY);
+        let (found, _) = scan(&mut search.evaluation, ranges, WIDELY, Solution::is_solved);
         unproven.extend(found.into_iter().filter(|solution| solution.is_solved() && !search.comes_to_know(solution)));
     }
     let isolated = search.known.into_iter().filter(|known| known.solution.is_solved()).collect();
@@ -107,24 +107,25 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The two halves of what is left of a box, if it is not decided.
-    fn look_at(&mut self, boxed: Vec<Interval>) -> Option<[Vec<Interval>; 2]> {
+    /// The two halves of what is left of a box, if it is not decided; all of that where it just became too small to be divided, but may
+    /// hold nothing: a sliver that the wider slopes of the larger box did not cut off.
+    fn look_at(&mut self, boxed: Vec<Interval>) -> Vec<Vec<Interval>> {
         let (left, regular, is_blind) = match self.enclosure.contract(&boxed) {
-            Contraction::Empty => return None,
+            Contraction::Empty => return Vec::new(),
             Contraction::To { left, regular } => (left, regular, false),
             Contraction::Blind => (boxed.clone(), false, true),
         };
-        if self.is_known(&left) {
-            return None;
-        }
-        if regular && self.finds_root_in(&left) && self.is_known(&left) {
-            return None;
-        }
-        if self.ranges.iter().zip(&left).all(|(range, x)| x.width() <= SMALLEST * range.width()) {
-            self.small.push((left, if is_blind { Doubt::Undefined } else { Doubt::Singular }));
-            return None;
+        if self.is_known(&left) || regular && self.finds_root_in(&left) && self.is_known(&left) {
+            return Vec::new();
         }
         let shrunk = left.iter().zip(&boxed).any(|(left, whole)| left.width() < WORTH_IT * whole.width());
+        if self.ranges.iter().zip(&left).all(|(range, x)| x.width() <= SMALLEST * range.width()) {
+            if shrunk {
+                return vec![left];
+            }
+            self.small.push((left, if is_blind { Doubt::Undefined } else { Doubt::Singular }));
+            return Vec::new();
+        }
         let at = self.widest(&left, is_blind || shrunk);
         let middle = left[at].middle();
         let half = |lo: f64, hi: f64| {
@@ -132,7 +133,7 @@ impl Search<'_> {
             half[at] = Interval::new(lo, hi);
             half
         };
-        Some([half(middle, left[at].hi), half(left[at].lo, middle)])
+        vec![half(middle, left[at].hi), half(left[at].lo, middle)]
     }
 
     /// The unknown to divide at: the one that the residuals depend on most, or the one with the largest share of its range.

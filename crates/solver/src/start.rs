@@ -44,9 +44,14 @@ pub(crate) const WIDELY: Scan = Scan { probes: 1024, starts: 64 };
 
 /// Looks for roots anywhere in the box: residuals at `scan.probes` points, Newton from the best `scan.starts` of them.
 ///
-/// All different roots inside the ranges, in the order in which they were found; if there is none, the most telling
-/// failure. Beside them the number of evaluations.
-pub(crate) fn scan(evaluation: &mut Evaluation<'_>, ranges: &[Range], scan: Scan) -> (Vec<Solution>, u64) {
+/// All different ends that are looked for, such as roots inside the ranges, in the order in which they were found; if there is none,
+/// the most telling failure. Beside them the number of evaluations.
+pub(crate) fn scan(
+    evaluation: &mut Evaluation<'_>,
+    ranges: &[Range],
+    scan: Scan,
+    is_sought: impl Fn(&Solution) -> bool,
+) -> (Vec<Solution>, u64) {
     let mut candidates: Vec<(f64, u32)> = Vec::with_capacity(scan.probes as usize);
     for k in 1..=scan.probes {
         evaluation.at(&probe(ranges, k));
@@ -62,7 +67,7 @@ pub(crate) fn scan(evaluation: &mut Evaluation<'_>, ranges: &[Range], scan: Scan
     for &(_, k) in candidates.iter().take(scan.starts) {
         let solution = solve_with(evaluation, ranges, &probe(ranges, k));
         evaluations += u64::from(solution.iterations);
-        if !solution.is_solved() {
+        if !is_sought(&solution) {
             failure = solution.better(failure);
         } else if found.iter().all(|root| distance(&root.unknowns, &solution.unknowns, ranges) > SAME_ROOT) {
             found.push(solution);

@@ -1,0 +1,74 @@
+//! What `flank solve` says of points that are not on the finished work, and of what it cannot exclude.
+
+mod support;
+
+use std::path::Path;
+
+use support::{flank, folder, self_contained, text, top, written};
+
+/// What is told of a job, and of one of its surfaces as the table has it.
+fn solved(folder: &Path, spec: &str, number: usize) -> (String, serde_json::Value) {
+    let file = written(folder, "job.chain", spec);
+    let run = flank(&["solve", &file, "--json", "--no-picture", "--out", folder.to_str().unwrap()]);
+    let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    (text(&run.stderr), table["surfaces"][number].clone())
+}
+
+/// A finishing rack that stands farther out than the roughing rack cuts only air, whatever its points are asked for by.
+#[test]
+fn what_lies_deeper_takes_all_of_a_surface_whatever_its_coordinates_are() {
+    let folder = folder("deeper");
+    let library = self_contained(&["tools/rack", "machines/hobbing_6axis", "machines/rack_generating"]);
+    for sample in [
+        "rho: r - 1.5 mm .. r + 3 mm by 7, z: -3 mm .. 3 mm by 3",
+        "h = rho - r: -1.5 mm .. 3 mm by 7, z: -3 mm .. 3 mm by 3",
+        "u: -1 mm .. 1 mm by 7, z: -3 mm .. 3 mm by 3",
+        "rho: r - 1 mm .. r + 3 mm by 7, h = z + 1 mm: -2 mm .. 4 mm by 3",
+        "polar_angle: 3.6 deg .. 4.4 deg by 7, v: -3 mm .. 3 mm by 3",
+    ] {
+        let job = "job air {
+            let r = 36 mm
+            machine rough = rack_generating(reference_radius: r)
+            machine fine = rack_generating(reference_radius: r, shift: 0.3 mm)
+            tool t = rack(module: 3 mm)
+            tool f = rack(module: 3 mm)
+            mount t on rough.head
+            mount f on fine.head
+            motion phi : angle in -60 deg .. 60 deg
+            drive rough.C = phi
+            drive fine.C = phi
+            surface under in rough.table = envelope(t.flank_plus, over: phi)
+            surface over in fine.table = envelope(f.flank_plus, over: phi)
+            trim over by under
+            sample over { SAMPLE }
+        }";
+        let (told, surface) = solved(&folder, &format!("{library}{}", job.replace("SAMPLE", sample)), 0);
+        assert_eq!(surface["outcomes"]["cut away"], 21, "{sample}: {surface}\n{told}");
+    }
+}
+
+/// Steel on the wrong side: the tool takes away all that it generates, which is told of every point.
+#[test]
+fn a_branch_that_is_cut_away_whole_is_told_to_be_so() {
+    let folder = folder("inside-out");
+    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let gear = gear.replacen("body towards [0, -1, 0]", "body towards [0, 1, 0]", 1);
+    let first = gear[..gear.find("/// The tool sits").expect("the second machine")].to_string();
+    let by_unknowns = "sample flank_plus { u: -2 mm .. 1 mm by 5, v: 0 mm .. 4 mm by 9 }";
+    let other = first.lines().map(|line| if line.contains("sample flank_plus") { by_unknowns } else { line });
+    for spec in [other.collect::<Vec<&str>>().join("\n"), first.clone()] {
+        let (told, surface) = solved(&folder, &spec, 0);
+        assert_eq!(surface["outcomes"]["cut away"], 45, "{surface}\n{told}");
+        assert!(told.contains("nothing of the surface stays: the tool's `body` may lie on the wrong side"), "{told}");
+        assert!(!told.contains("would reach"), "{told}");
+    }
+}
+
+/// Boxes about the middle of two ranges that the search divides there hold no root.
+#[test]
+fn what_holds_no_root_is_excluded() {
+    let out = folder("excluded");
+    let spec = "specs/hobbing/shaped_gear.chain";
+    let run = flank(&["solve", spec, "--job", "shaped_internal_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+    assert!(!text(&run.stderr).contains("not excluded"), "{}", text(&run.stderr));
+}
