@@ -54,7 +54,7 @@ fn carried(graph: &Graph, to: &Path, arguments: &Derive) -> Result<Ending, Failu
     let carry = |job: &Job<'_>, target: &Job<'_>| {
         let carried = Carried::new(graph, job, target, &arguments.onto, POSITIONS)?;
         // the postures that tell which elbow is meant lie as far as points are solved
-        let unsolved = carried.source.unsolved();
+        let unsolved = carried.source.unsolved.clone();
         let axes = match carried.failures() {
             told if told.is_empty() => carried.explicit(true),
             told => Err(told.trim_end().to_string()),

@@ -587,3 +587,14 @@ fn coefficients_that_are_rounding_are_shown_as_zero() {
     assert_eq!(coefficient("X 1"), "3.660000000000000e1");
     assert!(!told.contains("0.000e0"), "{told}");
 }
+
+/// Edges are carried over as far as the points that they sweep need it, as faces are: not over all that the motions could do.
+#[test]
+fn a_swept_surface_is_carried_over_as_far_as_its_points_need() {
+    let spec = "specs/hobbing/shaped_gear.chain";
+    let to = ["--job", "shaped_internal_gear", "--to", "specs/machines/hobbing_6axis.chain"];
+    let run = flank(&[&["convert", spec][..], &to].concat());
+    let told = text_of(&run);
+    // the sample is 20 mm wide
+    assert!(told.contains("stroke from -10.000000 mm to 10.000000 mm"), "{told}");
+}

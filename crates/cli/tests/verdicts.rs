@@ -9,7 +9,7 @@ use support::{flank, folder, self_contained, text, top, written};
 /// What is told of a job, and of one of its surfaces as the table has it.
 fn solved(folder: &Path, spec: &str, number: usize) -> (String, serde_json::Value) {
     let file = written(folder, "job.chain", spec);
-    let run = flank(&["solve", &file, "--json", "--no-picture", "--out", folder.to_str().unwrap()]);
+    let run = flank(&["solve", &file, "--json", "--no-picture", "--out", folder.to_str().expect("a plain path")]);
     let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     (text(&run.stderr), table["surfaces"][number].clone())
 }
@@ -69,6 +69,14 @@ fn a_branch_that_is_cut_away_whole_is_told_to_be_so() {
 fn what_holds_no_root_is_excluded() {
     let out = folder("excluded");
     let spec = "specs/hobbing/shaped_gear.chain";
-    let run = flank(&["solve", spec, "--job", "shaped_internal_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+    let run = flank(&[
+        "solve",
+        spec,
+        "--job",
+        "shaped_internal_gear",
+        "--no-picture",
+        "--out",
+        out.to_str().expect("a plain path"),
+    ]);
     assert!(!text(&run.stderr).contains("not excluded"), "{}", text(&run.stderr));
 }

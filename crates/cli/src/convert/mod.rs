@@ -125,7 +125,7 @@ fn carry<'g>(
         let header = crate::solve::header(&jobs, &arguments.which, origin);
         table.written = files::write(&table, &carried, header, (arguments, origin))?;
     }
-    Ok((table, carried.source.unsolved() + &told))
+    Ok((table, carried.source.unsolved.clone() + &told))
 }
 
 /// In words, which of the things that are asked for there are not without power series of the axes; nothing if none is.

@@ -85,7 +85,7 @@ pub(super) fn find(job: &Job<'_>, target: &Target<'_, '_>, arguments: &Convert) 
     let [file, to] = [&arguments.which.file, &arguments.to].map(|path| spec::shown(path));
     let title =
         format!("job {} ({file}) on {} ({to}): {} against {}", job.name, target.machine.name, source.tool, source.work);
-    let unsolved = source.unsolved();
+    let unsolved = source.unsolved.clone();
     let found = Found { title, job: &job.name, target, positions: some, fit, deviation, unsolved };
     Ok((if arguments.json { found.json() } else { found.text() }, found.told()))
 }

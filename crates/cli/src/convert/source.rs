@@ -26,17 +26,24 @@ pub(crate) struct Source<'j, 'g> {
     pub(crate) still: Option<Vec<f64>>,
     /// What the tool does not see of its own motion.
     pub(crate) symmetries: Vec<Screw>,
-    /// The sampled points of each surface, with the tool's surface that made them.
+    /// The sampled points of each surface that a surface of the tool made, with that.
     pub(crate) flanks: Vec<Flank<'j, 'g>>,
+    /// What `flank solve` tells of all points beside numbers: which are not solved, and why; empty if all is well.
+    pub(crate) unsolved: String,
 }
 
-/// Points of one surface.
+/// Points of one surface that the tool makes with a face of its own.
 pub(crate) struct Flank<'j, 'g> {
     pub(crate) surface: &'j GeneratedSurface<'g>,
     /// The tool's surface with numbers for its parameters.
     pub(crate) tool: Surface<'g>,
     pub(crate) points: Vec<SurfacePoint>,
-    /// What `flank solve` tells of them beside numbers: which are not solved, and why; empty if all is well.
+}
+
+/// The sampled points of a surface, and what is told of them.
+struct Made<'j, 'g> {
+    surface: &'j GeneratedSurface<'g>,
+    points: Vec<SurfacePoint>,
     told: String,
 }
 
@@ -75,22 +82,24 @@ impl<'j, 'g> Source<'j, 'g> {
         let mates = all
             .iter()
             .filter(|surface| path(surface) == path(first) && surface.generation.motions == generation.motions);
-        let flanks = mates.filter_map(|&surface| flank(job, surface, means));
-        let flanks: Vec<Flank<'j, 'g>> = flanks.collect::<Result<_, String>>()?;
+        let made: Vec<Made<'j, 'g>> = mates.map(|&surface| made(job, surface, means)).collect::<Result<_, String>>()?;
+        let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &made)).collect();
+        let unsolved = made.iter().map(|made| made.told.as_str()).collect();
+        let count = made.len();
+        let flanks: Vec<Flank<'j, 'g>> = made.into_iter().filter_map(|made| made.by_a_face(job)).collect();
         let tools: Vec<(&Surface<'g>, Vec<Range>)> = flanks
             .iter()
             .filter(|flank| flank.tool.unknowns.len() == 2)
             .map(|flank| (&flank.tool, solve::ranges(flank.surface)[..2].to_vec()))
             .collect();
         // an edge, or a tool that is an envelope itself, is carried over as it stands
-        let is_plain = tools.len() == flanks.len() && !tools.is_empty();
+        let is_plain = tools.len() == count && !tools.is_empty();
         let unseen = if is_plain {
             symmetries(&tools).expect("a job without errors leaves nothing unbound")
         } else {
             Vec::new()
         };
         let (work, tool) = path(first);
-        let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &flanks)).collect();
         let whole: Vec<Range> = motions.iter().map(|motion| Range { low: motion.low, high: motion.high }).collect();
         let stands = |(needed, whole): (&Range, &Range)| needed.high - needed.low <= STILL * (whole.high - whole.low);
         let (ranges, still) = if needed.iter().zip(&whole).all(stands) {
@@ -98,7 +107,17 @@ impl<'j, 'g> Source<'j, 'g> {
         } else {
             (needed, None)
         };
-        Ok(Source { work, tool, driven: &generation.driven, motions, ranges, still, symmetries: unseen, flanks })
+        Ok(Source {
+            work,
+            tool,
+            driven: &generation.driven,
+            motions,
+            ranges,
+            still,
+            symmetries: unseen,
+            flanks,
+            unsolved,
+        })
     }
 
     /// Positions evenly over the motions: one after the other for one motion; for two, row by row, there and back.
@@ -114,11 +133,6 @@ impl<'j, 'g> Source<'j, 'g> {
             positions = extended.collect();
         }
         positions
-    }
-
-    /// The points that were not solved, in the words of `flank solve`; empty if all were.
-    pub(crate) fn unsolved(&self) -> String {
-        self.flanks.iter().map(|flank| flank.told.as_str()).collect()
     }
 
     /// `roll = 3.2000 deg`.
@@ -152,16 +166,8 @@ impl Flank<'_, '_> {
     }
 }
 
-/// The points of a surface that the tool makes with a face of its own; nothing for an edge.
-fn flank<'j, 'g>(
-    job: &'j Job<'g>,
-    surface: &'j GeneratedSurface<'g>,
-    means: Means,
-) -> Option<Result<Flank<'j, 'g>, String>> {
-    let tool = match &surface.generation.tool {
-        ToolShape::Surface(tool) => tool.bound(&job.bindings()),
-        ToolShape::Edge(_) => return None,
-    };
+/// The points of a surface; none where no sample asks for any.
+fn made<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Result<Made<'j, 'g>, String> {
     let wanted = Wanted {
         geometry: false,
         sensitivity: false,
@@ -169,24 +175,33 @@ fn flank<'j, 'g>(
         together: Some("carrying its tool over"),
         means,
     };
-    Some(match solve::solve_surface(job, surface, wanted) {
-        None => Ok(Flank { surface, tool, points: Vec::new(), told: String::new() }),
-        Some(Ok(solved)) => {
-            let told = table::failures(job, std::slice::from_ref(&solved));
-            Ok(Flank { surface, tool, points: solved.points, told })
+    let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
+        return Ok(Made { surface, points: Vec::new(), told: String::new() });
+    };
+    let told = table::failures(job, std::slice::from_ref(&solved));
+    Ok(Made { surface, points: solved.points, told })
+}
+
+impl<'j, 'g> Made<'j, 'g> {
+    /// With the tool's surface; nothing for an edge.
+    fn by_a_face(self, job: &Job<'g>) -> Option<Flank<'j, 'g>> {
+        let Made { surface, points, .. } = self;
+        match &surface.generation.tool {
+            ToolShape::Surface(tool) => Some(Flank { surface, tool: tool.bound(&job.bindings()), points }),
+            ToolShape::Edge(_) => None,
         }
-        Some(Err(reason)) => Err(reason),
-    })
+    }
 }
 
 /// As far as the solved points need a motion; all of it where there are none.
-fn reached(motion: &Bounded<'_>, flanks: &[Flank<'_, '_>]) -> Range {
+fn reached(motion: &Bounded<'_>, made: &[Made<'_, '_>]) -> Range {
     let place = |surface: &GeneratedSurface<'_>, variable: Expr<'_>| {
         surface.unknowns.iter().position(|unknown| unknown.variable.as_variable() == variable.as_variable())
     };
-    let values = flanks.iter().flat_map(|flank| {
-        let at = place(flank.surface, motion.variable);
-        flank.solved().filter_map(move |point| at.map(|at| point.unknowns[at]))
+    let values = made.iter().flat_map(|made| {
+        let at = place(made.surface, motion.variable);
+        let solved = made.points.iter().filter(|point| point.outcome == Outcome::Solved);
+        solved.filter_map(move |point| at.map(|at| point.unknowns[at]))
     });
     let ends = values.fold(None, |ends: Option<Range>, x| {
         Some(ends.map_or(Range { low: x, high: x }, |ends| Range { low: ends.low.min(x), high: ends.high.max(x) }))
