@@ -70,12 +70,8 @@ fn through_temporary(
         file.set_permissions(before.permissions())?;
     }
     file.sync_all()?;
-    unfinished.finish(path)?;
-    // The name is on the disk only when the folder is; not every system lets a folder be synced.
-    if let Ok(folder) = File::open(&folder) {
-        let _ = folder.sync_all();
-    }
-    Ok(())
+    // if the power fails before the folder is on the disk, what was there before is, whole
+    Ok(unfinished.finish(path)?)
 }
 
 fn fill(file: File, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<File, WriteError> {
