@@ -1,6 +1,7 @@
 //! Coordinates of a sample that do not tell the points of a surface apart: where one is given, the other follows.
 
 use flank_expr::Expr;
+use nalgebra::DMatrix;
 
 use crate::codes::Code;
 use crate::context::Context;
@@ -47,47 +48,19 @@ fn are_independent<'g>(surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2
             *value(&mut values, unknown) = unknown.low + widths[j] * share(look, j);
         }
         let slopes = graph.evaluate(&slopes, &values);
-        let mut rows: Vec<Vec<f64>> = slopes
-            .chunks(size)
-            .map(|row| row.iter().zip(&widths).map(|(slope, width)| slope * width).collect())
-            .collect();
-        let lengths: Vec<f64> = rows.iter().map(|row| row.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+        let mut rows = DMatrix::from_fn(size, size, |i, j| slopes[i * size + j] * widths[j]);
         // a motion that only slides is told elsewhere
-        if lengths[..made.constraints.len()].contains(&0.0) {
+        if rows.row_iter().take(made.constraints.len()).any(|row| row.norm() == 0.0) {
             continue;
         }
-        for (row, length) in rows.iter_mut().zip(lengths).filter(|(_, length)| *length > 0.0) {
-            row.iter_mut().for_each(|x| *x /= length);
+        for mut row in rows.row_iter_mut().filter(|row| row.norm() > 0.0) {
+            row /= row.norm();
         }
-        let determinant = determinant(rows);
+        let determinant = rows.determinant();
         if determinant.abs() > NOTHING {
             return true;
         }
         is_seen |= !determinant.is_nan();
     }
     !is_seen
-}
-
-/// By Gauss, the largest entry of each column first.
-fn determinant(mut rows: Vec<Vec<f64>>) -> f64 {
-    let size = rows.len();
-    let mut product = 1.0;
-    for k in 0..size {
-        let largest = (k..size).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()));
-        let pivot = largest.expect("a row is left");
-        if pivot != k {
-            rows.swap(pivot, k);
-            product = -product;
-        }
-        product *= rows[k][k];
-        if rows[k][k] == 0.0 {
-            break;
-        }
-        let above = rows[k].clone();
-        for row in &mut rows[k + 1..] {
-            let factor = row[k] / above[k];
-            row.iter_mut().zip(&above).skip(k).for_each(|(x, by)| *x -= factor * by);
-        }
-    }
-    product
 }
