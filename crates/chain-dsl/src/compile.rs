@@ -129,7 +129,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let mut context = Context::new(graph, Tables::new(root, &sources));
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);
-    let items = Items::collect(&mut context, &files);
+    let items = Items::collect(&mut context, &files, beside.is_some());
     check_definitions(&mut context, &items);
     let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let main = files.last().map(|(id, _)| *id);
@@ -198,7 +198,10 @@ struct Items {
 }
 
 impl Items {
-    fn collect(context: &mut Context<'_>, files: &[(FileId, ast::File)]) -> Items {
+    fn collect(context: &mut Context<'_>, files: &[(FileId, ast::File)], is_beside: bool) -> Items {
+        /// Of a machine that is an edited copy of one that the job uses.
+        const APART: &str = "a job and the machine that it is carried over to are read together, and a name means one thing in both: give \
+                             it another name in one of the files";
         let mut items = Items::default();
         let mut seen: HashMap<String, Span> = HashMap::new();
         for (file, parsed) in files {
@@ -211,7 +214,8 @@ impl Items {
                     Item::Job(job) => &job.name,
                 };
                 if let Some(first) = seen.insert(name.node.clone(), name.span) {
-                    context.duplicate(name, first);
+                    let is_apart = is_beside && first.file != name.span.file;
+                    context.duplicate_with(name, first, is_apart.then_some(APART));
                 }
                 items.add(context, *file, item);
             }

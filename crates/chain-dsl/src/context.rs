@@ -152,9 +152,18 @@ impl<'g> Context<'g> {
 
     /// Reports the second definition of a name, unless the parser has reported that the name is missing.
     pub(crate) fn duplicate(&mut self, name: &Name, first: Span) {
+        self.duplicate_with(name, first, None);
+    }
+
+    /// The same with a way out.
+    pub(crate) fn duplicate_with(&mut self, name: &Name, first: Span, help: Option<&str>) {
         if !name.node.is_empty() {
             let message = format!("`{}` is defined twice", name.node);
-            self.report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here"));
+            let twice = Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here");
+            self.report(match help {
+                Some(help) => twice.help(help),
+                None => twice,
+            });
         }
     }
 

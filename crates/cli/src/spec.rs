@@ -15,6 +15,7 @@ use crate::failure::{Failure, in_full};
 /// # Errors
 /// What is wrong with the spec.
 pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
+    which.check()?;
     let mut compilation = sound(compile_file(graph, &which.file, &which.set))?;
     let jobs = asked_for(&mut compilation, which)?;
     Ok((compilation, jobs))

@@ -242,7 +242,7 @@ fn a_tolerance_over_two_motions_is_told() {
     let told = text(&run.stderr);
     assert_eq!(run.status.code(), Some(3), "{told}");
     assert!(
-        told.contains("nothing is done for --tolerance, --out, --emit: there is that of one motion only"),
+        told.contains("nothing is done for --tolerance, --out, --emit: the job runs over spindle and feed"),
         "{told}"
     );
 }
@@ -311,7 +311,10 @@ fn settings_of_another_machine_are_found() {
     let run = flank(&target);
     assert_eq!(run.status.code(), Some(3));
     let told = text(&run.stderr);
-    assert!(told.contains("no values of these settings make all poses on") && told.contains("--fit"), "{told}");
+    assert!(
+        told.contains("no values of these settings were found that make all poses on") && told.contains("--fit"),
+        "{told}"
+    );
     let run = flank(&[&target[..], &["--fit", "cutter_tlit"]].concat());
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).contains("--fit cutter_tlit: there is no such setting"), "{}", text(&run.stderr));

@@ -12,6 +12,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::{Code, Job};
 use flank_expr::InstructionSet;
 
+use crate::failure::Failure;
+
 pub(crate) use convert::{Convert, EmitForm, Onto, TableFormat};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use report::{Report, ReportFormat};
@@ -114,6 +116,19 @@ pub(crate) struct Which {
 }
 
 impl Which {
+    /// # Errors
+    /// If one name is set twice, whatever the file says.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let twice =
+            self.set.iter().enumerate().find(|(k, (name, _))| self.set[..*k].iter().any(|(known, _)| known == name));
+        match twice {
+            Some((_, (name, _))) => {
+                Err(Failure::of_usage(format!("`--set {name}=…` is given twice: leave one of them out")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The values that were set by hand, of parameters and settings of these jobs.
     pub(crate) fn set_in(&self, jobs: &[&Job<'_>]) -> Vec<&(String, String)> {
         self.set.iter().filter(|(name, _)| jobs.iter().any(|job| job.has_parameter(name))).collect()

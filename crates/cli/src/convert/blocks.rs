@@ -15,16 +15,16 @@ use crate::units;
 pub(super) struct Blocks {
     /// Left by straight lines between positions; nothing where no proof bounds how far the axes are off them.
     pub(super) straight: Option<f64>,
-    /// Left by the rounding of positions.
-    pub(super) rounding: f64,
+    /// Left by the rounding of positions; nothing where no point shows it.
+    pub(super) rounding: Option<f64>,
 }
 
 impl Blocks {
     /// For positions of one motion in order; `tube` is where the axes are proven to stand.
-    pub(super) fn of(carried: &Carried<'_, '_>, tube: Option<&Tube>) -> Option<Blocks> {
+    pub(super) fn of(carried: &Carried<'_, '_>, tube: Option<&Tube>) -> Blocks {
         let Carried { problem, source, free: axes, positions, line, .. } = carried;
         let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
-        let series: Vec<Vec<Vec<f64>>> = each.collect::<Option<_>>()?;
+        let Some(series) = each.collect::<Option<Vec<Vec<Vec<f64>>>>>() else { return Blocks::default() };
         let ends = positions.windows(2).zip(line.windows(2));
         let blocks = ends.zip(&series).map(|((at, postures), start)| {
             let range = Range { low: at[0][0], high: at[1][0] };
@@ -36,27 +36,31 @@ impl Blocks {
         });
         let blocks: Vec<Block<'_>> = blocks.collect();
         let halves: Vec<f64> = axes.iter().map(|axis| half_increment(axis)).collect();
-        let mut most: Option<Blocks> = None;
+        let mut worst = Blocks::default();
         for flank in &source.flanks {
             for (straight, rounding) in Influence::new(problem, source, flank, axes.len()).off(&blocks, &halves) {
-                let worst = most.get_or_insert_default();
                 worst.straight = tube.map(|_| straight.max(worst.straight.unwrap_or(0.0)));
-                worst.rounding = worst.rounding.max(rounding);
+                worst.rounding = Some(rounding.max(worst.rounding.unwrap_or(0.0)));
             }
         }
-        most
+        worst
     }
 
     /// For the head of a program.
     pub(super) fn sentence(self) -> String {
-        let rounding = format!("rounded positions by up to {:.4} um", self.rounding * 1e3);
+        let Some(rounding) = self.rounding else {
+            return "how far straight blocks leave the flank off is not known, how far rounded positions do is not known: no point of the \
+                    flank tells that is sampled and solved on a surface that a face of the tool makes"
+                .to_string();
+        };
+        let rounding = format!("rounded positions by up to {:.4} um", rounding * 1e3);
         match self.straight {
             Some(straight) => format!(
                 "where points were sampled, straight blocks leave the flank off by up to {:.4} um, {rounding}",
                 straight * 1e3
             ),
             None => format!(
-                "where points were sampled, {rounding}; how far straight blocks leave the flank off is not bounded: there is no proof \
+                "where points were sampled, {rounding}; how far straight blocks leave the flank off is not known: there is no proof \
                  where the axes stand between positions"
             ),
         }

@@ -1,7 +1,7 @@
 //! What `flank convert` leaves in its folder: motion tables, NC programs, functions.
 
 use flank_chain_dsl::{Dimension, NcWord};
-use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown};
+use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown, write_nc};
 use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_polynomials};
 
 use super::Carried;
@@ -29,34 +29,50 @@ pub(super) fn write(
     header: Header,
     (arguments, origin): (&Convert, &Origin),
 ) -> Result<Vec<String>, String> {
-    let name = format!("{}_on_{}", table.job, table.machine);
-    let mut folder = Folder::at(arguments.out(), origin)?;
+    let source = &carried.source;
+    // two tools of one job do not write over each other's files
+    let own = if source.is_one_of_several { format!("_{}", source.surfaces[0]) } else { String::new() };
+    let name = format!("{}{own}_on_{}", table.job, table.machine);
     let motion = motion_table(table, header);
-    for format in arguments.formats() {
-        folder.motion(&name, &motion, *format)?;
+    let seconds = || arguments.time.expect("an NC program is asked for with its cutting time");
+    // what one of the controls cannot do is told before there is a file
+    for dialect in distinct(&arguments.nc) {
+        write_nc(&motion, dialect.into(), seconds(), &mut std::io::sink()).map_err(|error| error.to_string())?;
     }
-    for dialect in &arguments.nc {
-        let seconds = arguments.time.expect("an NC program is asked for with its cutting time");
-        folder.nc(&name, &motion, (*dialect).into(), seconds)?;
-    }
-    for form in &arguments.emit_form {
-        for language in &arguments.emit {
+    let mut functions = Vec::new();
+    for form in distinct(&arguments.emit_form) {
+        for language in distinct(&arguments.emit) {
             let (name, text) = match form {
-                EmitForm::Polynomials => (name.clone(), polynomials(table, &name, (*language).into())?),
+                EmitForm::Polynomials => (name.clone(), polynomials(table, &name, language.into())?),
                 EmitForm::Exact => {
                     let name = format!("{name}_exact");
-                    let text = exact(table, carried, &name, (*language).into())?;
+                    let text = exact(table, carried, &name, language.into())?;
                     (name, text)
                 }
             };
-            folder.text(&format!("{name}.{}", language.extension()), &text)?;
+            functions.push((format!("{name}.{}", language.extension()), text));
         }
     }
+    let mut folder = Folder::at(arguments.out(), origin)?;
+    for format in distinct(arguments.formats()) {
+        folder.motion(&name, &motion, format)?;
+    }
+    for dialect in distinct(&arguments.nc) {
+        folder.nc(&name, &motion, dialect.into(), seconds())?;
+    }
+    functions.iter().try_for_each(|(name, text)| folder.text(name, text))?;
     Ok(folder.written)
+}
+
+/// Each once, in their order.
+fn distinct<T: Copy + PartialEq>(all: &[T]) -> Vec<T> {
+    let first = |(k, one): (usize, &T)| (!all[..k].contains(one)).then_some(*one);
+    all.iter().enumerate().filter_map(first).collect()
 }
 
 fn motion_table(table: &Table, mut header: Header) -> MotionTable {
     let motion = &table.motions[0];
+    header.conventions.insert(0, table.carried.clone());
     header.conventions.extend(table.blocks.map(Blocks::sentence));
     let axis = |(axis, word): (&Named, &NcWord)| {
         let is_rotary = axis.dimension == Dimension::ANGLE;
@@ -128,5 +144,8 @@ fn exact(table: &Table, carried: &Carried<'_, '_>, name: &str, language: Languag
 }
 
 fn head(table: &Table) -> Vec<String> {
-    vec![table.title.clone(), "mm and rad; derivatives per rad (mm) of the motion".to_string()]
+    vec![
+        format!("job {}: {}", table.job, table.carried),
+        "mm and rad; derivatives per rad (mm) of the motion".to_string(),
+    ]
 }

@@ -82,6 +82,7 @@ fn check_settings_alone(target: &Target<'_, '_>, arguments: &Convert) -> Result<
 /// # Errors
 /// What is wrong with the texts, or that it is not clear which job is meant.
 pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(Origin, Job<'g>, Job<'g>), Failure> {
+    which.check()?;
     let mut compilation = spec::sound(compile_with_machine(graph, &which.file, to, &which.set))?;
     let mut jobs = spec::asked_for(&mut compilation, which)?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
@@ -111,7 +112,7 @@ fn carry<'g>(
     let series = is_followed.then(|| Series::of(&carried, arguments)).flatten();
     drop(working);
     match &series {
-        Some(series) => told.extend(series.unmet(arguments.tolerance)),
+        Some(series) => told.extend(series.unmet(arguments.tolerance, &carried.source)),
         None if told.is_empty() => told.extend(without_series(&carried, arguments)),
         None => {}
     }
@@ -119,7 +120,7 @@ fn carry<'g>(
     let rates = arguments.time.filter(|_| is_series).map(|seconds| Rates::of(&carried, seconds)).transpose()?.flatten();
     let mut table = Table::new(job, &carried, (series, rates), arguments);
     let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
-    table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried, tube)).flatten();
+    table.blocks = (is_series && !arguments.nc.is_empty()).then(|| Blocks::of(&carried, tube));
     // a table of one motion; what the target cannot do is no program
     if is_series {
         let header = crate::solve::header(&jobs, &arguments.which, origin);
@@ -139,7 +140,8 @@ fn without_series(carried: &Carried<'_, '_>, arguments: &Convert) -> Option<Stri
         _ => (
             arguments.of_a_motion(),
             format!(
-                "there is that of one motion only, and the job runs over {}, each by itself",
+                "the job runs over {}, each by itself, and files, polynomials, programs and rates go along one motion; without these \
+                 options the axes are printed, and with --json all positions",
                 motions.join(" and ")
             ),
         ),

@@ -75,14 +75,18 @@ impl Series {
 
 impl Series {
     /// In words, that no order meets a tolerance, and what can be done; nothing if one does.
-    pub(crate) fn unmet(&self, tolerance: Option<f64>) -> Option<String> {
+    pub(crate) fn unmet(&self, tolerance: Option<f64>, source: &Source<'_, '_>) -> Option<String> {
         /// Nearer than this the flank is not computed, mm.
         const ROUNDING: f64 = 1e-11;
         let tolerance = tolerance.filter(|_| !self.meets)?;
         let Some((order, least)) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
+            let why = if source.flanks.is_empty() {
+                "the points tell where a face of the tool touches the flank, and this tool is an edge; say the order (--order)"
+            } else {
+                "the points of the flank tell, and none is sampled and solved; add a `sample`, or say the order (--order)"
+            };
             return Some(format!(
-                "not reached: no order is known to keep the flank within {:.3e} um: the points of the flank tell, and none is sampled \
-                 and solved on a surface that a face of the tool makes; add a `sample`, or say the order (--order)\n",
+                "not reached: no order is known to keep the flank within {:.3e} um: {why}\n",
                 tolerance * 1e3
             ));
         };

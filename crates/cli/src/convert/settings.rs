@@ -32,9 +32,8 @@ pub(super) fn wanted<'t, 'g>(
     asked: &[String],
 ) -> Result<Vec<&'t Bounded<'g>>, String> {
     let machine = &target.machines[0].name;
-    let reached = chain.substituted(&target.bindings_beside(&variables(&target.settings)));
-    let matters = |setting: &Bounded<'g>| !reached.twist(setting.variable).is_zero();
-    let short = |setting: &Bounded<'g>| setting.name.rsplit('.').next().unwrap_or(&setting.name).to_string();
+    let matter = that_matter(target, chain);
+    let matters = |setting: &Bounded<'g>| matter.iter().any(|known| known.variable == setting.variable);
     for name in asked {
         let known = target.settings.iter().find(|setting| short(setting) == *name || setting.name == *name);
         let reason = match known {
@@ -43,8 +42,8 @@ pub(super) fn wanted<'t, 'g>(
             Some(setting) if !matters(setting) => "it does not move the tool against the work",
             Some(_) => continue,
         };
-        let can = target.settings.iter().filter(|setting| !setting.is_count && matters(setting));
-        let can: Vec<String> = can.map(short).collect();
+        let can: Vec<String> =
+            matter.iter().filter(|setting| !setting.is_count).map(|setting| short(setting)).collect();
         return Err(match &can[..] {
             [] => format!("--fit {name}: {reason}; {machine} has no setting that can be looked for"),
             can => format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")),
@@ -58,6 +57,12 @@ pub(super) fn wanted<'t, 'g>(
         Some(count) => Err(format!("{} has no value: --set {}=…", count.name, count.name)),
         None => Ok(wanted),
     }
+}
+
+/// The settings that move the tool against the work.
+fn that_matter<'t, 'g>(target: &'t Job<'g>, chain: &Chain<'g>) -> Vec<&'t Bounded<'g>> {
+    let reached = chain.substituted(&target.bindings_beside(&variables(&target.settings)));
+    target.settings.iter().filter(|setting| !reached.twist(setting.variable).is_zero()).collect()
 }
 
 fn variables<'g>(settings: &[Bounded<'g>]) -> Vec<Expr<'g>> {
@@ -185,14 +190,17 @@ impl Found<'_, '_, '_> {
         let name = &target.machine.name;
         let mut told = self.unsolved.clone();
         if !fit.is_exact {
-            let more =
-                target.job.settings.iter().filter(|s| !s.is_count && target.settings.iter().all(|w| w.name != s.name));
+            let more = that_matter(target.job, &target.chain).into_iter();
+            let more = more.filter(|s| !s.is_count && target.settings.iter().all(|wanted| wanted.name != s.name));
             let more: Vec<String> = more.map(short).collect();
             let others = match more.is_empty() {
                 true => format!("{name} has no others"),
                 false => format!("perhaps with others: --fit {}", more.join(" or ")),
             };
-            let _ = writeln!(told, "not reached: no values of these settings make all poses on {name}; {others}");
+            let _ = writeln!(
+                told,
+                "not reached: no values of these settings were found that make all poses on {name}; {others}"
+            );
         }
         for (setting, value) in target.settings.iter().zip(&fit.settings) {
             let margin = ROUNDING * (1.0 + value.abs());

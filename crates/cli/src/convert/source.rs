@@ -17,6 +17,10 @@ pub(crate) struct Source<'j, 'g> {
     /// Frames of the work and of the tool, as `m.work`.
     pub(crate) work: String,
     pub(crate) tool: String,
+    /// The surfaces that this tool makes there over these motions.
+    pub(crate) surfaces: Vec<&'j str>,
+    /// Whether the job has other tools, or makes other works.
+    pub(crate) is_one_of_several: bool,
     /// From work to tool, in motions.
     pub(crate) driven: &'j Chain<'g>,
     pub(crate) motions: Vec<&'j Bounded<'g>>,
@@ -82,6 +86,7 @@ impl<'j, 'g> Source<'j, 'g> {
         let mates = all
             .iter()
             .filter(|surface| path(surface) == path(first) && surface.generation.motions == generation.motions);
+        let surfaces = mates.clone().map(|surface| surface.name.as_str()).collect();
         let made: Vec<Made<'j, 'g>> = mates.map(|&surface| made(job, surface, means)).collect::<Result<_, String>>()?;
         let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &made)).collect();
         let unsolved = made.iter().map(|made| made.told.as_str()).collect();
@@ -107,9 +112,12 @@ impl<'j, 'g> Source<'j, 'g> {
         } else {
             (needed, None)
         };
+        let is_one_of_several = all.iter().any(|surface| path(surface) != path(first));
         Ok(Source {
             work,
             tool,
+            surfaces,
+            is_one_of_several,
             driven: &generation.driven,
             motions,
             ranges,

@@ -28,6 +28,8 @@ pub(super) struct Named {
 
 pub(crate) struct Table {
     pub(super) title: String,
+    /// What is carried over, and whereto, for the heads of files.
+    pub(super) carried: String,
     pub(super) job: String,
     pub(super) machine: String,
     pub(super) motions: Vec<Named>,
@@ -65,6 +67,13 @@ impl Table {
             title: format!(
                 "job {} ({file}) on {} ({to}): {} against {}",
                 job.name, machine.name, source.tool, source.work
+            ),
+            carried: format!(
+                "{} against {}, as they make {}, on machine {} ({to})",
+                source.tool,
+                source.work,
+                source.surfaces.join(", "),
+                machine.name
             ),
             job: job.name.clone(),
             machine: machine.name.clone(),

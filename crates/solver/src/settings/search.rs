@@ -101,8 +101,10 @@ impl Search {
                 break;
             }
         }
-        let nearest = || self.widened(ends[0].clone(), motions, held);
-        exact.into_iter().next().unwrap_or_else(nearest)
+        // of those that are as near, mirror images among them, one within the ranges
+        let mut nearest = ends.iter().take_while(|end| end.cost <= ends[0].cost * (1.0 + SAME_END));
+        let nearest = nearest.find(|end| self.is_within(end)).unwrap_or(&ends[0]);
+        exact.into_iter().next().unwrap_or_else(|| self.widened(nearest.clone(), motions, held))
     }
 
     /// From a few poses to all.
@@ -139,7 +141,8 @@ impl Search {
     /// A state that is told otherwise, unless it leaves more of the poses.
     fn kept(&self, otherwise: State, state: State, motions: &[Vec<f64>]) -> State {
         let cost = self.cost(&otherwise.settings, &otherwise.moving, motions);
-        if cost <= state.cost.max(self.rounding(motions.len())) { State { cost, ..otherwise } } else { state }
+        let same = (state.cost * (1.0 + SAME_END)).max(self.rounding(motions.len()));
+        if cost <= same { State { cost, ..otherwise } } else { state }
     }
 
     fn start(&self, k: u32, motions: &[Vec<f64>], held: &[Option<f64>]) -> State {
