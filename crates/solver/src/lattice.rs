@@ -1,13 +1,16 @@
 //! The lattice of points that a grid is filled from, many points at once.
 
+#![allow(clippy::needless_range_loop)] // several arrays are gone through in step
+
+use std::array;
 use std::collections::VecDeque;
 
 use flank_expr::LANES;
 
 use crate::field::{Field, NEAR, SAME_DETERMINANT};
 use crate::grid::{ASTRAY, Grid};
-use crate::lanes::LaneNewton;
-use crate::solution::distance;
+use crate::lanes::{LaneNewton, Lanes};
+use crate::solution::Range;
 
 /// A step from a solved point to the next one.
 #[derive(Clone, Copy)]
@@ -64,19 +67,12 @@ impl Grid<'_> {
     }
 
     fn leap(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, leaps: &[Leap]) {
-        let (count, size) = (leaps.len(), self.ranges.len());
-        // of one leap after the other
-        let of = |lane: usize| lane * size..(lane + 1) * size;
-        let put = |newton: &mut LaneNewton<'_>, unknowns: &[f64], target: fn(&Leap) -> usize| {
-            for (lane, leap) in leaps.iter().enumerate() {
-                newton.put(lane, unknowns[of(lane)].iter().copied(), &self.targets[target(leap)]);
-            }
-        };
-        let points = leaps.iter().map(|leap| leap.from);
-        let starts: Vec<f64> = points.flat_map(|point| field.unknowns(point)).collect();
-        put(newton, &starts, |leap| leap.to);
-        let led = self.along_tangents(newton, &starts);
-        put(newton, &led, |leap| leap.to);
+        let count = leaps.len();
+        let [from, to] = [0, 1].map(|end| leaps.iter().map(move |leap| [leap.from, leap.to][end]));
+        let starts = self.unknowns(field, from.clone());
+        self.put(newton, &starts, to.clone());
+        let led = self.along_tangents(newton, count, &starts);
+        self.put(newton, &led, to);
         // a start that is not finite fails like any other
         self.effort.evaluations += 2 * count as u64 + newton.run(&[true; LANES][..count], true);
         for (lane, leap) in leaps.iter().enumerate() {
@@ -86,27 +82,56 @@ impl Grid<'_> {
             }
         }
         let points = leaps.iter().map(|leap| if field.is_root(leap.to) { leap.to } else { leap.from });
-        let ends: Vec<f64> = points.flat_map(|point| field.unknowns(point)).collect();
-        put(newton, &ends, |leap| leap.from);
-        let back = self.along_tangents(newton, &ends);
+        let ends = self.unknowns(field, points);
+        self.put(newton, &ends, from);
+        let back = self.along_tangents(newton, count, &ends);
+        let pairs = [(&starts, &ends), (&starts, &led), (&led, &ends), (&ends, &back), (&back, &starts)];
+        let [whole, there, beside_end, returned, beside_start] = pairs.map(|(a, b)| self.distances(a, b));
         for (lane, leap) in leaps.iter().enumerate() {
-            let [start, led, end, back] = [&starts, &led, &ends, &back].map(|unknowns| &unknowns[of(lane)]);
-            let leads = |from: &[f64], led: &[f64], to: &[f64]| {
-                let allowed = ASTRAY * distance(from, led, self.ranges) + NEAR;
-                distance(led, to, self.ranges) <= allowed
-            };
-            let stays = distance(start, end, self.ranges) <= NEAR || leads(start, led, end) && leads(end, back, start);
+            let leads = |tangent: &Lanes, beside: &Lanes| beside[lane] <= ASTRAY * tangent[lane] + NEAR;
+            let stays = whole[lane] <= NEAR || leads(&there, &beside_end) && leads(&returned, &beside_start);
             if field.is_root(leap.to) && !stays {
                 field.forget(leap.to);
             }
         }
     }
 
-    /// Where the tangents at the first lanes lead, from the points that they hold.
-    fn along_tangents(&self, newton: &mut LaneNewton<'_>, from: &[f64]) -> Vec<f64> {
-        let size = self.ranges.len();
-        let steps = newton.tangents(from.len() / size.max(1));
-        let moved = |(k, from): (usize, &f64)| from + steps[k % size][k / size] * self.ranges[k % size].width();
-        from.iter().enumerate().map(moved).collect()
+    /// The unknowns of points, a lane for each.
+    fn unknowns(&self, field: &Field, points: impl Iterator<Item = usize>) -> Vec<Lanes> {
+        let mut unknowns = vec![[0.0; LANES]; self.ranges.len()];
+        for (lane, point) in points.enumerate() {
+            unknowns.iter_mut().zip(field.unknowns(point)).for_each(|(unknown, value)| unknown[lane] = value);
+        }
+        unknowns
+    }
+
+    /// Puts unknowns into the first lanes, with the targets of some points.
+    fn put(&self, newton: &mut LaneNewton<'_>, unknowns: &[Lanes], points: impl Iterator<Item = usize>) {
+        let size = unknowns.len();
+        unknowns.iter().enumerate().for_each(|(k, unknown)| *newton.input(k) = *unknown);
+        for (lane, point) in points.enumerate() {
+            (0..2).for_each(|k| newton.input(size + k)[lane] = self.targets[point][k]);
+        }
+    }
+
+    /// Where the tangents at the first lanes lead, from the unknowns that they hold.
+    fn along_tangents(&self, newton: &mut LaneNewton<'_>, count: usize, from: &[Lanes]) -> Vec<Lanes> {
+        let steps = newton.tangents(count);
+        let moved = |((from, steps), range): ((&Lanes, &Lanes), &Range)| {
+            array::from_fn(|lane| from[lane] + steps[lane] * range.width())
+        };
+        from.iter().zip(steps).zip(self.ranges).map(moved).collect()
+    }
+
+    /// What `distance` is, of each lane.
+    fn distances(&self, a: &[Lanes], b: &[Lanes]) -> Lanes {
+        let mut farthest = [0.0; LANES];
+        for ((a, b), range) in a.iter().zip(b).zip(self.ranges) {
+            for lane in 0..LANES {
+                let share = (a[lane] - b[lane]).abs() / range.width();
+                farthest[lane] = if share > farthest[lane] { share } else { farthest[lane] };
+            }
+        }
+        farthest
     }
 }
