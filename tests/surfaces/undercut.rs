@@ -335,8 +335,8 @@ fn the_contact_of_a_turning_plane_ends_at_its_feed() {
             frame head in slide = rotate_z(B)
         }
         tool plate {
-            surface face(y: length in -9 mm .. 9 mm, z: length in -5 mm .. 5 mm) {
-                at = [0 mm, y, z]
+            surface face(u: length in -9 mm .. 9 mm, v: length in -5 mm .. 5 mm) {
+                at = [0 mm, u, v]
                 body towards [-1, 0, 0]
             }
         }

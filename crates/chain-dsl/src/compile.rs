@@ -316,7 +316,16 @@ fn check_overrides<'j, 'g: 'j>(
     for name in &outer.names {
         let known: Vec<&str> =
             jobs.clone().flat_map(|job| &job.parameters).map(|parameter| parameter.name.as_str()).collect();
-        if !known.contains(&name.node.as_str()) && !context.has_errors() {
+        if known.contains(&name.node.as_str()) || context.has_errors() {
+            continue;
+        }
+        let machines = || jobs.clone().flat_map(|job| &job.machines);
+        let mut axes = machines().flat_map(|machine| machine.axes.iter().map(move |axis| (&machine.name, &axis.name)));
+        if axes.any(|(machine, axis)| name.node == format!("{machine}.{axis}")) {
+            let message = format!("`{}` is an axis, not a parameter: it follows its law", name.node);
+            let help = "set a parameter that its law is made of, or write the law into the spec";
+            context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+        } else {
             context.unknown(name, "parameter", known.into_iter());
         }
     }

@@ -120,6 +120,8 @@ pub(crate) struct Context<'g> {
     reported: HashSet<(Code, Span)>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,
+    /// Whether a requirement did not hold in the item being looked at.
+    is_unmet: bool,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
     steps: Cell<usize>,
     /// A limit on the work has been exceeded and reported.
@@ -143,6 +145,7 @@ impl<'g> Context<'g> {
             errors: 0,
             reported: HashSet::new(),
             unknown: HashSet::new(),
+            is_unmet: false,
             steps: Cell::new(0),
             exhausted: false,
             sample_points: 0,
@@ -178,8 +181,11 @@ impl<'g> Context<'g> {
     }
 
     fn keep(&mut self, diagnostic: Diagnostic) {
-        // formulas that were cut off are wrong in ways that nobody wrote
-        let is_own_fault = diagnostic.code == Code::LimitExceeded || !self.graph.is_full();
+        // formulas that were cut off are wrong in ways that nobody wrote, and so are those of values that are not as required
+        let is_cut_off = diagnostic.code != Code::LimitExceeded && self.graph.is_full();
+        let follows = diagnostic.code == Code::NotANumber && self.is_unmet;
+        let is_own_fault = !is_cut_off && !follows;
+        self.is_unmet |= diagnostic.code == Code::Unmet;
         if is_own_fault && self.reported.insert((diagnostic.code, diagnostic.span)) {
             self.errors += usize::from(diagnostic.severity() == Severity::Error);
             self.diagnostics.push(diagnostic);
@@ -290,6 +296,7 @@ impl<'g> Context<'g> {
     /// Begins with a machine, tool, job or function.
     pub(crate) fn begin_item(&mut self) {
         self.unknown.clear();
+        self.is_unmet = false;
     }
 
     /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.

@@ -118,7 +118,8 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
         let value = given.as_ref().map_or(Some(f64::NAN), |given| given.number(context, param))?;
         let checked_at = given.as_ref().map_or(param.name.span, |given| given.written);
-        let range = self.check_value(context, param, value, scope, checked_at);
+        // what follows from a value that is refused is no finding of its own
+        let range = self.check_value(context, param, value, scope, checked_at).ok()?;
         let variable = context.variable(name.clone(), Role::Parameter, value);
         let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
@@ -168,7 +169,10 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
     }
 
-    /// Counts are whole, values lie in the declared range, which is given back.
+    /// Counts are whole, values lie in the declared range, which is given back if there is one.
+    ///
+    /// # Errors
+    /// If the value is refused, which has been reported.
     fn check_value(
         &self,
         context: &mut Context<'g>,
@@ -176,23 +180,26 @@ impl<'a, 'g> Binder<'a, 'g> {
         value: f64,
         scope: &Scope<'g>,
         span: Span,
-    ) -> Option<(f64, f64)> {
+    ) -> Result<Option<(f64, f64)>, Refused> {
         if is_count(&param.dimension) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
             let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
+            return Err(Refused);
         }
-        let range = param.range.as_ref()?;
-        let dimension = context.dimension(&param.dimension)?;
+        let (Some(range), Some(dimension)) = (&param.range, context.dimension(&param.dimension)) else {
+            return Ok(None);
+        };
         let what = shown_name(param);
-        let (low, high) = context.range(range, scope, dimension, &what)?;
+        let Some((low, high)) = context.range(range, scope, dimension, &what) else { return Ok(None) };
         if value < low || value > high {
             let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
             let message = format!("{what} is {value}, outside its range {low} .. {high}");
             let diagnostic =
                 Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");
             context.report(diagnostic);
+            return Err(Refused);
         }
-        Some((low, high))
+        Ok(Some((low, high)))
     }
 
     /// What was given too little or too much.
@@ -223,6 +230,9 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
     }
 }
+
+/// A value cannot stay, which has been reported.
+struct Refused;
 
 /// Whether a dimension is that of something that is counted.
 pub(crate) fn is_count(dimension: &Dimension) -> bool {

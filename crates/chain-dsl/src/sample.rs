@@ -16,6 +16,17 @@ const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 
 /// The one coordinate that comes round to itself.
 const POLAR_ANGLE: &str = "polar_angle";
+/// What every point has.
+const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
+
+/// Reports an unknown of surfaces that is called as a coordinate of their points: a sample could mean either.
+pub(crate) fn check_unknown(context: &mut Context<'_>, name: &Name, what: &str) {
+    if OF_POINTS.contains(&name.node.as_str()) {
+        let message = format!("`{}` is a coordinate of points: a {what} cannot be called so", name.node);
+        let help = "give it a name of its own, which samples can ask for beside the coordinates";
+        context.report(Diagnostic::new(Code::DuplicateName, name.span, message).help(help));
+    }
+}
 
 /// The grid that a `sample` statement asks for, the branch that it keeps to, and what it requires of the points.
 pub(crate) fn build<'g>(
@@ -112,19 +123,20 @@ impl<'g> GeneratedSurface<'g> {
         let [x, y, z] = self.surface.position.0;
         let [nx, ny, nz] = self.surface.normal.0;
         let of_point = [
-            ("x", x, Dimension::LENGTH),
-            ("y", y, Dimension::LENGTH),
-            ("z", z, Dimension::LENGTH),
-            ("rho", (x * x + y * y).sqrt(), Dimension::LENGTH),
-            (POLAR_ANGLE, y.atan2(x), Dimension::ANGLE),
-            ("nx", nx, Dimension::NUMBER),
-            ("ny", ny, Dimension::NUMBER),
-            ("nz", nz, Dimension::NUMBER),
+            (x, Dimension::LENGTH),
+            (y, Dimension::LENGTH),
+            (z, Dimension::LENGTH),
+            ((x * x + y * y).sqrt(), Dimension::LENGTH),
+            (y.atan2(x), Dimension::ANGLE),
+            (nx, Dimension::NUMBER),
+            (ny, Dimension::NUMBER),
+            (nz, Dimension::NUMBER),
         ];
+        let of_point = OF_POINTS.into_iter().zip(of_point).map(|(name, (value, dimension))| (name, value, dimension));
         let unknowns = self.unknowns.iter().map(|u| (u.name.as_str(), u.variable, u.dimension));
         let coordinate =
             |(name, value, dimension): (&str, _, _)| Coordinate { name: name.to_string(), value, dimension };
-        of_point.into_iter().chain(unknowns).map(coordinate).collect()
+        of_point.chain(unknowns).map(coordinate).collect()
     }
 
     /// One of [`GeneratedSurface::coordinates`] by its name, or one that the surface's own sample defines.

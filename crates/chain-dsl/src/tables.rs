@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use flank_expr::{Curve, CurveId};
+use flank_expr::{Curve, CurveError, CurveId};
 
 use crate::codes::Code;
-use crate::context::{Context, Value};
+use crate::context::{Context, Value, article};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::{self, Dimension};
 use crate::limits::{self, Limit};
@@ -145,7 +145,13 @@ impl Columns<'_> {
             None => {
                 let points = self.rows(context)?;
                 let curve = Curve::through(y_name.node.clone(), &points);
-                let curve = curve.map_err(|error| Reason::Wrong(Code::WrongTable, error.to_string()));
+                let curve = match curve {
+                    Ok(curve) => Ok(curve),
+                    Err(error) => {
+                        let text = context.tables.text(&self.path).unwrap_or_default();
+                        Err(Reason::Wrong(Code::WrongTable, self.no_curve(error, &text)))
+                    }
+                };
                 let curve = self.told(context, curve)?;
                 let id = context.graph.curve(curve);
                 context.tables.curves.insert(key, id);
@@ -153,6 +159,15 @@ impl Columns<'_> {
             }
         };
         Some(Value::Curve(id, x, y))
+    }
+
+    /// Why the rows of the text make no curve.
+    fn no_curve(&self, error: CurveError, text: &str) -> String {
+        let CurveError::NotIncreasing(row) = error else { return error.to_string() };
+        let mut reader = reader(text);
+        let line = reader.records().nth(row).and_then(Result::ok).and_then(|record| Some(record.position()?.line()));
+        let place = line.map_or(format!("point {row}"), |line| format!("line {line}"));
+        format!("column `{}` does not increase from the row before to {place}", self.columns[0].0.node)
     }
 
     fn key(&self) -> Key {
@@ -210,9 +225,13 @@ enum Reason {
     Wrong(Code, String),
 }
 
+fn reader(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes())
+}
+
 /// Two columns of a text; lines that begin with `#` are remarks, the first other line names the columns.
 fn rows(text: &str, columns: [(&str, Dimension); 2]) -> Result<Rows, Reason> {
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = reader(text);
     let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
     let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
     let mut places = [(0, 1.0); 2];
@@ -253,11 +272,14 @@ fn found(heads: &csv::StringRecord, name: &str, dimension: Dimension) -> Result<
         });
         return match dimension::unit(unit) {
             Some((size, found)) if found == dimension => Ok((index, size)),
-            Some((_, found)) => Err(format!("column `{name}` is a {found}, not a {dimension}")),
+            Some((_, found)) => {
+                Err(format!("column `{name}` is {} {found}, not {} {dimension}", article(found), article(dimension)))
+            }
             None if unit == "1" && dimension == Dimension::NUMBER => Ok((index, 1.0)),
             None => Err(format!("column `{name}`: `{unit}` is not a unit")),
         };
     }
     let known: Vec<&str> = heads.iter().collect();
-    Err(format!("there is no column `{name}`; there is: {}", known.join(", ")))
+    let commas = if known.len() == 1 && known[0].contains([';', '\t']) { "; columns are parted by commas" } else { "" };
+    Err(format!("there is no column `{name}`; there is: {}{commas}", known.join(", ")))
 }

@@ -14,6 +14,7 @@ use crate::instance::{Binder, Overrides, Source, is_count};
 use crate::model::{Bounded, Parameter, ToolShape};
 use crate::profile::{self, Segment};
 use crate::requirement;
+use crate::sample;
 use crate::source::Name;
 use crate::steel::{self, Places};
 use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
@@ -192,6 +193,7 @@ fn own_names<'g>(
         scope.insert(profile.to_string(), Value::Segment(Rc::clone(segment)));
     }
     for parameter in &written.parameters {
+        sample::check_unknown(context, parameter.name(), "surface parameter");
         let bounded = match (parameter, along) {
             (SurfaceParameter::Within(parameter), _) => bounded(context, parameter, &scope, Role::SurfaceParameter),
             (SurfaceParameter::Along(name, _), Some((_, segment))) => Some(run_along(context, name, segment)),

@@ -13,7 +13,11 @@ use crate::syntax::ast::{
 
 /// Words that occur in expressions and paths; of a path every segment.
 #[derive(Default)]
-struct Used(HashSet<String>);
+struct Used {
+    words: HashSet<String>,
+    /// Those behind a dot: what belongs to a machine or a tool.
+    members: HashSet<String>,
+}
 
 /// Looks at the items of one file; `all` are the items of every file of the compilation, which may use them.
 pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
@@ -34,7 +38,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                     MachineStatement::Param(param) => Some(&param.name),
                     _ => None,
                 });
-                let unused = params.filter(|name| !by_machines.has(name) && !by_jobs.has(name));
+                let unused = params.filter(|name| !by_machines.has(name) && !by_jobs.has_member(name));
                 unused.for_each(|name| parameter(context, name));
                 frames(context, machine, &parents, &by_jobs, jobs().next().is_some());
             }
@@ -44,7 +48,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                 for statement in &tool.statements {
                     if let ToolStatement::Param(param) = statement
                         && !used.has(&param.name)
-                        && !by_jobs.has(&param.name)
+                        && !by_jobs.has_member(&param.name)
                     {
                         parameter(context, &param.name);
                     }
@@ -90,7 +94,7 @@ fn parent(frame: &ast::Frame) -> Option<&str> {
 
 /// Frames at the ends of the tree that carry nothing, where jobs say what is carried.
 fn frames(context: &mut Context<'_>, machine: &ast::Machine, parents: &HashSet<&str>, by_jobs: &Used, has_jobs: bool) {
-    if !has_jobs || !by_jobs.0.contains(&machine.name.node) {
+    if !has_jobs || !by_jobs.words.contains(&machine.name.node) {
         return;
     }
     let carries = |frame: &&ast::Frame| parents.contains(frame.name.node.as_str()) || by_jobs.has(&frame.name);
@@ -103,22 +107,27 @@ fn frames(context: &mut Context<'_>, machine: &ast::Machine, parents: &HashSet<&
 
 impl Used {
     fn has(&self, name: &Name) -> bool {
-        self.0.contains(&name.node)
+        self.words.contains(&name.node)
+    }
+
+    fn has_member(&self, name: &Name) -> bool {
+        self.members.contains(&name.node)
     }
 
     fn path(&mut self, path: &ast::Path) {
-        self.0.extend(path.segments.iter().map(|segment| segment.node.clone()));
+        self.words.extend(path.segments.iter().map(|segment| segment.node.clone()));
+        self.members.extend(path.segments.iter().skip(1).map(|segment| segment.node.clone()));
     }
 
     fn call(&mut self, call: &Call) {
-        self.0.insert(call.function.node.clone());
+        self.words.insert(call.function.node.clone());
         call.arguments.iter().for_each(|argument| self.expression(&argument.value));
     }
 
     fn expression(&mut self, expression: &Expression) {
         expression.each(&mut |part| match &part.kind {
             ExpressionKind::Path(path) => self.path(path),
-            ExpressionKind::Call(call) => drop(self.0.insert(call.function.node.clone())),
+            ExpressionKind::Call(call) => drop(self.words.insert(call.function.node.clone())),
             _ => {}
         });
     }
@@ -163,7 +172,7 @@ impl Used {
                     for parameter in &surface.parameters {
                         match parameter {
                             SurfaceParameter::Within(parameter) => self.range(&parameter.range),
-                            SurfaceParameter::Along(_, profile) => drop(self.0.insert(profile.node.clone())),
+                            SurfaceParameter::Along(_, profile) => drop(self.words.insert(profile.node.clone())),
                         }
                     }
                     surface.lets.iter().for_each(|binding| self.expression(&binding.value));
@@ -183,7 +192,7 @@ impl Used {
                 JobStatement::Let(binding) => self.expression(&binding.value),
                 JobStatement::Require(required) => self.expression(&required.condition),
                 JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
-                    self.0.insert(instance.definition.node.clone());
+                    self.words.insert(instance.definition.node.clone());
                     instance.settings.iter().for_each(|setting| self.expression(&setting.value));
                 }
                 JobStatement::Mount { frame, .. } => self.path(frame),

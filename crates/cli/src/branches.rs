@@ -34,7 +34,11 @@ fn listed(solved: &Solved<'_, '_>) -> String {
             let _ = writeln!(out, "     keep {}: {} .. {}", of.name, value(of, low), value(of, high));
         }
     }
-    let _ = writeln!(out, "  which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges");
+    let _ = writeln!(
+        out,
+        "  which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges. All are of the same tool: where it leaves \
+         parts of several on the work, as with run-out, make a surface of each and `trim` them by each other"
+    );
     out
 }
 

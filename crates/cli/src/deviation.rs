@@ -6,16 +6,16 @@ use std::time::Instant;
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps, fixed};
 use flank_expr::Graph;
-use flank_solver::{EaseOff, Outcome, SurfacePoint, SurfaceProblem};
+use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint, SurfaceProblem};
 use serde_json::{Value, json};
 
 use crate::arguments::{Deviation, Means, Which};
 use crate::failure::{Failure, not_done};
 use crate::files::Folder;
 use crate::progress::Working;
-use crate::solve::{header, patch, problem, ranges};
+use crate::solve::{self, Wanted, header, patch, problem, ranges};
 use crate::spec::Origin;
-use crate::{Ending, eprint, inspect, print, spec};
+use crate::{Ending, eprint, inspect, print, spec, units};
 
 const NOTE: &str = "along the normal, plus is material";
 
@@ -107,10 +107,39 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     };
     let written = measured.write(arguments, &origin)?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
-    eprint(&format!("{} points in {:.0} ms\n", measured.points.len(), start.elapsed().as_secs_f64() * 1e3));
+    let points = units::counted(measured.points.len(), "point");
+    eprint(&format!("{points} in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3));
+    eprint(&trimmed(&measured, arguments.means));
     let missing = measured.missing();
     eprint(&missing);
     Ok(if missing.is_empty() { Ending::Done } else { Ending::Unsolved })
+}
+
+/// Surfaces of which the job trims points away, which have deviations all the same; empty if there are none.
+fn trimmed(measured: &Measured<'_, '_>, means: Means) -> String {
+    let held = match &measured.held {
+        Held::Surface(of) => Some(of),
+        Held::File { .. } => None,
+    };
+    let wanted = Wanted { geometry: false, sensitivity: false, certificates: false, together: None, means };
+    let told = held.into_iter().chain([&measured.from]).filter_map(|Named { job, surface }| {
+        let sample = surface.sample.as_ref().filter(|_| !surface.trimmed_by.is_empty())?;
+        let points = solve::points(job, surface, sample, wanted).points;
+        let is_trimmed = |point: &&SurfacePoint| matches!(point.outcome, Outcome::CutAway(CutBy::Other(_)));
+        let count = points.iter().filter(is_trimmed).count();
+        let name = &surface.name;
+        (count > 0).then(|| {
+            format!(
+                "note: `trim` takes away {count} of {} of the sample of {name}: its deviations are those of the surface as its \
+                 tool makes it\n",
+                units::counted(points.len(), "point")
+            )
+        })
+    });
+    let mut told: Vec<String> = told.collect();
+    // a surface may be held against itself
+    told.dedup();
+    told.concat()
 }
 
 /// A surface by its name, with that of its job where several have it.

@@ -10,6 +10,7 @@ use flank_export::{
 };
 
 use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
+use crate::eprint;
 use crate::spec::{self, Origin};
 
 /// A folder that is written to, and the files that stand there now.
@@ -46,6 +47,14 @@ impl<'a> Folder<'a> {
     }
 
     fn mesh(&mut self, name: &str, surfaces: &Surfaces<'_>, format: Format) -> Result<(), String> {
+        // a file of triangles says nothing where there are none
+        let is_line =
+            surfaces.list.iter().map(|surface| surface.outline()).all(|of| of.rows.count.min(of.columns.count) < 2);
+        if is_line && matches!(format, Format::Stl | Format::ThreeMf) {
+            eprint(&format!(
+                "note: the mesh of {name} has no triangle: samples of two rows and two columns at least have some\n"
+            ));
+        }
         match format {
             Format::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out)),
             Format::Obj => self.write(&format!("{name}.obj"), |out| write_obj(surfaces, out)),

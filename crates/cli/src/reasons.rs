@@ -84,7 +84,7 @@ pub(crate) fn of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, outcome: O
         }
         Outcome::CutAway(cutter) => by_what(job, surface, cutter),
         Outcome::NotConverged { iterations: 0 } => "no start leads there".to_string(),
-        Outcome::NotConverged { iterations } => format!("{iterations} iterations"),
+        Outcome::NotConverged { iterations } => units::counted(iterations as usize, "iteration"),
         Outcome::Solved | Outcome::Undecided | Outcome::Singular | Outcome::Ambiguous => String::new(),
     }
 }

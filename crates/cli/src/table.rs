@@ -176,7 +176,7 @@ impl Table<'_, '_, '_> {
     /// What differs from run to run.
     pub(crate) fn time(&self) -> String {
         let points: usize = self.solved.iter().map(|solved| solved.summary.asked).sum();
-        format!("{points} points in {:.0} ms", self.since.elapsed().as_secs_f64() * 1e3)
+        format!("{} in {:.0} ms", units::counted(points, "point"), self.since.elapsed().as_secs_f64() * 1e3)
     }
 
     /// With what was not done, as told.

@@ -55,3 +55,8 @@ pub(crate) fn as_given(dimension: Dimension, value: f64) -> String {
     let shown = if is_angle(dimension) { degrees(value) } else { value };
     format!("{} {}", if shown == 0.0 { 0.0 } else { shown }, symbol(dimension)).trim_end().to_string()
 }
+
+/// `1 point`, `2 points`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

@@ -80,3 +80,24 @@ fn what_holds_no_root_is_excluded() {
     ]);
     assert!(!text(&run.stderr).contains("not excluded"), "{}", text(&run.stderr));
 }
+
+/// What is asked for and is not there is told: triangles of a line, points that a trim took, a job under another name.
+#[test]
+fn what_a_command_does_not_give_is_told() {
+    let out = folder("told");
+    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let line = gear.replace("z: -10 mm .. 10 mm by 5", "z: 0 mm");
+    let file = written(&out, "line.chain", &line);
+    let to = ["--format", "stl", "--no-picture", "--out", out.to_str().expect("a plain path")];
+    let told = text(&flank(&[&["solve", &file][..], &to].concat()).stderr);
+    assert!(told.contains("note: the mesh of first_gear has no triangle"), "{told}");
+    let told = text(&flank(&["new", "hobbing/elliptical_gear_hobbed.chain"]).stderr);
+    assert!(told.contains("did you mean `elliptical_gear_hobbed`?"), "{told}");
+    let spec = "specs/hobbing/undercut_gear.chain";
+    let to = ["--from", "flank_plus", "--no-picture", "--out", out.to_str().expect("a plain path")];
+    let run = flank(&[&["deviation", spec, "flank_plus"][..], &to].concat());
+    let told = text(&run.stderr);
+    assert!(told.contains("note: `trim` takes away 28 of 287 points of the sample of flank_plus"), "{told}");
+    let told = text(&flank(&["solve", "specs/hobbing/helical_gear.chain", "--set", "m.C=1 deg"]).stderr);
+    assert!(told.contains("`m.C` is an axis, not a parameter"), "{told}");
+}

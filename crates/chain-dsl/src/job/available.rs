@@ -34,7 +34,10 @@ pub(super) fn is_of(surface: &str, name: &str) -> bool {
 
 /// Reports the name of a surface that consists of pieces where one of them must be named.
 pub(super) fn which_piece(context: &mut Context<'_>, name: &Name, pieces: &[&str]) {
-    let message = format!("`{}` has several pieces; say which", name.node);
+    let message = match pieces {
+        [_] => format!("`{}` consists of pieces, of one here; name it", name.node),
+        _ => format!("`{}` has several pieces; say which", name.node),
+    };
     let whole: Vec<String> = pieces.iter().map(|piece| format!("{}.{piece}", name.node)).collect();
     let whole: Vec<&str> = whole.iter().map(String::as_str).collect();
     let help = format!("there is: {}", quoted(&whole));

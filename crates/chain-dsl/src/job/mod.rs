@@ -21,6 +21,7 @@ use crate::limits;
 use crate::machine::{self, Built, Machines};
 use crate::model::{Bounded, GeneratedSurface, Job, Machine, Parameter};
 use crate::requirement;
+use crate::sample;
 use crate::source::{Name, Span};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::tool::{self, BuiltTool, Tools};
@@ -169,7 +170,8 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn define(&mut self, context: &mut Context<'g>, name: &Name) {
-        if let Some(first) = self.names.insert(name.node.clone(), name.span) {
+        let first = *self.names.entry(name.node.clone()).or_insert(name.span);
+        if first != name.span {
             context.duplicate(name, first);
         }
     }
@@ -187,6 +189,7 @@ impl<'g> Builder<'_, 'g> {
             }
             JobStatement::Motion(motion) => {
                 self.define(context, &motion.name);
+                sample::check_unknown(context, &motion.name, "motion");
                 let bounded = tool::bounded(context, motion, &self.scope, Role::Motion);
                 let value = match &bounded {
                     Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
@@ -280,11 +283,14 @@ impl<'g> Builder<'_, 'g> {
         what: &str,
     ) -> Option<(usize, &'p Name)> {
         let [machine, member] = path.segments.as_slice() else {
-            let written = path.segments.last().map_or("name", |name| name.node.as_str());
             let names = self.instance_names();
-            let machine = names.first().map_or("m", String::as_str);
             let message = format!("{what} is named together with its machine");
-            let help = format!("write `{machine}.{written}`");
+            let help = match path.segments.as_slice() {
+                [machine, member, ..] => format!("write `{}.{}`", machine.node, member.node),
+                [own] if names.contains(&own.node) => format!("write `{}.` and the name of {what}", own.node),
+                [own] => format!("write `{}.{}`", names.first().map_or("m", String::as_str), own.node),
+                [] => "write `m.name`".to_owned(),
+            };
             context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));
             return None;
         };

@@ -4,7 +4,7 @@ use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Step, Surface};
 
 use crate::codes::Code;
-use crate::context::{Context, Value};
+use crate::context::{Context, Value, quoted};
 use crate::diagnostic::Diagnostic;
 use crate::limits;
 use crate::machine;
@@ -231,19 +231,19 @@ impl<'g> Builder<'_, 'g> {
                 fine = false;
             }
         }
-        for motion in &self.motions {
+        let is_free = |motion: &&Bounded<'g>| {
             let taken = motions.iter().any(|(over, _)| over.variable == motion.variable)
                 || available.unknowns.iter().any(|unknown| unknown.variable == motion.variable);
-            if !taken && !driven.twist(motion.variable).is_zero() {
-                let message = format!("the tool also moves with `{}`, but the envelope is not over it", motion.name);
-                let help = format!("add it: `over: [{}]`", {
-                    let mut names: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).collect();
-                    names.push(&motion.name);
-                    names.join(", ")
-                });
-                context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
-                fine = false;
-            }
+            !taken && !driven.twist(motion.variable).is_zero()
+        };
+        let free: Vec<&str> = self.motions.iter().filter(is_free).map(|motion| motion.name.as_str()).collect();
+        if !free.is_empty() {
+            let (them, all) = (if free.len() == 1 { "it" } else { "them" }, quoted(&free));
+            let message = format!("the tool also moves with {all}, but the envelope is not over {them}");
+            let over: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).chain(free).collect();
+            let help = format!("add {them}: `over: [{}]`", over.join(", "));
+            context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
+            fine = false;
         }
         fine
     }

@@ -52,7 +52,8 @@ impl<'s> Mistake<'s> {
     }
 
     pub(super) fn explain(&self) -> Diagnostic {
-        let special = [Self::text, Self::not_a_unit, Self::not_a_name, Self::habit, Self::stray_bracket];
+        let special =
+            [Self::text, Self::by_of_one_value, Self::not_a_unit, Self::not_a_name, Self::habit, Self::stray_bracket];
         special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
     }
 
@@ -94,6 +95,17 @@ impl<'s> Mistake<'s> {
     fn text(&self) -> Option<Diagnostic> {
         (self.kind() == Some(Kind::OpenText))
             .then(|| self.here("the text is not closed").help("write `\"` at its end, on the same line"))
+    }
+
+    /// `z: 0 mm by 3` in a sample.
+    fn by_of_one_value(&self) -> Option<Diagnostic> {
+        let before = (self.range.start..self.found).rev().map(|index| self.scan.say(index));
+        let mut entry = before.take_while(|word| !matches!(*word, "," | "{" | "by"));
+        let is_of_sample = self.scan.say(self.range.start) == "sample" && self.say() == "by";
+        (is_of_sample && !entry.any(|word| word == "..")).then(|| {
+            self.here("one value is one point and takes no `by`")
+                .help("leave it out, or write a range: `-5 mm .. 5 mm by 3`")
+        })
     }
 
     fn closest(&self, candidates: impl IntoIterator<Item = &'static str>) -> Option<&'static str> {

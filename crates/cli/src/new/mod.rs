@@ -125,7 +125,11 @@ fn find(name: &str) -> Result<Template, Failure> {
                 )
             }
             None => {
-                let near = closest(name, templates.keys().chain(together.values().flatten()).map(String::as_str));
+                // a job is also meant by its file
+                let stem = Path::new(name).file_stem().map_or(name.into(), |stem| stem.to_string_lossy());
+                let of_file = templates.iter().find(|(_, job)| job.path.file_stem().is_some_and(|own| *own == *stem));
+                let known = templates.keys().chain(together.values().flatten()).map(String::as_str);
+                let near = of_file.map(|(job, _)| job.as_str()).or_else(|| closest(&stem, known));
                 let near = near.map_or(String::new(), |near| format!(", did you mean `{near}`?"));
                 format!("the library has no job `{name}`{near}; `flank new` lists them")
             }
