@@ -46,9 +46,34 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         summary.count(Outcome::NotConverged { iterations: 0 }),
         format!("not converged{near}: no point of this branch was found there{ends}"),
     );
+    if summary.count(Outcome::NotConverged { iterations: 0 }) > 0 {
+        reasons.extend(short_tables(solved));
+    }
     reasons.extend(branches::kept_out(solved));
     reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
     reasons
+}
+
+/// The curves through tables that end within the range of the unknown that they are asked for: beyond, the surface has no points.
+fn short_tables(solved: &Solved<'_, '_>) -> Vec<String> {
+    let unknowns = &solved.surface.unknowns;
+    let position = solved.surface.surface.position.0;
+    let curves = position[0].graph().curves_in(&position);
+    let short = curves.into_iter().filter_map(|(curve, at)| {
+        let of = unknowns.iter().find(|unknown| unknown.variable == at)?;
+        let (low, high) = curve.ends();
+        let text = |x: f64| units::as_given(of.dimension, x);
+        let (name, own) = (&of.name, format!("{} .. {}", text(of.low), text(of.high)));
+        (low > of.low || high < of.high).then(|| {
+            format!(
+                "the table of `{}` covers {name} {} .. {}, the range of {name} is {own}: beyond its ends there are no points",
+                curve.name(),
+                text(low),
+                text(high)
+            )
+        })
+    });
+    short.collect()
 }
 
 /// At which ends of the grid points lie: `, at the toe and the tip`. An end has at least half of its line among them; where none

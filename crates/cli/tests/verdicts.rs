@@ -101,3 +101,23 @@ fn what_a_command_does_not_give_is_told() {
     let told = text(&flank(&["solve", "specs/hobbing/helical_gear.chain", "--set", "m.C=1 deg"]).stderr);
     assert!(told.contains("`m.C` is an axis, not a parameter"), "{told}");
 }
+
+/// Where a table ends the surface does: its ends are told beside those of the parameter.
+#[test]
+fn the_end_of_a_table_is_told() {
+    let folder = folder("short-table");
+    written(&folder, "flank.toml", "");
+    written(&folder, "relief.csv", "s,depth\n-4,0\n0,0.001\n1,0.01\n");
+    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let gear = gear[..gear.find("/// The tool sits").expect("the second machine")].to_string();
+    let relieved = gear.replacen(
+        "at = [-u * cos(pressure_angle), pi * module / 4 - u",
+        "let relief = curve(\"relief.csv\", s: length, depth: length)
+         at = [-u * cos(pressure_angle), pi * module / 4 - relief(u) - u",
+        1,
+    );
+    let (told, surface) = solved(&folder, &relieved, 0);
+    assert!(surface["outcomes"]["not converged"].as_u64() > Some(0), "{surface}");
+    let ends = "the table of `depth` covers u -4 mm .. 1 mm, the range of u is -4 mm .. 4 mm";
+    assert!(told.contains(ends), "{told}");
+}

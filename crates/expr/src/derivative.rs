@@ -1,6 +1,9 @@
 //! Exact derivatives and substitution, both on the shared graph.
 
-use crate::graph::{Expr, Graph, Node, NodeId, Placed, VariableId};
+use std::sync::Arc;
+
+use crate::curve::Curve;
+use crate::graph::{CurveId, Expr, Graph, Node, NodeId, Placed, VariableId};
 use crate::hash::NodeMap;
 use crate::op::{Binary, Unary};
 
@@ -174,6 +177,19 @@ impl Graph {
         angles.sort_unstable();
         angles.dedup();
         angles.into_iter().map(|id| self.expr(id)).collect()
+    }
+
+    /// The curves that the expressions use, with what they are asked for, in order of creation.
+    pub fn curves_in<'g>(&'g self, roots: &[Expr<'g>]) -> Vec<(Arc<Curve>, Expr<'g>)> {
+        let used = |id: NodeId| match self.node(id) {
+            Node::Curve(curve, _, at) => Some((at, curve)),
+            _ => None,
+        };
+        let mut found: Vec<(NodeId, CurveId)> =
+            self.reachable(roots.iter().map(|root| root.id)).into_iter().filter_map(used).collect();
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|(at, curve)| (self.curve_of(curve), self.expr(at))).collect()
     }
 
     /// The variables that the expressions depend on, in order of creation.
