@@ -85,4 +85,5 @@ codes! {
     UnusedMotion      = "W0002" Warning "a motion moves nothing";
     UnreachedFrame    = "W0003" Warning "a frame carries nothing";
     Sliding           = "W0004" Warning "with these values, a motion lets the tool slide within itself";
+    EmptyFile         = "W0005" Warning "a file declares nothing";
 }

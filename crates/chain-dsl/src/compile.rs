@@ -124,9 +124,10 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 }
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
-    let Loaded { mut sources, files, diagnostics, root, beside } = loaded;
+    let Loaded { mut sources, files, diagnostics, lacks_files, root, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(root, &sources));
+    context.lacks_files = lacks_files;
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);
     let items = Items::collect(&mut context, &files, beside.is_some());
@@ -150,9 +151,14 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
     let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
     check_overrides(&mut context, &overrides, jobs.iter().chain(&machine));
     // a wrong text is not finished: what it does not use yet is no finding
-    if let Some((_, file)) = files.last().filter(|_| !context.has_errors()) {
+    if let Some((id, file)) = files.last().filter(|_| !context.has_errors()) {
         let all: Vec<&Item> = files.iter().flat_map(|(_, file)| &file.items).collect();
         unused::warn(&mut context, file, &all);
+        if file.items.is_empty() {
+            let (start, message) = (Span { file: *id, start: 0, end: 0 }, "the file declares nothing");
+            let help = "a spec has at least one machine, tool, job or function";
+            context.report(Diagnostic::new(Code::EmptyFile, start, message).help(help));
+        }
     }
     graph.set_room(None);
     context.tables.tell(&mut sources);

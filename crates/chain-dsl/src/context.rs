@@ -111,6 +111,8 @@ pub(crate) struct Context<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) functions: HashMap<String, Rc<ast::Function>>,
     pub(crate) tables: Tables,
+    /// Whether a file is used that was not read.
+    pub(crate) lacks_files: bool,
     variables: Vec<Expr<'g>>,
     roles: Vec<Role>,
     values: Vec<f64>,
@@ -138,6 +140,7 @@ impl<'g> Context<'g> {
             graph,
             functions: HashMap::new(),
             tables,
+            lacks_files: false,
             variables: Vec::new(),
             roles: Vec::new(),
             values: Vec::new(),
@@ -309,6 +312,13 @@ impl<'g> Context<'g> {
         let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
         diagnostic.help = did_you_mean(&name.node, known);
         self.report(diagnostic);
+    }
+
+    /// The same for what other files may declare: nothing is missing while one that is used could not be read, which has been reported.
+    pub(crate) fn unknown_item<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
+        if !self.lacks_files {
+            self.unknown(name, kind, known);
+        }
     }
 
     /// Counts one step of evaluation; false (reported once) when a text asks for too many.

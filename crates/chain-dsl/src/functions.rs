@@ -106,7 +106,7 @@ pub(crate) fn call<'g>(context: &mut Context<'g>, call: &ast::Call, scope: &Scop
         }
         let own: Vec<String> = context.functions.keys().cloned().collect();
         let known: Vec<&str> = names().map(|name| -> &str { name }).chain(own.iter().map(String::as_str)).collect();
-        context.unknown(&call.function, "function", known.into_iter());
+        context.unknown_item(&call.function, "function", known.into_iter());
         return Value::Poison;
     };
     let Some(arguments) = arguments(context, call, *count, scope) else {

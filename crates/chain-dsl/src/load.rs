@@ -15,6 +15,8 @@ pub(crate) struct Loaded {
     pub(crate) sources: Sources,
     pub(crate) files: Vec<(FileId, File)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Whether a file is used that was not read: what it declares is not known.
+    pub(crate) lacks_files: bool,
     /// The project folder; `None` for a text that is not a file.
     pub(crate) root: Option<PathBuf>,
     /// The file that was asked for beside the main one.
@@ -41,6 +43,7 @@ pub(crate) fn load(path: &Path, beside: Option<&Path>) -> Loaded {
             sources: Sources::default(),
             files: Vec::new(),
             diagnostics: Vec::new(),
+            lacks_files: false,
             root: None,
             beside: None,
         },
@@ -50,7 +53,7 @@ pub(crate) fn load(path: &Path, beside: Option<&Path>) -> Loaded {
         open: Vec::new(),
     };
     for asked in beside.into_iter().chain([path]) {
-        match std::fs::canonicalize(asked) {
+        match real_path(asked) {
             Ok(found) => {
                 if !loader.known.contains_key(&found) {
                     loader.read(asked, &found, None);
@@ -94,7 +97,7 @@ fn read_as(
     most: usize,
     report: impl Fn(&ReadError, &Path, Span) -> Diagnostic,
 ) -> Result<FileId, Diagnostic> {
-    match std::fs::canonicalize(path).map_err(ReadError::Io).and_then(|real| Ok((read_limited(&real, most)?, real))) {
+    match real_path(path).map_err(ReadError::Io).and_then(|real| Ok((read_limited(&real, most)?, real))) {
         Ok((text, real)) => Ok(sources.add_file(path, &real, text)),
         Err(error) => Err(report(&error, path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
     }
@@ -105,8 +108,10 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
     let mut sources = Sources::default();
     let id = sources.add(name, text);
     let (file, mut diagnostics) = parse(text, id);
+    let mut lacks_files = false;
     for item in &file.items {
         if let Item::Use(path) = item {
+            lacks_files = true;
             diagnostics.push(Diagnostic::new(
                 Code::UnreadableFile,
                 path.span,
@@ -114,7 +119,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
             ));
         }
     }
-    Loaded { sources, files: vec![(id, file)], diagnostics, root: None, beside: None }
+    Loaded { sources, files: vec![(id, file)], diagnostics, lacks_files, root: None, beside: None }
 }
 
 fn project_folder(path: &Path) -> PathBuf {
@@ -185,16 +190,19 @@ impl Loader {
     }
 
     fn exceeded(&mut self, limit: Limit, used: &Name) {
+        self.loaded.lacks_files = true;
         self.loaded.diagnostics.push(limit.exceeded(used.span));
     }
 
     fn outside(&mut self, used: &Name) {
+        self.loaded.lacks_files = true;
         let message = format!("`{}` lies outside the project folder {}", used.node, self.root.display());
         let help = "use only files of the project; an empty `flank.toml` marks the project's top folder";
         self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
     }
 
     fn unreadable(&mut self, shown: &Path, error: &ReadError, used_at: Option<Span>) {
+        self.loaded.lacks_files |= used_at.is_some();
         let span = self.place(shown, used_at);
         let mut diagnostic = error.report(shown, span);
         let is_missing = matches!(error, ReadError::Io(error) if error.kind() == std::io::ErrorKind::NotFound);
@@ -227,13 +235,25 @@ impl ReadError {
     }
 }
 
+/// The path of a file without links and `..`; a pipe may have none.
+fn real_path(path: &Path) -> std::io::Result<PathBuf> {
+    ask_plain(path)?;
+    std::fs::canonicalize(path)
+}
+
+/// A pipe would make the reader wait, a device never end.
+fn ask_plain(path: &Path) -> std::io::Result<()> {
+    let kind = std::fs::metadata(path)?;
+    if kind.is_file() || kind.is_dir() {
+        return Ok(());
+    }
+    let reason = "it is not a plain file: what comes from a pipe or a device may never end; save it to a file first";
+    Err(std::io::Error::other(reason))
+}
+
 fn read_limited(path: &Path, most: usize) -> Result<String, ReadError> {
     use std::io::Read;
-    // a pipe would make the reader wait, a device never end
-    let kind = std::fs::metadata(path).map_err(ReadError::Io)?;
-    if !kind.is_file() && !kind.is_dir() {
-        return Err(ReadError::Io(std::io::Error::other("it is not a plain file")));
-    }
+    ask_plain(path).map_err(ReadError::Io)?;
     let file = std::fs::File::open(path).map_err(ReadError::Io)?;
     let mut text = String::new();
     file.take(most as u64 + 1).read_to_string(&mut text).map_err(ReadError::Io)?;

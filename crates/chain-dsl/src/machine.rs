@@ -81,7 +81,7 @@ pub(crate) fn flatten<'a, 'g>(
     let mut line = vec![machine];
     while let Some(parent) = &line[line.len() - 1].extends {
         let Some(next) = machines.get(&parent.node) else {
-            context.unknown(parent, "machine", machines.keys().map(String::as_str));
+            context.unknown_item(parent, "machine", machines.keys().map(String::as_str));
             return None;
         };
         if line.iter().any(|seen| seen.name.node == next.name.node) {

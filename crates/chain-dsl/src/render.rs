@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use annotate_snippets::renderer::DecorStyle;
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::{FileId, Sources, Span};
@@ -25,7 +25,14 @@ fn group<'a>(diagnostic: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
         Severity::Warning => Level::WARNING,
     };
     let title = level.primary_title(diagnostic.message.as_str()).id(diagnostic.code.as_str());
-    let mut group = Group::with_title(title).elements(snippets(diagnostic, sources));
+    let mut group = Group::with_title(title);
+    let own = sources.file(diagnostic.span.file);
+    if own.text.is_empty() {
+        // nothing can be underlined
+        group = group.element(Origin::path(own.path.to_string_lossy().into_owned()));
+    } else {
+        group = group.elements(snippets(diagnostic, sources));
+    }
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
@@ -60,9 +67,9 @@ fn snippet<'a>(
     let text = &source.text[lines.clone()];
     let place = |at: u32| {
         let before = &text[..at as usize - lines.start];
-        before.len() - before.matches('\r').count()
+        before.len() - before.matches("\r\n").count()
     };
-    let mut snippet = Snippet::source(text.replace('\r', ""))
+    let mut snippet = Snippet::source(text.replace("\r\n", "\n").replace('\r', "\n"))
         .line_start(first_line)
         .path(source.path.to_string_lossy().into_owned())
         .fold(true);
@@ -79,7 +86,7 @@ fn snippet<'a>(
 fn lines(text: &str, marks: &[(Span, Option<&str>)]) -> Range<usize> {
     let start = marks.iter().map(|(span, _)| span.start as usize).min().unwrap_or(0);
     let end = marks.iter().map(|(span, _)| span.end as usize).max().unwrap_or(0);
-    let start = text[..start].rfind('\n').map_or(0, |at| at + 1);
-    let end = text[end..].find('\n').map_or(text.len(), |at| end + at);
+    let start = text[..start].rfind(['\n', '\r']).map_or(0, |at| at + 1);
+    let end = text[end..].find(['\n', '\r']).map_or(text.len(), |at| end + at);
     start..end
 }

@@ -57,6 +57,13 @@ impl SourceFile {
     }
 }
 
+/// Where lines begin behind their ends in a text: line feeds, carriage returns, or one after the other.
+pub(crate) fn line_starts(text: &str) -> impl Iterator<Item = usize> {
+    let bytes = text.as_bytes();
+    let is_end = |at: usize| bytes[at] == b'\n' || (bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n'));
+    (0..bytes.len()).filter(move |at| is_end(*at)).map(|at| at + 1)
+}
+
 /// All texts of one compilation.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
@@ -76,7 +83,7 @@ impl Sources {
 
     fn push(&mut self, path: PathBuf, file: Option<PathBuf>, text: String) -> FileId {
         let id = FileId(u32::try_from(self.files.len()).expect("fewer than 2^32 files"));
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        let lines = std::iter::once(0).chain(line_starts(&text)).collect();
         self.files.push(SourceFile { path, file, text, lines });
         id
     }

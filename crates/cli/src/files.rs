@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flank_export::{
     Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target, WriteError,
-    write_3mf, write_atomically, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
+    make_folder, write_3mf, write_atomically, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
     write_motion_json, write_nc, write_obj, write_page, write_parquet, write_report_html, write_report_markdown,
     write_step, write_stl, write_vtp,
 };
@@ -24,7 +24,7 @@ pub(crate) struct Folder<'a> {
 impl<'a> Folder<'a> {
     /// The folder, made if it is not there.
     pub(crate) fn at(path: &'a Path, origin: &'a Origin) -> Result<Folder<'a>, String> {
-        std::fs::create_dir_all(path).map_err(|error| format!("cannot make the folder {}: {error}", path.display()))?;
+        made(path)?;
         Ok(Folder { path, origin, written: Vec::new() })
     }
 
@@ -163,6 +163,11 @@ impl<'a> Folder<'a> {
         self.written.push(spec::shown(&path));
         Ok(())
     }
+}
+
+/// Makes the folder that is asked for, or one in it.
+pub(crate) fn made(folder: &Path) -> Result<(), String> {
+    make_folder(folder).map_err(|error| format!("{error}; name another folder with --out"))
 }
 
 /// What lies in each frame, with the name of its file: the frame is part of it where there are several.

@@ -92,14 +92,7 @@ fn finer<'g>(sample: &Sample<'g>) -> Option<Sample<'g>> {
 
 /// What the faces are like, a line for each.
 pub(crate) fn told(faces: &[Smooth]) -> String {
-    let mut out = String::new();
-    for smooth in faces {
-        let _ = match &smooth.face {
-            Some(face) => writeln!(out, "STEP: {}", face.told()),
-            None => writeln!(out, "STEP: `{}` has no face: no two rows and columns of it are solved", smooth.name),
-        };
-    }
-    out
+    faces.iter().filter_map(|smooth| Some(format!("STEP: {}\n", smooth.face.as_ref()?.told()))).collect()
 }
 
 /// The same as data.
@@ -116,12 +109,17 @@ pub(crate) fn json(faces: &[Smooth]) -> Value {
     faces.iter().map(entry).collect()
 }
 
-/// Which faces are not as exact as asked for.
+/// Which faces are not there, or not as exact as asked for.
 pub(crate) fn missed(faces: &[Smooth], tolerance: f64) -> String {
     let mut out = String::new();
     for smooth in faces.iter().filter(|smooth| !smooth.is_exact_enough) {
-        let _ =
-            writeln!(out, "the STEP file's face of `{}` is not shown to be within {} um", smooth.name, 1e3 * tolerance);
+        let name = &smooth.name;
+        let _ = match smooth.face {
+            Some(_) => {
+                writeln!(out, "the STEP file's face of `{name}` is not shown to be within {} um", 1e3 * tolerance)
+            }
+            None => writeln!(out, "`{name}` has no face for a STEP file: no two rows and columns of it are solved"),
+        };
     }
     out
 }

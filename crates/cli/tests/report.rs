@@ -346,7 +346,11 @@ fn what_was_there_stays() {
     let blocked = written(&out, "file", "kept");
     let run = flank(&["report", "specs/hobbing/spur_gear.chain", "--out", &blocked]);
     assert_eq!(run.status.code(), Some(1));
-    assert!(text(&run.stderr).contains("cannot make the folder"), "{}", text(&run.stderr));
+    let told =
+        format!("cannot make the folder `{blocked}`: there is a file of that name; name another folder with --out\n");
+    assert_eq!(text(&run.stderr).lines().last(), Some(format!("error: {told}").trim_end()));
+    let run = flank(&["report", "specs/hobbing/spur_gear.chain", "--out", &format!("{blocked}/below")]);
+    assert!(text(&run.stderr).contains("a file stands where a folder on the way to it should be"), "{:?}", run.stderr);
     assert_eq!(read(&blocked), "kept");
     // a folder in the place of the file stops everybody, also those whom permissions do not
     std::fs::create_dir(out.join("spur_gear.report.html")).unwrap();

@@ -99,6 +99,18 @@ fn a_face_that_cannot_be_exact_enough_is_told() {
     let run = flank(&["solve", spec, "--step=1e-10um", "--out", folder, "--no-picture"]);
     assert_eq!(run.status.code(), Some(3));
     assert!(text(&run.stderr).contains("face of `lower_flank` is not shown to be within"), "{}", text(&run.stderr));
+    let rows = "rho: form_radius + 0.05 * normal_module .. tip_radius by 21";
+    let row = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"])
+        .replace(rows, "rho: 50 mm");
+    let row = written(&out, "row.chain", &row);
+    let run = flank(&["solve", &row, "--step", "--out", folder, "--no-picture"]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    assert!(
+        text(&run.stderr).contains("`lower_flank` has no face for a STEP file: no two rows"),
+        "{}",
+        text(&run.stderr)
+    );
+    assert!(!text(&run.stderr).contains("is not shown to be within"), "{}", text(&run.stderr));
     let run = flank(&["solve", spec, "--step=1", "--out", folder]);
     assert_eq!(run.status.code(), Some(2));
     assert!(text(&run.stderr).contains("write a length with its unit"), "{}", text(&run.stderr));

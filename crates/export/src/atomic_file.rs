@@ -6,7 +6,7 @@ use std::io::{self, BufWriter};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-use crate::error::{FileError, WriteError};
+use crate::error::{FileError, FolderError, WriteError};
 use crate::regions::Target;
 use crate::unfinished::Unfinished;
 
@@ -35,6 +35,14 @@ pub fn write_atomically(
     content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), FileError> {
     replace(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })
+}
+
+/// Makes a folder, and those on the way to it, if they are not there.
+///
+/// # Errors
+/// Names the folder and says in plain words what stood in the way.
+pub fn make_folder(path: &Path) -> Result<(), FolderError> {
+    fs::create_dir_all(path).map_err(|reason| FolderError { path: path.to_owned(), reason })
 }
 
 fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), WriteError> {

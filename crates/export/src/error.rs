@@ -156,6 +156,27 @@ impl From<parquet::errors::ParquetError> for WriteError {
     }
 }
 
+/// Why a folder could not be made.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot make the folder `{}`: {}", path.display(), words_on_folder(.reason))]
+pub struct FolderError {
+    /// The folder, as it was asked for.
+    pub path: PathBuf,
+    /// What stood in the way.
+    #[source]
+    pub reason: io::Error,
+}
+
+/// The same of a folder that is made.
+fn words_on_folder(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::AlreadyExists => "there is a file of that name".to_owned(),
+        io::ErrorKind::NotADirectory => "a file stands where a folder on the way to it should be".to_owned(),
+        io::ErrorKind::NotFound => "the system lets none be made there".to_owned(),
+        _ => plain_words(error),
+    }
+}
+
 /// An input or output error as a user would say it.
 fn plain_words(error: &io::Error) -> String {
     let words = match error.kind() {

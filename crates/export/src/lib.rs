@@ -87,12 +87,12 @@ mod vector;
 mod vtp_file;
 mod xml;
 
-pub use atomic_file::write_atomically;
+pub use atomic_file::{make_folder, write_atomically};
 pub use bands::{Banded, Surfaces, Taker};
 pub use conventions::sentences as conventions;
 pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
-pub use error::{FileError, Malformed, PictureError, WriteError};
+pub use error::{FileError, FolderError, Malformed, PictureError, WriteError};
 pub use json_file::{SCHEMA, write_json};
 pub use measuring::{
     FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,

@@ -18,7 +18,9 @@ use crate::number::push_shortest;
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
-    writeln!(out, "# {}; spec: {}; job: {}", one_line(&header.program), one_line(&header.spec), one_line(&header.job))?;
+    let [program, spec, hash, job] =
+        [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
+    writeln!(out, "# {program}; spec: {spec}, hash {hash}; job: {job}")?;
     sentences_of_mesh(header, false).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
     let mut before = 0;
     for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {

@@ -3,6 +3,7 @@
 use std::iter::Peekable;
 use std::slice::Iter;
 
+use crate::source::line_starts;
 use crate::syntax::{Comment, CommentKind};
 
 /// A word or a sign.
@@ -72,7 +73,7 @@ impl<'t> Tokens<'t> {
             above,
             behind: None,
             blank: self.blank_before(start),
-            starts_line: self.text[last_end..start].contains('\n'),
+            starts_line: self.text[last_end..start].contains(['\n', '\r']),
             comments_before: self.count,
         });
         self.end = start + length;
@@ -86,6 +87,6 @@ impl<'t> Tokens<'t> {
     }
 
     fn blank_before(&self, start: usize) -> bool {
-        self.text[self.end..start].matches('\n').count() > 1
+        line_starts(&self.text[self.end..start]).count() > 1
     }
 }

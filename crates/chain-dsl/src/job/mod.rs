@@ -218,7 +218,7 @@ impl<'g> Builder<'_, 'g> {
         self.define(context, &instance.name);
         let machines = self.definitions.machines;
         let Some(definition) = machines.get(&instance.definition.node) else {
-            context.unknown(&instance.definition, "machine", machines.keys().map(String::as_str));
+            context.unknown_item(&instance.definition, "machine", machines.keys().map(String::as_str));
             return;
         };
         let Some(flat) = machine::flatten(context, machines, definition) else {
@@ -239,7 +239,7 @@ impl<'g> Builder<'_, 'g> {
         self.define(context, &instance.name);
         let tools = self.definitions.tools;
         let Some(definition) = tools.get(&instance.definition.node) else {
-            context.unknown(&instance.definition, "tool", tools.keys().map(String::as_str));
+            context.unknown_item(&instance.definition, "tool", tools.keys().map(String::as_str));
             return;
         };
         let source = self.source(instance);

@@ -5,7 +5,7 @@ use super::scan::Kind;
 /// Kind and length of the token at the start of a text.
 pub(super) fn token(text: &str, first: char) -> (Kind, usize) {
     match first {
-        '"' => match text[1..].find(['"', '\n']) {
+        '"' => match text[1..].find(['"', '\n', '\r']) {
             Some(end) if text.as_bytes()[end + 1] == b'"' => (Kind::Text, end + 2),
             Some(end) => (Kind::OpenText, text[..end + 1].trim_end().len()),
             None => (Kind::OpenText, text.trim_end().len()),

@@ -74,13 +74,13 @@ impl<'t> Scan<'t> {
         let mut line = Some(at);
         while let Some(first) = text[at..].chars().next() {
             let start = at;
-            if first == '\n' {
+            if matches!(first, '\n' | '\r') {
                 at += 1;
                 line = Some(at);
-            } else if matches!(first, ' ' | '\t' | '\r') {
+            } else if matches!(first, ' ' | '\t') {
                 at += 1;
             } else if text[at..].starts_with("//") {
-                at += text[at..].find('\n').unwrap_or(text.len() - at);
+                at += text[at..].find(['\n', '\r']).unwrap_or(text.len() - at);
                 scan.comment(start..at, line.is_some());
             } else {
                 let (kind, length) = token(&text[at..], first);

@@ -55,6 +55,7 @@ fn specs_keep_meaning_and_comments() {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         assert!(check_layout(&text, &path.display().to_string()));
         assert!(check_layout(&std::format!("\u{feff}{}", text.replace('\n', "\r\n")), &path.display().to_string()));
+        assert!(check_layout(&text.replace('\n', "\r"), &path.display().to_string()));
         assert!(check_layout(&text.replace("    ", "\t"), &path.display().to_string()));
     }
 }

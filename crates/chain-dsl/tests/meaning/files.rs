@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Code, compile_file, render};
+use flank_chain_dsl::{Code, compile_file, compile_text, render};
 use flank_expr::Graph;
 
 /// A project folder of its own with some files.
@@ -340,4 +340,37 @@ fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
     for part in ["job `j` has no parameter `extra`", "extra=2 mm", "job `other` has one, and is not asked for"] {
         assert!(shown.contains(part), "{part} in {shown}");
     }
+}
+
+/// What a file that cannot be read would declare is not said to be missing, what one that was read lacks is.
+#[test]
+fn names_of_a_file_that_is_not_there_are_not_reported() {
+    let used = "use \"gone.chain\"\nmachine n extends cradle { frame bed }\n";
+    let job = "job j {\n    machine m = lathe(height: 2 mm)\n    let n = twice(2)\n    tool b = ball\n    mount b on m.slide\n    \
+               motion turn : angle in 0 deg .. 90 deg\n    drive m.C = turn\n    \
+               surface s in m.work = envelope(b.face, over: turn)\n}\n";
+    let folder = project("gone", &[("j.chain", &format!("{used}{job}")), ("k.chain", job)]);
+    assert_eq!(codes(&folder.join("j.chain"), &[]), [Code::UnreadableFile]);
+    assert_eq!(codes(&folder.join("k.chain"), &[]), [Code::UnknownName; 3]);
+    let graph = Graph::new();
+    let text = compile_text(&graph, "j", &format!("{used}{job}"), &[]);
+    assert_eq!(text.diagnostics.iter().map(|finding| finding.code).collect::<Vec<_>>(), [Code::UnreadableFile]);
+}
+
+#[test]
+fn a_file_that_declares_nothing_says_so() {
+    let folder = project(
+        "empty",
+        &[("a.chain", ""), ("b.chain", "// machine m { frame bed }\n"), ("c.chain", "use \"a.chain\"")],
+    );
+    assert_eq!(codes(&folder.join("a.chain"), &[]), [Code::EmptyFile]);
+    assert_eq!(codes(&folder.join("b.chain"), &[]), [Code::EmptyFile]);
+    assert_eq!(codes(&folder.join("c.chain"), &[]), []);
+}
+
+/// Half of a value from outside is none: nothing follows from it.
+#[test]
+fn a_decimal_comma_from_outside_is_one_finding() {
+    let folder = project("comma", &[("library.chain", LIBRARY), ("jobs/j.chain", JOB)]);
+    assert_eq!(codes(&folder.join("jobs/j.chain"), &[("height", "2,5 mm")]), [Code::Syntax]);
 }

@@ -61,6 +61,27 @@ fn two_reports() {
     ");
 }
 
+/// A carriage return ends a line as a line feed does.
+#[test]
+fn every_kind_of_line_end_gives_the_same_report() {
+    let text = "// α = 20 mm\nmachine m {\n    axis A : rotory // no\n}\n\ntool t {\n";
+    let plain = rendered(text);
+    assert!(plain.contains("gears/pinion.chain:3:14") && plain.contains("3 |     axis A : rotory // no\n"), "{plain}");
+    for end in ["\r", "\r\n"] {
+        assert_eq!(rendered(&text.replace('\n', end)), plain, "{end:?}");
+    }
+}
+
+/// Of a text without letters nothing is shown but its name.
+#[test]
+fn an_empty_file_is_named_alone() {
+    let mut sources = Sources::default();
+    let file = sources.add("none.chain", "");
+    let finding = Diagnostic::new(Code::UnreadableFile, Span { file, start: 0, end: 0 }, "it is not there");
+    let shown = render(&[finding], &sources, false);
+    assert_eq!(shown, "error[E0001]: it is not there\n--> none.chain\n");
+}
+
 #[test]
 fn an_empty_file_and_its_end() {
     insta::assert_snapshot!(rendered("job j {"), @r"

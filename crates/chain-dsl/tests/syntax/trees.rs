@@ -82,6 +82,7 @@ fn line_ends_and_byte_order_marks_mean_nothing() {
     for (name, text) in SPECS {
         let plain = printed::file(&tree(text));
         assert_eq!(printed::file(&tree(&text.replace('\n', "\r\n"))), plain, "{name}");
+        assert_eq!(printed::file(&tree(&text.replace('\n', "\r"))), plain, "{name}");
         assert_eq!(printed::file(&tree(&format!("\u{feff}{text}"))), plain, "{name}");
         assert_eq!(printed::file(&tree(&text.replace("    ", "\t"))), plain, "{name}");
     }
@@ -234,6 +235,7 @@ fn an_expression_by_itself() {
     check("a=20 mmm", "ERROR `mmm` is not a unit", (5, 8));
     check("a=(1", "ERROR expected `)` after `1`", (3, 4));
     check("a=1 2", "ERROR expected an operator between `1` and `2`", (4, 5));
-    check("a=1\nb", "1 `b` does not belong here", (4, 5));
-    check("a=0 < 1 < 2", "(< (< 0 1) 2) comparisons do not chain", (8, 9));
+    check("a=1\nb", "ERROR `b` does not belong here", (4, 5));
+    check("a=67,5mm", "ERROR decimals are written with a point", (4, 5));
+    check("a=0 < 1 < 2", "ERROR comparisons do not chain", (8, 9));
 }

@@ -164,7 +164,7 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 Examples:
   flank solve specs/hobbing/helical_gear.chain
   flank solve specs/hobbing/helical_gear.chain --set teeth=37 --set helix_angle=\"15 deg\"
-  flank solve specs/bevel/pinion_19x62.chain --out /tmp/pinion --format csv,json,stl
+  flank solve specs/bevel/pinion_19x62.chain --out pinion --format csv,json,stl
   flank solve specs/bevel/pinion_19x62.chain --geometry
   flank solve specs/bevel/pinion_19x62.chain --sensitivity
   flank solve specs/hobbing/spur_gear.chain --json --no-picture")]

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::New;
 use crate::failure::Failure;
-use crate::{Ending, eprint, print, spec};
+use crate::{Ending, eprint, files, print, spec};
 use changes::{Changes, Given};
 
 /// The library as it was when the program was built.
@@ -308,8 +308,7 @@ fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), String> {
     for (path, text) in files {
         let path = folder.join(path);
         let folder = path.parent().unwrap_or(folder);
-        std::fs::create_dir_all(folder)
-            .map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
+        files::made(folder)?;
         write_atomically(&path, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
     }
     Ok(())

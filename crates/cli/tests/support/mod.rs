@@ -39,7 +39,10 @@ pub fn endless(folder: &Path) -> [(String, &'static str); 3] {
     // holes, of which the disk holds nothing
     std::fs::File::create(&large).and_then(|file| file.set_len((256 << 20) + 1)).expect("the test's file");
     [
-        ("/dev/zero".to_string(), "it is not a plain file"),
+        (
+            "/dev/zero".to_string(),
+            "it is not a plain file: what comes from a pipe or a device may never end; save it to a file first",
+        ),
         (pipe.to_str().expect("a plain path").to_string(), "it is not a plain file"),
         (large.to_str().expect("a plain path").to_string(), "it has more than"),
     ]

@@ -1,5 +1,6 @@
 //! What a machine measured at the points of a grid, read from CSV.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 /// What was measured of a grid.
@@ -38,8 +39,13 @@ pub enum MeasuredFault {
     #[error("{0}")]
     NoTable(String),
     /// A column is missing.
-    #[error("there is no column `{0}`; needed are row, column, and x, y, z (mm) or deviation_um")]
-    NoColumn(&'static str),
+    #[error("there is no column `{missing}`; needed are row, column, and x, y, z (mm) or deviation_um; there is: {}", titles.join(", "))]
+    NoColumn {
+        /// What is needed.
+        missing: &'static str,
+        /// What there is.
+        titles: Vec<String>,
+    },
     /// A cell is no number.
     #[error("line {line}: `{text}` is no {wanted}")]
     NoNumber {
@@ -49,6 +55,16 @@ pub enum MeasuredFault {
         text: String,
         /// What should.
         wanted: &'static str,
+    },
+    /// Decimals with a comma and with a point: one of them may separate thousands.
+    #[error(
+        "line {line}: `{text}` has another decimal sign than the numbers before it: write all with a comma, or all with a point"
+    )]
+    TwoDecimalSigns {
+        /// From 1.
+        line: u64,
+        /// What stands there.
+        text: String,
     },
     /// Two lines speak of the same point.
     #[error("line {line}: row {row}, column {column} is there already")]
@@ -65,7 +81,8 @@ pub enum MeasuredFault {
     Nothing(String),
 }
 
-/// Reads measured points of a surface's grid from CSV with a line of titles. `row` and `column` count from 1, as in the file of the nominal
+/// Reads measured points of a surface's grid from a table with a line of titles. What stands between the titles, a comma, a semicolon or a
+/// tab, separates the cells; decimals may have a comma where that does not. `row` and `column` count from 1, as in the file of the nominal
 /// points; `x, y, z` are mm, `deviation_um` is along the normal and stands for them where there is such a column. Lines that begin with
 /// `#` are passed over; lines of other surfaces (`surface`) and parts (`part`), too. A line whose cells for the measured values are empty
 /// says that there is such a point, which was not measured.
@@ -73,17 +90,25 @@ pub enum MeasuredFault {
 /// # Errors
 /// What is wrong with the file, and where.
 pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, MeasuredFault> {
-    let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let separator = separator(text);
+    let mut table = csv::ReaderBuilder::new();
+    let mut table = table.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let titles = table.headers().map_err(|error| MeasuredFault::NoTable(error.to_string()))?.clone();
     let place = |name: &str| titles.iter().position(|title| title == name);
-    let needed = |name: &'static str| place(name).ok_or(MeasuredFault::NoColumn(name));
+    let no_column = |missing| MeasuredFault::NoColumn {
+        missing,
+        titles: titles.iter().map(|title| format!("`{title}`")).collect(),
+    };
+    let needed = |name: &'static str| place(name).ok_or_else(|| no_column(name));
     let [row, column] = [needed("row")?, needed("column")?];
     let numbers = match place("deviation_um") {
         Some(deviation) => vec![deviation],
+        None if ["x", "y", "z"].into_iter().all(|name| place(name).is_none()) => return Err(no_column("deviation_um")),
         None => ["x", "y", "z"].into_iter().map(needed).collect::<Result<Vec<usize>, MeasuredFault>>()?,
     };
     let mut grid = MeasuredGrid { counts: [0; 2], points: Vec::new() };
     let mut places = BTreeSet::new();
+    let decimals = Decimals { may_be_commas: separator != b',', sign: Cell::new(None) };
     for record in table.records() {
         let record = record.map_err(|error| MeasuredFault::NoTable(error.to_string()))?;
         let cell = |k: usize| record.get(k).unwrap_or_default();
@@ -97,7 +122,10 @@ pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, Measured
             let index = cell(k).parse::<usize>().ok().filter(|index| (1..=MOST_LINES).contains(index));
             index.map(|index| index - 1).ok_or_else(|| fault(k, "row or column, which count from 1 to at most 10000"))
         };
-        let number = |k: usize| cell(k).parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| fault(k, "number"));
+        let number = |k: usize| match decimals.are_mixed_by(cell(k)) {
+            true => Err(MeasuredFault::TwoDecimalSigns { line, text: cell(k).to_string() }),
+            false => decimals.number(cell(k)).ok_or_else(|| fault(k, "number")),
+        };
         let [row, column] = [index(row)?, index(column)?];
         grid.counts = [grid.counts[0].max(row + 1), grid.counts[1].max(column + 1)];
         if numbers.iter().all(|&k| cell(k).is_empty()) {
@@ -114,6 +142,42 @@ pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, Measured
         grid.points.push(MeasuredPoint { row, column, measured });
     }
     if grid.points.is_empty() { Err(MeasuredFault::Nothing(surface.to_string())) } else { Ok(grid) }
+}
+
+/// What stands between the titles.
+fn separator(text: &str) -> u8 {
+    let lines = text.trim_start_matches('\u{feff}').split(['\n', '\r']);
+    let titles = lines.map(str::trim_start).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+    let is_split = |sign: char| titles.split(sign).any(|title| title.trim().trim_matches('"') == "row");
+    // without that column it is the one that stands there
+    let found = [',', ';', '\t'].into_iter().find(|sign| titles.contains(*sign) && is_split(*sign));
+    match found.or_else(|| [';', '\t'].into_iter().find(|sign| titles.contains(*sign))) {
+        Some(';') => b';',
+        Some('\t') => b'\t',
+        _ => b',',
+    }
+}
+
+/// How the decimals of a table are written.
+struct Decimals {
+    may_be_commas: bool,
+    /// As in the numbers so far.
+    sign: Cell<Option<char>>,
+}
+
+impl Decimals {
+    /// Whether a number has another sign than those before.
+    fn are_mixed_by(&self, text: &str) -> bool {
+        let Some(sign) = text.chars().find(|c| matches!(c, '.' | ',')).filter(|_| self.may_be_commas) else {
+            return false;
+        };
+        self.sign.replace(Some(sign)).is_some_and(|before| before != sign)
+    }
+
+    fn number(&self, text: &str) -> Option<f64> {
+        let number = if self.may_be_commas { text.replace(',', ".").parse() } else { text.parse() };
+        number.ok().filter(|number: &f64| number.is_finite())
+    }
 }
 
 /// No grid has more rows or columns.
@@ -134,6 +198,30 @@ mod tests {
         );
         let found = read_measured("column,row,deviation_um\n3,1,-4.5\n", "left").expect("a table");
         assert_eq!(found.points, [MeasuredPoint { row: 0, column: 2, measured: Measured::Deviation(-0.0045) }]);
+    }
+
+    /// What the cells are separated by is seen from the titles, and a comma that does not separate them is that of decimals.
+    #[test]
+    fn semicolons_tabs_and_decimal_commas_are_read() {
+        let plain = read_measured("row,column,deviation_um\n1,2,-4.5\n2,1,1e1\n", "left").expect("a table");
+        for text in [
+            "row;column;deviation_um\n1;2;-4.5\n2;1;1e1\n",
+            "row;column;deviation_um\n1;2;-4,5\n2;1;1,0e1\n",
+            "# a, b\r\n\"row\"\tcolumn\tdeviation_um\r\n1\t2\t\"-4,5\"\r\n2\t1\t10\r\n",
+            "\u{feff}column;row;deviation_um;x, y\r2;1;-4,5;\r1;2;10;\r",
+        ] {
+            assert_eq!(read_measured(text, "left"), Ok(plain.clone()), "{text:?}");
+        }
+        let told = |text: &str| read_measured(text, "left").expect_err("a fault").to_string();
+        assert_eq!(
+            told("row;column;x;y;z\n1;1;1,5;2;1.234\n"),
+            "line 2: `1.234` has another decimal sign than the numbers before it: write all with a comma, or all with a point"
+        );
+        assert_eq!(told("row;column;deviation_um\n1;1;1.234,5\n"), "line 2: `1.234,5` is no number");
+        assert_eq!(told("row,column,deviation_um\n1,1,\"1,5\"\n"), "line 2: `1,5` is no number");
+        assert!(told("Zeile;Spalte;Abw\n1;1;1\n").contains("no column `row`; needed are row, column"));
+        assert!(told("Zeile;Spalte;Abw\n1;1;1\n").contains("there is: `Zeile`, `Spalte`, `Abw`"));
+        assert!(told("row\tcolumn\tdeviation_mm\n1\t1\t1\n").contains("no column `deviation_um`;"));
     }
 
     #[test]

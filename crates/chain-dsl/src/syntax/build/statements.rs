@@ -214,7 +214,7 @@ impl Build<'_> {
     /// Asks for a comma or a new line between two entries of a sample.
     fn separated(&mut self, end: Option<u32>, next: Span) {
         let Some(end) = end else { return };
-        if !self.scan.text[end as usize..next.start as usize].contains([',', '\n']) {
+        if !self.scan.text[end as usize..next.start as usize].contains([',', '\n', '\r']) {
             let word = self.scan.token_at(next.start as usize);
             let place = self.scan.place(word);
             let message = format!("expected `,` or a new line before {}", self.scan.quote(word));

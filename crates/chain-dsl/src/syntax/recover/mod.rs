@@ -49,6 +49,8 @@ pub(super) fn expression(scan: &Scan, start: usize) -> (Expression, Vec<Diagnost
         let message = format!("{} does not belong here", scan.quote(recover.at));
         recover.report(recover.at, message);
     }
+    // half of a value would only lead to findings about what is not meant
+    let value = value.filter(|_| recover.build.diagnostics.is_empty());
     (value.unwrap_or(error), recover.build.diagnostics)
 }
 
