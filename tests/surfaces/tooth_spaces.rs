@@ -54,10 +54,12 @@ fn error(spec: &str, set: &[(&str, String)], module: f64, gear: &Gear) -> f64 {
     space_error(&job, ["lower_flank", "upper_flank"], module, gear)
 }
 
-/// The same between the points in the middle of two samples.
+/// The same between the points in the middle of two samples, of which all points are there.
 fn space_error(job: &Job<'_>, flanks: [&str; 2], module: f64, gear: &Gear) -> f64 {
     let [lower, upper] = [0, 1].map(|k| {
         let points = sampled(job, flanks[k]);
+        let solved = points.iter().filter(|point| point.outcome == Outcome::Solved).count();
+        assert_eq!(solved, points.len(), "points of {}", flanks[k]);
         gear.phase(module, &points[points.len() / 2], [-1.0, 1.0][k])
     });
     reduced(upper - lower - gear.space() + 2.0 * involute(gear.pressure_angle()))
@@ -88,39 +90,71 @@ fn of_a_helical_gear() {
     }
 }
 
+/// Settings of a job, beside the teeth and the profile shift: what cuts the same gear otherwise.
+type Otherwise<'a> = &'a [(&'a str, &'a str)];
+
 /// Where flanks are modified, their middle is hardly: what is left there is far less than a pitch.
+fn is_space_of_modified(spec: &str, module: f64, helix: f64, teeth: f64, shift: f64, otherwise: Otherwise<'_>) {
+    let gear = Gear { teeth, helix: helix.to_radians(), shift: shift / module };
+    let mut set = vec![("teeth", teeth.to_string()), ("shift", format!("{shift} mm"))];
+    set.extend(otherwise.iter().map(|(name, value)| (*name, value.to_string())));
+    let error = error(spec, &set, module, &gear);
+    assert!(error.abs() < 1e-2, "{spec}, {set:?}: {error}");
+}
+
 #[test]
-fn of_modified_gears() {
+fn of_crowned_gears() {
     for spec in ["crowned_gear", "crowned_gear_quartic"] {
-        for shift in [0.4, 4.0, -3.0] {
-            let gear = Gear { teeth: 27.0, helix: -18f64.to_radians(), shift: shift / 4.0 };
-            let error = error(spec, &[("shift", format!("{shift} mm"))], 4.0, &gear);
-            assert!(error.abs() < 1e-2, "{spec}, shift {shift} mm: {error}");
+        for (teeth, shift, otherwise) in [
+            (27.0, 0.4, &[][..]),
+            (27.0, 6.0, &[]),
+            (27.0, -6.0, &[]),
+            (12.0, 0.4, &[]),
+            (80.0, 4.0, &[]),
+            (27.0, 0.4, &[("hob_shift", "40 mm")]),
+            (27.0, 2.0, &[("hob_shift", "-25 mm"), ("hob_starts", "3")]),
+            (27.0, 0.4, &[("left_hand_hob", "1"), ("hob_radius", "60 mm")]),
+            (35.0, 1.0, &[("face_width", "60 mm")]),
+        ] {
+            is_space_of_modified(spec, 4.0, -18.0, teeth, shift, otherwise);
         }
     }
-    for starts in [2, 3] {
-        for shift in [0.275, 3.0, -2.0] {
-            let gear = Gear { teeth: 35.0, helix: 17f64.to_radians(), shift: shift / 2.75 };
-            let set = [("hob_starts", starts.to_string()), ("shift", format!("{shift} mm"))];
-            let error = error("chang_tsay_nagata", &set, 2.75, &gear);
-            assert!(error.abs() < 1e-2, "{starts} starts, shift {shift} mm: {error}");
-        }
+    for crowning in ["0.3 mm", "-0.3 mm"] {
+        is_space_of_modified("crowned_gear", 4.0, -18.0, 27.0, 0.4, &[("crowning", crowning)]);
+    }
+}
+
+#[test]
+fn of_a_gear_by_six_axes_at_once() {
+    for (teeth, shift, otherwise) in [
+        (35.0, 0.275, &[][..]),
+        (35.0, 5.0, &[]),
+        (35.0, -4.0, &[]),
+        (12.0, 0.275, &[]),
+        (80.0, 1.0, &[]),
+        (35.0, 3.0, &[("hob_starts", "3")]),
+        (35.0, 0.275, &[("hob_starts", "1")]),
+        (35.0, 0.275, &[("left_hand_hob", "1"), ("hob_shift", "20 mm")]),
+        (35.0, 0.275, &[("face_width", "90 mm")]),
+    ] {
+        is_space_of_modified("chang_tsay_nagata", 2.75, 17.0, teeth, shift, otherwise);
     }
 }
 
 #[test]
 fn of_the_ideal_gear_of_a_real_hob() {
     for starts in [1, 2] {
-        for shift in [0.75, 2.0, -3.0] {
+        for (shift, feed) in [(0.75, 3.0), (2.0, 3.0), (-3.0, 3.0), (0.75, 1.0)] {
             let gear = Gear { teeth: 31.0, helix: 22f64.to_radians(), shift: shift / 3.0 };
             let set = [
                 ("hob_starts", starts.to_string()),
                 ("shift", format!("{shift} mm")),
+                ("feed_per_turn", format!("{feed} mm")),
                 ("gashes_used", "40".to_owned()),
                 ("points", "5".to_owned()),
             ];
             let error = error("real_hob", &set, 3.0, &gear);
-            assert!(error.abs() < 1e-11, "{starts} starts, shift {shift} mm: {error}");
+            assert!(error.abs() < 1e-11, "{starts} starts, shift {shift} mm, feed {feed} mm: {error}");
         }
     }
 }
@@ -141,10 +175,25 @@ fn of_a_worm_wheel() {
 
 #[test]
 fn of_diagonal_feed() {
-    for helix in [22.0, -40.0, 0.0] {
-        let gear = Gear { teeth: 31.0, helix: f64::to_radians(helix), shift: 0.0 };
-        let error = error("diagonal_gear", &[("helix_angle", format!("{helix} deg"))], 3.0, &gear);
-        assert!(error.abs() < 1e-11, "{helix}: {error}");
+    for (teeth, helix, ratio, face, starts) in [
+        (31.0, 22.0, 0.4, 20, 1),
+        (31.0, -30.0, 0.4, 20, 3),
+        (12.0, 0.0, -0.4, 20, 2),
+        (80.0, 22.0, 2.0, 20, 1),
+        (31.0, 22.0, -2.0, 20, 1),
+        (31.0, 22.0, 0.4, 90, 1),
+        (31.0, 22.0, 0.4, 5, 1),
+    ] {
+        let gear = Gear { teeth, helix: f64::to_radians(helix), shift: 0.0 };
+        let set = [
+            ("teeth", teeth.to_string()),
+            ("helix_angle", format!("{helix} deg")),
+            ("diagonal_ratio", ratio.to_string()),
+            ("face_width", format!("{face} mm")),
+            ("hob_starts", starts.to_string()),
+        ];
+        let error = error("diagonal_gear", &set, 3.0, &gear);
+        assert!(error.abs() < 1e-11, "{set:?}: {error}");
     }
 }
 
@@ -169,13 +218,29 @@ fn of_a_round_elliptical_gear() {
 /// that plane a little; the larger, the less.
 #[test]
 fn of_a_taper_gear() {
-    let (module, teeth, face) = (3.0, 30.0, 20.0);
-    let reference = module * teeth / 2.0;
-    for (cone, hob_radius, bound) in [(6.0, 400.0, 2e-4), (12.0, 400.0, 2e-4), (-6.0, 400.0, 2e-4), (6.0, 40.0, 1e-3)] {
-        let set = [("cone_angle", format!("{cone} deg")), ("hob_radius", format!("{hob_radius} mm"))];
+    let module = 3.0;
+    for (teeth, face, cone, hob_radius, bound) in [
+        (30.0, 20.0, 6.0, 400.0, 2e-4),
+        (30.0, 20.0, 12.0, 400.0, 2e-4),
+        (30.0, 20.0, -6.0, 400.0, 2e-4),
+        (30.0, 20.0, 6.0, 40.0, 1e-3),
+        (12.0, 20.0, 6.0, 40.0, 1e-3),
+        (80.0, 20.0, -20.0, 400.0, 2e-4),
+        (30.0, 40.0, 6.0, 90.0, 1e-3),
+    ] {
+        let reference = module * teeth / 2.0;
+        let set = [
+            ("teeth", teeth.to_string()),
+            ("face_width", format!("{face} mm")),
+            ("cone_angle", format!("{cone} deg")),
+            ("hob_radius", format!("{hob_radius} mm")),
+        ];
         let set = set.each_ref().map(|(name, value)| (*name, value.as_str()));
         let graph = Graph::new();
         let job = job(&graph, "specs/hobbing/beveloid.chain", &set);
+        for name in ["lower_flank", "upper_flank"] {
+            assert!(sampled(&job, name).iter().all(|point| point.outcome == Outcome::Solved), "{set:?}, {name}");
+        }
         let cone = f64::to_radians(cone);
         let transverse = (alpha().tan() * cone.cos()).atan();
         for (z, height) in [(0.0, 0.0), (0.0, 1.5), (-0.3 * face, 0.5), (0.3 * face, 0.0)] {
