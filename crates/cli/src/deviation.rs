@@ -78,6 +78,8 @@ pub(crate) struct Measured<'j, 'g> {
     pub(crate) is_turned: bool,
     /// um
     pub(crate) deviations: Vec<Option<f64>>,
+    /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
+    pub(crate) is_opposite: bool,
 }
 
 pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
@@ -109,7 +111,7 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });
     let points = units::counted(measured.points.len(), "point");
     eprint(&format!("{points} in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3));
-    eprint(&trimmed(&measured, arguments.means));
+    eprint(&(measured.opposite() + &trimmed(&measured, arguments.means)));
     let missing = measured.missing();
     eprint(&missing);
     Ok(if missing.is_empty() { Ending::Done } else { Ending::Unsolved })
@@ -196,7 +198,14 @@ pub(crate) fn measure<'j, 'g>(
     let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
     let turn = both.and_then(|(point, near)| deviation.turn_to(point.position, near));
-    let deviations = match if as_it_lies { Some(0.0) } else { turn } {
+    let done = if as_it_lies { Some(0.0) } else { turn };
+    let is_opposite = both.zip(done).is_some_and(|((point, near), turn)| {
+        let [x, y, z] = near.normal;
+        let (sin, cos) = turn.sin_cos();
+        let turned = [cos * x - sin * y, sin * x + cos * y, z];
+        turned.iter().zip(point.normal).map(|(a, b)| a * b).sum::<f64>() < 0.0
+    });
+    let deviations = match done {
         Some(turn) => deviation.map(&points, &near, turn).into_iter().map(|off| Some(1e3 * off?)).collect(),
         None => vec![None; points.len()],
     };
@@ -209,6 +218,7 @@ pub(crate) fn measure<'j, 'g>(
         turn,
         is_turned: !as_it_lies,
         deviations,
+        is_opposite,
     })
 }
 
@@ -233,6 +243,19 @@ impl Measured<'_, '_> {
     fn in_the_middle(&self) -> Option<f64> {
         let middle = *self.deviations.get(self.middle())?;
         middle.map(|off| if off.abs() < ON_IT { 0.0 } else { off })
+    }
+
+    /// A note on normals that face apart; empty if they do not.
+    fn opposite(&self) -> String {
+        if !self.is_opposite {
+            return String::new();
+        }
+        format!(
+            "note: {} and {} have their steel on opposite sides in the middle of the grid, as the two flanks of a tooth have: these \
+             deviations compare no flank with its like\n",
+            self.held.name(),
+            self.from.surface.name
+        )
     }
 
     fn known(&self) -> impl Iterator<Item = f64> {

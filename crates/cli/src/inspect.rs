@@ -70,6 +70,7 @@ pub(crate) fn inspect<'j, 'g>(
         turn,
         is_turned: !arguments.as_it_lies,
         deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
+        is_opposite: false,
     })
 }
 

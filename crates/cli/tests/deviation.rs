@@ -27,6 +27,20 @@ fn deviation_of_two_flanks_is_told_and_drawn() {
     assert!(text(&run.stderr).contains("`concave` is not sampled"), "{}", text(&run.stderr));
 }
 
+/// Opposite flanks are turned onto each other, and that is told.
+#[test]
+fn normals_that_face_apart_are_told() {
+    let out = folder("deviation_opposite");
+    let of = |surface| {
+        let spec = "specs/hobbing/spur_gear.chain";
+        let rest = ["--from", "flank_minus", "--no-picture", "--out", out.to_str().expect("a plain path")];
+        text(&flank(&[&["deviation", spec, surface], &rest[..]].concat()).stderr)
+    };
+    let told = "note: flank_plus and flank_minus have their steel on opposite sides in the middle of the grid";
+    assert!(of("flank_plus").contains(told), "{}", of("flank_plus"));
+    assert!(!of("flank_minus").contains("opposite sides"));
+}
+
 /// Two surfaces that are both sampled by a coordinate of the spec's own are held against each other by it.
 #[test]
 fn a_worm_wheel_lies_off_the_conjugate_one() {

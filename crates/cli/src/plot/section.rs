@@ -92,9 +92,16 @@ impl Cut {
         let [x, y, z] = self.plane.point;
         let is_counted = subject.motions().iter().any(|motion| motion.is_count);
         let counts = if is_counted { "; what counts is taken without gaps" } else { "" };
+        let mates = subject.mates();
+        let others = (0..subject.solved.len()).filter(|at| !mates.contains(at));
+        let others: Vec<&str> = others.map(|at| subject.solved[at].surface.name.as_str()).collect();
+        let others = match others[..] {
+            [] => String::new(),
+            _ => format!(" Not drawn, being of another tool, other motions or another frame: {}.", others.join(", ")),
+        };
         format!(
             "Plane square to the tooth through the middle of {}, at radius {} mm and z {} mm; exact points, strokes on the \
-             side of the steel, dots where the tool touches at that moment{counts}.",
+             side of the steel, dots where the tool touches at that moment{counts}.{others}",
             subject.first().surface.name,
             fixed(x.hypot(y), 3),
             fixed(z, 3)
@@ -285,6 +292,16 @@ mod tests {
         let along = ((off[0] * way[0] + off[1] * way[1]) / (length * length)).clamp(0.0, 1.0);
         let rest = [off[0] - along * way[0], off[1] - along * way[1]];
         (rest[0].hypot(rest[1]), (rest[0] * out[0] + rest[1] * out[1]) / out[0].hypot(out[1]))
+    }
+
+    /// What the section leaves out is named in its caption.
+    #[test]
+    fn surfaces_of_other_tools_are_named() {
+        let note = section_of("bevel/hypoid_pinion").note;
+        let left_out =
+            "Not drawn, being of another tool, other motions or another frame: convex, convex_fillet, convex_root.";
+        assert!(note.ends_with(left_out), "{note}");
+        assert!(!section_of("hobbing/spur_gear").note.contains("Not drawn"));
     }
 
     /// The tool passes through the points in which it touches, and nowhere deeper into the steel than the chords of both lines
