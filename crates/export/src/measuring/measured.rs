@@ -94,6 +94,9 @@ pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, Measured
     let mut table = csv::ReaderBuilder::new();
     let mut table = table.delimiter(separator).comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let titles = table.headers().map_err(|error| MeasuredFault::NoTable(error.to_string()))?.clone();
+    if titles.is_empty() {
+        return Err(MeasuredFault::NoTable("it is empty".to_string()));
+    }
     let place = |name: &str| titles.iter().position(|title| title == name);
     let no_column = |missing| MeasuredFault::NoColumn {
         missing,
@@ -238,6 +241,7 @@ mod tests {
     fn what_is_wrong_is_told_with_its_line() {
         let told = |text: &str| read_measured(text, "left").expect_err("a fault").to_string();
         assert!(told("row,x,y,z\n").contains("no column `column`"));
+        assert_eq!(told("# nothing\n"), "it is empty");
         assert!(told("row,column,x,y\n1,1,0,0\n").contains("no column `z`"));
         assert_eq!(
             told("row,column,deviation_um\n1,1,2\n1,two,3\n"),
