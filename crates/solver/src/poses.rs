@@ -3,14 +3,14 @@
 use faer::Mat;
 use faer::linalg::solvers::{FullPivLu, PartialPivLu, Solve, Svd};
 use flank_expr::geometry::{Chain, Pose, Step, Twist};
-use flank_expr::{Expr, Graph, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
 use thiserror::Error;
 
 use crate::newton::{Linearized, TOLERANCE, solve_with};
 use crate::orientation;
 use crate::solution::{Outcome, ROUNDING, Range, Solution, distance};
 use crate::start::{WIDELY, probe, scan};
-use crate::symmetry::Screw;
+use crate::symmetry::{Screw, doubled, slipping};
 use crate::system::{Evaluation, System};
 
 /// Halvings of a step along the motion until the axes follow.
@@ -497,83 +497,6 @@ fn deviation<'g>(off: &Pose<'g>) -> Vec<Expr<'g>> {
     let e = |i: usize, j: usize| off.rotation.0[i].0[j];
     let turn = [e(2, 1) - e(1, 2), e(0, 2) - e(2, 0), e(1, 0) - e(0, 1)].map(|twice| 0.5 * twice);
     off.translation.0.into_iter().chain(turn).collect()
-}
-
-/// Steps by which a tool slides along itself, and by how much along each of its symmetries.
-pub(crate) fn slipping<'g>(graph: &'g Graph, slips: &[Screw]) -> (Vec<Step<'g>>, Vec<Expr<'g>>) {
-    let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip_{k}"))).collect();
-    let slipped = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
-    (slipped, amounts)
-}
-
-/// An axis moves the tool along its symmetries if they leave no more than this share of its twist: both are known to 1e-12 or better, and
-/// the normal equations of symmetries that are far apart keep that.
-const ALONG: f64 = 1e-9;
-
-/// A symmetry that an axis of the target does by itself, wherever the others and the settings stand.
-pub(crate) fn doubled<'g>(
-    target: &Chain<'g>,
-    axes: &[Expr<'g>],
-    settings: &[Expr<'g>],
-    slips: &[Screw],
-) -> Result<Option<usize>, TapeError> {
-    let inputs: Vec<Expr<'g>> = axes.iter().chain(settings).copied().collect();
-    for axis in axes {
-        if let Some(shares) = along(target, *axis, &inputs, slips)? {
-            return Ok((0..slips.len()).max_by(|&a, &b| shares[a].abs().total_cmp(&shares[b].abs())));
-        }
-    }
-    Ok(None)
-}
-
-/// The motion of the tool that an axis makes, if the tool does not see it, wherever the other axes stand; and how much of it per mm
-/// or radian of the axis.
-///
-/// # Errors
-/// If something depends on a variable that is not given.
-pub fn unseen_motion<'g>(
-    target: &Chain<'g>,
-    axis: Expr<'g>,
-    axes: &[Expr<'g>],
-    symmetries: &[Screw],
-) -> Result<Option<(Screw, f64)>, TapeError> {
-    let shares = along(target, axis, axes, symmetries)?;
-    Ok(shares.map(|shares| {
-        let sum = |of: fn(&Screw) -> [f64; 3]| -> [f64; 3] {
-            std::array::from_fn(|k| symmetries.iter().zip(&shares).map(|(screw, share)| share * of(screw)[k]).sum())
-        };
-        let (angular, linear) = (sum(|screw| screw.angular), sum(|screw| screw.linear));
-        let size = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let pace = if size(angular) > 0.0 { size(angular) } else { size(linear) };
-        (Screw { angular: angular.map(|x| x / pace), linear: linear.map(|x| x / pace) }, pace)
-    }))
-}
-
-/// The shares of the symmetries in what an axis does to the tool, if it does nothing else.
-fn along<'g>(
-    target: &Chain<'g>,
-    axis: Expr<'g>,
-    inputs: &[Expr<'g>],
-    slips: &[Screw],
-) -> Result<Option<Vec<f64>>, TapeError> {
-    if slips.is_empty() {
-        return Ok(None);
-    }
-    let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
-    let Twist { angular, linear } = target.twist(axis);
-    let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
-    let mut out = [0.0; 6];
-    ScalarEvaluator::new(&Tape::new(&twist, inputs)?).run(&numbers, &mut out);
-    // velocities by the largest of them, so that they count as turns do
-    let velocities = slips.iter().flat_map(|slip| slip.linear).chain(out[3..].iter().copied());
-    let fastest = velocities.map(f64::abs).filter(|v| *v > 0.0).reduce(f64::max).unwrap_or(1.0);
-    let of = Mat::from_fn(6, 1, |i, _| if i < 3 { out[i] } else { out[i] / fastest });
-    let entry = |i: usize, j: usize| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] / fastest };
-    let basis = Mat::from_fn(6, slips.len(), entry);
-    let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
-    let left = &of - &basis * &shares;
-    let is_along = of.norm_l2() > 0.0 && left.norm_l2() <= ALONG * of.norm_l2();
-    Ok(is_along.then(|| (0..slips.len()).map(|k| shares[(k, 0)]).collect()))
 }
 
 /// As many components of the deviation as there are unknowns: those that they change most independently, most everywhere within the

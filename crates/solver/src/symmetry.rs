@@ -1,8 +1,8 @@
 //! Rigid motions that a tool's surface does not see: it slides along itself.
 
 use faer::Mat;
-use faer::linalg::solvers::Svd;
-use flank_expr::geometry::{Axis, Step, Surface, Vector3};
+use faer::linalg::solvers::{Solve, Svd};
+use flank_expr::geometry::{Axis, Chain, Step, Surface, Twist, Vector3};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape, TapeError};
 use nalgebra::Vector3 as Vector;
 
@@ -14,6 +14,9 @@ const POINTS: usize = 9;
 const UNSEEN: f64 = 1e-9;
 /// What is left of a component by rounding.
 const ROUNDING: f64 = 1e-10;
+/// An axis moves the tool along its symmetries if they leave no more than this share of its twist: both are known to 1e-12 or better, and
+/// the normal equations of symmetries that are far apart keep that.
+const ALONG: f64 = 1e-9;
 
 /// A one-parameter rigid motion, by its velocity at the start: `ω × r + v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,6 +124,79 @@ fn screw(motion: [f64; 6], size: f64) -> Screw {
     let linear = Vector::new(motion[3], motion[4], motion[5]);
     let speed = if angular.norm() > 0.0 { angular.norm() } else { linear.norm() };
     Screw { angular: (angular / speed).into(), linear: (linear / speed).into() }
+}
+
+/// Steps by which a tool slides along itself, and by how much along each of its symmetries.
+pub(crate) fn slipping<'g>(graph: &'g Graph, slips: &[Screw]) -> (Vec<Step<'g>>, Vec<Expr<'g>>) {
+    let amounts: Vec<Expr<'g>> = (1..=slips.len()).map(|k| graph.variable(format!("slip_{k}"))).collect();
+    let slipped = slips.iter().zip(&amounts).flat_map(|(slip, by)| slip.steps(graph, *by)).collect();
+    (slipped, amounts)
+}
+
+/// A symmetry that an axis of the target does by itself, wherever the others and the settings stand.
+pub(crate) fn doubled<'g>(
+    target: &Chain<'g>,
+    axes: &[Expr<'g>],
+    settings: &[Expr<'g>],
+    slips: &[Screw],
+) -> Result<Option<usize>, TapeError> {
+    let inputs: Vec<Expr<'g>> = axes.iter().chain(settings).copied().collect();
+    for axis in axes {
+        if let Some(shares) = along(target, *axis, &inputs, slips)? {
+            return Ok((0..slips.len()).max_by(|&a, &b| shares[a].abs().total_cmp(&shares[b].abs())));
+        }
+    }
+    Ok(None)
+}
+
+/// The motion of the tool that an axis makes, if the tool does not see it, wherever the other axes stand; and how much of it per mm
+/// or radian of the axis.
+///
+/// # Errors
+/// If something depends on a variable that is not given.
+pub fn unseen_motion<'g>(
+    target: &Chain<'g>,
+    axis: Expr<'g>,
+    axes: &[Expr<'g>],
+    symmetries: &[Screw],
+) -> Result<Option<(Screw, f64)>, TapeError> {
+    let shares = along(target, axis, axes, symmetries)?;
+    Ok(shares.map(|shares| {
+        let sum = |of: fn(&Screw) -> [f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|k| symmetries.iter().zip(&shares).map(|(screw, share)| share * of(screw)[k]).sum())
+        };
+        let (angular, linear) = (sum(|screw| screw.angular), sum(|screw| screw.linear));
+        let size = |of: [f64; 3]| of.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let pace = if size(angular) > 0.0 { size(angular) } else { size(linear) };
+        (Screw { angular: angular.map(|x| x / pace), linear: linear.map(|x| x / pace) }, pace)
+    }))
+}
+
+/// The shares of the symmetries in what an axis does to the tool, if it does nothing else.
+fn along<'g>(
+    target: &Chain<'g>,
+    axis: Expr<'g>,
+    inputs: &[Expr<'g>],
+    slips: &[Screw],
+) -> Result<Option<Vec<f64>>, TapeError> {
+    if slips.is_empty() {
+        return Ok(None);
+    }
+    let numbers: Vec<f64> = (0..inputs.len()).map(|k| 0.3 + 0.41 * k as f64).collect();
+    let Twist { angular, linear } = target.twist(axis);
+    let twist: Vec<Expr<'g>> = angular.0.into_iter().chain(linear.0).collect();
+    let mut out = [0.0; 6];
+    ScalarEvaluator::new(&Tape::new(&twist, inputs)?).run(&numbers, &mut out);
+    // velocities by the largest of them, so that they count as turns do
+    let velocities = slips.iter().flat_map(|slip| slip.linear).chain(out[3..].iter().copied());
+    let fastest = velocities.map(f64::abs).filter(|v| *v > 0.0).reduce(f64::max).unwrap_or(1.0);
+    let of = Mat::from_fn(6, 1, |i, _| if i < 3 { out[i] } else { out[i] / fastest });
+    let entry = |i: usize, j: usize| if i < 3 { slips[j].angular[i] } else { slips[j].linear[i - 3] / fastest };
+    let basis = Mat::from_fn(6, slips.len(), entry);
+    let shares = (basis.transpose() * &basis).partial_piv_lu().solve(basis.transpose() * &of);
+    let left = &of - &basis * &shares;
+    let is_along = of.norm_l2() > 0.0 && left.norm_l2() <= ALONG * of.norm_l2();
+    Ok(is_along.then(|| (0..slips.len()).map(|k| shares[(k, 0)]).collect()))
 }
 
 #[cfg(test)]

@@ -153,6 +153,16 @@ fn a_full_turn_has_no_seam() {
     }
 }
 
+fn in_bands(problem: &SurfaceProblem, targets: &[[f64; 2]], counts: [usize; 2]) -> Vec<SurfacePoint> {
+    let mut points = Vec::new();
+    let take = |band: &Band<'_>| {
+        points.extend(band.points());
+        Ok::<_, ()>(())
+    };
+    problem.in_bands(|i, j| targets[i * counts[1] + j], counts, None, take).expect("nothing fails");
+    points
+}
+
 /// Also where the grid is handed over in bands.
 #[test]
 fn bands_across_a_seam_have_the_bits_of_the_whole() {
@@ -160,13 +170,7 @@ fn bands_across_a_seam_have_the_bits_of_the_whole() {
     let problem = cylinder(&graph, angles).at_once(300);
     let targets = grid(counts, [range(-2.9, 2.9), range(-1.0, 1.0)]);
     let (whole, _) = problem.solve(&targets, counts);
-    let mut streamed: Vec<SurfacePoint> = Vec::new();
-    let take = |band: &Band<'_>| {
-        streamed.extend(band.points());
-        Ok::<_, ()>(())
-    };
-    problem.in_bands(|i, j| targets[i * counts[1] + j], counts, None, take).expect("nothing fails");
-    assert_eq!(whole, streamed);
+    assert_eq!(whole, in_bands(&problem, &targets, counts));
     assert!(targets.iter().zip(&whole).all(|(target, point)| is_on_the_left(*target, point, angles)));
 }
 
@@ -178,13 +182,7 @@ fn bands_beyond_the_ranges_have_the_bits_of_the_whole() {
         plane(&graph, |u, v| [u + 0.1 * (3.0 * v).sin(), v], [range(-1.0, 1.0), range(0.0, 1.0)], None).at_once(300);
     let targets = grid(counts, [range(0.4, 4.5), range(0.0, 1.0)]);
     let (whole, _) = problem.solve(&targets, counts);
-    let mut streamed: Vec<SurfacePoint> = Vec::new();
-    let take = |band: &Band<'_>| {
-        streamed.extend(band.points());
-        Ok::<_, ()>(())
-    };
-    problem.in_bands(|i, j| targets[i * counts[1] + j], counts, None, take).expect("nothing fails");
-    assert_eq!(whole, streamed);
+    assert_eq!(whole, in_bands(&problem, &targets, counts));
     for ([a, b], point) in targets.iter().zip(&whole) {
         assert_eq!(point.outcome == Outcome::Solved, a - 0.1 * (3.0 * b).sin() <= 1.0, "{a} {b}: {point:?}");
     }

@@ -5,9 +5,10 @@ mod search;
 use flank_expr::geometry::{Chain, Pose};
 use flank_expr::{Expr, Tape, TapeError};
 
-use crate::poses::{TargetAxis, doubled, slipping};
+use crate::poses::TargetAxis;
 use crate::solution::Range;
 use crate::symmetry::Screw;
+use crate::symmetry::{doubled, slipping};
 use search::Search;
 
 /// A constant that is looked for.
