@@ -128,3 +128,19 @@ fn settings_as_near_are_within_their_ranges() {
     let [from, to] = [roll[1], roll[3]].map(|end| end.parse::<f64>().expect("degrees"));
     assert!(to - from < 60.0, "{told}");
 }
+
+/// One position is no program, and nothing is left of what was asked for beside it.
+#[test]
+fn a_program_of_one_position_is_refused_before_anything_is_written() {
+    let out = folder("convert-one");
+    let spec = ["convert", "specs/hobbing/spur_gear.chain", "--to", "specs/machines/hobbing_6axis.chain"];
+    let of = |more: &[&str]| {
+        flank(&[&spec[..], &["--positions", "1", "--time", "10", "--out", out.to_str().unwrap()], more].concat())
+    };
+    let run = of(&["--nc", "fanuc"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run.stderr).contains("--nc needs --positions 2 or more"), "{}", text(&run.stderr));
+    assert_eq!(std::fs::read_dir(&out).expect("the test's folder").count(), 0);
+    let run = of(&[]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+}

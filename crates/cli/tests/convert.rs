@@ -558,22 +558,6 @@ fn a_time_in_which_nothing_can_move_is_told() {
     assert!(told.contains("in 1e-300 s (--time) the axes would be faster than numbers go"), "{told}");
 }
 
-/// One position is no program, and nothing is left of what was asked for beside it.
-#[test]
-fn a_program_of_one_position_is_refused_before_anything_is_written() {
-    let out = folder("convert-one");
-    let spec = ["convert", "specs/hobbing/spur_gear.chain", "--to", "specs/machines/hobbing_6axis.chain"];
-    let of = |more: &[&str]| {
-        flank(&[&spec[..], &["--positions", "1", "--time", "10", "--out", out.to_str().unwrap()], more].concat())
-    };
-    let run = of(&["--nc", "fanuc"]);
-    assert_eq!(run.status.code(), Some(2));
-    assert!(text(&run.stderr).contains("--nc needs --positions 2 or more"), "{}", text(&run.stderr));
-    assert_eq!(std::fs::read_dir(&out).expect("the test's folder").count(), 0);
-    let run = of(&[]);
-    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
-}
-
 /// What rounding leaves of a coefficient that is none reads as none; the file has its bits.
 #[test]
 fn coefficients_that_are_rounding_are_shown_as_zero() {

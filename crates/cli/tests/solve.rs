@@ -125,49 +125,6 @@ fn geometry_is_listed_and_written() {
     );
 }
 
-/// A rack that stands off by 1 mm leaves sin α more material all over its flanks; the face width leaves them where they are.
-#[test]
-fn sensitivity_is_ranked_written_and_drawn() {
-    let out = folder("sensitivity");
-    let base = ["solve", "specs/hobbing/spur_gear.chain", "--sensitivity", "--out", out.to_str().unwrap()];
-    let run = flank(&base);
-    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
-    let table = text(&run.stdout);
-    for part in [
-        "flank_plus moves, over 275 points, with",
-        "profile_shift",
-        "um/0.001",
-        "no influence, ",
-        "face_width",
-        "by little: teeth",
-    ] {
-        assert!(table.contains(part), "{part} in\n{table}");
-    }
-    let csv = std::fs::read_to_string(out.join("spur_gear.csv")).unwrap();
-    let rows: Vec<Vec<&str>> =
-        csv.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect()).collect();
-    let column = |name: &str| rows[0].iter().position(|title| *title == name).expect("a column");
-    let [shift, width] = ["d_normal/d_profile_shift", "d_normal/d_face_width"].map(column);
-    for row in rows.iter().filter(|row| row[0].starts_with("flank_")) {
-        // module 3 mm, told for 0.001
-        let moved: f64 = row[shift].parse().expect("a number");
-        assert!((moved - 3.0 * 20f64.to_radians().sin()).abs() < 1e-12, "{moved}");
-        assert_eq!(row[width], "0");
-    }
-    for surface in ["flank_plus", "fillet_minus"] {
-        for extension in ["png", "svg"] {
-            let path = out.join(format!("spur_gear.{surface}.sensitivity.{extension}"));
-            assert!(std::fs::metadata(&path).is_ok_and(|file| file.len() > 1000), "{}", path.display());
-        }
-    }
-    let summary = flank(&[&base[..], &["--json", "--no-picture"]].concat());
-    let table: serde_json::Value = serde_json::from_slice(&summary.stdout).expect("JSON");
-    let sensitivity = &table["surfaces"][0]["sensitivity"];
-    let rms = |k: usize| sensitivity["parameters"][k]["rms"].as_f64().expect("a number");
-    assert!(rms(0) >= rms(1) && rms(1) > 0.0);
-    assert_eq!(sensitivity["counts"], serde_json::json!(["teeth"]));
-}
-
 /// Points that the job's own `trim`s and the tool itself take away are counted by what takes them, and asked for in vain.
 #[test]
 fn what_is_cut_away_is_counted() {
@@ -595,67 +552,58 @@ fn each_frame_has_its_own_mesh() {
     assert!(!out.join("pair_from_blank.stl").exists() && out.join("pair_from_blank.csv").exists());
 }
 
-/// What is told of a parameter is what two solves on both sides of the job's own value find: of a length, an angle and a plain
-/// number, in the units that stand beside them. A parameter that counts has no such influence, and none is told.
+/// Each number of the table follows from the points in the file: how many were asked for and solved, the largest residual of these, and how
+/// far they reach.
 #[test]
-fn influences_are_those_of_two_solves() {
-    let out = folder("influences");
-    let solve = |more: &[&str]| {
-        let command = ["solve", "specs/hobbing/spur_gear.chain", "--sensitivity", "--no-picture", "--format", "json"];
-        let run = flank(&[&command[..], more, &["--out", out.to_str().unwrap()]].concat());
-        assert_eq!(run.status.code(), Some(0), "{more:?}: {}", text(&run.stderr));
-        let file = std::fs::read_to_string(out.join("spur_gear.json")).expect("written");
-        (text(&run.stdout), serde_json::from_str::<serde_json::Value>(&file).expect("JSON"))
-    };
-    let table = solve(&[]).0;
-    let (told, nominal) = solve(&["--json"]);
-    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
-    // a parameter, values on both sides of its own, how many of the unit these are off it, the unit
-    for (name, values, off, unit) in [
-        ("module", ["2.999 mm", "3.001 mm"], 1e-3, "um/mm"),
-        ("r.pressure_angle", ["19.995 deg", "20.005 deg"], 0.3, "um/arcmin"),
-        ("profile_shift", ["0.1999", "0.2001"], 0.1, "um/0.001"),
+fn the_table_says_what_stands_in_the_file() {
+    let out = folder("table");
+    for (spec, unknowns) in [
+        ("specs/hobbing/undercut_gear.chain", ["u", "theta", "v", "phi"]),
+        ("specs/bevel/pinion_19x62.chain", ["s", "radius", "theta", "roll"]),
     ] {
-        let moved = values.map(|value| solve(&["--set", &format!("{name}={value}")]).1);
-        let row = |line: &&str| line.split_whitespace().next() == Some(name);
-        let mut rows = table.lines().filter(row).map(|line| line.split_whitespace().skip(1).collect::<Vec<_>>());
-        for (at, surface) in nominal["surfaces"].as_array().expect("surfaces").iter().enumerate() {
-            let fields = surface["fields"].as_array().expect("fields");
-            let field = fields.iter().position(|field| field["name"] == format!("d_normal/d_{name}")).expect("a field");
-            assert_eq!(fields[field]["unit"], unit);
-            let found = differences(surface, [0, 1].map(|side| &moved[side]["surfaces"][at]), off);
-            let largest = found.iter().fold(0.0, |largest: f64, um| largest.max(um.abs()));
-            let rms = (found.iter().map(|um| um * um).sum::<f64>() / found.len() as f64).sqrt();
-            // a difference leaves the square of the step, below 1e-7 of it, and points are solved to 1e-11 mm
-            let near = 1e-7 * largest + 1e-8 / off;
-            for (point, found) in surface["points"].as_array().expect("points").iter().zip(&found) {
-                let exact = point["fields"][field].as_f64().expect("a number");
-                assert!((exact - found).abs() < near, "{name}: {exact} {found}");
+        let run = flank(&["solve", spec, "--no-picture", "--out", out.to_str().unwrap()]);
+        let table = text(&run.stdout);
+        let file = Path::new(spec).with_extension("csv");
+        let csv = std::fs::read_to_string(out.join(file.file_name().expect("a file"))).expect("written");
+        let mut rows =
+            csv.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+        let titles = rows.next().expect("titles");
+        let column = |name: &str| titles.iter().position(|title| *title == name).expect("a column");
+        let rows: Vec<Vec<&str>> = rows.collect();
+        let number = |row: &[&str], name: &str| row[column(name)].parse::<f64>().ok();
+        let (head, rest) = table.split_once("ranges reached\n").expect("a table");
+        assert!(head.trim_end().ends_with("worst residual"), "{head}");
+        let (listed, _) = rest.split_once("\n\n").expect("an end of the table");
+        let mut blocks: Vec<String> = Vec::new();
+        for line in listed.lines() {
+            // a surface takes a line with its name and some that are set in
+            match blocks.last_mut().filter(|_| line.starts_with("   ")) {
+                Some(block) => block.push_str(line),
+                None => blocks.push(line.to_owned()),
             }
-            let of = &told["surfaces"][at]["sensitivity"];
-            let one = of["parameters"].as_array().expect("a list").iter().find(|one| one["name"] == name);
-            let one = one.unwrap_or_else(|| panic!("{name} moves {}", surface["name"]));
-            let shown = rows.next().expect("a row of the table");
-            assert_eq!((&one["unit"], shown[2]), (&unit.into(), unit));
-            for (key, found, shown) in [("rms", rms, shown[0]), ("largest", largest, shown[1])] {
-                let exact = one[key].as_f64().expect("a number");
-                assert!((exact - found).abs() < near, "{name} {key}: {exact} {found}");
-                assert!((shown.parse::<f64>().expect("a number") - exact).abs() <= 5.1e-5, "{name} {key}: {shown}");
+        }
+        assert!(blocks.len() >= 5, "{table}");
+        for block in blocks {
+            let words: Vec<&str> = block.split_whitespace().collect();
+            let own = |row: &&Vec<&str>| row[0] == words[0];
+            let solved = || rows.iter().filter(own).filter(|row| row[column("status")] == "solved");
+            let worst = solved().filter_map(|row| number(row, "residual")).fold(0.0, f64::max);
+            let counts = [rows.iter().filter(own).count(), solved().count()].map(|count| count.to_string());
+            assert_eq!(words[1..4], [&*counts[0], &counts[1], &format!("{worst:.1e}")], "{block}");
+            let radius = solved().map(|row| f64::hypot(number(row, "x").expect("x"), number(row, "y").expect("y")));
+            let mut shown = vec![("rho", radius.collect::<Vec<f64>>())];
+            shown.extend(
+                ["z"]
+                    .iter()
+                    .chain(&unknowns)
+                    .map(|name| (*name, solved().filter_map(|row| number(row, name)).collect())),
+            );
+            for (name, values) in shown.into_iter().filter(|(_, values)| !values.is_empty()) {
+                let [low, high] =
+                    [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| values.iter().copied().reduce(of));
+                let range = format!(" {name} {:.4} .. {:.4} ", low.expect("some"), high.expect("some"));
+                assert!(block.contains(&range), "{}: {range} in\n{block}", words[0]);
             }
-            assert_eq!(of["counts"], serde_json::json!(["teeth"]));
-            assert!(!fields.iter().any(|field| field["name"] == "d_normal/d_teeth"));
         }
     }
-}
-
-/// How far points lie from the one surface to the other along the nominal normals, um for each of the units that both are off.
-fn differences(nominal: &serde_json::Value, sides: [&serde_json::Value; 2], off: f64) -> Vec<f64> {
-    let vector = |point: &serde_json::Value, key: &str| [0, 1, 2].map(|k| point[key][k].as_f64().expect("a number"));
-    let points = nominal["points"].as_array().expect("points").iter().enumerate();
-    let of = |(at, point): (usize, &serde_json::Value)| {
-        let [below, above] = sides.map(|side| vector(&side["points"][at], "position"));
-        let normal = vector(point, "normal");
-        1e3 * (0..3).map(|k| normal[k] * (above[k] - below[k])).sum::<f64>() / (2.0 * off)
-    };
-    points.map(of).collect()
 }

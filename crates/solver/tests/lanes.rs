@@ -181,3 +181,32 @@ fn the_sheet_behind_a_fold_is_not_taken() {
         }
     }
 }
+
+/// Lattices are so wide on these grids that strips solve parts of their lines: on few points of them polynomials tell where the next
+/// ones are, on a steep step no polynomial does. The roots are unique, and known by bisection.
+#[test]
+fn lines_of_the_lattice_are_solved_wherever_they_lead() {
+    let graph = Graph::new();
+    let [x, y, a, b] = ["x", "y", "a", "b"].map(|name| graph.variable(name));
+    let ranges = [Range { low: -2.0, high: 2.0 }, Range { low: -2.0, high: 2.0 }];
+    for steepness in [0.5, 60.0] {
+        let height = |x: f64| x + 0.3 * (steepness * (x - 0.2)).atan();
+        let step = x + (steepness * (x - 0.2)).atan() * 0.3;
+        let system = System::new(&[step - a, y - 0.2 * x * x - b], &[x, y], &[a, b]).expect("nothing is unbound");
+        for counts in [[31, 61], [61, 33], [200, 130], [65, 400]] {
+            let targets = targets([(-1.0, 1.2), (-0.7, 0.9)], counts);
+            let (points, _) = solve_grid(&system, &ranges, &targets, counts);
+            for ([a, b], point) in targets.iter().zip(&points) {
+                let (mut low, mut high) = (-2.0, 2.0);
+                for _ in 0..60 {
+                    let middle: f64 = 0.5 * (low + high);
+                    if height(middle) < *a { low = middle } else { high = middle }
+                }
+                assert_eq!(point.outcome, Outcome::Solved, "{steepness} {counts:?} {a} {b}: {point:?}");
+                let expected = [low, b + 0.2 * low * low];
+                let near = |(found, expected): (&f64, &f64)| (found - expected).abs() < 1e-10;
+                assert!(point.unknowns.iter().zip(&expected).all(near), "{expected:?} {point:?}");
+            }
+        }
+    }
+}
