@@ -121,3 +121,41 @@ fn the_end_of_a_table_is_told() {
     let ends = "the table of `depth` covers u -4 mm .. 1 mm, the range of u is -4 mm .. 4 mm";
     assert!(told.contains(ends), "{told}");
 }
+
+/// A `keep` that takes none of the branches says which there are.
+#[test]
+fn what_a_keep_leaves_out_is_listed() {
+    let out = folder("kept_out");
+    let first = "sample flank_plus  { rho: low .. high by 9, z: -10 mm .. 10 mm by 5 }";
+    let spec = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let kept = first.replace(" }", "\n keep roll: 100 deg .. 120 deg }");
+    let spec = written(&out, "kept.chain", &spec.replacen(first, &kept, 1));
+    let run = flank(&["solve", &spec, "--job", "first_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stdout));
+    let told = text(&run.stderr);
+    // the involute at 41 mm: how far the blank has rolled from the pitch point, which lies a quarter of a pitch off the middle
+    let base = 40.0 * 20f64.to_radians().cos();
+    let roll = ((41f64.powi(2) - base * base).sqrt() / base - 20f64.to_radians().tan()).to_degrees() + 4.5;
+    assert!(told.contains("  `keep` leaves out the only branch at rho 41.0000 mm, z 0.0000 mm: u "), "{told}");
+    assert!(told.contains(&format!("roll -{roll:.4} deg")), "{roll}: {told}");
+}
+
+/// Along a straight tooth z is the rack's v, and each roll makes the points of one u.
+#[test]
+fn coordinates_that_follow_from_each_other_are_told() {
+    let out = folder("dependent");
+    let first = "sample flank_plus  { rho: low .. high by 9, z: -10 mm .. 10 mm by 5 }";
+    let spec = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    for (one, other, fine) in
+        [("z: 0 mm", "v: 0 mm", false), ("u: 1 mm", "roll: 2 deg", false), ("u: 1 mm", "z: 0 mm", true)]
+    {
+        let sample = format!("sample flank_plus {{ {one}, {other} }}");
+        let spec = written(&out, "dependent.chain", &spec.replacen(first, &sample, 1));
+        let run = flank(&["solve", &spec, "--job", "first_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+        let told = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(if fine { 0 } else { 1 }), "{told}");
+        let [one, other] = [one, other].map(|said| said.split(':').next().expect("a name"));
+        let words = format!("error[E0506]: `{one}` and `{other}` do not tell points of `flank_plus` apart");
+        assert_eq!(told.contains(&words), !fine, "{told}");
+    }
+}
