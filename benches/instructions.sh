@@ -9,12 +9,12 @@ counts=benches/instructions.txt
 most=3 # per cent
 
 if ! command -v valgrind >/dev/null && ! { apt-get update -qq && apt-get install -y -qq valgrind; } >/dev/null 2>&1; then
-    echo "skipped: $(grep -vc '^#' $counts) counts of instructions, there is no valgrind" >&2
+    echo "skipped $(grep -vc '^#' $counts) counts of instructions: there is no valgrind" >&2
     exit 0
 fi
 compiler=$(rustc --version | cut -d ' ' -f 1,2)
 if [ "${1:-}" != --accept ] && ! grep -qx "# $compiler" $counts; then
-    echo "skipped: $(grep -vc '^#' $counts) counts of instructions, they are of another compiler than $compiler" >&2
+    echo "skipped $(grep -vc '^#' $counts) counts of instructions: they are of another compiler than $compiler" >&2
     exit 0
 fi
 # incremental builds have more and smaller units of code, 1 % more instructions
