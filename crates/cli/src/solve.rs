@@ -309,21 +309,17 @@ pub(crate) fn unit(dimension: Dimension) -> Unit {
 }
 
 pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
-    if solved.outcome != flank_solver::Outcome::Solved {
-        return Point::unsolved(
-            solved.outcome.word(),
-            solved.residual,
-            reasons::of_point(job, surface, solved.outcome),
-        );
-    }
-    Point {
-        outcome: Outcome::Solved,
-        position: solved.position,
-        normal: solved.normal,
-        unknowns: solved.unknowns.clone(),
-        residual: solved.residual,
-        reason: String::new(),
-    }
+    let reason = reasons::of_point(job, surface, solved.outcome);
+    // a point that is cut away may be one where the surface has no normal
+    let has_numbers = solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
+    let outcome = match solved.outcome {
+        flank_solver::Outcome::Solved => Outcome::Solved,
+        flank_solver::Outcome::CutAway(_) if has_numbers => Outcome::CutAway,
+        flank_solver::Outcome::Undecided if has_numbers => Outcome::Undecided,
+        other => return Point::unsolved(other.word(), solved.residual, reason),
+    };
+    let SurfacePoint { position, normal, unknowns, residual, .. } = solved;
+    Point { outcome, position: *position, normal: *normal, unknowns: unknowns.clone(), residual: *residual, reason }
 }
 
 /// Writes the files that are asked for and names them.

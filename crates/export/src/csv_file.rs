@@ -15,7 +15,8 @@ use crate::number::push_shortest;
 /// patches in order of first appearance, then `residual, status`, `reason` if a point has one, then the fields of all patches (three columns for a
 /// vector). Positions are mm, angles degrees, numbers the shortest
 /// text that reads back as the same bits. Cells are empty where a patch has no such unknown or field, where a field is
-/// not defined and where a point is not solved. An unknown or a field whose title is taken by another column is written as
+/// not defined and where a point has no numbers: only points that are solved, cut away or undecided have a position, a normal and
+/// unknowns, and only solved ones have fields. An unknown or a field whose title is taken by another column is written as
 /// `name [unit]`.
 ///
 /// The points are asked for twice.
@@ -103,12 +104,12 @@ fn push_field(line: &mut Vec<u8>, wanted: &Field, own: Option<&Field>, at: usize
 
 /// Position, normal, the unknowns at their `places` among those of all patches, and the residual.
 fn push_point(line: &mut Vec<u8>, patch: &Patch, point: &Point, places: &[Option<usize>]) {
-    let is_solved = point.is_solved();
+    let is_placed = point.is_placed();
     let of_point = point.position.iter().chain(&point.normal);
-    of_point.for_each(|number| push_cell(line, Some(*number).filter(|_| is_solved)));
+    of_point.for_each(|number| push_cell(line, Some(*number).filter(|_| is_placed)));
     for place in places {
         let value = place.and_then(|k| Some(patch.unknowns[k].unit.written(*point.unknowns.get(k)?)));
-        push_cell(line, value.filter(|_| is_solved));
+        push_cell(line, value.filter(|_| is_placed));
     }
     push_cell(line, point.known_residual());
 }

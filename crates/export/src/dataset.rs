@@ -101,13 +101,13 @@ pub enum Unit {
 /// One grid point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Whether the rest means anything.
+    /// Whether the rest means anything, and whether the point belongs to the finished work.
     pub outcome: Outcome,
     /// Position in the patch's frame, mm.
     pub position: [f64; 3],
     /// Unit normal in the patch's frame; it points out of the body that owns the surface.
     pub normal: [f64; 3],
-    /// Values of the patch's unknowns: mm, radians or plain numbers. May be empty where the point is not solved.
+    /// Values of the patch's unknowns: mm, radians or plain numbers. May be empty where the point is not placed.
     pub unknowns: Vec<f64>,
     /// What the solved equations leave.
     pub residual: f64,
@@ -121,7 +121,12 @@ pub struct Point {
 pub enum Outcome {
     /// Position, normal, unknowns and residual are those of a root.
     Solved,
-    /// There is no such point, and the word says why: `cut away`, `outside`, `singular`, `not converged`. Of the point's numbers
+    /// They are those of a root that is no point of the finished work: something cuts it away. Tables show its numbers; meshes and
+    /// pictures leave it out, and it has no fields.
+    CutAway,
+    /// The same, where it is not known whether something cuts it away.
+    Undecided,
+    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. Of the point's numbers
     /// only the residual is written: what the best attempt left. [`Point::reason`] says more.
     Unsolved(&'static str),
 }
@@ -184,6 +189,8 @@ impl Outcome {
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
+            Outcome::CutAway => "cut away",
+            Outcome::Undecided => "undecided",
             Outcome::Unsolved(word) => word,
         }
     }
@@ -209,10 +216,16 @@ impl Point {
         Some(self.residual).filter(|residual| residual.is_finite())
     }
 
-    /// Whether the point's numbers mean anything.
+    /// Whether the point belongs to the finished work: what meshes and pictures show.
     #[must_use]
     pub fn is_solved(&self) -> bool {
         self.outcome == Outcome::Solved
+    }
+
+    /// Whether the point's numbers are those of a point of the surface, be it cut away: what tables show.
+    #[must_use]
+    pub fn is_placed(&self) -> bool {
+        !matches!(self.outcome, Outcome::Unsolved(_))
     }
 }
 
@@ -272,7 +285,7 @@ impl Patch {
 
     /// Whether points, the first of them with this number, have all their numbers.
     pub(crate) fn check_points(&self, first: usize, points: &[Point]) -> Result<(), Malformed> {
-        for (i, j, point) in self.numbered(first, points).filter(|(_, _, point)| point.is_solved()) {
+        for (i, j, point) in self.numbered(first, points).filter(|(_, _, point)| point.is_placed()) {
             if point.unknowns.len() != self.unknowns.len() {
                 return Err(Malformed::UnknownCount {
                     surface: self.name.clone(),
@@ -282,7 +295,9 @@ impl Patch {
                     named: self.unknowns.len(),
                 });
             }
-            let of_fields = self.fields.iter().flat_map(|field| field.values.at(i * self.columns.count + j));
+            let has_fields = |_: &&Field| point.is_solved();
+            let of_fields =
+                self.fields.iter().filter(has_fields).flat_map(|field| field.values.at(i * self.columns.count + j));
             let of_point = point.position.iter().chain(&point.normal).chain(&point.unknowns).chain([&point.residual]);
             if !of_point.chain(of_fields).all(|number| number.is_finite()) {
                 return Err(Malformed::NotANumber { surface: self.name.clone(), i, j });

@@ -10,17 +10,19 @@ pub(crate) struct Mesh {
     columns: usize,
     /// The last row.
     above: Vec<Point>,
-    /// Of its points, and of those handed over next, how many solved ones come before them.
+    /// Of its points, and of those handed over next, how many that are counted come before them.
     places: Vec<usize>,
-    solved: usize,
+    counted: usize,
+    counts: fn(&Point) -> bool,
 }
 
-/// A corner of a triangle: a solved point with its number among the solved ones of its surface, from 0.
+/// A corner of a triangle: a solved point with its number among those of its surface that are counted, from 0.
 pub(crate) type Numbered<'a> = (usize, &'a Point);
 
 impl Mesh {
-    pub(crate) fn of(surface: &dyn Banded) -> Mesh {
-        Mesh { columns: surface.outline().columns.count, above: Vec::new(), places: Vec::new(), solved: 0 }
+    /// Of a file that holds the points which it `counts`.
+    pub(crate) fn of(surface: &dyn Banded, counts: fn(&Point) -> bool) -> Mesh {
+        Mesh { columns: surface.outline().columns.count, above: Vec::new(), places: Vec::new(), counted: 0, counts }
     }
 
     /// Hands over the triangles between rows that come next and of these with the last one, wound so that they face where the
@@ -34,10 +36,10 @@ impl Mesh {
         points: &[Point],
         take: &mut dyn FnMut([Numbered<'_>; 3]) -> Result<(), WriteError>,
     ) -> Result<(), WriteError> {
-        let Mesh { columns, above, places, solved } = self;
+        let Mesh { columns, above, places, counted, counts } = self;
         for point in points {
-            places.push(*solved);
-            *solved += usize::from(point.is_solved());
+            places.push(*counted);
+            *counted += usize::from(counts(point));
         }
         let kept = above.len();
         let point = |at: usize| if at < kept { &above[at] } else { &points[at - kept] };
@@ -55,7 +57,7 @@ impl Mesh {
     }
 }
 
-/// Hands over all triangles of a surface.
+/// Hands over all triangles of a surface, whose solved points are counted.
 ///
 /// # Errors
 /// What `take` gives, or if the surface cannot hand over its points.
@@ -63,7 +65,7 @@ pub(crate) fn each_facet(
     surface: &dyn Banded,
     take: &mut dyn FnMut([Numbered<'_>; 3]) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let mut mesh = Mesh::of(surface);
+    let mut mesh = Mesh::of(surface, Point::is_solved);
     surface.bands(&mut |points| mesh.add(points, take))
 }
 

@@ -1,4 +1,4 @@
-//! Points as JSON, by the schema `schemas/surfaces-2.schema.json`.
+//! Points as JSON, by the schema `schemas/surfaces-3.schema.json`.
 
 use std::io::{self, Write};
 
@@ -14,12 +14,12 @@ use crate::number::plain;
 use crate::tally::Tally;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
-pub const SCHEMA: &str = "flank.surfaces/2";
+pub const SCHEMA: &str = "flank.surfaces/3";
 
 /// Writes all points as JSON, one point a line, keys in a fixed order.
 ///
-/// Positions are mm, angles degrees. Of a point that is not solved, `position`, `normal`, `unknowns`
-/// and `fields` are `null`; of a solved one, a field that is not defined there is.
+/// Positions are mm, angles degrees. Of a point that is not solved, `fields` is `null`; `position`, `normal` and `unknowns` are, too,
+/// unless it is cut away or undecided. Of a solved one, a field that is not defined there is.
 ///
 /// The points are asked for twice.
 ///
@@ -164,16 +164,16 @@ fn point_out<'a>(patch: &Patch, i: usize, j: usize, point: &'a Point) -> PointOu
         || patch.unknowns.iter().zip(&point.unknowns).map(|(u, &value)| plain(u.unit.written(value))).collect();
     let at = i * patch.columns.count + j;
     let fields = || patch.fields.iter().map(|field| value_out(&field.values, at)).collect();
-    let solved = point.is_solved();
+    let is_placed = point.is_placed();
     PointOut {
         i,
         j,
         status: point.outcome.word(),
-        position: solved.then(|| point.position.map(plain)),
-        normal: solved.then(|| point.normal.map(plain)),
-        unknowns: solved.then(values),
+        position: is_placed.then(|| point.position.map(plain)),
+        normal: is_placed.then(|| point.normal.map(plain)),
+        unknowns: is_placed.then(values),
         residual: point.known_residual().map(plain),
         reason: Some(&*point.reason).filter(|reason| !reason.is_empty()),
-        fields: solved.then(fields),
+        fields: point.is_solved().then(fields),
     }
 }

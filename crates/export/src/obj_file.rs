@@ -21,7 +21,7 @@ pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wri
     let [program, spec, hash, job] =
         [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
     writeln!(out, "# {program}; spec: {spec}, hash {hash}; job: {job}")?;
-    sentences_of_mesh(header, false).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
+    sentences_of_mesh(header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
     let mut before = 0;
     for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {
         let outline = surface.outline();

@@ -175,13 +175,13 @@ impl Column<'_> {
     /// The numbers that the points of the patch have in this column.
     fn numbers<'p>(&'p self, patch: &'p Patch) -> Numbers<'p> {
         match self {
-            Column::Position(k) => Box::new(|_, point| point.is_solved().then(|| point.position[*k])),
-            Column::Normal(k) => Box::new(|_, point| point.is_solved().then(|| point.normal[*k])),
+            Column::Position(k) => Box::new(|_, point| point.is_placed().then(|| point.position[*k])),
+            Column::Normal(k) => Box::new(|_, point| point.is_placed().then(|| point.normal[*k])),
             Column::Residual => Box::new(|_, point| point.known_residual()),
             Column::Unknown(unknown) => {
                 let place = patch.unknowns.iter().position(|own| own == *unknown);
                 Box::new(move |_, point| {
-                    place.filter(|_| point.is_solved()).map(|place| unknown.unit.written(point.unknowns[place]))
+                    place.filter(|_| point.is_placed()).map(|place| unknown.unit.written(point.unknowns[place]))
                 })
             }
             Column::Field(field, k) => {

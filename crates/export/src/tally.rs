@@ -13,6 +13,8 @@ pub struct Tally {
     pub asked: usize,
     /// Points solved.
     pub solved: usize,
+    /// Points with numbers: these, and those that are cut away or undecided.
+    pub placed: usize,
     /// Largest residual of a solved point, by absolute value; `None` where nothing was solved.
     pub worst_residual: Option<f64>,
     /// How many points carry each status word other than `solved`.
@@ -30,12 +32,13 @@ impl Tally {
     /// Counts one more point.
     pub(crate) fn count(&mut self, point: &Point) {
         self.asked += 1;
+        self.placed += usize::from(point.is_placed());
         match point.outcome {
             Outcome::Solved => {
                 self.solved += 1;
                 self.saw_residual(point.residual.abs());
             }
-            Outcome::Unsolved(word) => *self.unsolved.entry(word).or_default() += 1,
+            other => *self.unsolved.entry(other.word()).or_default() += 1,
         }
     }
 
@@ -43,6 +46,7 @@ impl Tally {
     pub(crate) fn add(&mut self, other: &Tally) {
         self.asked += other.asked;
         self.solved += other.solved;
+        self.placed += other.placed;
         other.worst_residual.into_iter().for_each(|residual| self.saw_residual(residual));
         other.unsolved.iter().for_each(|(word, count)| *self.unsolved.entry(word).or_default() += count);
     }

@@ -64,7 +64,7 @@ fn write_model(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Write
     writeln!(out, r#"<metadata name="Title">{}</metadata>"#, text(&header.job))?;
     writeln!(out, r#"<metadata name="Application">{}</metadata>"#, text(&header.program))?;
     let about = [format!("spec: {}, hash {}", header.spec, header.spec_hash)];
-    let about: Vec<String> = about.into_iter().chain(sentences_of_mesh(header, false)).collect();
+    let about: Vec<String> = about.into_iter().chain(sentences_of_mesh(header)).collect();
     writeln!(out, r#"<metadata name="Description">{}</metadata>"#, text(&about.join("; ")))?;
     let mut drawn = Vec::new();
     for (k, surface) in surfaces.list.iter().enumerate() {

@@ -2,8 +2,8 @@
 
 use crate::bands::{Banded, Seen, Surfaces};
 use crate::columns::{union_of_fields, union_of_unknowns};
-use crate::conventions::{one_line, sentences_of_mesh};
-use crate::dataset::{Field, Patch, Point, Unknown, Values};
+use crate::conventions::{one_line, sentences_of_points};
+use crate::dataset::{Field, Outcome, Patch, Point, Unknown, Values};
 use crate::error::WriteError;
 use crate::facets::{Mesh, count_facets};
 use crate::regions::{Regions, Target};
@@ -11,10 +11,11 @@ use crate::xml::escaped;
 
 /// Writes all surfaces as one VTK PolyData file (`.vtp`, XML with raw appended data, little-endian), one piece for each.
 ///
-/// Points are the solved ones, mm. Each has its `normal`, `row` and `column` in the grid, its patch's number as `surface` (from 0, in
-/// the order of the file's head), its unknowns and fields as `name [unit]`, and its `residual`; NaN where a patch has no such
-/// unknown or field, or a field is not defined. Cells are triangles that face out of the body, as in STL. A comment at the head
-/// states the conventions, and how many points were asked for.
+/// Points are the solved ones, and those that are cut away or undecided, mm. Each has its `status` (0, 1 or 2), its `normal`, `row` and
+/// `column` in the grid, its patch's number as `surface` (from 0, in the order of the file's head), its unknowns and fields as
+/// `name [unit]`, and its `residual`; NaN where a patch has no such unknown or field, or a field is not defined. Cells are triangles
+/// of solved points that face out of the body, as in STL. A comment at the head states the conventions, and how many points were
+/// asked for.
 ///
 /// The points are asked for three times; the arrays are filled side by side, so that no more than a part of each is held.
 ///
@@ -25,7 +26,7 @@ pub fn write_vtp(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), Wr
     let arrays = arrays(surfaces);
     let pieces = surfaces.list.iter().zip(&seen.tallies).enumerate();
     let pieces = pieces.map(|(number, (surface, tally))| {
-        Ok(Piece { number, surface: *surface, solved: tally.solved, triangles: count_facets(*surface)? })
+        Ok(Piece { number, surface: *surface, points: tally.placed, triangles: count_facets(*surface)? })
     });
     let pieces = pieces.collect::<Result<Vec<Piece<'_>>, WriteError>>()?;
     out.write_all(b"<?xml version=\"1.0\"?>\n")?;
@@ -42,11 +43,11 @@ pub fn write_vtp(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), Wr
     Ok(())
 }
 
-/// The solved points of a surface and its triangles.
+/// The points of a surface that have a place, and the triangles of the solved ones.
 struct Piece<'a> {
     number: usize,
     surface: &'a dyn Banded,
-    solved: usize,
+    points: usize,
     triangles: usize,
 }
 
@@ -65,6 +66,7 @@ enum Section {
 }
 
 enum What<'a> {
+    Status,
     Normal,
     Row,
     Column,
@@ -81,6 +83,7 @@ enum What<'a> {
 fn arrays<'b>(surfaces: &Surfaces<'b>) -> Vec<Array<'b>> {
     let mut arrays = Vec::new();
     let mut add = |name: String, section, what| arrays.push(Array { name, section, what });
+    add("status".into(), Section::PointData, What::Status);
     add("normal".into(), Section::PointData, What::Normal);
     add("row".into(), Section::PointData, What::Row);
     add("column".into(), Section::PointData, What::Column);
@@ -114,7 +117,7 @@ impl Array<'_> {
     /// The name of its numbers' type, and their size in bytes.
     fn kind(&self) -> (&'static str, usize) {
         match self.what {
-            What::Row | What::Column | What::Surface => ("Int32", 4),
+            What::Status | What::Row | What::Column | What::Surface => ("Int32", 4),
             What::Connectivity | What::Offsets => ("Int64", 8),
             _ => ("Float64", 8),
         }
@@ -127,7 +130,7 @@ impl Piece<'_> {
         let tuples = match array.what {
             What::Connectivity => 3 * self.triangles,
             What::Offsets => self.triangles,
-            _ => self.solved,
+            _ => self.points,
         };
         (tuples * array.components() * array.kind().1) as u64
     }
@@ -137,7 +140,7 @@ impl Piece<'_> {
         writeln!(
             out,
             "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">",
-            self.solved, self.triangles
+            self.points, self.triangles
         )?;
         let sections = [
             (Section::PointData, "PointData Normals=\"normal\"", "PointData"),
@@ -178,10 +181,11 @@ impl Piece<'_> {
         let polys = |what: fn(&What<'_>) -> bool| arrays.iter().position(|array| what(&array.what));
         let connectivity = polys(|what| matches!(what, What::Connectivity)).expect("every piece has one");
         let offsets = polys(|what| matches!(what, What::Offsets)).expect("every piece has them");
-        let (mut first, mut triangles, mut mesh, mut bytes) = (0, 0_i64, Mesh::of(self.surface), Vec::new());
+        let (mut first, mut triangles, mut mesh, mut bytes) =
+            (0, 0_i64, Mesh::of(self.surface, Point::is_placed), Vec::new());
         self.surface.bands(&mut |points| {
             for (at, (i, j, point)) in (first..).zip(patch.numbered(first, points)) {
-                for (k, of_point) in of_points.iter().filter(|_| point.is_solved()) {
+                for (k, of_point) in of_points.iter().filter(|_| point.is_placed()) {
                     bytes.clear();
                     of_point(&mut bytes, [at, i, j], point);
                     regions.push(*k, &bytes, out)?;
@@ -225,11 +229,15 @@ impl Array<'_> {
             What::Field(field) => {
                 let own = patch.fields.iter().find(|own| own.shares_columns(field));
                 let nothing = &[f64::NAN; 3][..self.components()];
-                Box::new(move |bytes, [at, ..], _| {
-                    let known = own.map(|own| own.values.at(at)).filter(|known| !known.is_empty());
+                Box::new(move |bytes, [at, ..], point| {
+                    let known = own
+                        .filter(|_| point.is_solved())
+                        .map(|own| own.values.at(at))
+                        .filter(|known| !known.is_empty());
                     float(bytes, known.unwrap_or(nothing));
                 })
             }
+            What::Status => Box::new(|bytes, _, point| whole(bytes, status(point.outcome))),
             What::Row => Box::new(|bytes, [_, i, _], _| whole(bytes, i)),
             What::Column => Box::new(|bytes, [_, _, j], _| whole(bytes, j)),
             What::Surface => Box::new(move |bytes, _, _| whole(bytes, number)),
@@ -238,12 +246,22 @@ impl Array<'_> {
     }
 }
 
+/// What stands for an outcome in the array of them.
+fn status(outcome: Outcome) -> usize {
+    match outcome {
+        Outcome::Solved => 0,
+        Outcome::CutAway => 1,
+        Outcome::Undecided => 2,
+        Outcome::Unsolved(_) => unreachable!("such a point is not in the file"),
+    }
+}
+
 /// The conventions, as lines that may stand in an XML comment.
 fn head(surfaces: &Surfaces<'_>, seen: &Seen) -> String {
     let header = surfaces.header;
     let mut lines =
         vec![format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job)];
-    lines.extend(sentences_of_mesh(header, true));
+    lines.extend(sentences_of_points(header));
     lines.extend(surfaces.outlines().zip(&seen.tallies).enumerate().map(|(k, (patch, tally))| {
         format!("surface {k} `{}`: frame {}; {}", patch.name, patch.frame, tally.verdict())
     }));

@@ -3,7 +3,7 @@
 mod synthetic;
 
 use flank_export::{Dataset, Malformed, Patch, Point, Unit, Unknown, Values, WriteError, write_csv};
-use synthetic::{Gear, bevel, dataset, holes, plane, with_fields, without};
+use synthetic::{Gear, bevel, dataset, holes, plane, undercut, with_fields, without};
 
 const SPUR: Gear = Gear { helix: 0.0, width: 20.0 };
 
@@ -51,6 +51,21 @@ fn an_unsolved_point_has_a_status_and_no_number() {
     assert_eq!(&records[12 * 15 + 7][12], "singular");
     let empty = records.iter().filter(|record| record[3].is_empty()).count();
     assert_eq!(empty, patch.points.iter().filter(|point| !point.is_solved()).count());
+}
+
+/// They lie on the generated surface; what is known of solved points only is not theirs.
+#[test]
+fn points_that_are_cut_away_have_all_their_numbers() {
+    let patch = undercut(with_fields(SPUR.flank("flank", [4, 3])), 1..3);
+    let (_, records) = read(&text_of(&dataset("job", vec![patch.clone()])));
+    for (record, point) in records.iter().zip(&patch.points) {
+        assert_eq!(&record[12], point.outcome.word());
+        assert_eq!(record[3].parse::<f64>(), Ok(point.position[0]));
+        assert_eq!(record[10].parse::<f64>(), Ok(point.unknowns[1]));
+        assert_eq!(record[17].is_empty(), !point.is_solved(), "{record:?}");
+    }
+    assert_eq!(records.iter().filter(|record| &record[12] == "cut away").count(), 5);
+    assert_eq!(&records[3][12], "undecided");
 }
 
 #[test]

@@ -6,9 +6,9 @@ mod synthetic;
 use flank_export::{Dataset, SCHEMA, write_json};
 use schema::faults_of;
 use serde_json::Value;
-use synthetic::{Gear, bevel, dataset, gallery, holes, with_fields, without};
+use synthetic::{Gear, bevel, dataset, gallery, holes, undercut, with_fields, without};
 
-const SCHEMA_FILE: &str = include_str!("../../../schemas/surfaces-2.schema.json");
+const SCHEMA_FILE: &str = include_str!("../../../schemas/surfaces-3.schema.json");
 
 fn text_of(dataset: &Dataset) -> String {
     let mut bytes = Vec::new();
@@ -31,7 +31,7 @@ fn the_check_of_the_schema_can_fail() {
     let sound: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch]))).unwrap();
     type Spoil = fn(&mut Value);
     let spoilers: [(Spoil, &str); 6] = [
-        (|d| d["schema"] = "flank.surfaces/3".into(), "/schema: const"),
+        (|d| d["schema"] = "flank.surfaces/2".into(), "/schema: const"),
         (|d| d["more"] = 1.into(), ": additionalProperties"),
         (|d| d["surfaces"][0]["points"][1]["normal"] = vec![1.0, 0.0].into(), "/surfaces/0/points/1/normal: minItems"),
         (|d| d["surfaces"][0]["unknowns"][0]["unit"] = "rad".into(), "/surfaces/0/unknowns/0/unit: enum"),
@@ -51,13 +51,13 @@ fn the_check_of_the_schema_can_fail() {
 
 #[test]
 fn numbers_come_back_and_holes_are_null() {
-    let patch = without(Gear { helix: 0.3, width: 20.0 }.flank("flank", [25, 15]), holes);
+    let patch = without(undercut(Gear { helix: 0.3, width: 20.0 }.flank("flank", [25, 15]), 20..22), holes);
     let document: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch.clone()]))).unwrap();
     let points = document["surfaces"][0]["points"].as_array().unwrap();
-    assert_eq!((document["asked"].as_u64(), document["solved"].as_u64()), (Some(375), Some(343)));
+    assert_eq!((document["asked"].as_u64(), document["solved"].as_u64()), (Some(375), Some(313)));
     for (out, point) in points.iter().zip(&patch.points) {
         assert_eq!(out["status"], point.outcome.word());
-        if point.is_solved() {
+        if point.is_placed() {
             assert_eq!(out["position"], Value::from(point.position.map(|x| x + 0.0).to_vec()));
             assert_eq!(out["unknowns"][0].as_f64(), Some(point.unknowns[0].to_degrees()));
         } else {
@@ -90,7 +90,7 @@ fn fields_stand_with_their_points() {
 fn a_point_takes_a_line_and_keys_keep_their_order() {
     let text = text_of(&dataset("job", vec![synthetic::plane([2, 1], [-0.0, 1.0, 2.0], 0.5)]));
     let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines[1], "  \"schema\": \"flank.surfaces/2\",");
+    assert_eq!(lines[1], "  \"schema\": \"flank.surfaces/3\",");
     let points: Vec<&&str> = lines.iter().filter(|line| line.contains("\"i\"")).collect();
     assert_eq!(points.len(), 2);
     assert!(points[0].contains("\"status\": \"solved\", \"position\": [0.0, 1.25, 2.0]"), "{}", points[0]);

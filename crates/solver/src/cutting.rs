@@ -109,8 +109,8 @@ impl CuttingEdges {
     /// What the edges leave at points of the ideal surface, on as many threads as there are; `None` for a point that is not
     /// solved. The result depends on the points alone.
     pub fn left(&self, points: &[SurfacePoint]) -> Vec<Option<Left>> {
-        let coordinates = points.iter().flat_map(|point| point.position).filter(|x| x.is_finite());
-        let size = coordinates.fold(1.0, |size: f64, x| size.max(x.abs()));
+        let solved = points.iter().filter(|point| point.outcome == Outcome::Solved);
+        let size = solved.flat_map(|point| point.position).fold(1.0, |size: f64, x| size.max(x.abs()));
         let wide = self.real.wide(size);
         let differing = if self.same { 0.0 } else { self.differing(points, size) };
         let tiles = points.par_chunks(TILE).map(|tile| self.tile(tile, &wide, differing));

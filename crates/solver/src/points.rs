@@ -29,7 +29,7 @@ impl SurfacePoints {
         self.field.solved()
     }
 
-    /// The verdict; the rest describes a point of the surface only if it is [`Outcome::Solved`].
+    /// The verdict; it says what the rest describes, as that of a [`SurfacePoint`] does.
     ///
     /// # Panics
     /// If there is no such point, as for all that follow.

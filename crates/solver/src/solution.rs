@@ -95,7 +95,8 @@ impl Range {
 pub enum Outcome {
     /// All residuals are within their tolerance ([`TOLERANCE`](crate::TOLERANCE)) and all unknowns in their ranges.
     Solved,
-    /// There is a root in the ranges, but it is no point of the finished work.
+    /// There is a root in the ranges, but it is no point of the finished work: its unknowns, position and normal are those of the
+    /// surface that the tool generates.
     CutAway(CutBy),
     /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`trim`](crate::trim).
     Undecided,

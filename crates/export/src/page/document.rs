@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
 use crate::base64::encoded;
 use crate::conventions::sentences;
-use crate::dataset::{Axis, Dataset, Field, Patch, Values};
+use crate::dataset::{Axis, Dataset, Field, Patch, Point, Values};
 use crate::json_file;
 use crate::picture::{patch_colours, scale_colours};
 use crate::tally::Tally;
@@ -129,18 +129,23 @@ fn surface<'a>(patch: &'a Patch, scene: &'a PageSurface) -> SurfaceOut<'a> {
             .collect(),
         words,
         status,
-        positions: encoded(patch.points.iter().flat_map(|point| point.position)),
-        normals: encoded(patch.points.iter().flat_map(|point| point.normal)),
-        unknown_values: encoded(
-            patch
-                .points
-                .iter()
-                .flat_map(|point| (0..width).map(|k| point.unknowns.get(k).copied().unwrap_or(f64::NAN))),
+        positions: encoded(patch.points.iter().flat_map(shown_at)),
+        normals: encoded(
+            patch.points.iter().flat_map(|point| if point.is_solved() { point.normal } else { [f64::NAN; 3] }),
         ),
+        unknown_values: encoded(patch.points.iter().flat_map(|point| {
+            let value = |k: usize| point.unknowns.get(k).copied().filter(|_| point.is_solved()).unwrap_or(f64::NAN);
+            (0..width).map(value)
+        })),
         residuals: encoded(patch.points.iter().map(|point| point.residual)),
         targets: encoded(scene.targets.iter().flatten().copied()),
         fields: patch.fields.iter().map(field).collect(),
     }
+}
+
+/// Where a point is drawn; nowhere unless it is solved.
+fn shown_at(point: &Point) -> [f64; 3] {
+    if point.is_solved() { point.position } else { [f64::NAN; 3] }
 }
 
 fn number_of(word: &'static str, words: &mut Vec<&'static str>) -> usize {
@@ -159,6 +164,6 @@ fn field(field: &Field) -> FieldOut<'_> {
 }
 
 fn line(patch: &Patch) -> LineOut<'_> {
-    let positions = encoded(patch.points.iter().flat_map(|point| point.position));
+    let positions = encoded(patch.points.iter().flat_map(shown_at));
     LineOut { name: &patch.name, frame: &patch.frame, positions }
 }

@@ -180,6 +180,16 @@ pub(crate) fn without(mut patch: Patch, lost: impl Fn(usize, usize) -> Option<&'
     patch
 }
 
+/// The patch with the points of some rows cut away, and one of them undecided: they keep their numbers.
+pub(crate) fn undercut(mut patch: Patch, rows: std::ops::Range<usize>) -> Patch {
+    let columns = patch.columns.count;
+    for point in &mut patch.points[rows.start * columns..rows.end * columns] {
+        (point.outcome, point.reason) = (Outcome::CutAway, "by the tool itself".to_string());
+    }
+    patch.points[rows.start * columns].outcome = Outcome::Undecided;
+    patch
+}
+
 /// A corner of the grid is outside, and one point is singular.
 pub(crate) fn holes(i: usize, j: usize) -> Option<&'static str> {
     match (i, j) {
@@ -230,6 +240,10 @@ pub(crate) fn gallery() -> Vec<(&'static str, Dataset)> {
         ("column", dataset("a single column", vec![bevel([9, 1])])),
         ("point", dataset("a single point", vec![spur.flank("right flank", [1, 1])])),
         ("empty", dataset("nothing asked for", Vec::new())),
+        (
+            "undercut",
+            dataset("flank with undercut", vec![undercut(with_fields(spur.flank("right flank", [25, 15])), 0..8)]),
+        ),
         ("unsolved", dataset("nothing solved", vec![without(flank, |_, _| Some("outside"))])),
         ("tiny", dataset("a micrometre", vec![plane([3, 3], [1.0, 2.0, 3.0], 1e-3)])),
         ("face", dataset("a plane across the axis", vec![plane([9, 9], [-20.0, -20.0, 0.0], 40.0)])),
