@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Bounded, Dimension};
+use flank_chain_dsl::{Bounded, Coordinate, Dimension, GeneratedSurface};
 use flank_export::fixed;
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
 use serde_json::{Value, json};
@@ -16,20 +16,20 @@ const DECIMALS: usize = 4;
 /// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
 pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
     let refused = |solved: &&Solved<'_, '_>| solved.summary.count(Outcome::Ambiguous) > 0;
-    solved.iter().filter(refused).map(listed).collect()
+    solved.iter().filter(refused).map(|solved| listed(solved.surface, &solved.branches, &anchor(solved))).collect()
 }
 
-fn listed(solved: &Solved<'_, '_>) -> String {
-    let (name, unknowns) = (&solved.surface.name, &solved.surface.unknowns);
-    let mut out =
-        format!("ambiguous: the ranges of {name} hold {} branches at {}\n", solved.branches.len(), anchor(solved));
-    let chosen = tells_apart(&solved.branches, unknowns);
-    for (number, branch) in solved.branches.iter().enumerate() {
+/// The branches of a surface at a place, with what would select each.
+pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], at: &str) -> String {
+    let (name, unknowns) = (&surface.name, &surface.unknowns);
+    let mut out = format!("ambiguous: the ranges of {name} hold {} branches at {at}\n", branches.len());
+    let chosen = tells_apart(branches, unknowns);
+    for (number, branch) in branches.iter().enumerate() {
         let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
         let [x, y, z] = branch.position.map(|x| fixed(x, DECIMALS));
         let _ = writeln!(out, "  {}: {}, at [{x}, {y}, {z}] mm", number + 1, values.join(", "));
         if let Some(unknown) = chosen {
-            let (low, high) = around(&solved.branches, number, &unknowns[unknown], unknown);
+            let (low, high) = around(branches, number, &unknowns[unknown], unknown);
             let of = &unknowns[unknown];
             let _ = writeln!(out, "     keep {}: {} .. {}", of.name, value(of, low), value(of, high));
         }
@@ -139,9 +139,12 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
 
 /// The place at which branches were looked for.
 pub(crate) fn anchor(solved: &Solved<'_, '_>) -> String {
-    let [a, b] = &solved.sample.coordinates;
+    place(&solved.sample.coordinates, solved.effort.anchor)
+}
+
+/// Two coordinates with their values.
+pub(crate) fn place([a, b]: &[Coordinate<'_>; 2], [x, y]: [f64; 2]) -> String {
     let show = |name: &str, dimension: Dimension, x: f64| format!("{name} {}", units::text(dimension, x, DECIMALS));
-    let [x, y] = solved.effort.anchor;
     format!("{}, {}", show(&a.name, a.dimension, x), show(&b.name, b.dimension, y))
 }
 

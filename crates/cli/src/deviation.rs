@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_chain_dsl::{Coordinate, GeneratedSurface, Job};
 use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps, fixed};
 use flank_expr::Graph;
-use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint, SurfaceProblem};
+use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint};
 use serde_json::{Value, json};
 
 use crate::arguments::{Deviation, Means, Which};
@@ -15,7 +15,8 @@ use crate::files::Folder;
 use crate::progress::Working;
 use crate::solve::{self, Wanted, header, patch, problem, ranges};
 use crate::spec::Origin;
-use crate::{Ending, eprint, inspect, print, spec, units};
+use crate::starts::{self, Starts};
+use crate::{Ending, branches, eprint, inspect, print, spec, units};
 
 const NOTE: &str = "along the normal, plus is material";
 
@@ -80,6 +81,10 @@ pub(crate) struct Measured<'j, 'g> {
     pub(crate) deviations: Vec<Option<f64>>,
     /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
     pub(crate) is_opposite: bool,
+    /// Why nothing could be held against the other, with a way out; empty if it could.
+    pub(crate) refused: String,
+    /// Points at whose places the surface is cut away.
+    pub(crate) cut_away: usize,
 }
 
 pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
@@ -170,32 +175,15 @@ pub(crate) fn measure<'j, 'g>(
     let sample = from.surface.sample.as_ref().ok_or(format!(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
     ))?;
-    let halfway = sample.grid.middle(sample.counts);
-    let same = |k: usize| {
-        let name = &sample.coordinates[k].name;
-        let coordinate = surface.surface.coordinate(name);
-        coordinate.map(|coordinate| surface.surface.about(coordinate, halfway[k]).value).ok_or(format!(
-            "`{of}` is sampled by `{name}`, which is no coordinate of `{}`; sample both by it, or by z and rho, or between \
-             the corners of the blank",
-            surface.surface.name
-        ))
-    };
     let _working = Working::on(format!("solving {} and {}", surface.surface.name, from.surface.name));
-    let near = problem(surface.job, surface.surface, [same(0)?, same(1)?], means);
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let points = problem(from.job, from.surface, coordinates, means);
-    let (targets, counts) = (sample.targets(), sample.counts);
-    let solved = |of: &SurfaceProblem| of.solve(&targets, counts).0;
-    let (near, points) = std::thread::scope(|scope| {
-        let near = scope.spawn(|| solved(&near));
-        let points = solved(&points);
-        (near.join(), points)
-    });
-    let near = near.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let counts = sample.counts;
+    let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), means);
+    let starts = Starts::beside(surface.surface, (sample, &points));
+    let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), means);
     let held = &surface.surface.surface;
     let deviation = flank_solver::Deviation::new(held, ranges(surface.surface), &surface.job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
+    let middle = starts::middle(counts);
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
     let turn = both.and_then(|(point, near)| deviation.turn_to(point.position, near));
     let done = if as_it_lies { Some(0.0) } else { turn };
@@ -209,17 +197,66 @@ pub(crate) fn measure<'j, 'g>(
         Some(turn) => deviation.map(&points, &near, turn).into_iter().map(|off| Some(1e3 * off?)).collect(),
         None => vec![None; points.len()],
     };
+    let ends = [points.get(middle), near.get(middle)].map(|point| point.map(|point| point.outcome));
+    let apart = if done.is_none() { apart([surface, from], ends) } else { String::new() };
+    let ambiguous = lost + &lost_near;
+    let is_cut = |(point, near): &(&SurfacePoint, &SurfacePoint)| is_solved(point) && is_cut_away(near.outcome);
     Ok(Measured {
         held: Held::Surface(surface),
         from,
         labels: sample.labels.clone(),
         counts,
+        cut_away: points.iter().zip(&near).filter(is_cut).count(),
         points,
         turn,
         is_turned: !as_it_lies,
         deviations,
         is_opposite,
+        refused: if ambiguous.is_empty() { apart } else { ambiguous },
     })
+}
+
+/// The points of a surface at values of two coordinates, and what is told of its branches where several qualify.
+fn solved<'g>(
+    of: Named<'_, 'g>,
+    (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),
+    means: Means,
+) -> (Vec<SurfacePoint>, String) {
+    let problem = problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), means);
+    let (points, effort) = problem.solve(targets, counts);
+    let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
+    let told = is_ambiguous.then(|| {
+        let at = branches::place(coordinates, effort.anchor);
+        branches::listed(of.surface, &problem.points(&effort.branches), &at)
+    });
+    (points, told.unwrap_or_default())
+}
+
+/// Why two surfaces do not meet in the middle of the grid, where the points of both have come to an end each.
+fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> String {
+    let [surface, from] = if of[0].job.name == of[1].job.name {
+        of.map(|of| of.surface.name.clone())
+    } else {
+        of.map(|of| of.whole_name())
+    };
+    let [point, near] = ends;
+    let way_out = "`--as-it-lies` does without the turn that brings both to meet there";
+    match (point, near) {
+        (Some(point), _) if point != Outcome::Solved => {
+            format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}\n", point.word())
+        }
+        (_, Some(near)) if is_cut_away(near) => {
+            format!("no deviation: `{surface}` is cut away where the middle of the grid of `{from}` is; {way_out}\n")
+        }
+        _ => format!(
+            "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` is turned \
+             about z\n"
+        ),
+    }
+}
+
+fn is_cut_away(outcome: Outcome) -> bool {
+    matches!(outcome, Outcome::CutAway(_) | Outcome::Undecided)
 }
 
 fn is_solved(point: &SurfacePoint) -> bool {
@@ -231,7 +268,7 @@ const ON_IT: f64 = 1e-6;
 
 impl Measured<'_, '_> {
     fn middle(&self) -> usize {
-        (self.counts[0] / 2) * self.counts[1] + self.counts[1] / 2
+        starts::middle(self.counts)
     }
 
     /// Distance of the middle of the grid from the z axis, mm.
@@ -370,21 +407,23 @@ impl Measured<'_, '_> {
         if let Held::File { points, .. } = self.held {
             return missing_of_file(self, [points, known, unsolved]);
         }
-        if self.turn.is_none() && self.is_turned {
-            return format!(
-                "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` \
-                 is turned about z\n"
-            );
+        if !self.refused.is_empty() {
+            return self.refused.clone();
         }
         let mut out = String::new();
         if unsolved > 0 {
             let _ = writeln!(out, "not solved: {unsolved} of {all} points of {from}");
         }
-        if known + unsolved < all {
+        let unmet = all - known - unsolved;
+        let cut_away = self.cut_away.min(unmet);
+        if cut_away > 0 {
+            let _ = writeln!(out, "no deviation at {cut_away} of {all} points: {surface} is cut away there");
+        }
+        if unmet > cut_away {
+            let unmet = unmet - cut_away;
             let _ = writeln!(
                 out,
-                "no deviation at {} of {all} points: the normal of {from} does not meet {surface} within its ranges",
-                all - known - unsolved
+                "no deviation at {unmet} of {all} points: the normal of {from} does not meet {surface} within its ranges"
             );
         }
         out

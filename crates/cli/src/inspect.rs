@@ -71,6 +71,8 @@ pub(crate) fn inspect<'j, 'g>(
         is_turned: !arguments.as_it_lies,
         deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
         is_opposite: false,
+        refused: String::new(),
+        cut_away: 0,
     })
 }
 

@@ -32,6 +32,7 @@ mod sensitivity;
 mod shell;
 mod solve;
 mod spec;
+mod starts;
 mod step;
 mod stream;
 mod summary;

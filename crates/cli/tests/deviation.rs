@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{flank, folder, text, written};
+use support::{flank, folder, self_contained, text, written};
 
 #[test]
 fn deviation_of_two_flanks_is_told_and_drawn() {
@@ -107,4 +107,111 @@ fn nothing_has_no_sign() {
     let told = text(&run.stdout);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     assert!(told.contains("range        0.000 .. 0.000 um, rms 0.000") && !told.contains("-0"), "{told}");
+}
+
+/// Two surfaces of one shape whose parameters have the same names and count from different places lie on each other.
+#[test]
+fn names_of_unknowns_say_nothing_of_places() {
+    let out = folder("deviation_names");
+    let job = "
+        tool rail {
+            param begin : length = 0 mm
+            surface flank(u: length in -12 mm .. 12 mm, v: length in -12 mm .. 12 mm) {
+                let w = u + begin
+                at = [-w * cos(20 deg), 1.25 * pi * 1 mm - w * sin(20 deg), v]
+                body towards [0, -1, 0]
+            }
+        }
+        job pair {
+            machine m = rack_generating(reference_radius: 50 mm)
+            machine n = rack_generating(reference_radius: 50 mm)
+            tool one = rail
+            tool other = rail(begin: 6 mm)
+            mount one on m.head
+            mount other on n.head
+            motion phi : angle in -60 deg .. 60 deg
+            drive m.C = phi
+            drive n.C = phi
+            surface a in m.table = envelope(one.flank, over: phi)
+            surface b in n.table = envelope(other.flank, over: phi)
+            sample a { u: -3 mm .. 3 mm by 7, v: -5 mm .. 5 mm by 3 }
+        }";
+    let library = self_contained(&["machines/hobbing_6axis", "machines/rack_generating"]);
+    let spec = written(&out, "rails.chain", &format!("{library}{job}"));
+    let run =
+        flank(&["deviation", &spec, "b", "--from", "a", "--no-picture", "--json", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!((told["asked"].as_u64(), told["known"].as_u64()), (Some(21), Some(21)));
+    for end in ["lowest_um", "highest_um"] {
+        assert!(told[end].as_f64().expect("a number").abs() < 1e-6, "{told}");
+    }
+}
+
+/// The disc that a helical gear's flank makes grinds two spaces of it within its ranges: which one is meant is asked as `solve` asks.
+#[test]
+fn several_branches_are_listed() {
+    let out = folder("deviation_branches");
+    let job = "
+        machine thread_grinding {
+            param center_distance : length
+            param swivel : angle
+            param lead : length / angle
+            axis feed : rotary
+            frame bed
+            frame worm in bed = screw([0, 0, 1], feed, lead)
+            frame disc in bed = translate_x(center_distance) rotate_x(swivel)
+        }
+        job round_trip {
+            let reference_radius = 51 mm
+            let transverse_pressure_angle = atan(tan(20 deg) / cos(20 deg))
+            let base_radius = reference_radius * cos(transverse_pressure_angle)
+            let lead = reference_radius / tan(20 deg) / 1 rad
+            machine m = thread_grinder(center_distance: reference_radius + 110 mm, swivel: 70 deg)
+            machine n = thread_grinding(center_distance: reference_radius + 110 mm, swivel: 70 deg, lead: lead)
+            tool right = thread_zi(
+                side: 1, base_radius: base_radius, lead: lead,
+                half_space: pi / 48 * 1 rad - inv(transverse_pressure_angle)
+            )
+            mount right on m.thread
+            motion spindle : angle in -40 deg .. 40 deg
+            motion feed : angle in -60 deg .. 60 deg
+            drive m.spindle = spindle
+            drive n.feed = feed
+            surface wheel in m.wheel = envelope(right.flank, over: spindle)
+            mount wheel on n.disc
+            surface again in n.worm = envelope(wheel, over: feed)
+            surface original in m.thread = move(right.flank)
+            sample original { rho: 48 mm .. 55 mm by 5, z: -15 mm .. 15 mm by 5 }
+            sample again { rho: 48 mm .. 55 mm by 5, z: -15 mm .. 15 mm by 5 KEEP }
+        }";
+    let library = self_contained(&["grinding/thread_wheel"]);
+    let run = |keep: &str| {
+        let spec = written(&out, "round_trip.chain", &format!("{library}{}", job.replace("KEEP", keep)));
+        flank(&[
+            "deviation",
+            &spec,
+            "again",
+            "--from",
+            "original",
+            "--no-picture",
+            "--json",
+            "--out",
+            out.to_str().unwrap(),
+        ])
+    };
+    let ambiguous = run("");
+    let told = text(&ambiguous.stderr);
+    assert_eq!(ambiguous.status.code(), Some(3), "{told}");
+    assert!(told.contains("ambiguous: the ranges of again hold 2 branches at rho 51.5000 mm, z 0.0000 mm"), "{told}");
+    let keep = told.lines().filter_map(|line| line.trim().strip_prefix("keep ")).next().expect("what selects a branch");
+    assert!(!told.contains("in common"), "{told}");
+    let listed: serde_json::Value = serde_json::from_slice(&ambiguous.stdout).expect("JSON");
+    assert!(listed["not_done"].to_string().contains("ambiguous"), "{listed}");
+    // as it says
+    let chosen = run(&format!(", keep {keep}"));
+    assert_eq!(chosen.status.code(), Some(0), "{}", text(&chosen.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&chosen.stdout).expect("JSON");
+    assert_eq!(found["known"], 25, "{found}");
+    assert!(found["rms_um"].as_f64().expect("a number") < 1e-3, "{found}");
 }

@@ -1,0 +1,92 @@
+//! Where a surface is looked for beside the points of another one: at the same places.
+
+use std::f64::consts::TAU;
+
+use flank_chain_dsl::{Coordinate, GeneratedSurface, Sample};
+use flank_solver::{Outcome, SurfacePoint};
+
+/// Coordinates that are functions of the place alone, on whatever surface it lies.
+const OF_PLACES: [&str; 5] = ["x", "y", "z", "rho", "polar_angle"];
+/// Points are told by radius and height, which a turn about z leaves as they are, unless such a turn moves them along their
+/// normals by less than this share of what another way does: hardly more than nothing, as on a root cylinder or an end face.
+const HARDLY: f64 = 0.02;
+
+/// Two coordinates of a surface with the values that points of another one have.
+pub(crate) struct Starts<'g> {
+    pub(crate) coordinates: [Coordinate<'g>; 2],
+    pub(crate) targets: Vec<[f64; 2]>,
+}
+
+impl<'g> Starts<'g> {
+    /// Of a surface beside the points of a sample of another one: by the sample's own coordinates where these are functions of the
+    /// place, else by two that tell the points apart. Names of unknowns say nothing here: another tool's `u` is another place.
+    pub(crate) fn beside(
+        surface: &GeneratedSurface<'g>,
+        (sample, points): (&Sample<'_>, &[SurfacePoint]),
+    ) -> Starts<'g> {
+        let is_of_place = |coordinate: &Coordinate<'_>| OF_PLACES.contains(&coordinate.name.as_str());
+        let (names, targets) = if sample.coordinates.iter().all(is_of_place) {
+            (sample.coordinates.each_ref().map(|coordinate| coordinate.name.as_str()), sample.targets())
+        } else {
+            let names = telling(points);
+            (names, values(names, points, middle(sample.counts)))
+        };
+        let halfway = targets.get(middle(sample.counts)).copied().unwrap_or_default();
+        let coordinate = |k: usize| {
+            let known = surface.coordinates().into_iter().find(|coordinate| coordinate.name == names[k]);
+            surface.about(known.expect("every surface has these"), halfway[k])
+        };
+        Starts { coordinates: [coordinate(0), coordinate(1)], targets }
+    }
+}
+
+/// Number of the point in the middle of a grid.
+pub(crate) fn middle([rows, columns]: [usize; 2]) -> usize {
+    (rows / 2) * columns + columns / 2
+}
+
+fn solved(points: &[SurfacePoint]) -> impl Iterator<Item = &SurfacePoint> {
+    points.iter().filter(|point| point.outcome == Outcome::Solved)
+}
+
+/// The two of radius, angle and height of which the points' normals have least.
+fn telling(points: &[SurfacePoint]) -> [&'static str; 2] {
+    let mut sums = [0.0; 3];
+    for SurfacePoint { position: [x, y, _], normal: [nx, ny, nz], .. } in solved(points) {
+        let radius = x.hypot(*y).max(f64::MIN_POSITIVE);
+        let parts = [(x * nx + y * ny) / radius, (x * ny - y * nx) / radius, *nz];
+        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part.abs());
+    }
+    let [radial, tangential, axial] = sums;
+    if tangential >= HARDLY * radial.max(axial) {
+        ["rho", "z"]
+    } else if radial >= axial {
+        ["polar_angle", "z"]
+    } else {
+        ["rho", "polar_angle"]
+    }
+}
+
+/// Values of coordinates of the place at points; where one is not solved, those of the solved one before it, or of the first. A
+/// polar angle is within half a turn of that in the middle.
+fn values(names: [&str; 2], points: &[SurfacePoint], middle: usize) -> Vec<[f64; 2]> {
+    let angle = |point: &SurfacePoint| point.position[1].atan2(point.position[0]);
+    let about = points.get(middle).filter(|point| point.outcome == Outcome::Solved).or_else(|| solved(points).next());
+    let about = about.map_or(0.0, angle);
+    let value = |name: &str, point: &SurfacePoint| {
+        let [x, y, z] = point.position;
+        match name {
+            "rho" => x.hypot(y),
+            "z" => z,
+            _ => angle(point) + TAU * ((about - angle(point)) / TAU).round(),
+        }
+    };
+    let mut last = solved(points).next().map(|point| names.map(|name| value(name, point))).unwrap_or_default();
+    let values = points.iter().map(|point| {
+        if point.outcome == Outcome::Solved {
+            last = names.map(|name| value(name, point));
+        }
+        last
+    });
+    values.collect()
+}
