@@ -124,7 +124,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
             let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            self.standing.push(Bounded { name: name.clone(), variable, dimension, low, high, is_count });
+            self.standing.push(Bounded { name: name.clone(), variable, dimension, low, high, is_count, piece: None });
         }
         if let Some(Given { definition, written, by: given_by }) = given {
             let doc = param.doc.clone();

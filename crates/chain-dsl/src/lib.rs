@@ -72,7 +72,7 @@ pub use format::format;
 pub use load::{read_file, read_other_file};
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
-    Parameter, Process, Sample, SampleEnds, SampleGrid, ToolShape,
+    Parameter, PieceEnds, Process, Sample, SampleEnds, SampleGrid, ToolShape,
 };
 pub use render::render;
 pub use sample::spaced;

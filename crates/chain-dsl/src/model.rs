@@ -83,6 +83,17 @@ pub struct Bounded<'g> {
     pub high: f64,
     /// Whether it counts something: on the machine it takes whole numbers only.
     pub is_count: bool,
+    /// Of the run over a piece of a tool's profile: what the profile goes on with beyond.
+    pub piece: Option<PieceEnds>,
+}
+
+/// A piece of a profile between the two that it neighbours.
+#[derive(Clone, Debug)]
+pub struct PieceEnds {
+    /// Its name.
+    pub name: String,
+    /// The pieces before and behind it; `None` where the profile ends.
+    pub beside: [Option<String>; 2],
 }
 
 /// A machine of a job: a tree of frames moved by axes.

@@ -11,7 +11,7 @@ use crate::context::{Constant, Context, Role, Scope, Value};
 use crate::diagnostic::Diagnostic;
 use crate::dimension::Dimension;
 use crate::instance::{Binder, Overrides, Source, is_count};
-use crate::model::{Bounded, Parameter, ToolShape};
+use crate::model::{Bounded, Parameter, PieceEnds, ToolShape};
 use crate::profile::{self, Segment};
 use crate::requirement;
 use crate::sample;
@@ -45,8 +45,14 @@ pub(crate) struct Piece<'g> {
     pub(crate) surface: Option<(ToolShape<'g>, Vec<Bounded<'g>>)>,
 }
 
-/// A segment of a profile, and the name of the profile.
-type Along<'a, 'g> = (&'a str, &'a Rc<Segment<'g>>);
+/// A segment of a profile.
+#[derive(Clone, Copy)]
+struct Along<'a, 'g> {
+    profile: &'a str,
+    segment: &'a Rc<Segment<'g>>,
+    /// The segments before and behind it.
+    beside: [Option<&'a str>; 2],
+}
 
 /// Whether somebody wants a surface, or a piece of it.
 pub(crate) type Wanted<'w> = &'w dyn Fn(&str, Option<&str>) -> bool;
@@ -142,15 +148,17 @@ fn pieces<'g>(
             return None;
         }
     };
-    let piece = |segment: &Rc<Segment<'g>>| Piece {
+    let named = |place: Option<usize>| profile.segments.get(place?).map(|segment| segment.name.as_str());
+    let piece = |(k, segment): (usize, &Rc<Segment<'g>>)| Piece {
         name: Some(segment.name.clone()),
         surface: if wanted(&written.name.node, Some(&segment.name)) {
-            build_surface(context, written, scope, Some((&name.node, segment)))
+            let beside = [named(k.checked_sub(1)), named(Some(k + 1))];
+            build_surface(context, written, scope, Some(Along { profile: &name.node, segment, beside }))
         } else {
             None
         },
     };
-    Some(profile.segments.iter().map(piece).collect())
+    Some(profile.segments.iter().enumerate().map(piece).collect())
 }
 
 fn build_surface<'g>(
@@ -166,7 +174,7 @@ fn build_surface<'g>(
         (2, [u, v]) => {
             let parameters = [u.variable, v.variable];
             let raw = Surface::raw_normal(parameters, position);
-            let segment = along.map(|(_, segment)| segment.span);
+            let segment = along.map(|along| along.segment.span);
             let places = Places { point: written.at.span, side: written.body.span, segment };
             let flipped = steel::is_flipped(context, places, &unknowns, raw, -steel)?;
             ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
@@ -189,14 +197,16 @@ fn own_names<'g>(
     }
     let mut scope = scope.clone();
     let mut unknowns = Vec::new();
-    if let Some((profile, segment)) = along {
+    if let Some(Along { profile, segment, .. }) = along {
         scope.insert(profile.to_string(), Value::Segment(Rc::clone(segment)));
     }
     for parameter in &written.parameters {
         sample::check_unknown(context, parameter.name(), "surface parameter");
         let bounded = match (parameter, along) {
             (SurfaceParameter::Within(parameter), _) => bounded(context, parameter, &scope, Role::SurfaceParameter),
-            (SurfaceParameter::Along(name, _), Some((_, segment))) => Some(run_along(context, name, segment)),
+            (SurfaceParameter::Along(name, _), Some(Along { segment, beside, .. })) => {
+                Some(run_along(context, name, segment, beside.map(|name| name.map(str::to_string))))
+            }
             (SurfaceParameter::Along(..), None) => None,
         };
         let value = match &bounded {
@@ -243,14 +253,20 @@ fn point_and_steel<'g>(
     Some((position, steel))
 }
 
-/// The run along a profile within one segment of it.
-fn run_along<'g>(context: &mut Context<'g>, name: &Name, segment: &Segment<'g>) -> Bounded<'g> {
+/// The run along a profile within one segment of it, which has those two beside it.
+fn run_along<'g>(
+    context: &mut Context<'g>,
+    name: &Name,
+    segment: &Segment<'g>,
+    beside: [Option<String>; 2],
+) -> Bounded<'g> {
     let [low, high] = [segment.from, segment.to].map(|end| match context.constant(end) {
         Constant::Known(value) => value,
         _ => f64::NAN,
     });
     let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
-    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high, is_count: false }
+    let piece = Some(PieceEnds { name: segment.name.clone(), beside });
+    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high, is_count: false, piece }
 }
 
 /// A direction: lengths or numbers alike.
@@ -290,5 +306,5 @@ pub(crate) fn bounded<'g>(
         context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
     }
     let variable = context.variable(name.clone(), role, f64::NAN);
-    Some(Bounded { name, variable, dimension, low, high, is_count })
+    Some(Bounded { name, variable, dimension, low, high, is_count, piece: None })
 }

@@ -9,6 +9,7 @@ use crate::arguments::Means;
 use crate::progress::Working;
 use crate::solve;
 use crate::summary::Summary;
+use crate::{reach, reasons};
 
 /// A line on a surface.
 pub(crate) struct Line<'j, 'g> {
@@ -33,7 +34,13 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
             line.name, line.several
         )
     };
-    several.map(told).collect()
+    // of a line without any point within the ranges the table tells as much
+    let partly = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| {
+        let [_, outside] = line.found();
+        let by = reasons::outside(line.surface, &line.summary)?;
+        Some(format!("note: {} of {} points of {} are {by}\n", outside, line.summary.asked, line.name))
+    });
+    several.map(told).chain(partly).collect()
 }
 
 /// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
@@ -52,7 +59,7 @@ pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>, me
                 return Some(first);
             }
             let second = along(1);
-            Some(if second.summary.solved() > first.summary.solved() { second } else { first })
+            Some(if second.found() > first.found() { second } else { first })
         })
         .collect()
 }
@@ -73,13 +80,19 @@ fn line<'j, 'g>(
     let problem =
         SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())
             .expect("a job without errors leaves nothing unbound");
-    let (points, effort) = problem.on(means.instructions()).solve(&targets, [1, targets.len()]);
+    let problem = problem.reaching(reach::followed(surface)).on(means.instructions());
+    let (points, effort) = problem.solve(&targets, [1, targets.len()]);
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
     let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
     Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len() }
 }
 
 impl Line<'_, '_> {
+    /// How many points there are, and how many outside the ranges.
+    fn found(&self) -> [usize; 2] {
+        [self.summary.solved(), self.summary.outside.iter().map(|outside| outside.places.count).sum()]
+    }
+
     /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
     pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
         let rows = Axis { label: self.kind.to_string(), count: 1 };

@@ -3,10 +3,10 @@
 use flank_chain_dsl::{Bounded, GeneratedSurface, Job};
 use flank_solver::{CutBy, Outcome};
 
-use crate::branches;
-use crate::summary::Places;
+use crate::summary::{Places, Summary};
 use crate::table::Solved;
 use crate::units;
+use crate::{branches, reach};
 
 /// Why points of a surface were not solved, with the number of points for each reason.
 pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
@@ -23,8 +23,8 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     }
     let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
     for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(trims) {
-        let is_inside_out = cutter == CutBy::ItsTool && count == summary.asked;
-        let side = if is_inside_out {
+        let is_whole = cutter == CutBy::ItsTool && count == summary.asked;
+        let side = if is_whole && is_inside_out(job, solved) {
             "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
         } else {
             ""
@@ -50,8 +50,17 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         reasons.extend(short_tables(solved));
     }
     reasons.extend(branches::kept_out(solved));
-    reasons.extend(solved.needed.iter().map(|needed| needed.text(solved.surface)));
+    if solved.needed.is_empty() && summary.has_unreached() {
+        reasons.extend(reach::beside_piece(job, solved.surface));
+    }
+    reasons.extend(solved.needed.iter().map(|needed| needed.text(job, solved.surface)));
     reasons
+}
+
+/// Whether the points of a surface that is cut away whole speak of a `body` on the wrong side.
+fn is_inside_out(job: &Job<'_>, solved: &Solved<'_, '_>) -> bool {
+    flank_solver::is_inside_out(&solved.surface.surface, &solved.points, &job.bindings())
+        .expect("a job without errors leaves nothing unbound")
 }
 
 /// The curves through tables that end within the range of the unknown that they are asked for: beyond, the surface has no points.
@@ -98,6 +107,14 @@ pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &Places) -> String {
     };
     // all round is nowhere in particular
     if names.is_empty() || names.len() == 4 { String::new() } else { format!(", at the {}", names.join(" and the ")) }
+}
+
+/// By how much points are outside the ranges: `outside, u by up to 0.168672 mm`; nothing if none is.
+pub(crate) fn outside(surface: &GeneratedSurface<'_>, summary: &Summary) -> Option<String> {
+    let each = surface.unknowns.iter().zip(&summary.outside).filter(|(_, outside)| outside.places.count > 0);
+    let each: Vec<String> =
+        each.map(|(of, outside)| format!("{} by up to {}", of.name, amount(of, outside.most))).collect();
+    (!each.is_empty()).then(|| format!("outside, {}", each.join(", ")))
 }
 
 /// What an outcome's word does not tell of one point; may be empty.

@@ -124,6 +124,12 @@ impl Summary {
         self.outcomes.get(outcome.word()).copied().unwrap_or(0)
     }
 
+    /// Whether the surface, as far as it was followed, did not come to a point.
+    pub(crate) fn has_unreached(&self) -> bool {
+        let is_outside = self.outside.iter().any(|outside| outside.places.count > 0);
+        is_outside || self.count(Outcome::NotConverged { iterations: 0 }) > 0
+    }
+
     pub(crate) fn solved(&self) -> usize {
         self.count(Outcome::Solved)
     }

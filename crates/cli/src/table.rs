@@ -101,7 +101,7 @@ impl Row<'_, '_> {
         let mut first = [self.name.to_string(), self.summary.asked.to_string(), solved.to_string(), residual];
         if solved == 0 {
             let [name, asked, found, worst] = first;
-            return vec![[name, asked, found, worst, none(self.summary)]];
+            return vec![[name, asked, found, worst, none(self.surface, self.summary)]];
         }
         let reached = self.reached();
         let lines = reached.chunks(2).map(|pair| {
@@ -135,14 +135,15 @@ impl Row<'_, '_> {
 }
 
 /// What has become of points none of which is solved.
-fn none(summary: &Summary) -> String {
+fn none(surface: &GeneratedSurface<'_>, summary: &Summary) -> String {
     let outcomes: Vec<(&&str, &usize)> = summary.outcomes.iter().collect();
+    let by = reasons::outside(surface, summary);
     match outcomes[..] {
-        [] | [(&"outside", _)] => "none within the ranges".to_string(),
+        [] | [(&"outside", _)] => format!("none within the ranges{}", by.map_or(String::new(), |by| format!(": {by}"))),
         [(word, _)] => format!("none: {word}"),
         _ => {
             let each: Vec<String> = outcomes.iter().map(|(word, count)| format!("{count} {word}")).collect();
-            format!("none: {}", each.join(", "))
+            format!("none: {}{}", each.join(", "), by.map_or(String::new(), |by| format!("; {by}")))
         }
     }
 }

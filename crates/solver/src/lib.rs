@@ -17,6 +17,7 @@
 mod anchor;
 mod angles;
 mod bands;
+mod body;
 mod certify;
 mod cutting;
 mod deviation;
@@ -54,6 +55,7 @@ mod whole_numbers;
 
 pub use anchor::solve_grid;
 pub use bands::Band;
+pub use body::is_inside_out;
 pub use certify::Certifier;
 pub use cutting::{CuttingEdges, Left};
 pub use deviation::{Deviation, EaseOff};

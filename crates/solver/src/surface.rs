@@ -13,7 +13,7 @@ use crate::grid::{Effort, Grid};
 use crate::points::SurfacePoints;
 use crate::reach::{Reach, periodic_in};
 use crate::roots::{MOST_BOXES, Roots, all_roots};
-use crate::solution::{Outcome, Range, Solution};
+use crate::solution::{Outcome, Range, Solution, verdict};
 use crate::system::System;
 
 /// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
@@ -28,6 +28,8 @@ pub struct SurfaceProblem {
     search: Option<SearchSystem>,
     /// Position and normal.
     point: Tape,
+    /// The unknowns that the coordinates are, where they are unknowns.
+    asked: [Option<usize>; 2],
     ranges: Vec<Range>,
     several: Several,
     /// Functions of the unknowns, and between which values they lie on the branch that is meant.
@@ -45,7 +47,8 @@ pub struct SurfaceProblem {
 /// A point that was asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// The verdict; the other fields describe a point of the surface only if it is [`Outcome::Solved`].
+    /// The verdict; the other fields describe a point of the surface only if it is [`Outcome::Solved`], or one of the surface that is
+    /// no point of the finished work if it is [`Outcome::CutAway`] or [`Outcome::Undecided`].
     pub outcome: Outcome,
     /// The surface's unknowns, mm or radians.
     pub unknowns: Vec<f64>,
@@ -153,6 +156,7 @@ impl SurfaceProblem {
         let curvatures = if is_curved { bound.principal_curvatures(coordinates) } else { None };
         let extras: Vec<Expr<'g>> = point.iter().copied().chain(curvatures.into_iter().flatten()).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain(targets).collect();
+        let asked = coordinates.map(|coordinate| bound.unknowns.iter().position(|unknown| *unknown == coordinate));
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         let point = Tape::new(&point, &bound.unknowns)?;
         let decisive = Tape::new(conditions, &inputs)?;
@@ -162,6 +166,7 @@ impl SurfaceProblem {
             search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
             system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
             point,
+            asked,
             kept_ranges: vec![Range::EVERYTHING; ranges.len()],
             ranges,
             several,
@@ -266,12 +271,13 @@ impl SurfaceProblem {
     ) -> (SurfacePoints, Effort) {
         assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
         let memory = memory.map(|points| points.field);
-        let (field, effort) = if targets.len() <= self.at_once {
+        let (mut field, effort) = if targets.len() <= self.at_once {
             let grid = Grid::new(&self.system, &self.ranges, (targets, counts), memory);
             self.choosing(|choice| solve_settled(grid, start, choice))
         } else {
             self.assembled(targets, counts, start, memory)
         };
+        self.tell_asked_outside(&mut field, 0..targets.len(), |point| targets[point]);
         (self.with_middle(field), effort)
     }
 
@@ -311,7 +317,10 @@ impl SurfaceProblem {
         start: Option<&[f64]>,
         mut each: impl FnMut(&Band<'_>) -> Result<(), E>,
     ) -> Result<Effort, E> {
-        self.fields(Targets { target: &target, counts }, start, &mut |rows, field, line| {
+        self.fields(Targets { target: &target, counts }, start, &mut |rows, mut field, line| {
+            let first = line * counts[1];
+            let asked = |point: usize| target(rows.start + (point - first) / counts[1], (point - first) % counts[1]);
+            self.tell_asked_outside(&mut field, first..first + rows.len() * counts[1], asked);
             let points = self.with_middle(field);
             each(&Band::new(&points, rows, counts[1], line * counts[1]))?;
             Ok(points.field)
@@ -353,6 +362,33 @@ impl SurfaceProblem {
             reach: self.reach.as_ref(),
             periodic: &self.periodic,
         })
+    }
+
+    /// A point that is asked for at a value of an unknown beyond the unknown's range lies outside by just that, whether or not
+    /// a branch was followed so far.
+    fn tell_asked_outside(
+        &self,
+        field: &mut Field,
+        points: std::ops::Range<usize>,
+        target: impl Fn(usize) -> [f64; 2],
+    ) {
+        if self.asked == [None; 2] || field.is_complete() {
+            return;
+        }
+        for point in points {
+            let is_open = !field.is_root(point) && field.outcome(point) != Some(Outcome::Ambiguous);
+            let target = if is_open { target(point) } else { continue };
+            let mut unknowns: Vec<f64> = self.ranges.iter().map(|range| range.middle()).collect();
+            let asked = self.asked.iter().zip(target).filter_map(|(unknown, value)| Some(((*unknown)?, value)));
+            // what is periodic has no ends
+            asked
+                .filter(|(unknown, _)| !self.periodic[*unknown])
+                .for_each(|(unknown, value)| unknowns[unknown] = value);
+            let outcome = verdict(&unknowns, &self.ranges, true, false);
+            if matches!(outcome, Outcome::Outside { .. }) {
+                field.put(point, &Solution { outcome, unknowns, residual: f64::NAN, iterations: 0 });
+            }
+        }
     }
 
     fn with_middle(&self, field: Field) -> SurfacePoints {
