@@ -1,6 +1,6 @@
 //! Bevel gear machines and tools of the library against each other, closed forms, and chains of dense matrices.
 
-use flank_chain_dsl::{Job, compile_file, render};
+use flank_chain_dsl::{Job, compile_file, compile_text, render};
 use flank_expr::Graph;
 use flank_solver::{Outcome, SurfacePoint};
 use flank_tests::{
@@ -453,6 +453,65 @@ fn settings_follow_from_the_blank() {
     }
     for flank in ["pinion_concave", "pinion_convex", "gear_concave", "gear_convex"] {
         sampled(&pair, flank);
+    }
+}
+
+/// A parabola on which Newton's steps towards the place of the rounding do not end is refused, not taken as it is.
+#[test]
+fn a_parabola_without_a_place_for_the_rounding_is_told() {
+    let text = library(&["tools/face_mill.chain", "tools/face_mill_profiles.chain"])
+        + "machine stand { frame bed  frame cutter in bed = translate_z(0 mm) }
+        job show {
+            machine m = stand
+            tool p = face_mill_parabolic(
+                outside_point_radius: 76 mm, inside_point_radius: 74 mm, blade_angle: 45 deg, vertex_height: 8 mm,
+                parabola: PARABOLA / 1 mm, edge_radius: 0.2 mm
+            )
+            mount p on m.cutter
+            surface outside in m.bed = move(p.outside_blade)
+        }";
+    for (parabola, is_right) in [("0.01", true), ("0.1", false), ("-0.02", true)] {
+        let graph = Graph::new();
+        let compilation = compile_text(&graph, "text", &text.replace("PARABOLA", parabola), &[]);
+        let told = render(&compilation.diagnostics, &compilation.sources, false);
+        assert_eq!(compilation.has_errors(), !is_right, "{parabola}: {told}");
+        assert_eq!(told.contains("the rounding of the edge finds no place"), !is_right, "{parabola}: {told}");
+    }
+}
+
+/// What docs/library/bevel.md says of the mating flanks of the pair: at the mean point they run in one direction, and their
+/// pressure angles differ by both dedendum angles times the sine of the spiral angle.
+#[test]
+fn flanks_from_the_blank_are_not_matched() {
+    let graph = Graph::new();
+    let pair = job(&graph, "specs/bevel/pair_from_blank.chain", &[]);
+    let (shaft_angle, spiral_angle) = (95f64.to_radians(), 35f64.to_radians());
+    let pitch_angle = shaft_angle.sin().atan2(shaft_angle.cos() + 62.0 / 19.0);
+    let pitch_angles = [pitch_angle, shaft_angle - pitch_angle];
+    let outer = 4.169 * 62.0 / (2.0 * pitch_angles[1].sin());
+    let mean = outer - 36.83 / 2.0;
+    // the normal by its parts along the pitch cone's normal, round the axis, and along the cone
+    let normal = |member: usize, flank: &str| {
+        let (sine, cosine) = pitch_angles[member].sin_cos();
+        let at = points(&pair, flank, ["z", "rho"], &[[mean * cosine, mean * sine]]).remove(0);
+        assert_eq!(at.outcome, Outcome::Solved, "{flank}");
+        let ([x, y, _], [nx, ny, nz]) = (at.position, at.normal);
+        let [radial, around] = [x * nx + y * ny, x * ny - y * nx].map(|part| part / x.hypot(y));
+        Vector3::new(radial * cosine - nz * sine, around, radial * sine + nz * cosine)
+    };
+    let dedendum_angle = |factor: f64| (4.169 / outer * spiral_angle.cos() * factor).atan();
+    let wanted = (dedendum_angle(1.2) + dedendum_angle(1.3)) * spiral_angle.sin();
+    for flanks in [["pinion_concave", "gear_convex"], ["pinion_convex", "gear_concave"]] {
+        let [pinion, gear] = [0, 1].map(|member| normal(member, flanks[member]));
+        // on the common line of both cones, the gear's flank looks against the pinion's
+        let apart = pinion.dot(&Vector3::new(gear.x, gear.y, -gear.z)).acos();
+        assert!((apart.to_degrees() - 2.13).abs() < 0.005 && (apart - wanted).abs() < 0.02f64.to_radians(), "{apart}");
+        let pressure = [pinion, gear].map(|normal| normal.x.asin());
+        assert!(((pressure[0] - pressure[1]).abs() - wanted).abs() < 0.1f64.to_radians(), "{pressure:?}");
+        for normal in [pinion, gear] {
+            let spiral = (normal.z / normal.y).atan().abs();
+            assert!((spiral - spiral_angle).abs() < 0.25f64.to_radians(), "{flanks:?}: {}", spiral.to_degrees());
+        }
     }
 }
 
