@@ -38,7 +38,7 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
     let partly = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| {
         let [_, outside] = line.found();
         let by = reasons::outside(line.surface, &line.summary)?;
-        Some(format!("note: {} of {} points of {} are {by}\n", outside, line.summary.asked, line.name))
+        Some(format!("note: {} of {} points of {} are outside, {by}\n", outside, line.summary.asked, line.name))
     });
     several.map(told).chain(partly).collect()
 }

@@ -109,12 +109,12 @@ pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &Places) -> String {
     if names.is_empty() || names.len() == 4 { String::new() } else { format!(", at the {}", names.join(" and the ")) }
 }
 
-/// By how much points are outside the ranges: `outside, u by up to 0.168672 mm`; nothing if none is.
+/// By how much points are outside the ranges: `u by up to 0.168672 mm`; nothing if none is.
 pub(crate) fn outside(surface: &GeneratedSurface<'_>, summary: &Summary) -> Option<String> {
     let each = surface.unknowns.iter().zip(&summary.outside).filter(|(_, outside)| outside.places.count > 0);
     let each: Vec<String> =
         each.map(|(of, outside)| format!("{} by up to {}", of.name, amount(of, outside.most))).collect();
-    (!each.is_empty()).then(|| format!("outside, {}", each.join(", ")))
+    (!each.is_empty()).then(|| each.join(", "))
 }
 
 /// What an outcome's word does not tell of one point; may be empty.

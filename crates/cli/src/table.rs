@@ -139,7 +139,9 @@ fn none(surface: &GeneratedSurface<'_>, summary: &Summary) -> String {
     let outcomes: Vec<(&&str, &usize)> = summary.outcomes.iter().collect();
     let by = reasons::outside(surface, summary);
     match outcomes[..] {
-        [] | [(&"outside", _)] => format!("none within the ranges{}", by.map_or(String::new(), |by| format!(": {by}"))),
+        [] | [(&"outside", _)] => {
+            format!("none within the ranges{}", by.map_or(String::new(), |by| format!(": outside, {by}")))
+        }
         [(word, _)] => format!("none: {word}"),
         _ => {
             let each: Vec<String> = outcomes.iter().map(|(word, count)| format!("{count} {word}")).collect();

@@ -386,7 +386,7 @@ impl SurfaceProblem {
                 .for_each(|(unknown, value)| unknowns[unknown] = value);
             let outcome = verdict(&unknowns, &self.ranges, true, false);
             if matches!(outcome, Outcome::Outside { .. }) {
-                field.put(point, &Solution { outcome, unknowns, residual: f64::NAN, iterations: 0 });
+                field.put_alone(point, &Solution { outcome, unknowns, residual: f64::NAN, iterations: 0 });
             }
         }
     }

@@ -295,6 +295,13 @@ impl Field {
         self.loose.push(point);
     }
 
+    /// A point at which nothing else is wanted.
+    pub(crate) fn put_alone(&mut self, point: usize, solution: &Solution) {
+        self.put(point, solution);
+        self.loose.pop();
+        (self.shape.size + 2..self.shape.planes).for_each(|plane| self.set(point, plane, f64::NAN));
+    }
+
     /// Nothing is known of a point any more.
     pub(crate) fn forget(&mut self, point: usize) {
         let (block, lane) = self.shape.place(point);
