@@ -121,15 +121,22 @@ impl Serialize for PointsOut<'_> {
         let patch = self.0.outline();
         let mut list = serializer.serialize_seq(Some(patch.rows.count.saturating_mul(patch.columns.count)))?;
         let mut first = 0;
+        // what the stream says goes out as it is: its kind is told in words later
+        let mut refused = None;
         let handed_over = self.0.bands(&mut |points| {
             for (i, j, point) in patch.numbered(first, points) {
-                let point = point_out(patch, i, j, point);
-                list.serialize_element(&point).map_err(|error| io::Error::other(error.to_string()))?;
+                if let Err(error) = list.serialize_element(&point_out(patch, i, j, point)) {
+                    refused = Some(error);
+                    return Err(io::Error::from(io::ErrorKind::WriteZero).into());
+                }
             }
             first += points.len();
             Ok(())
         });
-        handed_over.map_err(S::Error::custom)?;
+        match refused {
+            Some(error) => return Err(error),
+            None => handed_over.map_err(S::Error::custom)?,
+        }
         list.end()
     }
 }

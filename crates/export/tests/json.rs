@@ -96,3 +96,26 @@ fn a_point_takes_a_line_and_keys_keep_their_order() {
     assert!(points[0].contains("\"status\": \"solved\", \"position\": [0.0, 1.25, 2.0]"), "{}", points[0]);
     assert!(text.ends_with("}\n"));
 }
+
+/// What the disk says is said in the words of every other format, wherever in the document it says so.
+#[test]
+fn a_full_disk_is_called_so() {
+    struct Full(usize);
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0 = self.0.checked_sub(bytes.len()).ok_or(std::io::ErrorKind::StorageFull)?;
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let patch = Gear { helix: 0.0, width: 20.0 }.flank("flank", [3, 3]);
+    let dataset = dataset("job", vec![patch]);
+    let whole = text_of(&dataset).len();
+    for room in (0..whole).step_by(97) {
+        let refused = write_json(&dataset.surfaces(), &mut Full(room)).expect_err("the disk is full");
+        assert_eq!(refused.to_string(), "the disk is full", "{room} bytes of {whole}");
+    }
+}
