@@ -7,7 +7,7 @@ use std::rc::Rc;
 use flank_expr::Graph;
 
 use crate::codes::Code;
-use crate::context::{Context, Role, Scope, Value, did_you_mean};
+use crate::context::{Context, Role, Scope, Value, did_you_mean, quoted};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::dimension::Dimension;
 use crate::functions;
@@ -16,7 +16,7 @@ use crate::job::{self, Definitions};
 use crate::limits;
 use crate::load::{self, Loaded};
 use crate::machine::{self, Machines};
-use crate::model::Job;
+use crate::model::{Job, within};
 use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{self, Item};
 use crate::syntax::parse_expression;
@@ -39,6 +39,21 @@ pub struct Compilation<'g> {
     main: Option<FileId>,
     /// The names of the values from outside.
     set: Vec<Name>,
+}
+
+/// What is compiled beside the text of a file itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Request<'a> {
+    /// What stands in the file, of a text that comes from elsewhere: the file need not be there, its folder is.
+    pub text: Option<&'a str>,
+    /// A file whose last machine stands by itself: with the values that its settings have by default, or by `set` such as
+    /// `free_form.root=10 deg`, and free axes.
+    pub machine: Option<&'a Path>,
+    /// The job that `set` is meant for; all of the file otherwise.
+    pub job: Option<&'a str>,
+    /// Pairs of a name (`ratio`, `m.swivel`, in one job only `gear.m.swivel`) and a value as text (`2 mm`) that win over what the
+    /// text says.
+    pub set: &'a [(String, String)],
 }
 
 impl<'g> Compilation<'g> {
@@ -102,37 +117,45 @@ impl<'g> Compilation<'g> {
 
 /// Reads a file, everything it uses, and builds its jobs in an empty graph.
 ///
-/// `overrides` are pairs of a name (`ratio`, `m.swivel`) and a value as text (`2 mm`) that win over what the text says.
+/// `overrides` are values from outside for all its jobs ([`Request::set`]).
 pub fn compile_file<'g>(graph: &'g Graph, path: &Path, overrides: &[(String, String)]) -> Compilation<'g> {
-    compile(graph, load::load(path, None), overrides)
+    compile_request(graph, path, &Request { set: overrides, ..Request::default() })
 }
 
-/// The same beside the last machine of another file, which stands by itself: with the values that its settings have by default,
-/// or by `overrides` such as `free_form.root=10 deg`, and free axes.
+/// The same beside the last machine of another file ([`Request::machine`]).
 pub fn compile_with_machine<'g>(
     graph: &'g Graph,
     path: &Path,
     machine: &Path,
     overrides: &[(String, String)],
 ) -> Compilation<'g> {
-    compile(graph, load::load(path, Some(machine)), overrides)
+    compile_request(graph, path, &Request { machine: Some(machine), set: overrides, ..Request::default() })
+}
+
+/// The same of a file, as it is asked for.
+pub fn compile_request<'g>(graph: &'g Graph, path: &Path, request: &Request<'_>) -> Compilation<'g> {
+    compile(graph, load::load(path, request.text, request.machine), request.job, request.set)
 }
 
 /// The same for a text in memory, which can use no other file.
 pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(String, String)]) -> Compilation<'g> {
-    compile(graph, load::load_text(name, text), overrides)
+    compile(graph, load::load_text(name, text), None, overrides)
 }
 
-fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)]) -> Compilation<'g> {
-    let Loaded { mut sources, files, diagnostics, lacks_files, root, beside } = loaded;
+fn compile<'g>(
+    graph: &'g Graph,
+    loaded: Loaded,
+    wanted: Option<&str>,
+    overrides: &[(String, String)],
+) -> Compilation<'g> {
+    let Loaded { mut sources, files, diagnostics, lacks_files, projects, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
-    let mut context = Context::new(graph, Tables::new(root, &sources));
+    let mut context = Context::new(graph, Tables::new(projects, &sources));
     context.lacks_files = lacks_files;
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);
     let items = Items::collect(&mut context, &files, beside.is_some());
     check_definitions(&mut context, &items);
-    let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let main = files.last().map(|(id, _)| *id);
     let mut jobs = Vec::new();
     for (file, written) in &items.jobs {
@@ -141,6 +164,11 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
             context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
             continue;
         }
+        // jobs that are not asked for are as they are written
+        let name = &written.name.node;
+        let is_meant = Some(*file) == main && wanted.is_none_or(|wanted| wanted == name);
+        let own = if is_meant { overrides.of_job(name) } else { Overrides::new() };
+        let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
         let job = job::build(&mut context, written, &definitions, &sources.file(*file).path);
         context.step(written.name.span);
         if Some(*file) == main {
@@ -148,6 +176,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, overrides: &[(String, String)])
         }
     }
     let beside = files.iter().find(|(id, _)| Some(*id) == beside);
+    let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
     check_overrides(&mut context, &overrides, jobs.iter().chain(&machine));
     // a wrong text is not finished: what it does not use yet is no finding
@@ -212,13 +241,7 @@ impl Items {
         let mut seen: HashMap<String, Span> = HashMap::new();
         for (file, parsed) in files {
             for item in &parsed.items {
-                let name = match item {
-                    Item::Use(_) => continue,
-                    Item::Function(function) => &function.name,
-                    Item::Machine(machine) => &machine.name,
-                    Item::Tool(tool) => &tool.name,
-                    Item::Job(job) => &job.name,
-                };
+                let Some(name) = item.name() else { continue };
                 if let Some(first) = seen.insert(name.node.clone(), name.span) {
                     let is_apart = is_beside && first.file != name.span.file;
                     context.duplicate_with(name, first, is_apart.then_some(APART));
@@ -300,6 +323,47 @@ struct OuterValues {
     names: Vec<Name>,
 }
 
+impl OuterValues {
+    /// The values by the names that a job knows: one that is given with the job's name before it wins.
+    fn of_job(&self, job: &str) -> Overrides {
+        let mut own = self.values.clone();
+        let named = self.values.iter().filter_map(|(name, value)| Some((within(name, job)?, value)));
+        own.extend(named.map(|(name, value)| (name.to_string(), value.clone())));
+        own
+    }
+
+    /// A name that means one thing in each job that has it, and changes one of them at least.
+    fn check_owners<'j, 'g: 'j>(
+        &self,
+        context: &mut Context<'_>,
+        name: &Name,
+        owners: impl Iterator<Item = &'j Job<'g>>,
+    ) {
+        let given = &name.node;
+        let mut hidden_by = Vec::new();
+        for job in owners {
+            let is_own = |name: &str| job.parameters.iter().any(|parameter| parameter.name == name);
+            match within(given, &job.name).filter(|inner| is_own(inner)) {
+                Some(inner) if is_own(given) => {
+                    let message =
+                        format!("`{given}` is `{inner}` of job `{0}`, and `{inner}` of what it calls `{0}`", job.name);
+                    let help = format!("the second is `{}.{given}`, the first is `{inner}` with `--job {0}`", job.name);
+                    return context.report(Diagnostic::new(Code::DuplicateName, name.span, message).help(help));
+                }
+                Some(_) => return,
+                None => match format!("{}.{given}", job.name) {
+                    own if self.values.contains_key(&own) => hidden_by.push(own),
+                    _ => return,
+                },
+            }
+        }
+        let hidden_by: Vec<&str> = hidden_by.iter().map(String::as_str).collect();
+        let message = format!("`{given}` changes nothing beside {}", quoted(&hidden_by));
+        let help = "leave it out: the name of a job goes before one that is for all jobs";
+        context.report(Diagnostic::new(Code::DuplicateName, name.span, message).help(help));
+    }
+}
+
 fn read_overrides(context: &mut Context<'_>, sources: &mut Sources, given: &[(String, String)]) -> OuterValues {
     let mut outer = OuterValues { values: Overrides::new(), names: Vec::new() };
     for (name, value) in given {
@@ -320,19 +384,31 @@ fn check_overrides<'j, 'g: 'j>(
     jobs: impl Iterator<Item = &'j Job<'g>> + Clone,
 ) {
     for name in &outer.names {
-        let known: Vec<&str> =
-            jobs.clone().flat_map(|job| &job.parameters).map(|parameter| parameter.name.as_str()).collect();
-        if known.contains(&name.node.as_str()) || context.has_errors() {
+        if context.has_errors() {
+            return;
+        }
+        let mut owners = jobs.clone().filter(|job| job.has_parameter(&name.node)).peekable();
+        if owners.peek().is_some() {
+            outer.check_owners(context, name, owners);
             continue;
         }
-        let machines = || jobs.clone().flat_map(|job| &job.machines);
-        let mut axes = machines().flat_map(|machine| machine.axes.iter().map(move |axis| (&machine.name, &axis.name)));
-        if axes.any(|(machine, axis)| name.node == format!("{machine}.{axis}")) {
+        let mut axes = jobs.clone().flat_map(|job| job.machines.iter().map(move |machine| (job, machine)));
+        let is_axis = axes.any(|(job, machine)| {
+            let is_one = |name: &str| machine.axes.iter().any(|axis| name == format!("{}.{}", machine.name, axis.name));
+            is_one(&name.node) || within(&name.node, &job.name).is_some_and(is_one)
+        });
+        if is_axis {
             let message = format!("`{}` is an axis, not a parameter: it follows its law", name.node);
             let help = "set a parameter that its law is made of, or write the law into the spec";
             context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
         } else {
-            context.unknown(name, "parameter", known.into_iter());
+            // with a job's name before it where the name begins so
+            let known = jobs.clone().flat_map(|job| {
+                let of_job = within(&name.node, &job.name).map_or(String::new(), |_| format!("{}.", job.name));
+                job.parameters.iter().map(move |parameter| format!("{of_job}{}", parameter.name))
+            });
+            let known: Vec<String> = known.collect();
+            context.unknown(name, "parameter", known.iter().map(String::as_str));
         }
     }
 }

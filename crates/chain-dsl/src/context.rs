@@ -120,6 +120,8 @@ pub(crate) struct Context<'g> {
     /// Errors among them.
     errors: usize,
     reported: HashSet<(Code, Span)>,
+    /// The axes of the machine whose constants are being looked at.
+    pub(crate) moving: HashSet<String>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,
     /// Whether a requirement did not hold in the item being looked at.
@@ -149,6 +151,7 @@ impl<'g> Context<'g> {
             reported: HashSet::new(),
             unknown: HashSet::new(),
             is_unmet: false,
+            moving: HashSet::new(),
             steps: Cell::new(0),
             exhausted: false,
             sample_points: 0,

@@ -160,6 +160,12 @@ impl<'g> Context<'g> {
         if joined == "pi" {
             return Value::Scalar(self.graph.constant(std::f64::consts::PI), Dimension::NUMBER);
         }
+        if self.moving.contains(&joined) {
+            let message = format!("axis `{joined}` moves, and what is stated here must stand still");
+            let help = format!("name `{joined}` where it moves something: in a transform of a frame, or in `couple`");
+            self.report(Diagnostic::new(Code::NotConstant, path.span, message).help(help));
+            return Value::Poison;
+        }
         let name = crate::source::Spanned { node: joined, span: path.span };
         self.unknown(&name, "value", scope.keys().map(String::as_str));
         Value::Poison

@@ -169,7 +169,8 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
     }
 
-    /// Counts are whole, values lie in the declared range, which is given back if there is one.
+    /// Counts are whole, and not negative unless their declared range says so; values lie in that range, which is given back if there
+    /// is one.
     ///
     /// # Errors
     /// If the value is refused, which has been reported.
@@ -181,15 +182,26 @@ impl<'a, 'g> Binder<'a, 'g> {
         scope: &Scope<'g>,
         span: Span,
     ) -> Result<Option<(f64, f64)>, Refused> {
-        if is_count(&param.dimension) && value.is_finite() && (value.fract() != 0.0 || value < 0.0) {
-            let message = format!("`{}` is a count: it must be a whole number from 0, not {value}", param.name.node);
+        let what = shown_name(param);
+        let is_count = is_count(&param.dimension) && value.is_finite();
+        if is_count && value.fract() != 0.0 {
+            let message = format!("{what} is a count: it must be a whole number, not {value}");
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
             return Err(Refused);
         }
         let (Some(range), Some(dimension)) = (&param.range, context.dimension(&param.dimension)) else {
+            if is_count && value < 0.0 {
+                let message = format!(
+                    "{what} is a count, and {value} is below 0: without a range of its own a count starts from 0"
+                );
+                let name = &param.name.node;
+                let help =
+                    format!("if it may be negative, give it a range: `param {name} : count in {value} .. {}`", -value);
+                context.report(Diagnostic::new(Code::WrongDimension, span, message).help(help));
+                return Err(Refused);
+            }
             return Ok(None);
         };
-        let what = shown_name(param);
         let Some((low, high)) = context.range(range, scope, dimension, &what) else { return Ok(None) };
         if value < low || value > high {
             let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));

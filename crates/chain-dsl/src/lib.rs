@@ -63,7 +63,7 @@ mod transforms;
 mod unused;
 
 pub use codes::Code;
-pub use compile::{Compilation, compile_file, compile_text, compile_with_machine};
+pub use compile::{Compilation, Request, compile_file, compile_request, compile_text, compile_with_machine};
 pub use derivation::{derivation, described, equations};
 pub use diagnostic::{Diagnostic, Note, Severity};
 pub use dimension::Dimension;

@@ -17,15 +17,16 @@ pub(crate) struct Loaded {
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether a file is used that was not read: what it declares is not known.
     pub(crate) lacks_files: bool,
-    /// The project folder; `None` for a text that is not a file.
-    pub(crate) root: Option<PathBuf>,
+    /// The project folder of each file; a text that is not a file has none.
+    pub(crate) projects: HashMap<FileId, PathBuf>,
     /// The file that was asked for beside the main one.
     pub(crate) beside: Option<FileId>,
 }
 
 struct Loader {
     loaded: Loaded,
-    root: PathBuf,
+    /// The project folder of the file being read.
+    project: PathBuf,
     known: HashMap<PathBuf, FileId>,
     /// Size of what has been read.
     bytes: usize,
@@ -33,39 +34,37 @@ struct Loader {
     open: Vec<FileId>,
 }
 
-/// Reads `path` and everything it uses, after a file `beside` it and what that uses.
+/// Reads `path` and everything it uses, after a file `beside` it and what that uses. With a `text`, that is taken for what stands in
+/// `path`, which need not be there.
 ///
-/// Files that are used must lie in the project folder: the nearest folder above `path` that holds a `.git` or a
-/// `flank.toml`; else the current folder, if `path` lies in it; else the folder above that of `path`.
-pub(crate) fn load(path: &Path, beside: Option<&Path>) -> Loaded {
+/// Files that are used must lie in the [`project_folder`] of the one that was asked for.
+pub(crate) fn load(path: &Path, text: Option<&str>, beside: Option<&Path>) -> Loaded {
     let mut loader = Loader {
         loaded: Loaded {
             sources: Sources::default(),
             files: Vec::new(),
             diagnostics: Vec::new(),
             lacks_files: false,
-            root: None,
+            projects: HashMap::new(),
             beside: None,
         },
-        root: project_folder(path),
+        project: PathBuf::new(),
         known: HashMap::new(),
         bytes: 0,
         open: Vec::new(),
     };
-    for asked in beside.into_iter().chain([path]) {
-        match real_path(asked) {
-            Ok(found) => {
-                if !loader.known.contains_key(&found) {
-                    loader.read(asked, &found, None);
-                }
-                if Some(asked) == beside {
-                    loader.loaded.beside = loader.known.get(&found).copied();
-                }
-            }
-            Err(error) => loader.unreadable(asked, &ReadError::Io(error), None),
-        }
+    if let Some(beside) = beside {
+        loader.asked_for(beside);
+        loader.loaded.beside = real_path(beside).ok().and_then(|found| loader.known.get(&found).copied());
     }
-    loader.loaded.root = Some(loader.root);
+    match text {
+        Some(text) => {
+            let real = place_of(path);
+            loader.project = project_folder(&real);
+            loader.take(path, &real, text.to_string());
+        }
+        None => loader.asked_for(path),
+    }
     loader.loaded
 }
 
@@ -119,31 +118,42 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
             ));
         }
     }
-    Loaded { sources, files: vec![(id, file)], diagnostics, lacks_files, root: None, beside: None }
+    Loaded { sources, files: vec![(id, file)], diagnostics, lacks_files, projects: HashMap::new(), beside: None }
 }
 
-fn project_folder(path: &Path) -> PathBuf {
-    let absolute = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let marked =
-        absolute.ancestors().skip(1).find(|folder| folder.join(".git").exists() || folder.join("flank.toml").exists());
-    if let Some(folder) = marked {
-        return folder.to_path_buf();
-    }
-    let here = std::env::current_dir().and_then(std::fs::canonicalize).unwrap_or_default();
-    if !here.as_os_str().is_empty() && absolute.starts_with(&here) {
-        return here;
-    }
-    absolute.ancestors().nth(2).unwrap_or(Path::new("/")).to_path_buf()
+/// The nearest folder above a file, given without links, that holds a `.git` or a `flank.toml`; else the folder above that of the
+/// file. It is the same from wherever the program is called.
+fn project_folder(real: &Path) -> PathBuf {
+    let is_marked = |folder: &&Path| [".git", "flank.toml"].iter().any(|mark| folder.join(mark).exists());
+    let mut above = real.ancestors().skip(1);
+    let folder = above.clone().find(is_marked).or_else(|| above.nth(1));
+    folder.unwrap_or(Path::new("/")).to_path_buf()
 }
 
 impl Loader {
+    /// A file that no other one asks for; it lies in a project of its own.
+    fn asked_for(&mut self, path: &Path) {
+        match real_path(path) {
+            Ok(real) if self.known.contains_key(&real) => {}
+            Ok(real) => {
+                self.project = project_folder(&real);
+                self.read(path, &real, None);
+            }
+            Err(error) => self.unreadable(path, &ReadError::Io(error), None),
+        }
+    }
+
     fn read(&mut self, shown: &Path, real: &Path, used_at: Option<Span>) {
-        let text = match read_limited(real, limits::FILE_BYTES.most) {
-            Ok(text) => text,
-            Err(error) => return self.unreadable(shown, &error, used_at),
-        };
+        match read_limited(real, limits::FILE_BYTES.most) {
+            Ok(text) => self.take(shown, real, text),
+            Err(error) => self.unreadable(shown, &error, used_at),
+        }
+    }
+
+    fn take(&mut self, shown: &Path, real: &Path, text: String) {
         self.bytes += text.len();
         let id = self.loaded.sources.add_file(shown, real, text);
+        self.loaded.projects.insert(id, self.project.clone());
         self.known.insert(real.to_path_buf(), id);
         let (file, diagnostics) = parse(&self.loaded.sources.file(id).text, id);
         self.loaded.diagnostics.extend(diagnostics);
@@ -166,12 +176,12 @@ impl Loader {
         let real = match std::fs::canonicalize(here.join(&used.node)) {
             Ok(real) => real,
             // a path that leaves the project says so whether the file exists or not
-            Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.root) => {
+            Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.project) => {
                 return self.outside(used);
             }
             Err(error) => return self.unreadable(&shown, &ReadError::Io(error), Some(used.span)),
         };
-        if !real.starts_with(&self.root) {
+        if !real.starts_with(&self.project) {
             return self.outside(used);
         }
         match self.known.get(&real) {
@@ -196,7 +206,7 @@ impl Loader {
 
     fn outside(&mut self, used: &Name) {
         self.loaded.lacks_files = true;
-        let message = format!("`{}` lies outside the project folder {}", used.node, self.root.display());
+        let message = format!("`{}` lies outside the project folder {}", used.node, self.project.display());
         let help = "use only files of the project; an empty `flank.toml` marks the project's top folder";
         self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
     }
@@ -233,6 +243,13 @@ impl ReadError {
             ReadError::TooLarge => limits::FILE_BYTES.exceeded(span),
         }
     }
+}
+
+/// Where a file would stand that need not be there: in a folder without links.
+fn place_of(path: &Path) -> PathBuf {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let (folder, name) = (absolute.parent().unwrap_or(Path::new("/")), absolute.file_name().unwrap_or_default());
+    std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf()).join(name)
 }
 
 /// The path of a file without links and `..`; a pipe may have none.

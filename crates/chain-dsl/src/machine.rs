@@ -60,12 +60,15 @@ pub(crate) struct Built<'g> {
     pub(crate) declared_frames: Vec<String>,
     /// Laws that belong to no axis (and have been reported).
     pub(crate) lost_laws: usize,
+    /// Whether a transform of a frame is wrong (and has been reported).
+    pub(crate) lacks_transforms: bool,
 }
 
 /// An axis, perhaps with a law.
 pub(crate) struct BuiltAxis<'g> {
     pub(crate) name: Name,
-    pub(crate) dimension: Dimension,
+    /// `None` where it could not be read (and that has been reported).
+    pub(crate) dimension: Option<Dimension>,
     pub(crate) variable: Expr<'g>,
     pub(crate) travel: Option<(f64, f64)>,
     pub(crate) law: Option<(Option<Expr<'g>>, LawKind, Span)>,
@@ -216,6 +219,7 @@ impl<'a> Flat<'a> {
         let user = source.user();
         let mut binder = Binder::new(source, overrides);
         let mut scope = Scope::new();
+        context.moving = self.axes.list.iter().map(|axis| axis.name.node.clone()).collect();
         for statement in &self.constants.list {
             match statement {
                 MachineStatement::Param(param) => binder.bind(context, param, &mut scope),
@@ -229,26 +233,30 @@ impl<'a> Flat<'a> {
         binder.finish(context, &self.params());
         let Binder { parameters, standing: settings, .. } = binder;
         let mut axes = self.build_axes(context, &scope, &prefix);
+        context.moving.clear();
         for axis in &axes {
-            scope.insert(axis.name.node.clone(), Value::Scalar(axis.variable, axis.dimension));
+            let value = axis.dimension.map_or(Value::Poison, |dimension| Value::Scalar(axis.variable, dimension));
+            scope.insert(axis.name.node.clone(), value);
         }
         self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         nc_word::settle(context, &self.words, &scope, &mut axes);
-        let frames = self.build_frames(context, machine, &scope);
+        let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
-        Built { parameters, settings, scope, axes, frames, declared_frames, lost_laws }
+        Built { parameters, settings, scope, axes, frames, declared_frames, lost_laws, lacks_transforms }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
         let mut axes = Vec::new();
         for axis in &self.axes.list {
             let dimension = match axis.kind {
-                AxisKind::Linear => Dimension::LENGTH,
-                AxisKind::Rotary => Dimension::ANGLE,
+                AxisKind::Linear => Some(Dimension::LENGTH),
+                AxisKind::Rotary => Some(Dimension::ANGLE),
+                AxisKind::Unknown => None,
             };
             let what = format!("axis `{}`", axis.name.node);
-            let travel = axis.range.as_ref().and_then(|range| context.range(range, scope, dimension, &what));
+            let travel = axis.range.as_ref().zip(dimension);
+            let travel = travel.and_then(|(range, dimension)| context.range(range, scope, dimension, &what));
             let variable = context.variable(format!("{prefix}{}", axis.name.node), Role::Axis, f64::NAN);
             let word = NcWord::of_axis(&axis.name.node);
             axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None, word });
@@ -268,7 +276,7 @@ impl<'a> Flat<'a> {
             };
             let what = format!("axis `{}`", target.node);
             let dimension = axes[index].dimension;
-            let mut value = context.scalar(&law.value, scope, dimension, &what);
+            let mut value = dimension.and_then(|dimension| context.scalar(&law.value, scope, dimension, &what));
             if let (Some(expr), LawKind::Fix) = (value, kind)
                 && let Constant::Moves(name) = context.constant(expr)
             {
@@ -282,11 +290,11 @@ impl<'a> Flat<'a> {
         lost
     }
 
-    /// The frames, parents before children.
-    fn build_frames<'g>(&self, context: &mut Context<'g>, machine: &Name, scope: &Scope<'g>) -> Vec<Frame<'g>> {
+    /// The frames, parents before children, and whether a transform of theirs is wrong (and reported).
+    fn build_frames<'g>(&self, context: &mut Context<'g>, machine: &Name, scope: &Scope<'g>) -> (Vec<Frame<'g>>, bool) {
         if self.frames.list.len() > limits::FRAMES.most {
             context.report(limits::FRAMES.exceeded(machine.span));
-            return Vec::new();
+            return (Vec::new(), true);
         }
         let roots: Vec<&&ast::Frame> = self.frames.list.iter().filter(|frame| frame.parent.is_none()).collect();
         if let Some(second) = roots.get(1) {
@@ -306,14 +314,14 @@ impl<'a> Flat<'a> {
             }
         }
         self.report_circles(context, &index);
-        self.order_frames(&index)
-            .into_iter()
-            .map(|(k, parent)| {
-                let frame = self.frames.list[k];
-                let steps = transforms::steps(context, &frame.transforms, scope);
-                Frame { name: frame.name.node.clone(), parent, steps }
-            })
-            .collect()
+        let mut lacks_transforms = false;
+        let frames = self.order_frames(&index).into_iter().map(|(k, parent)| {
+            let frame = self.frames.list[k];
+            let steps = transforms::steps(context, &frame.transforms, scope);
+            lacks_transforms |= steps.is_none();
+            Frame { name: frame.name.node.clone(), parent, steps: steps.unwrap_or_default() }
+        });
+        (frames.collect(), lacks_transforms)
     }
 
     fn report_circles(&self, context: &mut Context<'_>, index: &HashMap<&str, usize>) {

@@ -404,10 +404,17 @@ impl<'g> Generation<'g> {
     }
 }
 
+/// What a name from outside says behind the name of a job: `m.swivel` of `gear.m.swivel`.
+pub(crate) fn within<'n>(name: &'n str, job: &str) -> Option<&'n str> {
+    name.strip_prefix(job)?.strip_prefix('.')
+}
+
 impl<'g> Job<'g> {
-    /// Whether it has a parameter or setting of a full name, such as `m.swivel`.
+    /// Whether it has a parameter or setting that is given from outside by such a name: `m.swivel`, or with the job's own name before
+    /// it.
     pub fn has_parameter(&self, name: &str) -> bool {
-        self.parameters.iter().any(|parameter| parameter.name == name)
+        let has = |name: &str| self.parameters.iter().any(|parameter| parameter.name == name);
+        has(name) || within(name, &self.name).is_some_and(has)
     }
 
     /// Each parameter's variable with its value as a number: what to substitute before solving.

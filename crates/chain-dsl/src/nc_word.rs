@@ -84,7 +84,8 @@ fn build<'g>(context: &mut Context<'g>, word: &ast::NcWord, scope: &Scope<'g>, a
         return None;
     }
     let what = format!("`{address}`");
-    let value = context.scalar(&word.value, scope, axis.dimension, &what)?;
+    let dimension = axis.dimension?;
+    let value = context.scalar(&word.value, scope, dimension, &what)?;
     let slope = context.constant(value.derivative(axis.variable));
     let reversed = match slope {
         Constant::Known(slope) if slope.abs() == 1.0 => slope < 0.0,
@@ -101,7 +102,7 @@ fn build<'g>(context: &mut Context<'g>, word: &ast::NcWord, scope: &Scope<'g>, a
     let rest: Expr<'g> = context.graph.substitute(&[value], &[(axis.variable, zero)])[0];
     let offset = context.require_constant(rest, word.value.span, &what)?;
     let decimals = match &word.increment {
-        Some(increment) => Some(decimals(context, increment, scope, axis.dimension)?),
+        Some(increment) => Some(decimals(context, increment, scope, dimension)?),
         None => None,
     };
     Some(NcWord { address: address.clone(), reversed, offset, decimals })

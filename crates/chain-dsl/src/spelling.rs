@@ -3,22 +3,25 @@
 /// Longer words are not compared: it takes time, and nobody misspells them.
 const LONGEST: usize = 64;
 
-/// The candidate that a misspelt word most likely stands for: the same in other letters' size, else the first of the nearest, with no
-/// more than one mistake (a letter too many, too few, another, or two that changed places) in three letters of the word, or one, and
-/// fewer than there are letters.
+/// The candidate that a misspelt word most likely stands for: the first of the nearest, with no more than one mistake (a letter too many,
+/// too few, another, or two that changed places) in three letters of the word, or one, and fewer than there are letters. How the
+/// words of a name are set apart is no mistake: `rotateZ` is `rotate_z`.
 pub fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let letters = word.chars().take(LONGEST + 1).count();
     if letters > LONGEST {
         return None;
     }
-    let lower = word.to_lowercase();
-    let mistakes = |candidate: &str| match candidate.to_lowercase() == lower {
-        true => Some(0),
-        false => Some(strsim::osa_distance(word, candidate))
-            .filter(|&mistakes| mistakes <= (letters / 3).max(1) && mistakes < letters.min(candidate.chars().count())),
+    let letters_of = |word: &str| word.replace('_', "").to_lowercase();
+    let own = letters_of(word);
+    let most = (letters / 3).max(1);
+    let mistakes = |candidate: &str| {
+        let other = letters_of(candidate);
+        let shorter = own.chars().count().min(other.chars().count());
+        Some(strsim::osa_distance(&own, &other)).filter(|&mistakes| mistakes <= most && mistakes < shorter)
     };
     let near = candidates.into_iter().filter_map(|candidate| Some((mistakes(candidate)?, candidate)));
-    near.min_by_key(|&(mistakes, _)| mistakes).map(|(_, candidate)| candidate)
+    // of those alike, the one that is written most alike
+    near.min_by_key(|&(mistakes, candidate)| (mistakes, strsim::osa_distance(word, candidate))).map(|(_, near)| near)
 }
 
 #[cfg(test)]
@@ -27,7 +30,7 @@ mod tests {
 
     #[test]
     fn what_is_far_off_is_no_misspelling() {
-        let known = ["helical_gear", "Spur", "hob", "hub", "Z"];
+        let known = ["helical_gear", "Spur", "hob", "hub", "Z", "rotate", "rotate_x", "rotate_z"];
         for (word, meant) in [
             ("helical_gaer", Some("helical_gear")),
             ("HELICAL_GEAR", Some("helical_gear")),
@@ -37,6 +40,11 @@ mod tests {
             ("z", Some("Z")),
             ("h", None),
             ("ZZ", None),
+            ("rotateZ", Some("rotate_z")),
+            ("RotateX", Some("rotate_x")),
+            ("helicalGaer", Some("helical_gear")),
+            ("ho_b", Some("hob")),
+            ("_", None),
             ("", None),
         ] {
             assert_eq!(closest(word, known), meant, "{word}");

@@ -25,8 +25,8 @@ type Key = (PathBuf, [String; 2], [Dimension; 2]);
 /// Where tables are looked for, and those that have been read.
 #[derive(Default)]
 pub(crate) struct Tables {
-    /// The project folder; `None` for a text that is not a file.
-    root: Option<PathBuf>,
+    /// The project folder of each source file; a text that is not a file has none.
+    projects: HashMap<FileId, PathBuf>,
     /// The folder of each source file, as the user knows it and as it really is.
     folders: HashMap<FileId, [PathBuf; 2]>,
     /// The files that have been read with their texts, in the order in which they were first needed.
@@ -42,11 +42,11 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    pub(crate) fn new(root: Option<PathBuf>, sources: &Sources) -> Tables {
+    pub(crate) fn new(projects: HashMap<FileId, PathBuf>, sources: &Sources) -> Tables {
         let folders = sources.files().filter_map(|(id, file)| {
             Some((id, [file.path.parent()?.to_path_buf(), file.file.as_ref()?.parent()?.to_path_buf()]))
         });
-        Tables { root, folders: folders.collect(), ..Tables::default() }
+        Tables { projects, folders: folders.collect(), ..Tables::default() }
     }
 
     /// Adds the texts that were read to those of the compilation.
@@ -58,17 +58,17 @@ impl Tables {
 
     /// The path of a table named in a file, as the user knows it and as it really is, or why it may not be read.
     fn locate(&self, named: &str, file: FileId) -> Result<[PathBuf; 2], (Code, String)> {
-        let Some(root) = &self.root else {
+        let Some(project) = self.projects.get(&file) else {
             return Err((Code::UnreadableFile, "a text that is not a file cannot use files".to_string()));
         };
         let [shown, folder] = self.folders.get(&file).cloned().unwrap_or_default();
         let real = std::fs::canonicalize(folder.join(named)).map_err(|error| {
             (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
         })?;
-        if Path::new(named).is_absolute() || !real.starts_with(root) {
+        if Path::new(named).is_absolute() || !real.starts_with(project) {
             return Err((
                 Code::OutsideProject,
-                format!("`{named}` lies outside the project folder {}", root.display()),
+                format!("`{named}` lies outside the project folder {}", project.display()),
             ));
         }
         Ok([tidy(&shown.join(named)), real])

@@ -36,9 +36,10 @@ const RIGID_WITHIN: f64 = 1e-9;
 /// A matrix that is off by less than this was meant as a rigid motion and written with too few digits.
 const NEARLY: f64 = 1e-2;
 
-/// The steps that calls in a row amount to; what is wrong is reported and left out.
-pub(crate) fn steps<'g>(context: &mut Context<'g>, calls: &[Call], scope: &Scope<'g>) -> Vec<Step<'g>> {
-    calls.iter().flat_map(|call| step(context, call, scope).unwrap_or_default()).collect()
+/// The steps that calls in a row amount to; nothing if one of them is wrong. All that is wrong is reported.
+pub(crate) fn steps<'g>(context: &mut Context<'g>, calls: &[Call], scope: &Scope<'g>) -> Option<Vec<Step<'g>>> {
+    let each: Vec<Option<Vec<Step<'g>>>> = calls.iter().map(|call| step(context, call, scope)).collect();
+    each.into_iter().collect::<Option<Vec<_>>>().map(|steps| steps.concat())
 }
 
 fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<Vec<Step<'g>>> {

@@ -35,7 +35,7 @@ impl<'g> Builder<'_, 'g> {
             self.lose_law(machine);
             return;
         }
-        let value = context.scalar(&drive.value, &self.scope, axis.dimension, &what);
+        let value = axis.dimension.and_then(|dimension| context.scalar(&drive.value, &self.scope, dimension, &what));
         let key = (machine, member.node.clone());
         if let Some((_, first)) = self.drives.get(&key) {
             let message = format!("{what} is driven twice");
@@ -70,15 +70,15 @@ impl<'g> Builder<'_, 'g> {
                         (None, LawSource::Driven)
                     }
                 };
-                // a broken law has been reported: the axis stays a variable of its own
-                if law.is_none() {
+                // what is broken has been reported: the axis stays a variable of its own
+                if law.is_none() || axis.dimension.is_none() {
                     self.unsettled.insert(index);
                 }
                 let law = law.unwrap_or(axis.variable);
                 axes.push(Axis {
                     name: axis.name.node.clone(),
                     variable: axis.variable,
-                    dimension: axis.dimension,
+                    dimension: axis.dimension.unwrap_or(Dimension::LENGTH),
                     law,
                     source,
                     travel: axis.travel,
@@ -96,7 +96,7 @@ impl<'g> Builder<'_, 'g> {
                     .axes
                     .iter()
                     .find(|axis| axis.name.node == idle[0])
-                    .map_or("0 mm", |axis| if axis.dimension == Dimension::ANGLE { "0 deg" } else { "0 mm" });
+                    .map_or("0 mm", |axis| if axis.dimension == Some(Dimension::ANGLE) { "0 deg" } else { "0 mm" });
                 let help = format!("if it stands still: `drive {}.{} = {zero}`", name.node, idle[0]);
                 context.report(Diagnostic::new(Code::UndrivenAxis, name.span, message).help(help));
             }

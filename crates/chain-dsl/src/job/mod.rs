@@ -52,7 +52,7 @@ struct Builder<'a, 'g> {
     /// Laws of each machine that belong to no axis, or to one that has a law already (and have been reported).
     lost_laws: HashMap<usize, usize>,
     laws: Vec<(Expr<'g>, Expr<'g>)>,
-    /// Machines with an axis that has no law (which has been reported).
+    /// Machines with an axis that has no law, or a frame without a transform of its own (which has been reported).
     unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
     /// What the surfaces of the job are made from and over: `c.outside.blade`, `roll`.
@@ -231,6 +231,9 @@ impl<'g> Builder<'_, 'g> {
             return context.report(limits::AXES.exceeded(instance.name.span));
         }
         self.expose(&instance.name, &built.scope);
+        if built.lacks_transforms {
+            self.unsettled.insert(self.machines.len());
+        }
         self.lost_laws.insert(self.machines.len(), built.lost_laws);
         self.machines.push((instance.name.clone(), definition.name.node.clone(), built));
     }
@@ -282,6 +285,10 @@ impl<'g> Builder<'_, 'g> {
         path: &'p ast::Path,
         what: &str,
     ) -> Option<(usize, &'p Name)> {
+        // the parser has reported a missing name
+        if path.segments.iter().any(|segment| segment.node.is_empty()) {
+            return None;
+        }
         let [machine, member] = path.segments.as_slice() else {
             let names = self.instance_names();
             let message = format!("{what} is named together with its machine");

@@ -62,7 +62,8 @@ impl<'g> Builder<'_, 'g> {
         let path = self.path_between(context, frame, available.frame, written.value.span)?;
         let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
-        if !self.check_motions(context, &driven, motions, written, &available) {
+        // what follows from a machine that is not whole is no mistake of its own
+        if !self.check_motions(context, &driven, motions, written, &available) || self.unsettled.contains(&frame.0) {
             return None;
         }
         let mut motions = motions.to_vec();

@@ -29,6 +29,19 @@ pub enum Item {
     Job(Job),
 }
 
+impl Item {
+    /// The name that it defines; a `use` defines none.
+    pub fn name(&self) -> Option<&Name> {
+        match self {
+            Item::Use(_) => None,
+            Item::Function(function) => Some(&function.name),
+            Item::Machine(machine) => Some(&machine.name),
+            Item::Tool(tool) => Some(&tool.name),
+            Item::Job(job) => Some(&job.name),
+        }
+    }
+}
+
 /// A function of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
@@ -135,6 +148,8 @@ pub enum AxisKind {
     Linear,
     /// About a line: an angle.
     Rotary,
+    /// One of the two, which could not be read (and that is reported).
+    Unknown,
 }
 
 /// `nc ADDRESS = value by increment`

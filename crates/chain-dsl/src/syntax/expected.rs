@@ -72,6 +72,9 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
             format!("`(` after the name of the {}", noun(before.statement))
         }
         Rule::kw_in if before.statement == "frame" => "`in` and the frame that it hangs on".to_owned(),
+        Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
+            "`in` and the frame in which the surface is given".to_owned()
+        }
         Rule::kw_in if matches!(before.statement, "motion" | "surface") && !before.name => {
             "`in` and a range".to_owned()
         }

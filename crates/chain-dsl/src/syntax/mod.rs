@@ -71,6 +71,11 @@ pub(crate) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
     limits::too_long(text, file)
 }
 
+/// Whether a word belongs to the language, so that nothing can be called by it.
+pub fn is_reserved(word: &str) -> bool {
+    words::reserved(word).is_some()
+}
+
 /// All comments of a text, in order.
 pub fn comments(text: &str, file: FileId) -> Vec<Comment> {
     if limits::too_long(text, file).is_some() { Vec::new() } else { scan::Scan::new(text, file).comments }

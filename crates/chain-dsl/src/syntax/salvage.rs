@@ -197,8 +197,9 @@ impl Piece<'_> {
     }
 
     fn axis(&self, name: Name) -> Axis {
-        let rotary = ["rotary", "deg", "rad", "rev", "angle"].iter().any(|word| self.find(word).is_some());
-        let kind = if rotary { AxisKind::Rotary } else { AxisKind::Linear };
+        let kinds = [("linear", AxisKind::Linear), ("rotary", AxisKind::Rotary)];
+        let kind =
+            kinds.into_iter().find(|(word, _)| self.find(word).is_some()).map_or(AxisKind::Unknown, |(_, kind)| kind);
         Axis { doc: self.doc(), name, kind, range: None }
     }
 

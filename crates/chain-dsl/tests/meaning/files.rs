@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Code, compile_file, compile_text, render};
+use flank_chain_dsl::{
+    Code, Request, Severity, compile_file, compile_request, compile_text, compile_with_machine, render,
+};
 use flank_expr::Graph;
 
 /// A project folder of its own with some files.
@@ -340,6 +342,51 @@ fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
     for part in ["job `j` has no parameter `extra`", "extra=2 mm", "job `other` has one, and is not asked for"] {
         assert!(shown.contains(part), "{part} in {shown}");
     }
+}
+
+/// A machine that a job is carried over to has a project of its own, as the job has.
+#[test]
+fn a_machine_beside_a_job_uses_files_of_its_own_project() {
+    let own = project("beside_job", &[("library.chain", LIBRARY), ("jobs/j.chain", JOB)]);
+    let machine = "use \"../plain.chain\"\nmachine other extends plain {}\n";
+    let plain = "machine plain {\n    axis X : linear\n    frame bed\n    frame slide in bed = translate_x(X)\n}\n";
+    let other = project("beside_machine", &[("plain.chain", plain), ("machines/other.chain", machine)]);
+    let graph = Graph::new();
+    let made =
+        compile_with_machine(&graph, &own.join("jobs/j.chain"), &other.join("machines/other.chain"), &[]).diagnostics;
+    assert!(made.iter().all(|finding| finding.severity() != Severity::Error), "{made:?}");
+}
+
+/// A text that comes from elsewhere stands where its file would.
+#[test]
+fn a_text_is_read_in_the_place_of_its_file() {
+    let folder = project("text", &[("library.chain", LIBRARY), ("jobs/j.chain", "job of old")]);
+    for name in ["jobs/j.chain", "jobs/new.chain"] {
+        let graph = Graph::new();
+        let request = Request { text: Some(JOB), ..Request::default() };
+        let compilation = compile_request(&graph, &folder.join(name), &request);
+        assert!(compilation.diagnostics.is_empty(), "{name}: {:?}", compilation.diagnostics);
+        assert_eq!(compilation.jobs.len(), 1);
+    }
+}
+
+/// A name from outside means one thing.
+#[test]
+fn a_name_that_could_be_two_things_is_told() {
+    let job = JOB.replace("job j", "job m");
+    let folder = project("two_things", &[("library.chain", LIBRARY), ("jobs/j.chain", &job)]);
+    let file = folder.join("jobs/j.chain");
+    // of job `m`, and of the machine that it calls `m`
+    assert_eq!(codes(&file, &[("m.height", "2 mm")]), [Code::DuplicateName]);
+    let value = |name: &str, of: &str| {
+        let graph = Graph::new();
+        let set = [(name.to_string(), "2 mm".to_string())];
+        let compilation = compile_request(&graph, &file, &Request { job: Some("m"), set: &set, ..Request::default() });
+        let parameters = &compilation.jobs[0].parameters;
+        parameters.iter().find(|parameter| parameter.name == of).expect("a parameter").value
+    };
+    assert_eq!([value("height", "height"), value("height", "m.height")], [2.0, 2.0]);
+    assert_eq!([value("m.m.height", "height"), value("m.m.height", "m.height")], [3.0, 2.0]);
 }
 
 /// What a file that cannot be read would declare is not said to be missing, what one that was read lacks is.

@@ -8,7 +8,7 @@ mod hostile;
 mod models;
 mod profiles;
 
-use flank_chain_dsl::{Diagnostic, Severity, compile_text};
+use flank_chain_dsl::{Code, Diagnostic, Severity, compile_text};
 use flank_expr::Graph;
 
 use fixtures::check;
@@ -52,4 +52,25 @@ fn several_mistakes_give_one_report_each() {
 #[test]
 fn the_library_is_right() {
     assert!(findings("").is_empty());
+}
+
+/// A range says whether a count may be negative; without one it may not.
+#[test]
+fn a_count_is_as_negative_as_its_range_says() {
+    let planer = |count: &str| {
+        format!(
+            "machine planer {{
+                param k : count in -20 .. 20 = {count}
+                axis Y : linear
+                frame bed
+                frame ram in bed = translate_y(Y + k * 1 mm)
+            }}"
+        )
+    };
+    assert!(findings(&planer("-3")).is_empty());
+    assert!(findings(&planer("-20")).is_empty());
+    let codes = |text: &str| errors(text).iter().map(|finding| finding.code).collect::<Vec<_>>();
+    assert_eq!(codes(&planer("-21")), [Code::OutOfRange]);
+    assert_eq!(codes(&planer("-3.5")), [Code::WrongDimension]);
+    assert_eq!(codes(&planer("-3").replace("in -20 .. 20 ", "")), [Code::WrongDimension]);
 }

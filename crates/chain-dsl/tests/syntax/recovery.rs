@@ -36,7 +36,7 @@ fn broken_statements_still_define() {
           param c: ? = ERROR
           let d ERROR
           axis C Rotary
-          axis X Linear
+          axis X Unknown
           frame e
           frame f in ?
           frame g in e

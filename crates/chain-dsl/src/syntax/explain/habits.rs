@@ -71,6 +71,9 @@ impl Mistake<'_> {
             (_, "if") if wants(Rule::value) => "put the `if` into parentheses",
             (_, "=") if wants(Rule::infix) && !wants(Rule::equals) && !self.leads() => "values are compared with `==`",
             (_, "==") if wants(Rule::equals) => "write `=` to give something a value",
+            (_, "=") if statement == "surface" && wants(Rule::kw_in) => {
+                "write the frame of the work before the `=`: `surface flank in m.work = envelope(…)`"
+            }
             (_, ":") if statement == "let" && wants(Rule::equals) => {
                 "a `let` takes its dimension from its value: write `let name = value`"
             }
