@@ -8,6 +8,7 @@ use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
 use serde_json::{Value, json};
 
 use crate::table::{Solved, aligned};
+use crate::units;
 
 /// Maps on one picture.
 pub(crate) const MAPS: usize = 6;
@@ -30,6 +31,9 @@ struct Influence {
     /// The change that values are told for: mm, radians or 1.
     step: f64,
     unit: String,
+    dimension: Dimension,
+    /// The change that parameters are ranked by, in the same unit.
+    usual_change: f64,
     values: Vec<Option<f64>>,
     /// Root of the mean square, and the largest, over all points with a value.
     rms: f64,
@@ -62,6 +66,8 @@ impl Influence {
             parameter: parameter.name.clone(),
             step: size,
             unit: format!("um/{step}"),
+            dimension: parameter.dimension,
+            usual_change: usual_change(parameter),
             rms: (squares / known().count().max(1) as f64).sqrt(),
             largest: known().fold(0.0, |largest: f64, um| largest.max(um.abs())),
             values,
@@ -83,13 +89,44 @@ impl Influence {
     fn moves(&self) -> bool {
         self.largest > 0.0
     }
+
+    /// A number that is told for the step, for the usual change instead: um.
+    fn by_usual_change(&self, um: f64) -> f64 {
+        um * self.usual_change / self.step
+    }
+
+    fn usual_change_text(&self) -> String {
+        let (size, unit) = match self.dimension {
+            Dimension::LENGTH => (self.usual_change, "mm".to_string()),
+            Dimension::ANGLE => (self.usual_change / ARCMIN, "arcmin".to_string()),
+            Dimension::NUMBER => (self.usual_change, String::new()),
+            other => (self.usual_change, units::inside(other)),
+        };
+        let rounded: f64 = format!("{size:.2e}").parse().unwrap_or(size);
+        format!("{rounded} {unit}").trim_end().to_string()
+    }
+}
+
+const ARCMIN: f64 = PI / 10_800.0;
+
+/// The change of a parameter that is usual when a machine is set, so that parameters of all dimensions can be ranked: 0.01 mm of a length
+/// and one arcminute of an angle; of all others a thousandth of the value, where that is zero of the width of the range, and where
+/// there is none of one, in mm and radians.
+fn usual_change(parameter: &Parameter<'_>) -> f64 {
+    const SHARE: f64 = 1e-3;
+    match parameter.dimension {
+        Dimension::LENGTH => 0.01,
+        Dimension::ANGLE => ARCMIN,
+        _ if parameter.value != 0.0 => SHARE * parameter.value.abs(),
+        _ => SHARE * parameter.range.map_or(1.0, |(low, high)| high - low),
+    }
 }
 
 /// The change of a parameter that displacements are told for: its size in mm and radians, and how it is written.
 fn small_step(dimension: Dimension) -> (f64, String) {
     match dimension {
         Dimension::LENGTH => (1.0, "mm".to_string()),
-        Dimension::ANGLE => (PI / 10_800.0, "arcmin".to_string()),
+        Dimension::ANGLE => (ARCMIN, "arcmin".to_string()),
         Dimension::NUMBER => (1e-3, "0.001".to_string()),
         other => (1.0, format!("({})", crate::units::inside(other))),
     }
@@ -101,18 +138,22 @@ impl Sensitivity {
         self.influences.iter().map(Influence::field)
     }
 
-    /// The parameters that move the surface, the one that does most first, each by its place in the job.
+    /// The parameters that move the surface, the one whose usual change does most first, each by its place in the job.
     fn ranked(&self) -> Vec<(usize, &Influence)> {
         let mut ranked: Vec<(usize, &Influence)> =
             self.influences.iter().enumerate().filter(|(_, one)| one.moves()).collect();
-        ranked.sort_by(|(_, a), (_, b)| b.rms.total_cmp(&a.rms));
+        ranked.sort_by(|(_, a), (_, b)| b.by_usual_change(b.rms).total_cmp(&a.by_usual_change(a.rms)));
         ranked
     }
 
-    /// Of each of them: its name, root of the mean square and largest normal displacement, and the unit of these.
-    pub(crate) fn rows(&self) -> Vec<[String; 4]> {
-        let row =
-            |one: &Influence| [one.parameter.clone(), micrometres(one.rms), micrometres(one.largest), one.unit.clone()];
+    /// Of each of them: its name, root of the mean square and largest normal displacement, the unit of these; its usual change, and
+    /// how far that moves the surface, in um: root of the mean square, and largest.
+    pub(crate) fn rows(&self) -> Vec<[String; 7]> {
+        let row = |one: &Influence| {
+            let [rms, largest] = [one.rms, one.largest].map(micrometres);
+            let [by_rms, by_largest] = [one.rms, one.largest].map(|um| micrometres(one.by_usual_change(um)));
+            [one.parameter.clone(), rms, largest, one.unit.clone(), one.usual_change_text(), by_rms, by_largest]
+        };
         self.ranked().into_iter().map(|(_, one)| row(one)).collect()
     }
 
@@ -158,9 +199,10 @@ pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
             out += &format!("\n{name}: no point is solved, so it cannot be said what moves it\n");
             continue;
         }
-        let mut rows = vec![["parameter", "rms", "largest", "normal displacement in"].map(String::from)];
+        let head = ["parameter", "rms", "largest", "normal displacement in", "usual change", "rms um", "largest um"];
+        let mut rows = vec![head.map(String::from)];
         rows.extend(sensitivity.rows());
-        out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>>"));
+        out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>><<>>"));
         let idle = sensitivity.idle();
         if !idle.is_empty() {
             let of = sensitivity.influences.len();
