@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use flank_chain_dsl::{Bounded, Coordinate, Dimension, GeneratedSurface};
 use flank_export::fixed;
+use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
 use serde_json::{Value, json};
 
@@ -42,18 +43,41 @@ pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], 
     out
 }
 
-/// The branches that the sample's `keep` does not take, where it takes none: `keep` leaves out all that is at …: roll 3 deg, …; nothing
-/// otherwise.
+/// The branches that the sample's `keep` does not take, where it takes none, with the values that it looks at, and what it takes:
+/// `keep` leaves out all that is at …: roll 3 deg, …; nothing otherwise.
 pub(crate) fn kept_out(solved: &Solved<'_, '_>) -> Option<String> {
+    let (unknowns, keep) = (&solved.surface.unknowns, &solved.sample.keep);
+    let is_unknown = |of: &Coordinate<'_>| unknowns.iter().any(|unknown| unknown.variable == of.value);
+    let derived: Vec<&Coordinate<'_>> = keep.iter().map(|(of, _)| of).filter(|of| !is_unknown(of)).collect();
     let each = solved.kept_out.iter().map(|branch| {
-        let values: Vec<String> =
-            solved.surface.unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
-        values.join(", ")
+        let known = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x));
+        let seen = derived.iter().zip(values_at(solved, &derived, branch));
+        let seen = seen.map(|(of, x)| format!("{} {}", of.name, units::text(of.dimension, x, DECIMALS)));
+        known.chain(seen).collect::<Vec<String>>().join(", ")
     });
     let each: Vec<String> = each.collect();
     let last = |count| if count == 1 { "the only branch" } else { "all branches" };
-    (!each.is_empty())
-        .then(|| format!("`keep` leaves out {} at {}: {}", last(each.len()), anchor(solved), each.join("; ")))
+    let taken = keep.iter().map(|(of, (low, high))| {
+        let [low, high] = [low, high].map(|x| units::digits(of.dimension, *x, DECIMALS));
+        format!("{} {low} .. {high} {}", of.name, units::symbol(of.dimension)).trim_end().to_string()
+    });
+    let taken: Vec<String> = taken.collect();
+    (!each.is_empty()).then(|| {
+        let (which, place) = (last(each.len()), anchor(solved));
+        format!("`keep` leaves out {which} at {place}: {}; it takes {}", each.join("; "), taken.join(", "))
+    })
+}
+
+/// What some functions on a surface are at a point of it.
+fn values_at(solved: &Solved<'_, '_>, of: &[&Coordinate<'_>], point: &SurfacePoint) -> Vec<f64> {
+    let Some(first) = of.first() else { return Vec::new() };
+    let values: Vec<_> = of.iter().map(|of| of.value).collect();
+    let values = first.value.graph().substitute(&values, &solved.bindings);
+    let tape =
+        Tape::new(&values, &solved.surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
+    let mut out = vec![f64::NAN; values.len()];
+    ScalarEvaluator::new(&tape).run(&point.unknowns, &mut out);
+    out
 }
 
 /// Where the branch of a surface was not looked for as it is meant: in the middle of its grid, until it is found; empty if it was.

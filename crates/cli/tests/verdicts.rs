@@ -137,7 +137,27 @@ fn what_a_keep_leaves_out_is_listed() {
     let base = 40.0 * 20f64.to_radians().cos();
     let roll = ((41f64.powi(2) - base * base).sqrt() / base - 20f64.to_radians().tan()).to_degrees() + 4.5;
     assert!(told.contains("  `keep` leaves out the only branch at rho 41.0000 mm, z 0.0000 mm: u "), "{told}");
-    assert!(told.contains(&format!("roll -{roll:.4} deg")), "{roll}: {told}");
+    assert!(told.contains(&format!("roll -{roll:.4} deg; it takes roll 100.0000 .. 120.0000 deg")), "{roll}: {told}");
+}
+
+/// What a `keep` looks at need not be an unknown: its value is told, and what it should have been.
+#[test]
+fn the_value_that_a_keep_saw_is_told() {
+    let out = folder("kept_out_value");
+    let first = "sample flank_plus  { rho: low .. high by 9, z: -10 mm .. 10 mm by 5 }";
+    let spec = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    for (keep, seen) in [("x: 80 mm .. 100 mm", ", x 40."), ("twice = 2 * roll: 300 deg .. 310 deg", ", twice -")] {
+        let kept = first.replace(" }", &format!("\n keep {keep} }}"));
+        let spec = written(&out, "kept.chain", &spec.replacen(first, &kept, 1));
+        let run = flank(&["solve", &spec, "--job", "first_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+        let told = text(&run.stderr);
+        let line = told.lines().find(|line| line.contains("`keep` leaves out the only branch")).unwrap_or_default();
+        let (name, ends) = keep.split_once(": ").expect("a range");
+        let name = name.split_once(" =").map_or(name, |(name, _)| name);
+        let (low, high) = ends.split_once(" .. ").expect("two ends");
+        let taken = format!("; it takes {name} {}.0000 .. {}.0000", &low[..low.len() - 3].trim(), &high[..3]);
+        assert!(line.contains(seen) && line.contains(&taken), "{keep}: {taken}: {told}");
+    }
 }
 
 /// Along a straight tooth z is the rack's v, and each roll makes the points of one u.
