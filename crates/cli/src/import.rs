@@ -1,20 +1,31 @@
 //! `flank import`: a machine summary of another program becomes a job.
 
+mod cost;
+
 use std::fmt::Write;
 
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::json;
 
 use crate::arguments::{Coefficients, Import, Signs};
 use crate::failure::Failure;
 use crate::spec::Origin;
-use crate::{Ending, print, spec};
+use crate::{Ending, eprint, new, print, spec};
 
 /// No REXS file is larger.
 const MOST_BYTES: usize = 16 << 20;
 
 const SETTINGS: &str = "bevel_gear_manufacturing_settings";
 const TOOL: &str = "bevel_gear_tool";
+/// The files of the library that a job uses.
+const LIBRARY: [&str; 2] = ["machines/cradle.chain", "tools/face_mill.chain"];
+
+/// The versions of REXS whose names and units these are.
+const VERSIONS: [(u32, u32); 2] = [(1, 3), (1, 6)];
+/// A text of the file goes into a comment so far.
+const MOST_LETTERS: usize = 200;
+/// So many components are listed.
+const MOST_LISTED: usize = 16;
 
 /// Settings with one value: attribute, setting of `cradle_generator`, unit, and whether the file may leave it out as zero.
 const VALUES: [(&str, &str, &str, bool); 9] = [
@@ -82,8 +93,12 @@ mod orders {
 
 pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let file = spec::shown(&arguments.file);
-    let text = Origin::default().other_text(&arguments.file, MOST_BYTES)?;
-    let spec = job(&text, &file, arguments)?;
+    check_name(&arguments.name)?;
+    let text = Origin::default().other_text(&arguments.file, MOST_BYTES);
+    if arguments.outside.is_none() && arguments.inside.is_none() {
+        return Err(without_tools(text.ok().as_deref()));
+    }
+    let spec = job(&text?, &file, arguments)?;
     if arguments.json {
         let imported = json!({ "schema": "flank.import/2", "file": file, "job": arguments.name, "text": spec });
         print(&format!("{imported:#}\n"));
@@ -93,25 +108,59 @@ pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
+/// # Errors
+/// In words, if the library that the job uses has something of its name.
+fn check_name(name: &str) -> Result<(), Failure> {
+    match LIBRARY.into_iter().find(|path| new::defines(path, name)) {
+        Some(path) => {
+            let message =
+                format!("the job cannot be called `{name}`: {path}, which it uses, has something of that name");
+            Err(Failure::of_usage(message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What is told of a command line without tools, with those of the file if it can be read.
+fn without_tools(text: Option<&str>) -> Failure {
+    let document = text.and_then(|text| parsed(text).ok());
+    let tools: Vec<_> = document.iter().flat_map(|document| Component::all(document.root_element(), TOOL)).collect();
+    let known = if tools.is_empty() { String::new() } else { format!("; there is: {}", listed(&tools)) };
+    Failure::of_usage(format!(
+        "say which tool has which blades: `--outside ID` for the concave flank, `--inside ID` for the convex one{known}"
+    ))
+}
+
+/// A text as XML, within limits of what that costs.
+fn parsed(text: &str) -> Result<Document<'_>, String> {
+    cost::check(text)?;
+    let options = ParsingOptions { nodes_limit: cost::NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::NodesLimitReached => {
+            format!("there are more than {} elements and texts, more than any REXS file needs", cost::NODES)
+        }
+        error => format!("this is not XML: {error}"),
+    })
+}
+
 /// The job that a REXS file describes, as text.
 fn job(text: &str, file: &str, arguments: &Import) -> Result<String, Failure> {
-    let document = Document::parse(text).map_err(|error| format!("{file} is not XML: {error}"))?;
+    let document = parsed(text).map_err(|reason| format!("{file}: {reason}"))?;
     let model = document.root_element();
     if model.tag_name().name() != "model" {
-        let first = model.tag_name().name();
+        let first = on_one_line(model.tag_name().name());
         return Err(format!("{file} is no REXS file: it begins with `{first}`, not with `model`").into());
     }
     let settings = Component::one(model, SETTINGS, arguments.settings.as_deref(), "--settings")?;
     let tools = [("outside", &arguments.outside, "concave"), ("inside", &arguments.inside, "convex")];
-    if tools.iter().all(|(_, id, _)| id.is_none()) {
-        let known = Component::all(model, TOOL).map(|tool| tool.described()).collect::<Vec<_>>().join(", ");
-        let known = if known.is_empty() { format!("{file} has no {TOOL}") } else { format!("there is: {known}") };
-        return Err(Failure::of_usage(format!(
-            "say which tool has which blades: `--outside ID` for the concave flank, `--inside ID` for the convex one; {known}"
-        )));
-    }
     let version = model.attribute("version").map_or("without a version".to_string(), on_one_line);
-    let mut out = format!("//! From {}, REXS {version}, {}.\n", on_one_line(file), settings.described());
+    // not the folder, which is another one on every machine
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let mut out = format!("//! From {}, REXS {version}, {}.\n", on_one_line(&name), settings.described());
+    if let Some(doubt) = unknown_version(model.attribute("version")) {
+        eprint(&format!("note: {file}: {doubt}\n"));
+        let _ = writeln!(out, "//! Note: {doubt}.");
+    }
     let _ = writeln!(out, "//! Signs: {}.", said(arguments.signs));
     let machine = machine(&settings, arguments, &mut out)?;
     let known: Vec<&str> = VALUES.iter().map(|value| value.0).chain(MOTIONS.iter().map(|motion| motion.0)).collect();
@@ -125,8 +174,8 @@ fn job(text: &str, file: &str, arguments: &Import) -> Result<String, Failure> {
     }
     let _ = write!(
         out,
-        "\nuse \"{0}/machines/cradle.chain\"\nuse \"{0}/tools/face_mill.chain\"\n\njob {1} {{\n{machine}",
-        arguments.library, arguments.name
+        "\nuse \"{0}/{1}\"\nuse \"{0}/{2}\"\n\njob {3} {{\n{machine}",
+        arguments.library, LIBRARY[0], LIBRARY[1], arguments.name
     );
     let mut surfaces = String::new();
     for (blades, tool, flank) in chosen {
@@ -252,9 +301,37 @@ fn cutter(tool: &Component<'_, '_>) -> Result<String, String> {
     Ok(format!("{kind}(\n        {}\n    )\n", lines.join(",\n        ")))
 }
 
-/// A text of the file as it may stand in a comment: nothing in it ends the line.
+/// A text of the file as it may stand in a comment: nothing in it ends the line, and no line is endless.
 fn on_one_line(text: &str) -> String {
-    text.replace(char::is_control, " ")
+    match text.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => text[..end].replace(char::is_control, " ") + "…",
+        None => text.replace(char::is_control, " "),
+    }
+}
+
+/// What is told of a file in a version of REXS that this is not made for.
+fn unknown_version(version: Option<&str>) -> Option<String> {
+    let number = |version: &str| {
+        let (major, minor) = version.trim().split_once('.')?;
+        Some((major.parse::<u32>().ok()?, minor.parse::<u32>().ok()?))
+    };
+    let [first, last] = VERSIONS;
+    let found = version.and_then(number);
+    if found.is_some_and(|found| (first..=last).contains(&found)) {
+        return None;
+    }
+    let own = version.map_or("no version of REXS".to_string(), |version| format!("REXS {}", on_one_line(version)));
+    Some(format!(
+        "it states {own}, and names and units are read as those of REXS {}.{} to {}.{}: compare the settings with the sheet",
+        first.0, first.1, last.0, last.1
+    ))
+}
+
+/// Components in a message.
+fn listed(components: &[Component<'_, '_>]) -> String {
+    let shown: Vec<String> = components.iter().take(MOST_LISTED).map(Component::described).collect();
+    let more = components.len() - shown.len();
+    shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
 fn spaced(unit: &str) -> String {
@@ -274,7 +351,7 @@ impl<'a, 'i> Component<'a, 'i> {
     /// The one that is named, or the only one of its kind.
     fn one(model: Node<'a, 'i>, kind: &str, id: Option<&str>, option: &str) -> Result<Component<'a, 'i>, String> {
         let all: Vec<Component<'a, 'i>> = Component::all(model, kind).collect();
-        let known = || all.iter().map(Component::described).collect::<Vec<_>>().join(", ");
+        let known = || listed(&all);
         match (id, all.as_slice()) {
             (_, []) => Err(format!("there is no component `{kind}` in the file")),
             (None, [only]) => Ok(*only),
@@ -310,7 +387,11 @@ impl<'a, 'i> Component<'a, 'i> {
         };
         if given != unit {
             let wanted = if unit.is_empty() { "none" } else { unit };
-            return Err(format!("{}: `{name}` is given in {given}, REXS has it in {wanted}", self.described()));
+            return Err(format!(
+                "{}: `{name}` is given in {}, REXS has it in {wanted}",
+                self.described(),
+                on_one_line(given)
+            ));
         }
         self.parsed(name, node.text().unwrap_or_default()).map(Some)
     }
@@ -318,6 +399,7 @@ impl<'a, 'i> Component<'a, 'i> {
     /// Writes which of the attributes are not known, and what they are.
     fn tell_unused(&self, known: &[&str], out: &mut String) {
         let attributes = self.0.children().filter(|node| node.has_tag_name("attribute"));
+        let of = self.described();
         for node in attributes {
             let name = on_one_line(node.attribute("id").unwrap_or("?"));
             let texts = node.descendants().filter(Node::is_text).filter_map(|text| text.text());
@@ -325,7 +407,7 @@ impl<'a, 'i> Component<'a, 'i> {
             if !known.contains(&name.as_str()) && !words.is_empty() {
                 let unit = node.attribute("unit").filter(|unit| *unit != "none").unwrap_or_default();
                 let value = format!("{} {}", on_one_line(&words.join(" ")), on_one_line(unit));
-                let _ = writeln!(out, "//! Not used of {}: {name}, {}.", self.described(), value.trim_end());
+                let _ = writeln!(out, "//! Not used of {of}: {name}, {}.", value.trim_end());
             }
         }
     }
@@ -336,8 +418,10 @@ impl<'a, 'i> Component<'a, 'i> {
         let array = node.children().find(|inner| inner.has_tag_name("array"));
         if let Some((array, code)) = array.and_then(|array| Some((array, array.attribute("code")?))) {
             let text: String = array.text().unwrap_or_default().split_whitespace().collect();
-            return coded(&text, code)
-                .ok_or_else(|| format!("{}: `{name}` is no array of {code} in Base64: `{text}`", self.described()));
+            return coded(&text, code).ok_or_else(|| {
+                let [code, text] = [code, text.as_str()].map(on_one_line);
+                format!("{}: `{name}` is no array of {code} in Base64: `{text}`", self.described())
+            });
         }
         let cells: Vec<&str> = node
             .descendants()
@@ -350,7 +434,9 @@ impl<'a, 'i> Component<'a, 'i> {
 
     fn parsed(&self, name: &str, text: &str) -> Result<f64, String> {
         let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-        number.ok_or_else(|| format!("{}: `{name}` is `{}`, which is no number", self.described(), text.trim()))
+        number.ok_or_else(|| {
+            format!("{}: `{name}` is `{}`, which is no number", self.described(), on_one_line(text.trim()))
+        })
     }
 }
 

@@ -101,6 +101,76 @@ fn the_signs_of_a_left_hand_pinion_give_its_flank() {
     }
 }
 
+/// A job says the same on every machine: the name of its source, and not where that lies.
+#[test]
+fn a_job_names_its_source_without_a_folder() {
+    let out = folder("rexs_place");
+    let file = written(&out, "pinion.rexs", REXS);
+    let of = ["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"];
+    let job = text(&flank(&of).stdout);
+    assert!(job.starts_with("//! From pinion.rexs, REXS 1.4, ") && !job.contains(out.to_str().unwrap()), "{job}");
+}
+
+/// Names and units are those of some versions of the format; what others say may mean something else.
+#[test]
+fn another_version_is_noted() {
+    let out = folder("rexs_version");
+    for (version, is_known) in
+        [("1.3", true), ("1.6", true), ("1.7", false), ("1.10", false), ("1.2", false), ("2.0", false), ("new", false)]
+    {
+        let file = written(&out, "pinion.rexs", &REXS.replace("version=\"1.4\"", &format!("version=\"{version}\"")));
+        let run = flank(&["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let note = format!("it states REXS {version}, and names and units are read as those of REXS 1.3 to 1.6");
+        assert_eq!(text(&run.stderr).contains(&note), !is_known, "{version}: {}", text(&run.stderr));
+        assert_eq!(text(&run.stdout).contains(&note), !is_known, "{version}: {}", text(&run.stdout));
+    }
+}
+
+/// What a text costs to read is counted before it is read: such files once took minutes.
+#[test]
+fn what_would_take_long_is_refused_at_once() {
+    let out = folder("rexs_cost");
+    let many = (0..300_000).map(|k| format!(" a{k}=\"\"")).collect::<String>();
+    let name = "n".repeat(1 << 20);
+    let long = REXS.replace("name=\"outside\"", &format!("name=\"{name}\"")).replace(
+        "<attribute id=\"cutter_tilt\"",
+        &("<attribute id=\"more\">1</attribute>".repeat(1000) + "<attribute id=\"cutter_tilt\""),
+    );
+    for (content, wanted) in [
+        (
+            REXS.replace(" applicationId", &format!("{many} applicationId")),
+            "line 2: an element has more than 64 attributes",
+        ),
+        ("<model>".to_string() + &"<a>".repeat(300_000), "more than 64 elements stand inside each other"),
+        (format!("<model>{}</model>", "<a xmlns:b='c'/>".repeat(300_000)), "more than 16 namespaces are declared"),
+        (format!("<model>{}</model>", "<a/>".repeat(1_000_001)), "more than 1000000 elements and texts"),
+        (long, ""),
+    ] {
+        let file = written(&out, "long.rexs", &content);
+        let begun = std::time::Instant::now();
+        let run = flank(&["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"]);
+        let told = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(if wanted.is_empty() { 0 } else { 1 }), "{told}");
+        assert!(told.contains(wanted), "{told}");
+        assert!(run.stdout.len() < 1 << 20, "{} bytes", run.stdout.len());
+        assert!(begun.elapsed().as_secs() < 20, "{wanted}: {:?}", begun.elapsed());
+    }
+}
+
+/// A job has a name of its own, beside the words of the language and what the library defines.
+#[test]
+fn a_job_is_not_called_as_something_else() {
+    let out = folder("rexs_name");
+    let file = written(&out, "pinion.rexs", REXS);
+    for name in ["job", "mm", "length", "in", "cradle_generator", "face_mill", "edge_inset"] {
+        let of = ["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"];
+        let run = flank(&[&of[..], &["--name", name]].concat());
+        assert_eq!(run.status.code(), Some(2), "{name}: {}", text(&run.stdout));
+        assert!(run.stdout.is_empty(), "{name}");
+    }
+}
+
 /// Whatever a text of the file holds, it stays within its comment.
 #[test]
 fn texts_of_the_file_write_no_lines() {

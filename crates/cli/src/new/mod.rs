@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use flank_chain_dsl::syntax::ast::{Item, Job, JobStatement, Param};
 use flank_chain_dsl::syntax::parse;
 use flank_chain_dsl::{FileId, closest, compile_file};
-use flank_export::write_atomically;
+use flank_export::{WriteError, write_atomically};
 use flank_expr::Graph;
 use include_dir::{Dir, include_dir};
 use serde_json::{Value, json};
@@ -73,6 +73,12 @@ fn offer() -> Offer {
         }
     }
     offer
+}
+
+/// Whether a file of the library defines something of a name.
+pub(crate) fn defines(path: &str, name: &str) -> bool {
+    let text = LIBRARY.get_file(path).and_then(|file| file.contents_utf8()).unwrap_or_default();
+    parse(text, FileId(0)).0.items.iter().filter_map(Item::name).any(|known| known.node == name)
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
@@ -249,7 +255,7 @@ impl Made {
     /// # Errors
     /// What is wrong with what was given, shown there, or with the files as they would stand in `out`.
     fn compiled(&self, out: &Path) -> Result<(), Failure> {
-        let trial = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"))?;
+        let trial = tempfile::tempdir().map_err(|error| format!("no temporary folder: {}", WriteError::from(error)))?;
         put(trial.path(), &self.files)?;
         let file = trial.path().join(&self.files[0].0);
         let graph = Graph::new();
