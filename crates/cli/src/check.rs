@@ -1,20 +1,20 @@
 //! `flank check`
 
-use flank_chain_dsl::compile_file;
+use flank_chain_dsl::Request;
 use flank_expr::Graph;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
-use crate::failure::as_json;
-use crate::spec::{shown, tell};
+use crate::failure::{Failure, as_json};
+use crate::spec::{compiled, shown, tell};
 use crate::{Ending, print};
 
-pub(crate) fn run(arguments: &Check) -> Ending {
+pub(crate) fn run(arguments: &Check) -> Result<Ending, Failure> {
     let mut ending = Ending::Done;
     let mut files = Vec::new();
     for file in &arguments.files {
         let graph = Graph::new();
-        let compilation = compile_file(&graph, file, &[]);
+        let compilation = compiled(&graph, file, Request::default())?;
         let wrong = compilation.has_errors();
         if wrong {
             ending = Ending::Wrong;
@@ -31,5 +31,5 @@ pub(crate) fn run(arguments: &Check) -> Ending {
     if arguments.json {
         print(&format!("{:#}\n", json!({ "schema": "flank.check/1", "files": files })));
     }
-    ending
+    Ok(ending)
 }

@@ -1,6 +1,7 @@
 //! `flank deviation`
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Job};
@@ -87,6 +88,12 @@ pub(crate) struct Measured<'j, 'g> {
     pub(crate) cut_away: usize,
 }
 
+/// What a surface is held against.
+enum Second<'a> {
+    Measured(&'a Path),
+    Surface(&'a str),
+}
+
 pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
     let start = Instant::now();
     if arguments.measured.is_none() && arguments.margin.is_given() {
@@ -99,18 +106,22 @@ pub(crate) fn run(arguments: &Deviation) -> Result<Ending, Failure> {
             "--rows and --columns are those of --measured; with --from the points are those of its sample".to_string();
         return Err(Failure::of_usage(message));
     }
-    let graph = Graph::new();
-    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
-    let mut origin = Origin::of(&compilation);
-    let surface = find(&jobs, &arguments.surface)?;
-    let measured = match (&arguments.measured, &arguments.from) {
-        (Some(file), _) => inspect::inspect(surface, file, arguments, &mut origin)?,
-        (None, Some(from)) => measure([surface, find(&jobs, from)?], arguments.as_it_lies, arguments.means)?,
+    let second = match (&arguments.measured, &arguments.from) {
+        (Some(file), _) => Second::Measured(file),
+        (None, Some(name)) => Second::Surface(name),
         (None, None) => {
             let message =
                 format!("say what `{}` is held against: --from SURFACE or --measured FILE", arguments.surface);
             return Err(Failure::of_usage(message));
         }
+    };
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
+    let mut origin = Origin::of(&compilation);
+    let surface = find(&jobs, &arguments.surface)?;
+    let measured = match second {
+        Second::Measured(file) => inspect::inspect(surface, file, arguments, &mut origin)?,
+        Second::Surface(from) => measure([surface, find(&jobs, from)?], arguments.as_it_lies, arguments.means)?,
     };
     let written = measured.write(arguments, &origin)?;
     print(&if arguments.json { measured.json(&written) } else { measured.text(&written) });

@@ -1,24 +1,22 @@
 //! `flank fmt`
 
-use std::io::Read;
 use std::path::Path;
 
-use flank_chain_dsl::limits::FILE_BYTES;
 use flank_chain_dsl::{FileId, Sources, format, read_file};
 use flank_export::write_atomically;
 use serde_json::{Value, json};
 
 use crate::arguments::Fmt;
 use crate::failure::Failure;
-use crate::spec::shown;
+use crate::spec::{is_stdin, shown, stdin};
 use crate::{Ending, print};
 
 pub(crate) fn run(arguments: &Fmt) -> Ending {
     let mut ending = Ending::Done;
     let mut told = Vec::new();
     for path in &arguments.files {
-        let to_stdout = path.as_os_str() == "-" && !arguments.check;
-        let done = if path.as_os_str() == "-" { stream() } else { in_place(path, arguments.check) };
+        let to_stdout = is_stdin(path) && !arguments.check;
+        let done = if is_stdin(path) { stream() } else { in_place(path, arguments.check) };
         if arguments.json {
             told.push(as_json(path, to_stdout, &done));
         }
@@ -93,11 +91,7 @@ fn tell_other_names(path: &Path) {
 /// Lays out what comes from stdin.
 fn stream() -> Result<LaidOut, Failure> {
     let mut sources = Sources::default();
-    let mut text = String::new();
-    // one byte more than a file may have, so that a longer text is refused and not cut
-    let read = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text);
-    read.map_err(|error| format!("cannot read the standard input: {error}"))?;
-    let file = sources.add("-", text);
+    let file = sources.add("-", stdin()?);
     laid_out(&sources, file)
 }
 

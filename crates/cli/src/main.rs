@@ -93,7 +93,7 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments),
-        Command::Check(arguments) => Ok(check::run(arguments)),
+        Command::Check(arguments) => check::run(arguments),
         Command::Convert(arguments) => convert::run(arguments),
         Command::Derive(arguments) => derive::run(arguments),
         Command::Report(arguments) => report::run(arguments),

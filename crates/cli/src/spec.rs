@@ -1,8 +1,10 @@
 //! From the command line's file to jobs, with the findings told on the way.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Diagnostic, Job, Sources, compile_file, read_other_file};
+use flank_chain_dsl::limits::FILE_BYTES;
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Request, Sources, compile_request, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -16,9 +18,33 @@ use crate::failure::{Failure, in_full};
 /// What is wrong with the spec.
 pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
     which.check()?;
-    let mut compilation = sound(compile_file(graph, &which.file, &which.set))?;
+    let mut compilation = sound(compiled(graph, &which.file, which.request())?)?;
     let jobs = asked_for(&mut compilation, which)?;
     Ok((compilation, jobs))
+}
+
+/// What becomes of a file, or of the standard input where that is called `-`.
+///
+/// # Errors
+/// If the standard input cannot be read.
+pub(crate) fn compiled<'g>(graph: &'g Graph, file: &Path, request: Request<'_>) -> Result<Compilation<'g>, Failure> {
+    let text = is_stdin(file).then(stdin).transpose()?;
+    Ok(compile_request(graph, file, &Request { text: text.as_deref(), ..request }))
+}
+
+pub(crate) fn is_stdin(file: &Path) -> bool {
+    file.as_os_str() == "-"
+}
+
+/// A spec from the standard input; one byte more than a file may have, so that a longer text is refused and not cut.
+///
+/// # Errors
+/// Why it cannot be read.
+pub(crate) fn stdin() -> Result<String, Failure> {
+    let mut text = String::new();
+    let read = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text);
+    read.map_err(|error| format!("cannot read the standard input: {error}"))?;
+    Ok(text)
 }
 
 /// A compilation without errors, whose warnings are told.
@@ -39,7 +65,26 @@ pub(crate) fn sound(compilation: Compilation<'_>) -> Result<Compilation<'_>, Fai
 /// Which there are, if there is none of that name, or none at all.
 pub(crate) fn asked_for<'g>(compilation: &mut Compilation<'g>, which: &Which) -> Result<Vec<Job<'g>>, Failure> {
     let jobs = compilation.take_jobs(which.job.as_deref());
-    jobs.map_err(|finding| Failure::of_spec(&[finding], &compilation.sources))
+    let jobs = jobs.map_err(|finding| Failure::of_spec(&[finding], &compilation.sources))?;
+    eprint(&set_in_several(which, &jobs));
+    Ok(jobs)
+}
+
+/// The values that were set by hand and change several jobs; empty if none does.
+fn set_in_several(which: &Which, jobs: &[Job<'_>]) -> String {
+    let mut out = String::new();
+    for (name, _) in &which.set {
+        let changed = jobs.iter().filter(|job| which.changes(name, job));
+        let changed: Vec<&str> = changed.map(|job| job.name.as_str()).collect();
+        if let [first, _, ..] = changed[..] {
+            out += &format!(
+                "note: `--set {name}` changes {} jobs: {}; `--set {first}.{name}=…` changes one\n",
+                changed.len(),
+                changed.join(", ")
+            );
+        }
+    }
+    out
 }
 
 /// Shows findings with the source underlined, and where to read more about the first error.

@@ -230,6 +230,9 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
     let rexs = written(&folder, "pinion.rexs", support::REXS);
     let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n}\n");
     let blocked = format!("{wrong}/here");
+    // whether a folder is there does not make the command line right or wrong
+    std::fs::create_dir(folder.join("gears.step")).expect("a folder for the test");
+    let called_like_a_file = folder.join("gears.step").to_str().expect("a plain path").to_string();
     let usage: &[&[&str]] = &[
         &["sovle"],
         &["solve", SPUR, "--format", "docx"],
@@ -244,11 +247,17 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
         &["plot", SPUR, "--surface", "flank_plus", "--from", "flank_minus", "--what", "left"],
         &["report", SPUR, "--out", "spur.md", "--format", "html"],
         &["report", SPUR, "--out", "spur.csv"],
+        &["report", "nosuch.chain", "--out", "spur.md", "--format", "html"],
         &["deviation", SPUR, "flank_plus"],
+        &["deviation", "nosuch.chain", "flank_plus"],
+        &["convert", "nosuch.chain", "--to", MACHINE, "--fit", "work_offset", "--tolerance", "1um"],
+        &["solve", SPUR, "--out", &called_like_a_file],
         &["measure", SPUR, "--rows", "1"],
         &["explain", "E9999"],
         &["import", &rexs, "--signs", "mine", "--outside", "21"],
         &["import", &rexs, "--signs", "frames"],
+        &["import", "nosuch.rexs", "--signs", "frames"],
+        &["import", &rexs, "--signs", "frames", "--outside", "21", "--name", "job"],
         &["fmt"],
         &["view", SPUR, "--out", "spur.html"],
         &["new", "nosuch"],
@@ -265,6 +274,7 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
         &["check", &wrong],
         &["convert", SPUR, "--to", "nosuch.chain"],
         &["convert", SPUR, "--to", MACHINE, "--surface", "nosuch"],
+        &["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/cradle.chain", "--tolerance", "1um"],
         &["derive", SPUR, "--set", "nosuch=1"],
         &["plot", SPUR, "--surface", "nosuch"],
         &["plot", SPUR, "--what", "left"],
@@ -288,6 +298,115 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
             assert!(has_own_document || told["exit_code"] == code, "{command:?}: {told}");
         }
     }
+}
+
+/// A folder that is called like a file is one where its name ends like that of a folder.
+#[test]
+fn a_folder_may_be_called_like_a_file() {
+    let out = folder("exit_codes_folder").join("gears.step");
+    let out = format!("{}/", out.to_str().expect("a plain path"));
+    let run = flank(&["solve", "specs/tutorial/first_gear.chain", "--no-picture", "--out", &out]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(std::path::Path::new(&out).join("first_gear.csv").exists());
+}
+
+/// A spec may come from the standard input: it stands in the folder in which the program is called.
+#[test]
+fn a_spec_is_checked_from_the_standard_input() {
+    let folder = folder("check_stdin");
+    written(&folder, "flank.toml", "");
+    written(&folder, "machine.chain", "machine plain {\n    frame bed\n}\n");
+    let check = |spec: &str, arguments: &[&str]| {
+        let input = written(&folder, "input", spec);
+        let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"));
+        let run =
+            run.arg("check").args(arguments).current_dir(&folder).stdin(std::fs::File::open(input).expect("written"));
+        let run = run.output().expect("the binary runs");
+        (run.status.code(), text(&run.stdout), text(&run.stderr))
+    };
+    let right = "use \"machine.chain\"\nmachine more extends plain {\n    frame table in bed = translate_x(1 mm)\n}\n";
+    assert_eq!(check(right, &["-"]), (Some(0), "-: ok\n".to_string(), String::new()));
+    let (code, told, why) = check(&right.replace("1 mm", "1 deg"), &["-"]);
+    assert!(code == Some(1) && told == "-: wrong\n" && why.contains("--> -:3:38"), "{told}{why}");
+    let (code, told, _) = check(right, &["-", "machine.chain", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    assert!(code == Some(0) && told["files"][0]["file"] == "-" && told["files"][1]["ok"] == true, "{told}");
+    let (code, _, why) = check(&right.replace("machine.chain", "../other.chain"), &["-"]);
+    assert!(code == Some(1) && why.contains("E0003"), "{why}");
+}
+
+/// Which files a spec may use does not depend on where the program is called.
+#[test]
+fn a_project_is_found_from_its_spec() {
+    let out = tempfile::tempdir().expect("a folder that is in no project");
+    let folder = out.path().join("gears/spur/first");
+    std::fs::create_dir_all(&folder).expect("a folder for the test");
+    written(&out.path().join("gears"), "machine.chain", "machine plain {\n    frame bed\n}\n");
+    let spec = written(&folder, "spec.chain", "use \"../../machine.chain\"\n\nmachine more extends plain {}\n");
+    let check = |from: &std::path::Path| {
+        let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"));
+        let run = run.args(["check", &spec]).current_dir(from).output().expect("the binary runs");
+        (run.status.code(), text(&run.stderr).contains("E0003"))
+    };
+    let folders = [out.path(), &out.path().join("gears"), &folder, std::path::Path::new("/")];
+    for from in folders {
+        assert_eq!(check(from), (Some(1), true), "{}", from.display());
+    }
+    written(&out.path().join("gears"), "flank.toml", "");
+    for from in folders {
+        assert_eq!(check(from), (Some(0), false), "{}", from.display());
+    }
+}
+
+/// A value from outside changes what its name says, and where that is more than one job, it is told.
+#[test]
+fn a_value_says_which_jobs_it_changes() {
+    let out = folder("set_jobs");
+    let spec = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let (before, job) = spec.split_at(spec.find("job first_gear").expect("its job"));
+    let (job, _) = job.split_once("\n}\n").expect("the job ends");
+    let second = job.replacen("first_gear", "second_gear", 1);
+    let spec = written(&out, "two.chain", &format!("{before}{job}\n}}\n\n{second}\n}}\n"));
+    let solve = |more: &[&str]| {
+        let run = flank(&[&["solve", &spec, "--no-picture", "--out", out.to_str().unwrap()], more].concat());
+        let told = text(&run.stderr);
+        let set = ["first_gear", "second_gear"].map(|name| {
+            let table = std::fs::read_to_string(out.join(format!("{name}.csv"))).unwrap_or_default();
+            let _ = std::fs::remove_file(out.join(format!("{name}.csv")));
+            let mut lines = table.lines().filter_map(|line| line.strip_prefix("# set by hand: "));
+            lines.next().unwrap_or_default().to_string()
+        });
+        (run.status.code(), set, told)
+    };
+    let value = "r.pressure_angle=21 deg";
+    let text_of = |name: &str| format!("{name}r.pressure_angle = 21 deg");
+    let (code, set, told) = solve(&["--set", value]);
+    assert_eq!((code, set), (Some(0), [text_of(""), text_of("")]));
+    assert!(told.contains("note: `--set r.pressure_angle` changes 2 jobs: first_gear, second_gear; `--set first_gear.r.pressure_angle=…`"), "{told}");
+    let (code, set, told) = solve(&["--set", value, "--job", "second_gear"]);
+    assert_eq!((code, set), (Some(0), [String::new(), text_of("")]));
+    assert!(!told.contains("note"), "{told}");
+    let (code, set, told) = solve(&["--set", &format!("second_gear.{value}")]);
+    assert_eq!((code, set), (Some(0), [String::new(), text_of("second_gear.")]));
+    assert!(!told.contains("note"), "{told}");
+    // the one that names its job goes before the one for all
+    let (code, set, told) = solve(&["--set", "r.pressure_angle=22 deg", "--set", &format!("second_gear.{value}")]);
+    assert_eq!((code, &set[1]), (Some(0), &text_of("second_gear.")));
+    assert!(set[0] == "r.pressure_angle = 22 deg" && !told.contains("note"), "{set:?} {told}");
+    // a value that the other job cannot have is no matter where it is not asked for
+    let narrow = std::fs::read_to_string(&spec).expect("written");
+    let (first, second) = narrow.split_at(narrow.find("job second_gear").expect("the second job"));
+    let second = second.replacen('{', "{\n    require teeth < 30 : \"few teeth\"", 1);
+    std::fs::write(&spec, format!("{first}{second}")).expect("the test's file");
+    assert_eq!(solve(&["--set", "teeth=40", "--job", "first_gear"]).0, Some(0));
+    assert_eq!(solve(&["--set", "teeth=40"]).0, Some(1));
+    // of two names for all jobs there is one that changes nothing
+    let both = ["--set", "teeth=20", "--set", "first_gear.teeth=21", "--set", "second_gear.teeth=22"];
+    let (code, _, told) = solve(&both);
+    assert!(
+        code == Some(1) && told.contains("`teeth` changes nothing beside `first_gear.teeth`, `second_gear.teeth`"),
+        "{told}"
+    );
 }
 
 #[test]

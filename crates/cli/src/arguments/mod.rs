@@ -5,11 +5,11 @@ mod measuring;
 mod report;
 
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, is_separator};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use flank_chain_dsl::{Code, Job};
+use flank_chain_dsl::{Code, Job, Request};
 use flank_expr::InstructionSet;
 
 use crate::failure::Failure;
@@ -105,17 +105,22 @@ impl Command {
 /// Which job of which file, with which values.
 #[derive(Args, Debug)]
 pub(crate) struct Which {
-    /// The file that the job stands in
+    /// The file that the job stands in; - for stdin
     pub(crate) file: PathBuf,
     /// The job, where the file holds several; all of them otherwise
     #[arg(long, value_name = "NAME")]
     pub(crate) job: Option<String>,
-    /// Another value for a job parameter or a setting, with its unit: teeth=25, m.swivel="-3 deg"
+    /// Another value for a job parameter or a setting, with its unit: teeth=25, m.swivel="-3 deg"; of one job where several have it:
+    /// pinion.m.swivel="-3 deg"
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub(crate) set: Vec<(String, String)>,
 }
 
 impl Which {
+    pub(crate) fn request(&self) -> Request<'_> {
+        Request { job: self.job.as_deref(), set: &self.set, ..Request::default() }
+    }
+
     /// # Errors
     /// If one name is set twice, whatever the file says.
     pub(crate) fn check(&self) -> Result<(), Failure> {
@@ -131,7 +136,13 @@ impl Which {
 
     /// The values that were set by hand, of parameters and settings of these jobs.
     pub(crate) fn set_in(&self, jobs: &[&Job<'_>]) -> Vec<&(String, String)> {
-        self.set.iter().filter(|(name, _)| jobs.iter().any(|job| job.has_parameter(name))).collect()
+        self.set.iter().filter(|(name, _)| jobs.iter().any(|job| self.changes(name, job))).collect()
+    }
+
+    /// Whether a value that was set by hand changes a job; one with the job's name before it goes before one for all jobs.
+    pub(crate) fn changes(&self, name: &str, job: &Job<'_>) -> bool {
+        let own = format!("{}.{name}", job.name);
+        job.has_parameter(name) && !self.set.iter().any(|(other, _)| *other == own)
     }
 }
 
@@ -327,13 +338,16 @@ fn folder() -> impl TypedValueParser<Value = PathBuf> {
 
 fn no_file(path: PathBuf) -> Result<PathBuf, String> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    if path.is_dir() || !OF_FILES.contains(&extension) {
+    let ends_as_folder = path.as_os_str().as_encoded_bytes().last().is_some_and(|last| is_separator(char::from(*last)));
+    if ends_as_folder || !OF_FILES.contains(&extension) {
         return Ok(path);
     }
     let above = path.parent().filter(|above| !above.as_os_str().is_empty()).unwrap_or(Path::new("."));
     Err(format!(
-        "a folder is wanted, and that looks like a file; say --out {}, files are named after the job",
-        above.display()
+        "a folder is wanted, and that looks like a file; say --out {}, files are named after the job, or --out {}/ if the folder is \
+         called so",
+        above.display(),
+        path.display()
     ))
 }
 
@@ -366,9 +380,10 @@ fn count(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + C
 Examples:
   flank check specs/hobbing/helical_gear.chain
   flank check specs/*/*.chain
-  flank check --json my_machine.chain")]
+  flank check --json my_machine.chain
+  flank check - < draft.chain          files that it uses are looked for from the current folder")]
 pub(crate) struct Check {
-    /// The files
+    /// The files; - for stdin
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
     /// Print the findings as JSON
@@ -593,5 +608,11 @@ fn quotable(text: &str) -> Result<String, String> {
 fn job_name(text: &str) -> Result<String, String> {
     let is_word = text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     let is_name = is_word && text.starts_with(|letter: char| letter.is_ascii_alphabetic());
-    is_name.then(|| text.to_owned()).ok_or("a name has letters, digits and _, a letter first".to_owned())
+    if !is_name {
+        return Err("a name has letters, digits and _, a letter first".to_owned());
+    }
+    if flank_chain_dsl::syntax::is_reserved(text) {
+        return Err("this is a word of the language and cannot be a name".to_owned());
+    }
+    Ok(text.to_owned())
 }

@@ -11,7 +11,7 @@ mod table;
 
 use std::path::Path;
 
-use flank_chain_dsl::{Axis, Bounded, Job, Machine, compile_with_machine};
+use flank_chain_dsl::{Axis, Bounded, Job, Machine, Request};
 use flank_expr::geometry::{Chain, Step};
 use flank_expr::{Expr, Graph};
 use flank_solver::{
@@ -34,6 +34,7 @@ const REACH: f64 = 10_000.0;
 
 pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
     check_positions(arguments)?;
+    check_fit_alone(arguments)?;
     let graph = Graph::new();
     let (origin, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
     let target = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
@@ -41,7 +42,7 @@ pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
         let (table, told) = carry(&job, target, &origin, arguments)?;
         (if arguments.json { table.json(&told) } else { table.text() }, told)
     } else {
-        check_settings_alone(&target, arguments)?;
+        check_settings_alone(&target, &arguments.of_a_motion())?;
         settings::find(&job, &target, arguments)?
     };
     print(&shown);
@@ -60,18 +61,30 @@ fn check_positions(arguments: &Convert) -> Result<(), Failure> {
 }
 
 /// # Errors
-/// If something is asked for that there is only of a motion, while settings are looked for.
-fn check_settings_alone(target: &Target<'_, '_>, arguments: &Convert) -> Result<(), Failure> {
-    let [first, ..] = target.settings[..] else { return Ok(()) };
+/// If something is asked for that there is only of a motion, beside settings that are to be looked for.
+fn check_fit_alone(arguments: &Convert) -> Result<(), Failure> {
     let dropped = arguments.of_a_motion();
+    if arguments.fit.is_empty() || dropped.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::of_usage(format!(
+        "--fit looks for settings, and of them there are no files: leave out {}, and ask for it when the settings have their values",
+        dropped.join(", ")
+    )))
+}
+
+/// # Errors
+/// If something is asked for that there is only of a motion, while settings are looked for that have no values.
+fn check_settings_alone(target: &Target<'_, '_>, dropped: &[&str]) -> Result<(), Failure> {
+    let [first, ..] = target.settings[..] else { return Ok(()) };
     if dropped.is_empty() {
         return Ok(());
     }
-    let why = if arguments.fit.is_empty() { format!(", because {} has no value", first.name) } else { String::new() };
-    Err(Failure::of_usage(format!(
-        "settings of {} are looked for{why}, and of them there are no files: leave out {}, and ask for it when the settings have \
-         their values: --set {}=…",
+    Err(Failure::from(format!(
+        "settings of {} are looked for, because {} has no value, and of them there are no files: leave out {}, and ask for it when \
+         the settings have their values: --set {}=…",
         target.machine.name,
+        first.name,
         dropped.join(", "),
         first.name
     )))
@@ -83,7 +96,8 @@ fn check_settings_alone(target: &Target<'_, '_>, arguments: &Convert) -> Result<
 /// What is wrong with the texts, or that it is not clear which job is meant.
 pub(crate) fn compiled<'g>(graph: &'g Graph, which: &Which, to: &Path) -> Result<(Origin, Job<'g>, Job<'g>), Failure> {
     which.check()?;
-    let mut compilation = spec::sound(compile_with_machine(graph, &which.file, to, &which.set))?;
+    let request = Request { machine: Some(to), ..which.request() };
+    let mut compilation = spec::sound(spec::compiled(graph, &which.file, request)?)?;
     let mut jobs = spec::asked_for(&mut compilation, which)?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
     let origin = Origin::of(&compilation);

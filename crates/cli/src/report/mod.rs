@@ -30,6 +30,7 @@ use crate::{Ending, certify, cut, eprint, print, required, spec};
 use target::Target;
 
 pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
+    Target::check(arguments)?;
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &arguments.which)?;
     let jobs = solve::asked(&jobs)?;

@@ -19,25 +19,34 @@ pub(super) struct Target {
 
 impl Target {
     /// # Errors
-    /// In words, if one file is to hold several reports or formats.
-    pub(super) fn of(arguments: &Report, jobs: &[&Job<'_>]) -> Result<Target, Failure> {
+    /// In words, if one file is to hold several formats.
+    pub(super) fn check(arguments: &Report) -> Result<(), Failure> {
+        let out = &arguments.out;
+        let format = ReportFormat::of(out);
+        match arguments.format.iter().find(|other| format.is_some_and(|format| **other != format)) {
+            Some(other) => {
+                let message = format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other));
+                Err(Failure::of_usage(message))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// # Errors
+    /// In words, if one file is to hold several reports.
+    pub(super) fn of(arguments: &Report, jobs: &[&Job<'_>]) -> Result<Target, String> {
         let out = &arguments.out;
         let Some(format) = ReportFormat::of(out) else {
             let formats = if arguments.format.is_empty() { vec![ReportFormat::Html] } else { arguments.format.clone() };
             return Ok(Target { folder: out.clone(), file: None, formats });
         };
-        if let Some(other) = arguments.format.iter().find(|other| **other != format) {
-            let message = format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other));
-            return Err(Failure::of_usage(message));
-        }
         if jobs.len() > 1 {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
             let names = names.join(", ");
             return Err(format!(
                 "{} can hold one job of {names}: choose it with --job, or name a folder",
                 out.display()
-            )
-            .into());
+            ));
         }
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = out.file_name().map(|name| name.to_string_lossy().into_owned());
