@@ -396,10 +396,10 @@ fn a_value_says_which_jobs_it_changes() {
     // a value that the other job cannot have is no matter where it is not asked for
     let narrow = std::fs::read_to_string(&spec).expect("written");
     let (first, second) = narrow.split_at(narrow.find("job second_gear").expect("the second job"));
-    let second = second.replacen('{', "{\n    require teeth < 30 : \"few teeth\"", 1);
+    let second = second.replacen("    let", "    require teeth < 25, \"few teeth\"\n    let", 1);
     std::fs::write(&spec, format!("{first}{second}")).expect("the test's file");
-    assert_eq!(solve(&["--set", "teeth=40", "--job", "first_gear"]).0, Some(0));
-    assert_eq!(solve(&["--set", "teeth=40"]).0, Some(1));
+    assert_eq!(solve(&["--set", "teeth=30", "--job", "first_gear"]).0, Some(0));
+    assert_eq!(solve(&["--set", "teeth=30"]).0, Some(1));
     // of two names for all jobs there is one that changes nothing
     let both = ["--set", "teeth=20", "--set", "first_gear.teeth=21", "--set", "second_gear.teeth=22"];
     let (code, _, told) = solve(&both);

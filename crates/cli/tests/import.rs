@@ -312,7 +312,7 @@ fn a_rexs_file_as_programs_write_it_becomes_a_job() {
 #[test]
 fn what_has_no_end_is_not_read() {
     for (file, why) in support::endless(&folder("import_endless")) {
-        let run = flank(&["import", &file, "--signs", "frames"]);
+        let run = flank(&["import", &file, "--signs", "frames", "--outside", "21"]);
         assert_eq!(run.status.code(), Some(1), "{file}");
         let told = text(&run.stderr);
         assert!(told.contains(&format!("error[E0001]: cannot read `{file}`: {why}")), "{told}");

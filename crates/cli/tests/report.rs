@@ -120,12 +120,19 @@ fn numbers_are_those_of_solve() {
     let k1 = first["fields"].as_array().unwrap().iter().find(|field| field["name"] == "k1").unwrap();
     has_row(&rows, &["flank_plus", "largest, k1", &format!("{:.6}", k1["high"].as_f64().unwrap())]);
     let most = &first["sensitivity"]["parameters"][0];
-    let moves = ["rms", "largest"].map(|key| most[key].as_f64().expect("a displacement"));
+    // the page tells them for a usual change of the parameter
+    let (change, of_unit) = match most["unit"].as_str() {
+        Some("um/mm") => ("0.01 mm", 0.01),
+        Some("um/arcmin") => ("1 arcmin", 1.0),
+        other => panic!("{other:?} moves most"),
+    };
+    let moves = ["rms", "largest"].map(|key| of_unit * most[key].as_f64().expect("a displacement"));
     let row = rows
         .iter()
         .find(|row| row.first().is_some_and(|name| name == "flank_plus") && row.len() == 5 && row[1] == most["name"]);
     let row = row.expect("the parameter that moves it most comes first");
-    for (cell, value) in row[2..4].iter().zip(moves) {
+    assert_eq!(row[2], change);
+    for (cell, value) in row[3..5].iter().zip(moves) {
         let shown: f64 = cell.replace('\u{2212}', "-").parse().expect("a number");
         assert!((shown - value).abs() <= 5e-4 * value.abs().max(1.0), "{row:?}: {most}");
     }
