@@ -200,7 +200,7 @@ fn failures_of_all_commands() {
         let told = judge.run(&[command, &at].concat(), 1);
         assert!(told[0]["message"].as_str().expect("text").contains("cannot make the folder"), "{command:?}: {told:?}");
     }
-    for command in [&["solve", CRADLE][..], &["import", "none.rexs", "--signs", "frames"]] {
+    for command in [&["solve", CRADLE][..], &["import", "none.rexs", "--signs", "frames", "--outside", "21"]] {
         judge.run(&[command, &["--json"]].concat(), 1);
     }
     for command in

@@ -88,7 +88,7 @@ machine led {
     axis Z : linear
     axis C : rotary
     frame bed
-    frame slide in bed = translate(X, 0 mm, Z) rotate_y(tilt)
+    frame slide in bed = rotate_y(tilt) translate(X, 0 mm, Z)
     frame work  in bed = rotate_z(C)
 }
 tool led_ball {
