@@ -11,6 +11,17 @@ const POINTS: usize = 10_000;
 /// Relative to the number, absolute below 1.
 const TOLERANCE: f64 = 1e-12;
 
+/// Lines of comments that compilers refuse, or that are no comments: ends and beginnings, ends of lines, a trigraph, letters that turn the
+/// direction of reading, a byte order mark.
+const NASTY: [&str; 6] = [
+    "ends */ here, /* begins, */* and /*/ both, and breaks\na line\\",
+    "spec of Räder/\u{202e}niahc.\u{2066}gear\u{2069}\u{200f}\u{61c}",
+    "what ??/",
+    "\u{feff}\u{2028}int main(void);\u{2029}\u{85}\r\n#error",
+    "*\\",
+    "/",
+];
+
 fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low + (high - low) * dice.roll(1 << 30) as f64 / f64::from(1 << 30)
 }
@@ -39,7 +50,7 @@ fn check<const N: usize>(arguments: &[Expr<'_>; N], outputs: &[Expr<'_>], points
         graph.evaluate(&all, &values)
     };
     let expected: Vec<Vec<f64>> = points.iter().map(interpreted).collect();
-    let comment = ["ends */ here, /* begins, and breaks\na line\\".to_string()];
+    let comment = NASTY.map(str::to_string);
     for language in LANGUAGES {
         let signature = Signature { name: "under test", comment: &comment };
         let text = emit_function(language, signature, arguments, &named).expect("all are arguments");

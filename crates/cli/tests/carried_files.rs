@@ -16,7 +16,7 @@ fn converted(job: &[&str], out: &Path) -> (Option<i32>, String, String) {
 
 fn read(out: &Path, name: &str) -> String {
     // remarks of NC programs are broken into lines
-    std::fs::read_to_string(out.join(name)).expect(name).replace(")\n(", " ")
+    std::fs::read_to_string(out.join(name)).expect(name).replace(")\n(+", "")
 }
 
 /// Heads name tool, work, surfaces and the machine, and two tools of one job have files of their own.

@@ -188,12 +188,38 @@ fn linuxcnc_understands_its_program() {
     }
 }
 
+/// Remarks that begin with a path's words: the interpreter obeys none of them, and reads the same positions.
+#[test]
+fn linuxcnc_takes_no_orders_from_a_path() {
+    if Command::new("rs274").arg("-h").output().is_err() {
+        eprintln!("skipped 1 test: rs274 of linuxcnc-uspace is not installed");
+        return;
+    }
+    let out = folder("rs274_path");
+    let specs = ["functions/bevel", "machines/cradle_tilt", "tools/face_mill", "bevel/thesis_gear"];
+    let job = support::self_contained(&specs);
+    let mut told = Vec::new();
+    for words in ["plain ".repeat(12), "LOGOPEN,opened.txt ".repeat(12), "ABORT,no ".repeat(20), "PY,1 ".repeat(40)] {
+        let named = out.join(&words);
+        std::fs::create_dir(&named).expect("the test's folder");
+        let spec = support::written(&named, "thesis_gear.chain", &job);
+        let arguments =
+            ["convert", &spec, "--to", "specs/machines/free_form.chain", "--nc", "linuxcnc", "--time", "30"];
+        let run = flank(&[&arguments[..], &["--surface", "concave", "--out", out.to_str().unwrap()]].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let read = interpreted(&out, &out.join("thesis_gear_on_free_form.ngc"));
+        told.push(read.lines().filter(|line| line.contains("STRAIGHT_FEED")).map(str::to_owned).collect::<Vec<_>>());
+        assert!(!out.join("opened.txt").exists() && !top().join("crates/cli/opened.txt").exists(), "{words}");
+    }
+    assert!(!told[0].is_empty() && told.windows(2).all(|pair| pair[0].len() == pair[1].len()), "{told:?}");
+}
+
 /// What the interpreter makes of a program.
 fn interpreted(folder: &Path, program: &Path) -> String {
     let tools = support::written(folder, "tool.tbl", "T1 P1 D10.0 Z0.0 ;cutter\n");
     let variables = support::written(folder, "v.var", "5161 0\n5220 1\n");
     let arguments = ["-g", "-t", &tools, "-v", &variables, program.to_str().expect("a plain path")];
-    let run = Command::new("rs274").args(arguments).output().expect("it is installed");
+    let run = Command::new("rs274").args(arguments).current_dir(folder).output().expect("it is installed");
     let told = format!("{}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
     assert!(run.status.success(), "{told}");
     told

@@ -167,7 +167,7 @@ fn axes_are_written_as_the_control_counts() {
     }
     let text = program(&table, Dialect::LinuxCnc);
     let told = "axis B: -slide of B + 90 deg, from 72.759700 to 72.811263 deg, travel 0 .. 100 deg";
-    assert!(text.replace(")\n(", " ").contains(told), "{told} in {text}");
+    assert!(text.replace(")\n(+", "").contains(told), "{told} in {text}");
     table.axes[4].travel = Some([-1.0, 0.31]);
     table.rows[100].axes[4] = 0.32;
     let beyond =
@@ -201,6 +201,97 @@ fn heads_tell_what_a_reader_must_know() {
         assert!(text.contains("axis x: slide of x, from -23.6416 to 23.6416 mm, travel -300 .. 300 mm"), "{text}");
         assert!(!text.contains("-0.000 ") && text.is_ascii() && text.lines().all(|line| line.len() < 100), "{text}");
     }
+}
+
+/// What ends remarks, blocks or programs, and what controls take for orders where a remark begins with it.
+const NASTY: [&str; 30] = [
+    "LOGOPEN,x.ngc",
+    "(LOGOPEN,x.ngc)",
+    "py,import",
+    "( PY ,x)",
+    "ABORT,",
+    "MSG,stop",
+    "debug,#1",
+    "PRINT,",
+    "probeopen x",
+    "LOGCLOSE",
+    "logappend,x",
+    "pyrun,x",
+    "pyreload",
+    "AXIS,hide",
+    ") M3 (",
+    ";py,x",
+    "%",
+    "\n%\n",
+    "\r\nM30\r\n",
+    "$PATH=/x",
+    "*RO*",
+    "\"",
+    "ü",
+    "\u{202e}",
+    "\u{2028}",
+    "\0",
+    "M2",
+    "O0002",
+    "a",
+    "and/words",
+];
+
+/// Whatever stands in names, paths and sentences, and wherever it comes to stand.
+#[test]
+fn no_text_from_outside_is_an_order() {
+    const OPENINGS: [&str; 6] = ["JOB ", "BY ", "- ", "MOTION FROM ", "AXIS ", "+ "];
+    let mut seed = 1u64;
+    let mut roll = |sides: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % sides
+    };
+    for round in 0..400 {
+        let mut text = || {
+            let between = ["", " ", "/", " (", "   "][roll(5)];
+            let words = (0..1 + roll(60)).map(|_| NASTY[roll(NASTY.len())]);
+            words.collect::<Vec<_>>().join(between)
+        };
+        let mut table = table();
+        table.rows.truncate(2 + round % 2);
+        let header = &mut table.header;
+        (header.program, header.spec, header.spec_hash, header.job) = (text(), text(), text(), text());
+        header.conventions = vec![text(), text()];
+        table.motion.name = text();
+        table.axes.iter_mut().for_each(|axis| axis.name = text());
+        for dialect in Dialect::ALL {
+            let program = program(&table, dialect);
+            let is_remark = |line: &&str| line.starts_with(if dialect == Dialect::Siemens840D { ';' } else { '(' });
+            for line in program.lines() {
+                let is_plain = line.bytes().all(|letter| matches!(letter, b' '..=b'~')) && line.len() < 80;
+                assert!(is_plain, "{dialect:?}: {line:?}");
+            }
+            for line in program.lines().filter(is_remark) {
+                let inside = match dialect {
+                    Dialect::Siemens840D => line.strip_prefix("; "),
+                    Dialect::Fanuc | Dialect::LinuxCnc => {
+                        line.strip_prefix('(').and_then(|line| line.strip_suffix(')'))
+                    }
+                };
+                let inside = inside.expect("nothing stands behind a remark").to_ascii_uppercase();
+                assert!(
+                    OPENINGS.iter().any(|opening| format!("{inside} ").starts_with(opening)),
+                    "{dialect:?}: {line}"
+                );
+                assert!(!inside.contains(['(', ')', ';', '%']), "{dialect:?}: {line}");
+            }
+            // what is no remark is as of a table with plain names
+            let orders = |program: &str| program.lines().filter(|line| !is_remark(line)).map(str::to_owned).collect();
+            let (found, plain): (Vec<String>, Vec<String>) =
+                (orders(&program), orders(&self::program(&plain(&table), dialect)));
+            assert_eq!(found, plain, "{dialect:?}");
+        }
+    }
+}
+
+/// The same motion under other names.
+fn plain(named: &MotionTable) -> MotionTable {
+    MotionTable { rows: named.rows.clone(), ..table() }
 }
 
 #[test]

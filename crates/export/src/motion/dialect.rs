@@ -27,7 +27,8 @@ impl Dialect {
         }
     }
 
-    /// A remark on lines of its own.
+    /// A remark on lines of its own. The first one begins as the text does, which therefore begins with a word of this program; all others
+    /// begin with a sign. Controls take some remarks for orders by how they begin, LinuxCNC `(PY,…)` and `(LOGOPEN,…)`.
     pub(super) fn remark(self, text: &str) -> Vec<String> {
         let wrap = |line: String| match self {
             Dialect::Siemens840D => format!("; {line}"),
@@ -135,17 +136,29 @@ fn remarkable(text: &str) -> String {
     text.chars().map(settled).collect()
 }
 
-/// Broken between words into lines that every control takes.
+/// Broken into lines that every control takes, between words and within those that are longer than a line.
 fn lines(text: &str) -> Vec<String> {
     const WIDTH: usize = 72;
+    const GOES_ON: &str = "+";
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_ascii_whitespace() {
+    let mut words: Vec<&str> = text.split_ascii_whitespace().rev().collect();
+    while let Some(word) = words.pop() {
         match lines.last_mut() {
             Some(line) if line.len() + 1 + word.len() <= WIDTH => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            Some(line) if line == GOES_ON => {
+                let (fits, rest) = word.split_at(WIDTH - 1 - line.len());
+                line.push(' ');
+                line.push_str(fits);
+                words.push(rest);
+            }
+            Some(_) => {
+                lines.push(GOES_ON.to_owned());
+                words.push(word);
+            }
+            None => lines.push(word.to_owned()),
         }
     }
     lines

@@ -62,10 +62,17 @@ impl Frame<'_> {
     }
 }
 
-/// Text that cannot end a comment, begin one in it, or leave its line.
+/// Text that cannot end a comment, begin one in it, leave its line or turn the direction in which it is read: letters and digits of any
+/// script and the signs of ASCII, of which none escapes the end of the line.
 fn inert(text: &str) -> String {
-    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    line.replace("*/", "* /").replace("/*", "/ *")
+    let settled = |c: char| match c {
+        ' '..='~' => c,
+        c if c.is_control() => ' ',
+        c if c.is_alphanumeric() => c,
+        _ => '_',
+    };
+    let line: String = text.chars().map(settled).collect();
+    line.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
 
 impl Language {
