@@ -229,6 +229,9 @@ fn the_page_works_in_a_browser() {
             "name": "m.machine_root_angle", "shown": 15.7,
             "position": moved["surfaces"][0]["points"][point]["position"],
         },
+        // -0.0013 mm in the job, and 98 mm of 0 mm .. 10000 mm
+        "small": { "name": "m.machine_center_to_crossing_point" },
+        "beyond": { "name": "m.radial_distance", "own": 97.95940290780507, "limits": [0, 10_000] },
     });
     let arguments = [file.to_str().expect("a plain path"), folder.to_str().expect("a plain path")];
     let measured = node("browser.mjs", &arguments, &expected).expect("node drives the browser");

@@ -30,6 +30,7 @@ fn scene(patches: &[Patch]) -> Scene {
     let functions = ["poses", "equations", "point", "corners"];
     Scene {
         motions: vec![PageMotion {
+            limits: [-1.0, 1.0],
             name: "roll".into(),
             unit: Unit::Degree,
             low: -0.5,
@@ -37,7 +38,13 @@ fn scene(patches: &[Patch]) -> Scene {
             start: 0.1,
             is_count: false,
         }],
-        parameters: vec![PageParameter { name: "m.x".into(), unit: "mm".into(), value: 3.0, range: Some([2.0, 4.0]) }],
+        parameters: vec![PageParameter {
+            name: "m.x".into(),
+            unit: "mm".into(),
+            value: 3.0,
+            range: Some([2.0, 4.0]),
+            limits: [0.0, f64::INFINITY],
+        }],
         machines: vec![PageMachine {
             name: "m".into(),
             definition: "machine".into(),
@@ -103,6 +110,7 @@ fn the_numbers_come_back_to_the_bit() {
     }
     assert_eq!(surface["fields"].as_array().unwrap().len(), patch.fields.len());
     assert_eq!(document["parameters"][0]["range"], serde_json::json!([2.0, 4.0]));
+    assert_eq!(document["parameters"][0]["limits"], serde_json::json!([0.0, null]));
     assert_eq!((document["motions"][0]["unit"].as_str(), surface["rows"]["count"].as_u64()), (Some("deg"), Some(9)));
 }
 

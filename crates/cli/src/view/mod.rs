@@ -111,9 +111,10 @@ fn write<'g>(
     let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
     let mut folder = Folder::at(&arguments.out, origin)?;
     folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
+    let file = folder.finish()?.remove(0);
     let path = arguments.out.join(format!("{}.html", job.name));
     let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
-    Ok(Written { file: folder.written.remove(0), bytes })
+    Ok(Written { file, bytes })
 }
 
 /// What the page shows beside the points.
@@ -158,6 +159,7 @@ fn page_motion(motion: &Bounded<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
         unit: solve::unit(motion.dimension),
         low: low.max(motion.low),
         high: high.min(motion.high),
+        limits: [motion.low, motion.high],
         start: start.unwrap_or(0.5 * (motion.low + motion.high)),
         is_count: motion.is_count,
     }

@@ -10,9 +10,12 @@ use crate::units;
 
 /// By how much of its size a surface may be moved by one parameter, to first order.
 const OF_SURFACE: f64 = 0.05;
-/// No parameter is moved by more than this share of its value, no angle by more than this, radians.
+/// No slider moves a parameter by more than this share of its value, an angle by more than this, radians.
 const OF_VALUE: f64 = 0.25;
 const OF_ANGLE: f64 = 0.1;
+/// A share of a value that moves no surface by more than this share of its size (1 um of 100 mm) is nothing to look at: such a
+/// value is taken for zero, which has no size of its own.
+const NOTHING: f64 = 1e-5;
 
 /// In the order of the job.
 pub(super) fn of(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<PageParameter> {
@@ -26,6 +29,7 @@ pub(super) fn of(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<PageParameter>
         },
         value: parameter.value,
         range: range(parameter, &reaches),
+        limits: limits(parameter),
     };
     job.parameters.iter().map(page).collect()
 }
@@ -49,6 +53,11 @@ fn size(solved: &Solved<'_, '_>) -> f64 {
     (0..3).map(|k| (high[k] - low[k]).max(0.0)).fold(0.0, f64::hypot)
 }
 
+/// Between which values it must lie.
+fn limits(parameter: &Parameter<'_>) -> [f64; 2] {
+    parameter.range.map_or([f64::NEG_INFINITY, f64::INFINITY], |(low, high)| [low, high])
+}
+
 /// As far as no surface moves by more than a share of its size, within what the spec allows; nothing for what is counted and
 /// what moves no surface.
 fn range(parameter: &Parameter<'_>, reaches: &[(f64, &Sensitivity)]) -> Option<[f64; 2]> {
@@ -57,11 +66,12 @@ fn range(parameter: &Parameter<'_>, reaches: &[(f64, &Sensitivity)]) -> Option<[
         Some(OF_SURFACE * size / most)
     });
     let of_surfaces = of_surfaces.reduce(f64::min)?;
-    let of_value = if parameter.value == 0.0 { f64::INFINITY } else { OF_VALUE * parameter.value.abs() };
+    let of_value = OF_VALUE * parameter.value.abs();
+    let of_value = if of_value * OF_SURFACE > NOTHING * of_surfaces { of_value } else { f64::INFINITY };
     let of_kind = if parameter.dimension == Dimension::ANGLE { OF_ANGLE } else { of_value };
     let by = rounded(units::shown(parameter.dimension, of_surfaces.min(of_kind)));
     let by = by / units::shown(parameter.dimension, 1.0);
-    let (low, high) = parameter.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let [low, high] = limits(parameter);
     let range = [(parameter.value - by).max(low), (parameter.value + by).min(high)];
     (range[0] < range[1]).then_some(range)
 }

@@ -115,6 +115,49 @@ const position = await page.evaluate(([surface, point]) => {
 const off = Math.hypot(...position.map((x, k) => x - expected.parameter.position[k]));
 assert(off < 1e-9, `the moved point is ${off} mm off`);
 await page.locator("#view").screenshot({ path: `${folder}/moved.png` });
+assert.match(await page.locator("#state").innerText(), /^Solved in this page for moved parameters/);
+
+/** Types into a parameter's box; its value then, in its unit, and where its slider goes. */
+async function type(name, text) {
+    const box = page.locator(`[id="slider-${name}"] + input`);
+    await box.fill("");
+    await box.pressSequentially(text);
+    await box.press("Enter");
+    return page.evaluate((name) => {
+        const { data, settings, parameterSliders } = window.flank;
+        const k = data.parameters.findIndex((parameter) => parameter.name === name);
+        const { range, number, told } = parameterSliders.get(k);
+        const factor = data.parameters[k].unit === "deg" ? 180 / Math.PI : 1;
+        return {
+            value: factor * settings.values[k], shown: number.value, told: told.textContent,
+            low: Number(range.min), high: Number(range.max), at: Number(range.value),
+        };
+    }, name);
+}
+
+// an emptied box, and a text that is no number, leave the value
+const { name, shown } = expected.parameter;
+for (const text of ["", "-", "1e"]) {
+    const left = await type(name, text);
+    assert(Math.abs(left.value - shown) < 1e-12 && Number(left.shown) === shown, `"${text}" made ${JSON.stringify(left)}`);
+}
+// a value of next to nothing has a slider as wide as others, and takes what is typed
+const small = await type(expected.small.name, "0.35");
+assert(small.high - small.low > 0.5 && small.value === 0.35, JSON.stringify(small));
+// what is typed beyond the slider is taken, and the slider goes on to it
+const { high: end } = await type(expected.beyond.name, String(expected.beyond.own));
+const wanted = end + 0.01 * Math.abs(end);
+const beyond = await type(expected.beyond.name, String(wanted));
+const step = (beyond.high - beyond.low) / 400;
+assert(beyond.value === wanted && beyond.high === wanted && !beyond.told, JSON.stringify(beyond));
+assert(Math.abs(beyond.at - wanted) < 1.01 * step, JSON.stringify(beyond));
+// but not beyond what the spec allows: that is said, and the value stays
+const refused = await type(expected.beyond.name, String(expected.beyond.limits[1] + 1));
+assert(refused.value === wanted && Math.abs(Number(refused.shown) - wanted) < 1e-4, JSON.stringify(refused));
+const [lowest, highest] = expected.beyond.limits;
+assert.equal(refused.told, `${expected.beyond.name} goes from ${lowest} mm to ${highest} mm only`);
+await page.screenshot({ path: `${folder}/typed.png` });
+assert.equal((await type(expected.beyond.name, String(highest))).told, "");
 await page.locator("#reset").click();
 assert.equal(await page.evaluate(() => window.flank.surfaces.some((one) => one.isMoved)), false);
 

@@ -44,6 +44,8 @@ pub struct PageMotion {
     pub low: f64,
     /// Where it ends.
     pub high: f64,
+    /// Lowest and highest value that it takes.
+    pub limits: [f64; 2],
     /// Where it stands at first.
     pub start: f64,
     /// Whether it takes whole numbers only.
@@ -59,8 +61,10 @@ pub struct PageParameter {
     pub unit: String,
     /// Its value in the job.
     pub value: f64,
-    /// Lowest and highest value on the page; `None` if it stays.
+    /// Where its slider begins and ends; `None` if it stays.
     pub range: Option<[f64; 2]>,
+    /// Lowest and highest value that it takes, infinite where there is none.
+    pub limits: [f64; 2],
 }
 
 /// A machine: a tree of frames.

@@ -124,7 +124,7 @@ export function buildAbout(page) {
     const { program, spec, spec_hash: hash, conventions, notes } = page.data;
     const texts = [
         ...page.data.doc, `${program}, ${spec}, ${hash}`, ...notes, ...conventions,
-        "Written by flank (MIT or Apache-2.0) with three.js (MIT; its licence stands in page file).",
+        "Written by flank (MIT or Apache-2.0) with three.js (MIT; its licence stands in this file).",
     ];
     byId("about").append(...texts.map((textContent) => element("p", { textContent })));
 }
@@ -143,7 +143,7 @@ export function tellState(page) {
         const textContent = `Points lost (red crosses, where the job's own values have them): ${lost.join(", ")}.`;
         parts.unshift(element("p", { className: "warning", textContent }));
     }
-    parts.unshift(element("p", { className: "hint", textContent: "Solved in page page for moved parameters. The same with the program:" }));
+    parts.unshift(element("p", { className: "hint", textContent: "Solved in this page for moved parameters. The same with the program:" }));
     return page.state.replaceChildren(...parts);
 }
 

@@ -14,31 +14,67 @@ export function element(tag, properties = {}, ...children) {
     return made;
 }
 
-/** A slider with a number beside it; `change(value)` is called with values of the machine: mm, radians. */
+/**
+ * A slider with a number beside it; `change(value)` is called with values of the machine: mm, radians. A number that is typed may lie
+ * beyond the slider, which then goes on to it, but not beyond the limits.
+ */
 export class Slider {
-    constructor({ name, unit, low, high, isCount, hint }, change) {
-        this.unit = unit;
-        [this.low, this.high] = [inUnit(unit, low), inUnit(unit, high)];
-        const step = isCount ? 1 : (this.high - this.low) / STEPS || "any";
+    constructor({ name, unit, low, high, limits, isCount, hint }, change) {
+        Object.assign(this, { name, unit, isCount, limits: [limits[0] ?? -Infinity, limits[1] ?? Infinity] });
         const id = `slider-${name}`;
-        this.range = element("input", { type: "range", id, min: this.low, max: this.high, step, title: hint ?? "" });
+        this.range = element("input", { type: "range", id, title: hint ?? "" });
+        this.stretch(inUnit(unit, low), inUnit(unit, high));
         this.number = element("input", { type: "number", step: "any", ariaLabel: `${name} in ${unit}` });
-        this.range.addEventListener("input", () => this.give(Number(this.range.value), change));
-        this.number.addEventListener("change", () => this.give(Number(this.number.value), change));
+        this.told = element("span", { className: "told warning", role: "status" });
+        this.range.addEventListener("input", () => this.slide(change));
+        this.number.addEventListener("change", () => this.type(change));
         const label = element("label", { htmlFor: id, textContent: name, title: hint ?? name });
         this.row = element("div", { className: "slider" }, label, this.range, this.number);
-        this.row.append(element("span", { className: "unit", textContent: unit === "1" ? "" : unit }));
+        this.row.append(element("span", { className: "unit", textContent: unit === "1" ? "" : unit }), this.told);
     }
 
-    give(shown, change) {
-        if (!Number.isFinite(shown)) return;
-        const kept = Math.min(Math.max(shown, this.low), this.high);
-        change(fromUnit(this.unit, kept));
+    slide(change) {
+        this.told.textContent = "";
+        change(this.limited(fromUnit(this.unit, Number(this.range.value))));
     }
 
-    /** Shows a value of the machine. */
+    /** What is no number, or beyond the limits, leaves the value that it had. */
+    type(change) {
+        const typed = fromUnit(this.unit, this.number.valueAsNumber);
+        const kept = this.limited(typed);
+        // degrees are rounded on the way
+        const isWithin = Math.abs(typed - kept) <= 1e-14 * Math.abs(kept);
+        this.told.textContent = isWithin || Number.isNaN(typed) ? "" : this.refusal();
+        this.show(isWithin ? kept : this.value);
+        if (isWithin) change(kept);
+    }
+
+    limited(value) {
+        return Math.min(Math.max(value, this.limits[0]), this.limits[1]);
+    }
+
+    refusal() {
+        const [low, high] = this.limits.map((end) => withUnit(this.unit, end, 7));
+        if (this.limits[0] === -Infinity) return `${this.name} goes up to ${high} only`;
+        if (this.limits[1] === Infinity) return `${this.name} goes down to ${low} only`;
+        return `${this.name} goes from ${low} to ${high} only`;
+    }
+
+    /** Lets the slider go over these values, in the unit that is shown. */
+    stretch(low, high) {
+        [this.low, this.high] = [low, high];
+        Object.assign(this.range, { min: low, max: high, step: this.isCount ? 1 : (high - low) / STEPS || "any" });
+    }
+
+    /** Shows a value of the machine; of one that it shows already the box may be in work. */
     set(value) {
+        if (value !== this.value) this.show(value);
+    }
+
+    show(value) {
+        this.value = value;
         const shown = inUnit(this.unit, value);
+        if (shown < this.low || shown > this.high) this.stretch(Math.min(shown, this.low), Math.max(shown, this.high));
         this.range.value = shown;
         this.range.ariaValueText = withUnit(this.unit, value);
         this.number.value = digits(shown, 7);
