@@ -487,7 +487,7 @@ impl Measured<'_, '_> {
         folder.picture_after(&self.name(), map.as_ref(), |folder| {
             folder.data(&self.name(), &dataset.surfaces(), &arguments.format)
         })?;
-        Ok(folder.written)
+        folder.finish()
     }
 }
 

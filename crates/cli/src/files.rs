@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use flank_export::{
-    Dataset, Dialect, Face, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target, WriteError,
-    make_folder, write_3mf, write_atomically, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
+    Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target,
+    WriteError, make_folder, write_3mf, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
     write_motion_json, write_nc, write_obj, write_page, write_parquet, write_report_html, write_report_markdown,
     write_step, write_stl, write_vtp,
 };
@@ -13,11 +13,13 @@ use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};
 use crate::eprint;
 use crate::spec::{self, Origin};
 
-/// A folder that is written to, and the files that stand there now.
+/// A folder that is written to. Its files get their names together when it is finished; until then it is as it was.
+#[must_use = "files have no names before it is finished"]
 pub(crate) struct Folder<'a> {
     path: &'a Path,
     /// What is not written over.
     origin: &'a Origin,
+    files: FileSet,
     pub(crate) written: Vec<String>,
 }
 
@@ -25,7 +27,13 @@ impl<'a> Folder<'a> {
     /// The folder, made if it is not there.
     pub(crate) fn at(path: &'a Path, origin: &'a Origin) -> Result<Folder<'a>, String> {
         made(path)?;
-        Ok(Folder { path, origin, written: Vec::new() })
+        Ok(Folder { path, origin, files: FileSet::default(), written: Vec::new() })
+    }
+
+    /// Gives all files their names, and tells them.
+    pub(crate) fn finish(self) -> Result<Vec<String>, String> {
+        self.files.finish().map_err(|error| error.to_string())?;
+        Ok(self.written)
     }
 
     /// The points in the formats that are asked for. A mesh has one origin: of surfaces in several frames there is one for each.
@@ -86,12 +94,13 @@ impl<'a> Folder<'a> {
         meanwhile: impl FnOnce(&mut Self) -> Result<(), String>,
     ) -> Result<(), String> {
         let Some(drawn) = drawn else { return meanwhile(self) };
-        let (png, svg) = std::thread::scope(|scope| {
-            let png = scope.spawn(|| drawn.png());
-            let svg = meanwhile(self).map(|()| drawn.svg());
-            (png.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), svg)
+        let mut png = None;
+        let svg = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| png = Some(drawn.png()));
+            meanwhile(self).map(|()| drawn.svg())
         });
-        let (png, svg) = (png.map_err(|error| error.to_string())?, svg?);
+        let png = png.expect("the scope has waited for it").map_err(|error| error.to_string())?;
+        let svg = svg?;
         self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))?;
         self.text(&format!("{name}.svg"), &svg)
     }
@@ -159,7 +168,7 @@ impl<'a> Folder<'a> {
                 "`{path}` is what this command reads and would be written over: name another folder with --out"
             ));
         }
-        write_atomically(&path, content).map_err(|error| error.to_string())?;
+        self.files.write(&path, content).map_err(|error| error.to_string())?;
         self.written.push(spec::shown(&path));
         Ok(())
     }

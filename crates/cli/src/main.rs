@@ -37,6 +37,7 @@ mod step;
 mod stream;
 mod summary;
 mod table;
+mod threads;
 mod travel;
 mod trims;
 mod units;
@@ -61,6 +62,8 @@ enum Ending {
     Usage,
     /// 3: done, but something asked for could not be solved, and it is listed.
     Unsolved,
+    /// 141: done, but who read what was printed has gone away; as shells count a program that the signal of a broken pipe ends.
+    Unread,
 }
 
 impl Ending {
@@ -70,6 +73,7 @@ impl Ending {
             Ending::Wrong => 1,
             Ending::Usage => 2,
             Ending::Unsolved => 3,
+            Ending::Unread => 141,
         }
     }
 }
@@ -83,11 +87,19 @@ fn main() -> ExitCode {
         }
         Err(asked) => {
             print(&asked.render().ansi().to_string());
-            return ExitCode::from(Ending::Done.code());
+            return ended(Ending::Done);
         }
     };
-    let ending = run(&command).unwrap_or_else(|failure| failure.tell(command.is_json()));
-    ExitCode::from(ending.code())
+    if let Some(means) = command.means() {
+        threads::start(means.threads());
+    }
+    ended(run(&command).unwrap_or_else(|failure| failure.tell(command.is_json())))
+}
+
+/// What the caller is told at the end: most of all what went wrong.
+fn ended(ending: Ending) -> ExitCode {
+    let is_lost = ending == Ending::Done && console::is_unread();
+    ExitCode::from(if is_lost { Ending::Unread } else { ending }.code())
 }
 
 fn run(command: &Command) -> Result<Ending, Failure> {

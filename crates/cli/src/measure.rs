@@ -44,8 +44,8 @@ pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
         for format in &arguments.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }
-        let told = unsolved(&grid);
-        print(&if arguments.json { as_json(&grid, &folder.written, &told) } else { as_text(&grid, &folder.written) });
+        let (told, written) = (unsolved(&grid), folder.finish()?);
+        print(&if arguments.json { as_json(&grid, &written, &told) } else { as_text(&grid, &written) });
         if !told.is_empty() {
             eprint(&told);
             ending = Ending::Unsolved;

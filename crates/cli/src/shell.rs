@@ -38,7 +38,7 @@ pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
         page.render(&mut text).map_err(|error| format!("the page {name} cannot be made: {error}"))?;
         folder.text(&name, &String::from_utf8_lossy(&text))?;
     }
-    let files = folder.written;
+    let files = folder.finish()?;
     print(&if arguments.json {
         format!("{:#}\n", json!({ "schema": "flank.man/1", "files": files }))
     } else {

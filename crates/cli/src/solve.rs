@@ -350,5 +350,5 @@ fn write_files(
             folder.picture(&format!("{name}.{surface}.left"), &drawn)?;
         }
     }
-    Ok(folder.written)
+    folder.finish()
 }

@@ -193,6 +193,51 @@ fn output_that_finds_no_room_is_a_failure() {
     assert_eq!(run.status.code(), Some(1));
 }
 
+/// A program without stdout has nobody who reads what it prints, which is told on stderr; nothing to print is no failure.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_stdout_is_a_failure() {
+    let spec = "specs/hobbing/spur_gear.chain";
+    for arguments in [&["derive", spec][..], &["explain"], &["--help"], &["--version"], &["check", "--json", spec]] {
+        let run = std::process::Command::new("sh")
+            .args(["-c", "exec \"$0\" \"$@\" >&-", env!("CARGO_BIN_EXE_flank")])
+            .args(arguments)
+            .current_dir(top())
+            .output()
+            .expect("a shell runs");
+        assert_eq!(run.status.code(), Some(1), "{arguments:?}");
+        assert_eq!(text(&run.stderr), "error: cannot write to stdout: it is closed\n", "{arguments:?}");
+    }
+    // what a caller throws away is not closed, however it opened it
+    let null = std::fs::OpenOptions::new().read(true).write(true).open("/dev/null").expect("it is there");
+    let run = std::process::Command::new(env!("CARGO_BIN_EXE_flank")).arg("explain").stdout(null).output();
+    assert_eq!(run.expect("the binary runs").status.code(), Some(0));
+}
+
+/// A reader that goes away, as `head` does, has what it wants: nothing is said, the files are written all the same, and the exit code is
+/// the one that shells give to a program that a broken pipe ends.
+#[test]
+fn a_reader_that_goes_away_ends_what_is_printed() {
+    let folder = folder("unread");
+    let out = folder.to_str().expect("a plain path");
+    let spec = "specs/hobbing/spur_gear.chain";
+    let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n}\n");
+    for (arguments, code) in [
+        (&["solve", spec, "--out", out, "--no-picture"][..], 141),
+        (&["derive", spec], 141),
+        (&["--help"], 141),
+        (&["derive", "--json", &wrong], 1),
+    ] {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_flank"));
+        let run = run.args(arguments).current_dir(top()).stdout(writer).output().expect("the binary runs");
+        assert_eq!(run.status.code(), Some(code), "{arguments:?}");
+        assert!(!text(&run.stderr).contains("stdout"), "{arguments:?}: {}", text(&run.stderr));
+    }
+    assert!(folder.join("spur_gear.csv").exists());
+}
+
 /// A number that cannot be is answered with those that can.
 #[test]
 fn numbers_of_the_command_line_say_what_they_may_be() {
@@ -205,6 +250,8 @@ fn numbers_of_the_command_line_say_what_they_may_be() {
         (&[&convert[..], &["--tolerance", "0um"]].concat(), "a length above zero is needed"),
         (&[&convert[..], &["--positions", "1.5"]].concat(), "write a whole number from 1 to 1000000"),
         (&[&convert[..], &["--time", "-3"]].concat(), "write a number of seconds above zero"),
+        (&["solve", spur, "--threads", "0"], "write a whole number from 1 on"),
+        (&["view", pinion, "--threads", "many"], "write a whole number from 1 on"),
     ] {
         let run = flank(arguments);
         assert_eq!(run.status.code(), Some(2), "{arguments:?}");

@@ -1,5 +1,6 @@
 //! Files that are complete or not there.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 #[cfg(unix)]
@@ -7,18 +8,82 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 use crate::error::{FileError, FolderError, WriteError};
+use crate::lock::Lock;
 use crate::regions::Target;
 use crate::unfinished::Unfinished;
 
 /// Bytes that go to the system at once.
 const BUFFER: usize = 1 << 16;
 
-/// Writes a file so that a reader sees the old one or the new one, never half of it.
+/// Files that belong together: they get their names one right after the other when all of them are whole.
 ///
-/// The content goes to a file in the same folder that has no name (a hidden one where the system knows no others), is forced to
-/// the disk, and gets its name at the end, with the permissions of what was there and its owner where the system lets that be given. On any
-/// error that file is gone and what was there before stays. A link is followed, so the file it names is replaced; further names of that
-/// file (hard links) keep what it was. A device or a pipe is written to as it is. A file that may not be written to is not replaced either.
+/// The content of each goes to a file in its folder that has no name (a hidden one where the system knows no others), is forced to
+/// the disk, and gets its name at the end, with the permissions of what was there and its owner where the system lets that be given. On
+/// any error, and if the set is dropped, these files are gone and what was there before stays. A link is followed, so the file it names
+/// is replaced; further names of that file (hard links) keep what it was. A device or a pipe is written to as it is. A file that may not
+/// be written to is not replaced either.
+///
+/// While files get their names the folder is locked: of two sets of the same names that programs write at the same time, one is there in
+/// the end. What programs that were killed have left in the folder is removed.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// let [points, mesh] = ["points.csv", "mesh.obj"].map(|name| folder.path().join(name));
+/// let mut files = flank_export::FileSet::default();
+/// files.write(&points, |out| Ok(out.write_all(b"x,y,z\n")?))?;
+/// files.write(&mesh, |out| Ok(out.write_all(b"o flank\n")?))?;
+/// assert!(!points.exists());
+/// files.finish()?;
+/// assert!(points.exists() && mesh.exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct FileSet(Vec<Whole>);
+
+/// A file that is whole but has no name yet.
+#[derive(Debug)]
+struct Whole {
+    asked: PathBuf,
+    /// The same without links.
+    path: PathBuf,
+    file: Unfinished,
+}
+
+/// Systems let a program hold so many files and more; those of a larger set get their names in several turns.
+const MOST_HELD: usize = 256;
+
+impl FileSet {
+    /// Writes a file that gets its name when the set is finished; a device or a pipe is written to now.
+    ///
+    /// # Errors
+    /// Names the file and says in plain words what stood in the way, be it the disk or `content`.
+    pub fn write(
+        &mut self,
+        path: &Path,
+        content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
+    ) -> Result<(), FileError> {
+        if self.0.len() == MOST_HELD {
+            std::mem::take(self).finish()?;
+        }
+        let whole = written(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })?;
+        self.0.extend(whole);
+        Ok(())
+    }
+
+    /// Gives all files their names.
+    ///
+    /// # Errors
+    /// Names the first file that could not get its name, and says why; those after it are not there either.
+    pub fn finish(self) -> Result<(), FileError> {
+        let folders: BTreeSet<PathBuf> = self.0.iter().map(|whole| folder_of(&whole.path)).collect();
+        let _locks: Vec<Lock> = folders.iter().map(|folder| Lock::of(folder)).collect();
+        self.0.into_iter().try_for_each(|whole| {
+            whole.file.finish(&whole.path).map_err(|reason| FileError { path: whole.asked, reason: reason.into() })
+        })
+    }
+}
+
+/// Writes one file so that a reader sees the old one or the new one, never half of it, as a [`FileSet`] does.
 ///
 /// ```
 /// # let folder = tempfile::tempdir()?;
@@ -34,7 +99,9 @@ pub fn write_atomically(
     path: &Path,
     content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
 ) -> Result<(), FileError> {
-    replace(path, content).map_err(|reason| FileError { path: path.to_owned(), reason })
+    let mut files = FileSet::default();
+    files.write(path, content)?;
+    files.finish()
 }
 
 /// Makes a folder, and those on the way to it, if they are not there.
@@ -45,7 +112,11 @@ pub fn make_folder(path: &Path) -> Result<(), FolderError> {
     fs::create_dir_all(path).map_err(|reason| FolderError { path: path.to_owned(), reason })
 }
 
-fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), WriteError> {
+/// A whole file without its name; nothing where a device or a pipe has taken the content.
+fn written(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
+) -> Result<Option<Whole>, WriteError> {
     let existing = match fs::metadata(path) {
         Ok(found) => Some(found),
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
@@ -53,23 +124,27 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Target) -> Result<(), Writ
     };
     match existing {
         Some(found) if found.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory).into()),
-        Some(found) if !found.is_file() => fill(File::options().write(true).open(path)?, content).map(|_| ()),
+        Some(found) if !found.is_file() => fill(File::options().write(true).open(path)?, content).map(|_| None),
         Some(found) => {
             // a folder may be written to where the file may not
             File::options().append(true).open(path)?;
-            through_temporary(&fs::canonicalize(path)?, Some(&found), content)
+            let target = fs::canonicalize(path)?;
+            let file = nameless(&target, Some(&found), content)?;
+            Ok(Some(Whole { asked: path.to_owned(), path: target, file }))
         }
-        None => through_temporary(path, None, content),
+        None => {
+            let file = nameless(path, None, content)?;
+            Ok(Some(Whole { asked: path.to_owned(), path: path.to_owned(), file }))
+        }
     }
 }
 
-fn through_temporary(
+fn nameless(
     path: &Path,
     before: Option<&fs::Metadata>,
     content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>,
-) -> Result<(), WriteError> {
-    let folder = folder_of(path);
-    let unfinished = Unfinished::within(&folder)?;
+) -> Result<Unfinished, WriteError> {
+    let unfinished = Unfinished::within(&folder_of(path))?;
     let file = fill(unfinished.file()?, content)?;
     if let Some(before) = before {
         // who writes may not be who owns, and not every system lets a file be given away
@@ -79,7 +154,7 @@ fn through_temporary(
     }
     file.sync_all()?;
     // if the power fails before the folder is on the disk, what was there before is, whole
-    Ok(unfinished.finish(path)?)
+    Ok(unfinished)
 }
 
 fn fill(file: File, content: impl FnOnce(&mut dyn Target) -> Result<(), WriteError>) -> Result<File, WriteError> {

@@ -68,6 +68,7 @@ mod error;
 mod facets;
 mod json_file;
 mod json_layout;
+mod lock;
 mod measuring;
 mod motion;
 mod number;
@@ -87,7 +88,7 @@ mod vector;
 mod vtp_file;
 mod xml;
 
-pub use atomic_file::{make_folder, write_atomically};
+pub use atomic_file::{FileSet, make_folder, write_atomically};
 pub use bands::{Banded, Surfaces, Taker};
 pub use conventions::sentences as conventions;
 pub use csv_file::write_csv;

@@ -1,12 +1,21 @@
 //! A file on its way, which nobody sees under its name before it is whole.
 
-use std::fs::{self, File};
+use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::Path;
+use std::time::Duration;
 
 use tempfile::NamedTempFile;
 
+/// Names of hidden files: those that are written to, and those that wait for their name to be free.
+const PREFIX: &str = ".flank-";
+const PART: &str = ".part";
+const WHOLE: &str = ".whole";
+/// A hidden file is locked by who writes it, but not in the moment in which it is made.
+const YOUNG: Duration = Duration::from_secs(60);
+
 /// What is written to until it is whole.
+#[derive(Debug)]
 pub(crate) enum Unfinished {
     /// Without any name: when the program ends, be it killed, nothing is left.
     #[cfg(target_os = "linux")]
@@ -43,16 +52,32 @@ impl Unfinished {
     }
 }
 
+/// Whether a program that was killed has left it, in a folder that is locked: names are given under the lock, and who lives holds the lock
+/// of what it writes.
+pub(crate) fn is_left(entry: &DirEntry) -> bool {
+    let name = entry.file_name();
+    let Some(name) = name.to_str().filter(|name| name.starts_with(PREFIX)) else { return false };
+    let is_old = || {
+        let changed = entry.metadata().and_then(|found| found.modified()).ok();
+        changed.and_then(|time| time.elapsed().ok()).is_some_and(|age| age > YOUNG)
+    };
+    let is_free = || File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
+    name.ends_with(WHOLE) || (name.ends_with(PART) && is_old() && is_free())
+}
+
 /// Not with the private permissions of a secret.
 fn hidden(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".flank-").suffix(".part");
+    builder.prefix(PREFIX).suffix(PART);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder)
+    let file = builder.tempfile_in(folder)?;
+    // a disk without locks has nobody who looks for them either
+    let _ = file.as_file().try_lock();
+    Ok(file)
 }
 
 #[cfg(target_os = "linux")]
@@ -61,7 +86,7 @@ mod nameless {
 
     use rustix::fs::{AtFlags, CWD, Mode, OFlags};
 
-    use super::{File, Path, fs, io};
+    use super::{File, PREFIX, Path, WHOLE, fs, io};
 
     /// Fails where the disk has no such files, and where there would be no way to name one later.
     pub(super) fn open(folder: &Path) -> io::Result<File> {
@@ -73,7 +98,7 @@ mod nameless {
     /// A link cannot take a name that is in use: a hidden one comes first, and is moved.
     pub(super) fn link(file: &File, path: &Path) -> io::Result<()> {
         let descriptor = format!("/proc/self/fd/{}", file.as_raw_fd());
-        let beside = |attempt: u32| path.with_file_name(format!(".flank-{}-{attempt}.whole", std::process::id()));
+        let beside = |attempt: u32| path.with_file_name(format!("{PREFIX}{}-{attempt}{WHOLE}", std::process::id()));
         let linked = (0..1000).find_map(|attempt| {
             let hidden = beside(attempt);
             match rustix::fs::linkat(CWD, &*descriptor, CWD, &hidden, AtFlags::SYMLINK_FOLLOW) {
@@ -108,6 +133,29 @@ mod tests {
             assert_eq!(fs::read_to_string(&path).expect("it is there"), k.to_string());
             assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 1);
         }
+    }
+
+    /// What killed programs left goes, but not what a program that lives writes, what is young, and what is of others.
+    #[test]
+    fn what_was_left_is_told_from_what_is_in_work() {
+        let folder = tempfile::tempdir().expect("a folder for the test");
+        let old = std::time::SystemTime::now() - 2 * YOUNG;
+        let made = |name: &str| {
+            let file = File::create(folder.path().join(name)).expect("the test's file");
+            file.set_modified(old).expect("it is the test's own");
+            file
+        };
+        for name in [".flank-12-0.whole", ".flank-x.part", "points.csv", ".flank-notes", ".other.part"] {
+            drop(made(name));
+        }
+        let in_work = hidden(folder.path()).expect("it can be made");
+        in_work.as_file().set_modified(old).expect("it is the test's own");
+        drop(File::create(folder.path().join(".flank-young.part")).expect("the test's file"));
+        let entries = fs::read_dir(folder.path()).expect("it is there").flatten();
+        let mut left: Vec<String> =
+            entries.filter(is_left).map(|entry| entry.file_name().into_string().expect("a plain name")).collect();
+        left.sort();
+        assert_eq!(left, [".flank-12-0.whole", ".flank-x.part"]);
     }
 
     /// What is given up is gone.

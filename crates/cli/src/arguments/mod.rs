@@ -4,6 +4,7 @@ mod convert;
 mod measuring;
 mod report;
 
+use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf, is_separator};
 
@@ -35,7 +36,8 @@ Examples:
   flank fmt specs/tools/*.chain                         the settled layout
 
 Exit codes: 0 done; 1 what was read is wrong or has not what is asked of it, or a file cannot be read or written; 2 the
-command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed."
+command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed;
+141 done, but nobody read to the end what was printed."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -102,6 +104,30 @@ impl Command {
     }
 }
 
+impl Command {
+    /// How the numbers are worked out, of a command that works out some.
+    pub(crate) fn means(&self) -> Option<Means> {
+        match self {
+            Command::Solve(arguments) => Some(arguments.means),
+            Command::Convert(arguments) => Some(arguments.onto.means),
+            Command::Derive(arguments) => Some(arguments.onto.means),
+            Command::Plot(arguments) => Some(arguments.means),
+            Command::Report(arguments) => Some(arguments.means),
+            Command::Deviation(arguments) => Some(arguments.means),
+            Command::Measure(arguments) => Some(arguments.means),
+            Command::View(arguments) => Some(arguments.means),
+            Command::Check(_)
+            | Command::Explain(_)
+            | Command::Import(_)
+            | Command::Fmt(_)
+            | Command::New(_)
+            | Command::Schema(_)
+            | Command::Completions(_)
+            | Command::Man(_) => None,
+        }
+    }
+}
+
 /// Which job of which file, with which values.
 #[derive(Args, Debug)]
 pub(crate) struct Which {
@@ -153,12 +179,24 @@ pub(crate) struct Means {
     /// for bit. For systems that forbid such memory, and to rule it out as a cause
     #[arg(long)]
     no_machine_code: bool,
+    /// How many threads share the work, at most four for each processor; otherwise as RAYON_NUM_THREADS says in the environment, and
+    /// without that one for each processor
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<NonZero<usize>>,
 }
 
 impl Means {
+    pub(crate) fn threads(self) -> Option<NonZero<usize>> {
+        self.threads
+    }
+
     pub(crate) fn instructions(self) -> InstructionSet {
         if self.no_machine_code { InstructionSet::widest() } else { InstructionSet::fastest() }
     }
+}
+
+fn threads(text: &str) -> Result<NonZero<usize>, String> {
+    text.trim().parse().map_err(|_| "write a whole number from 1 on".to_string())
 }
 
 fn name_and_value(text: &str) -> Result<(String, String), String> {

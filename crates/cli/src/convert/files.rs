@@ -61,7 +61,7 @@ pub(super) fn write(
         folder.nc(&name, &motion, dialect.into(), seconds())?;
     }
     functions.iter().try_for_each(|(name, text)| folder.text(name, text))?;
-    Ok(folder.written)
+    folder.finish()
 }
 
 /// Each once, in their order.

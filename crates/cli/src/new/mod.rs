@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use flank_chain_dsl::syntax::ast::{Item, Job, JobStatement, Param};
 use flank_chain_dsl::syntax::parse;
 use flank_chain_dsl::{FileId, closest, compile_file};
-use flank_export::{WriteError, write_atomically};
+use flank_export::{FileSet, WriteError};
 use flank_expr::Graph;
 use include_dir::{Dir, include_dir};
 use serde_json::{Value, json};
@@ -311,11 +311,12 @@ fn is_absent(error: &std::io::Error) -> bool {
 }
 
 fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), String> {
+    let mut set = FileSet::default();
     for (path, text) in files {
         let path = folder.join(path);
         let folder = path.parent().unwrap_or(folder);
         files::made(folder)?;
-        write_atomically(&path, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
+        set.write(&path, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
     }
-    Ok(())
+    set.finish().map_err(|error| error.to_string())
 }

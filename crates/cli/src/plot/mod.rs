@@ -201,6 +201,7 @@ fn write(drawings: &[(What, Drawing)], stem: &str, arguments: &Plot, origin: &Or
         let files = folder.written[before..].to_vec();
         written.push(Written { what: *what, shows: drawing.shows.clone(), files });
     }
+    folder.finish()?;
     Ok(written)
 }
 

@@ -70,7 +70,7 @@ impl Target {
             }
             folder.report(&name, document, *format)?;
         }
-        Ok(folder.written)
+        folder.finish()
     }
 }
 
