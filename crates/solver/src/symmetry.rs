@@ -88,7 +88,8 @@ fn unseen(rows: &[[f64; 6]], size: f64) -> Vec<Screw> {
     let scaled = Mat::from_fn(rows.len().max(6), 6, |i, j| {
         rows.get(i).map_or(0.0, |row| if j < 3 { row[j] / size } else { row[j] })
     });
-    let Ok(svd) = Svd::new(scaled.as_ref()) else { return Vec::new() };
+    // without the directions of rows, of which the whole square would be as wide as there are rows
+    let Ok(svd) = Svd::new_thin(scaled.as_ref()) else { return Vec::new() };
     let (values, vectors) = (svd.S(), svd.V());
     let mut basis: Vec<[f64; 6]> =
         (0..6).filter(|&k| values[k] <= UNSEEN * values[0]).map(|k| std::array::from_fn(|j| vectors[(j, k)])).collect();

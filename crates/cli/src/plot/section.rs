@@ -17,6 +17,8 @@ use crate::units;
 /// Positions of the tool in all, and of each surface at least.
 const POSITIONS: usize = 14;
 const LEAST_POSITIONS: usize = 3;
+/// Surfaces at most at which the tool is drawn: in each position all tools are cut, which for each surface would grow with their square.
+const MOST_TOUCHED: usize = 14;
 /// Points of a surface in the section.
 const POINTS: usize = 61;
 
@@ -94,6 +96,12 @@ impl Cut {
         let counts = if is_counted { "; what counts is taken without gaps" } else { "" };
         let mates = subject.mates();
         let others = (0..subject.solved.len()).filter(|at| !mates.contains(at));
+        let touched = match mates.len() {
+            count if count > MOST_TOUCHED => {
+                format!(" The tool is drawn where it makes {MOST_TOUCHED} of {count} surfaces.")
+            }
+            _ => String::new(),
+        };
         let others: Vec<&str> = others.map(|at| subject.solved[at].surface.name.as_str()).collect();
         let others = match others[..] {
             [] => String::new(),
@@ -101,7 +109,7 @@ impl Cut {
         };
         format!(
             "Plane square to the tooth through the middle of {}, at radius {} mm and z {} mm; exact points, strokes on the \
-             side of the steel, dots where the tool touches at that moment{counts}.{others}",
+             side of the steel, dots where the tool touches at that moment{counts}.{touched}{others}",
             subject.first().surface.name,
             fixed(x.hypot(y), 3),
             fixed(z, 3)
@@ -133,7 +141,7 @@ impl Cut {
 
     /// Where the lines of the grid that run along the tooth cross the plane: on paper, and the unknowns there.
     fn starts(&self, solved: &Solved<'_, '_>) -> Vec<([f64; 2], Vec<f64>)> {
-        let [rows, columns] = solved.sample.counts;
+        let [rows, columns] = solved.counts();
         let mut best: Vec<([f64; 2], Vec<f64>)> = Vec::new();
         for along_rows in [true, false] {
             let (lines, steps) = if along_rows { (columns, rows) } else { (rows, columns) };
@@ -183,7 +191,10 @@ impl Cut {
     ) -> Vec<ToolPosition> {
         let each = (POSITIONS / mates.len()).max(LEAST_POSITIONS);
         let mut positions: Vec<(f64, ToolPosition)> = Vec::new();
-        for (&at, line) in mates.iter().zip(lines).filter(|(_, line)| !line.is_empty()) {
+        let touched: Vec<(&usize, &Vec<InSection>)> =
+            mates.iter().zip(lines).filter(|(_, line)| !line.is_empty()).collect();
+        let drawn = touched.len().min(MOST_TOUCHED);
+        for (&at, line) in (0..drawn).map(|k| touched[k * touched.len() / drawn]) {
             let surface = subject.solved[at].surface;
             for k in 0..each {
                 let touching = &line[(2 * k + 1) * line.len() / (2 * each)];

@@ -1,5 +1,7 @@
 //! What the tools of a job look like.
 
+use std::collections::HashMap;
+
 use flank_chain_dsl::{GeneratedSurface, Job, ToolShape};
 use flank_export::{PageTool, Revolution, ToolForm};
 use flank_expr::geometry::{Surface, Vector3};
@@ -20,6 +22,7 @@ const NO_RISE: f64 = 1e-9;
 /// Each tool once, however many surfaces it makes.
 pub(super) fn of<'g>(job: &Job<'g>, all: &[Solved<'_, 'g>], functions: &mut Functions<'g>) -> Vec<PageTool> {
     let mut tools: Vec<PageTool> = Vec::new();
+    let mut turns: HashMap<&str, Option<Screw>> = HashMap::new();
     for (number, solved) in all.iter().enumerate() {
         let generation = &solved.surface.generation;
         let (machine, frame) = frame(job, generation.tool_frame());
@@ -27,14 +30,21 @@ pub(super) fn of<'g>(job: &Job<'g>, all: &[Solved<'_, 'g>], functions: &mut Func
         if tools.iter().any(|tool| (&tool.name, tool.machine, tool.frame) == (name, machine, frame)) {
             continue;
         }
-        let form = form(job, (number, all), functions);
+        let tool_frame = generation.tool_frame();
+        let turn = *turns.entry(tool_frame).or_insert_with(|| turn(job, tool_frame, all));
+        let form = form(job, (number, solved.surface), turn, functions);
         tools.push(PageTool { name: name.clone(), machine, frame, form });
     }
     tools
 }
 
-fn form<'g>(job: &Job<'g>, (number, all): (usize, &[Solved<'_, 'g>]), functions: &mut Functions<'g>) -> ToolForm {
-    let generated = all[number].surface;
+/// What the tool of a surface looks like, whose number counts among those that are solved; `turn` is what it does not see.
+fn form<'g>(
+    job: &Job<'g>,
+    (number, generated): (usize, &GeneratedSurface<'g>),
+    turn: Option<Screw>,
+    functions: &mut Functions<'g>,
+) -> ToolForm {
     let generation = &generated.generation;
     let range = |unknown: Expr<'g>| range(generated, unknown);
     let titled = |position: Vector3<'g>| position.0.map(|component| ("position in the tool's frame", component));
@@ -43,8 +53,7 @@ fn form<'g>(job: &Job<'g>, (number, all): (usize, &[Solved<'_, 'g>]), functions:
         ToolShape::Surface(surface) => {
             let (unknowns, position) = ([surface.unknowns[0], surface.unknowns[1]], surface.position);
             let [u, v] = grid(job, position, unknowns, unknowns.map(range));
-            let axis =
-                turn(job, generation.tool_frame(), all).map(|turn| revolution(job, surface, unknowns.map(range), turn));
+            let axis = turn.map(|turn| revolution(job, surface, unknowns.map(range), turn));
             ToolForm::Surface { position: functions.add("tool", &unknowns, &titled(position)), u, v, axis }
         }
         ToolShape::Edge(edge) => {
