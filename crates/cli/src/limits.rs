@@ -23,6 +23,8 @@ pub(crate) struct Line<'j, 'g> {
     pub(crate) points: Vec<SurfacePoint>,
     /// Lines of this kind that cross the place at which they were looked for; `points` are those of the longest.
     pub(crate) several: usize,
+    /// No point of it was found, but it is not excluded either: the search was given up, or left a part of the ranges undecided.
+    pub(crate) is_open: bool,
 }
 
 /// What is not shown of the lines; empty if everything is.
@@ -40,7 +42,15 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
         let by = reasons::outside(line.surface, &line.summary)?;
         Some(format!("note: {} of {} points of {} are outside, {by}\n", outside, line.summary.asked, line.name))
     });
-    several.map(told).chain(partly).collect()
+    let open: Vec<&str> = lines.iter().filter(|line| line.is_open).map(|line| line.name.as_str()).collect();
+    let open = match open[..] {
+        [] => String::new(),
+        _ => format!(
+            "note: not found, and not excluded, since not all of the ranges could be looked at: {}; narrower ranges tell more\n",
+            open.join(", ")
+        ),
+    };
+    several.map(told).chain(partly).chain([open]).collect()
 }
 
 /// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
@@ -84,7 +94,9 @@ fn line<'j, 'g>(
     let (points, effort) = problem.solve(&targets, [1, targets.len()]);
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
     let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
-    Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len() }
+    let is_nowhere = summary.solved() == 0 && !summary.outcomes.contains_key("outside");
+    let is_open = is_nowhere && (effort.is_given_up || !effort.undecided.is_empty());
+    Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len(), is_open }
 }
 
 impl Line<'_, '_> {

@@ -37,6 +37,7 @@ pub(crate) fn cut<'j, 'g>(
         summary: Summary::of(surface.unknowns.len(), [1, points.len()], &points),
         points,
         several: 1,
+        is_open: false,
     }
 }
 

@@ -20,7 +20,7 @@ use crate::system::System;
 /// Points that are tried beside the middle.
 const MOST_ANCHORS: usize = 256;
 /// Boxes that are looked at, at all of them together, before the search is given up.
-const MOST_BOXES_OF_ALL: u64 = 10 * MOST_BOXES;
+pub(crate) const MOST_BOXES_OF_ALL: u64 = 10 * MOST_BOXES;
 /// Roots that are nearer to each other than this share of the ranges are the same.
 const SAME_ROOT: f64 = 1e-6;
 
@@ -40,6 +40,8 @@ pub(crate) struct Choice<'c> {
     /// What tells branches apart, if anything does.
     pub(crate) keep: Option<Keep<'c>>,
     pub(crate) several: Several,
+    /// Boxes that are looked at, at all points together, before the search is given up.
+    pub(crate) most_boxes: u64,
     /// Where a branch is followed beyond its ranges; nowhere if there is none.
     pub(crate) reach: Option<&'c Reach>,
     /// Unknowns that mean the same after a turn.
@@ -93,7 +95,14 @@ pub fn solve_grid(
     counts: [usize; 2],
 ) -> (Vec<Solution>, Effort) {
     let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
-    let choice = Choice { roots: &roots, keep: None, several: Several::TakeWidest, reach: None, periodic: &[] };
+    let choice = Choice {
+        roots: &roots,
+        keep: None,
+        several: Several::TakeWidest,
+        most_boxes: MOST_BOXES_OF_ALL,
+        reach: None,
+        periodic: &[],
+    };
     let grid = Grid::new(system, ranges, (targets, counts), None);
     let (field, effort) = solve_settled(grid, None, &choice);
     let solution = |point| field.solution(point).unwrap_or_else(|| Solution::never_reached(ranges));
@@ -231,7 +240,7 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
     let points: Vec<usize> = anchors([grid.rows, grid.columns]).filter(|point| *point != middle).collect();
     let mut ahead = Ahead::default();
     for (number, point) in points.iter().copied().enumerate() {
-        if grid.effort.boxes >= MOST_BOXES_OF_ALL || number == MOST_ANCHORS {
+        if grid.effort.boxes >= choice.most_boxes || number == MOST_ANCHORS {
             grid.effort.is_given_up = true;
             break;
         }

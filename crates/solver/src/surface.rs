@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
-use crate::anchor::{Choice, Keep, Several, solve_settled};
+use crate::anchor::{Choice, Keep, MOST_BOXES_OF_ALL, Several, solve_settled};
 use crate::angles::SearchSystem;
 use crate::bands::{Band, Targets, solve_in_bands};
 use crate::field::Field;
@@ -18,6 +18,10 @@ use crate::system::System;
 
 /// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
 pub const MOST_AT_ONCE: usize = 1 << 20;
+/// Boxes that are looked at for a line on a surface: at one of its points, and at all points together before the search is given up. A
+/// surface has such lines mostly beyond what it is used for, or none; those of the library's jobs are found at the first four points.
+const MOST_BOXES_OF_LINE: u64 = 400;
+const MOST_BOXES_OF_WHOLE_LINE: u64 = 5 * MOST_BOXES_OF_LINE;
 /// Bands that a grid which is just too large for one piece makes.
 const BANDS: usize = 4;
 
@@ -204,9 +208,10 @@ impl SurfaceProblem {
     }
 
     fn roots(&self, ranges: &[Range], target: &[f64]) -> Roots {
+        let most_boxes = if self.is_line() { MOST_BOXES_OF_LINE } else { MOST_BOXES };
         match &self.search {
-            Some(search) => search.all_roots(ranges, target, MOST_BOXES),
-            None => all_roots(&self.system, ranges, target, MOST_BOXES),
+            Some(search) => search.all_roots(ranges, target, most_boxes),
+            None => all_roots(&self.system, ranges, target, most_boxes),
         }
     }
 
@@ -359,6 +364,7 @@ impl SurfaceProblem {
             roots: &roots,
             keep: Some(keep).filter(|_| !ranges.is_empty()),
             several: self.several,
+            most_boxes: if self.is_line() { MOST_BOXES_OF_WHOLE_LINE } else { MOST_BOXES_OF_ALL },
             reach: self.reach.as_ref(),
             periodic: &self.periodic,
         })
@@ -389,6 +395,11 @@ impl SurfaceProblem {
                 field.put_alone(point, &Solution { outcome, unknowns, residual: f64::NAN, iterations: 0 });
             }
         }
+    }
+
+    /// Whether it is of a line on the surface.
+    fn is_line(&self) -> bool {
+        self.several == Several::TakeWidest
     }
 
     fn with_middle(&self, field: Field) -> SurfacePoints {

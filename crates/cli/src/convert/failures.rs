@@ -1,6 +1,6 @@
 //! What the target cannot do, in words.
 
-use flank_chain_dsl::{Axis, Machine};
+use flank_chain_dsl::{Axis, Bounded, Machine};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Missing, Outcome, Posture};
 
@@ -21,17 +21,17 @@ const FREEDOMS: usize = 6;
 ///
 /// # Errors
 /// In words, if there are fewer.
-pub(super) fn check_count(machine: &Machine<'_>, source: &Source<'_, '_>, free: &[&Axis<'_>]) -> Result<(), String> {
+pub(super) fn check_count(machine: &Machine<'_>, motions: &[&Bounded<'_>], free: &[&Axis<'_>]) -> Result<(), String> {
     let names = |names: Vec<&str>, join: &str| names.join(join);
-    let motions = names(source.motions.iter().map(|motion| motion.name.as_str()).collect(), " and ");
+    let moving = names(motions.iter().map(|motion| motion.name.as_str()).collect(), " and ");
     let axes = names(free.iter().map(|axis| axis.name.as_str()).collect(), ", ");
-    match (free.len(), source.motions.len()) {
+    match (free.len(), motions.len()) {
         (0, _) => Err(format!(
-            "no axis of {} moves the tool against the work: all are fixed, coupled, or elsewhere; {motions} cannot be followed",
+            "no axis of {} moves the tool against the work: all are fixed, coupled, or elsewhere; {moving} cannot be followed",
             machine.name
         )),
         (few, many) if few < many => Err(format!(
-            "the job runs over {motions}, each by itself, and {} has only {axes} to follow: it needs at least {many} free axes",
+            "the job runs over {moving}, each by itself, and {} has only {axes} to follow: it needs at least {many} free axes",
             machine.name
         )),
         _ => Ok(()),

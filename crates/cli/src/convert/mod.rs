@@ -18,7 +18,7 @@ use flank_solver::{
     Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis, unseen_motion,
 };
 
-use crate::arguments::{Convert, Onto, Which};
+use crate::arguments::{Convert, Means, Onto, Which};
 use crate::failure::Failure;
 use crate::progress::Working;
 use crate::spec::Origin;
@@ -26,7 +26,7 @@ use crate::{Ending, eprint, print, spec, units};
 use blocks::Blocks;
 use rates::Rates;
 use series::Series;
-use source::Source;
+use source::{Chosen, Source};
 use table::Table;
 
 /// No linear axis without travel goes farther, mm.
@@ -37,12 +37,13 @@ pub(crate) fn run(arguments: &Convert) -> Result<Ending, Failure> {
     check_fit_alone(arguments)?;
     let graph = Graph::new();
     let (origin, job, target) = compiled(&graph, &arguments.which, &arguments.to)?;
-    let target = Target::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
+    let plan = Plan::of(&graph, &job, &target, &arguments.onto, &arguments.fit)?;
+    check_settings_alone(&plan, arguments)?;
+    let target = plan.solved(arguments.onto.means)?;
     let (shown, told) = if target.settings.is_empty() {
         let (table, told) = carry(&job, target, &origin, arguments)?;
         (if arguments.json { table.json(&told) } else { table.text() }, told)
     } else {
-        check_settings_alone(&target, &arguments.of_a_motion())?;
         settings::find(&job, &target, arguments)?
     };
     print(&shown);
@@ -75,15 +76,16 @@ fn check_fit_alone(arguments: &Convert) -> Result<(), Failure> {
 
 /// # Errors
 /// If something is asked for that there is only of a motion, while settings are looked for that have no values.
-fn check_settings_alone(target: &Target<'_, '_>, dropped: &[&str]) -> Result<(), Failure> {
-    let [first, ..] = target.settings[..] else { return Ok(()) };
+fn check_settings_alone(plan: &Plan<'_, '_>, arguments: &Convert) -> Result<(), Failure> {
+    let [first, ..] = plan.settings[..] else { return Ok(()) };
+    let dropped = arguments.of_a_motion();
     if dropped.is_empty() {
         return Ok(());
     }
     Err(Failure::from(format!(
         "settings of {} are looked for, because {} has no value, and of them there are no files: leave out {}, and ask for it when \
          the settings have their values: --set {}=…",
-        target.machine.name,
+        plan.machine.name,
         first.name,
         dropped.join(", "),
         first.name
@@ -179,19 +181,32 @@ struct Target<'t, 'g> {
     bindings: Vec<(Expr<'g>, Expr<'g>)>,
 }
 
-impl<'t, 'g> Target<'t, 'g> {
+/// What is to be carried over to which machine: all names are known, nothing is solved yet.
+struct Plan<'t, 'g> {
+    job: &'t Job<'g>,
+    machine: &'t Machine<'g>,
+    chosen: Chosen<'t, 'g>,
+    chain: Chain<'g>,
+    free: Vec<&'t Axis<'g>>,
+    settings: Vec<&'t Bounded<'g>>,
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'t, 'g> Plan<'t, 'g> {
+    /// # Errors
+    /// In words, if a name is not known, it is not clear what is meant, or the machine has not the axes for it.
     fn of(
         graph: &'g Graph,
         job: &'t Job<'g>,
         target: &'t Job<'g>,
         onto: &Onto,
         fit: &[String],
-    ) -> Result<Target<'t, 'g>, String> {
-        let source = Source::of(job, onto.surface.as_deref(), onto.means)?;
+    ) -> Result<Plan<'t, 'g>, String> {
+        let chosen = Chosen::of(job, onto.surface.as_deref())?;
         let machine = &target.machines[0];
         let [work, tool] = [
-            frame(machine, &source.work, onto.work_frame.as_deref(), "--work-frame")?,
-            frame(machine, &source.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
+            frame(machine, &chosen.work, onto.work_frame.as_deref(), "--work-frame")?,
+            frame(machine, &chosen.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
         ];
         let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
         let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
@@ -203,11 +218,23 @@ impl<'t, 'g> Target<'t, 'g> {
         let settled = chain.substituted(&bindings);
         let moves = |axis: &&Axis<'g>| axis.law == axis.variable && !settled.twist(axis.variable).is_zero();
         let free: Vec<&Axis<'g>> = machine.axes.iter().filter(moves).collect();
-        let axes = free.iter().map(|axis| target_axis(axis)).collect();
-        failures::check_count(machine, &source, &free)?;
-        Ok(Target { job: target, machine, source, chain, free, axes, settings, bindings })
+        failures::check_count(machine, &chosen.motions, &free)?;
+        Ok(Plan { job: target, machine, chosen, chain, free, settings, bindings })
     }
 
+    /// With the points that the tool makes.
+    ///
+    /// # Errors
+    /// In words, if there are too many of them.
+    fn solved(self, means: Means) -> Result<Target<'t, 'g>, String> {
+        let Plan { job, machine, chosen, chain, free, settings, bindings } = self;
+        let source = Source::of(chosen, means)?;
+        let axes = free.iter().map(|axis| target_axis(axis)).collect();
+        Ok(Target { job, machine, source, chain, free, axes, settings, bindings })
+    }
+}
+
+impl<'t, 'g> Target<'t, 'g> {
     fn motions(&self) -> Vec<Expr<'g>> {
         self.source.motions.iter().map(|motion| motion.variable).collect()
     }
@@ -329,10 +356,10 @@ impl<'j, 'g> Carried<'j, 'g> {
         onto: &Onto,
         positions: u32,
     ) -> Result<Carried<'j, 'g>, String> {
-        let target = Target::of(graph, job, target, onto, &[])?;
-        match target.settings.first() {
+        let plan = Plan::of(graph, job, target, onto, &[])?;
+        match plan.settings.first() {
             Some(open) => Err(format!("{} has no value: --set {}=…", open.name, open.name)),
-            None => Carried::on(target, positions),
+            None => Carried::on(plan.solved(onto.means)?, positions),
         }
     }
 

@@ -70,16 +70,21 @@ fn lines(found: &[&Line<'_, '_>]) -> Block {
 
 /// What was looked for in vain: by its kind, the surfaces.
 fn not_found(missing: &[&Line<'_, '_>]) -> Vec<(String, String)> {
-    let mut kinds: Vec<String> = Vec::new();
+    let mut kinds: Vec<(String, bool)> = Vec::new();
     for line in missing {
-        if !kinds.contains(&kind(line)) {
-            kinds.push(kind(line));
+        let of = (kind(line), line.is_open);
+        if !kinds.contains(&of) {
+            kinds.push(of);
         }
     }
-    let of_kind = |of: String| {
-        let names = missing.iter().filter(|line| kind(line) == of).map(|line| line.surface.name.as_str());
-        let names = names.collect::<Vec<_>>().join(", ");
-        (format!("no {of}"), format!("within the ranges of {names}"))
+    let of_kind = |(of, is_open): (String, bool)| {
+        let alike = missing.iter().filter(|line| kind(line) == of && line.is_open == is_open);
+        let names = alike.map(|line| line.surface.name.as_str()).collect::<Vec<_>>().join(", ");
+        if is_open {
+            (format!("no {of} found, none excluded"), format!("not all ranges could be looked at: {names}"))
+        } else {
+            (format!("no {of}"), format!("within the ranges of {names}"))
+        }
     };
     kinds.into_iter().map(of_kind).collect()
 }
