@@ -139,7 +139,8 @@ fn trimmed(measured: &Measured<'_, '_>, means: Means) -> String {
         Held::Surface(of) => Some(of),
         Held::File { .. } => None,
     };
-    let wanted = Wanted { geometry: false, sensitivity: false, certificates: false, together: None, means };
+    let wanted =
+        Wanted { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, means };
     let told = held.into_iter().chain([&measured.from]).filter_map(|Named { job, surface }| {
         let sample = surface.sample.as_ref().filter(|_| !surface.trimmed_by.is_empty())?;
         let points = solve::points(job, surface, sample, wanted).points;
@@ -448,7 +449,7 @@ impl Measured<'_, '_> {
             name: format!("deviation of {}", self.held.name()),
             unit: "um".to_string(),
             meaning: NOTE.to_string(),
-            values: Values::Scalars(self.deviations.clone()),
+            values: Values::Scalars(self.deviations.as_slice().into()),
         };
         let held = match &self.held {
             Held::Surface(of) => Some(of.job),

@@ -23,7 +23,7 @@ fn ranges<'a>(solved: &'a Solved<'_, '_>) -> impl Iterator<Item = FieldRange<'a>
     solved.fields.iter().filter_map(|field| {
         let Values::Scalars(values) = &field.values else { return None };
         let mut range = FieldRange { name: &field.name, unit: &field.unit, ends: None, is_whole: true, undefined: 0 };
-        let of_solved = solved.points.iter().zip(values).filter(|(point, _)| point.outcome == Outcome::Solved);
+        let of_solved = solved.points.iter().zip(values.iter()).filter(|(point, _)| point.outcome == Outcome::Solved);
         for (_, value) in of_solved {
             match value {
                 Some(x) => {

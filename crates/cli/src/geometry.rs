@@ -19,92 +19,136 @@ pub(crate) fn fields<'g>(
     let motions = &surface.generation.motions;
     let geometry = SurfaceGeometry::new(&surface.surface, motions, coordinates, &job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
-    let all = Points(points.iter().map(at).collect());
-    let mut fields = bending(&all);
-    fields.extend(contact(&all, surface));
-    fields.extend(metric(&all, sample));
-    fields
+    let mut columns = columns(surface, sample);
+    for point in points {
+        let known = (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
+        columns.iter_mut().for_each(|column| column.take(known.as_ref()));
+    }
+    columns.into_iter().map(Column::field).collect()
 }
 
-/// What is known of each point; `None` for those that are not solved.
-struct Points(Vec<Option<PointGeometry>>);
+/// How many numbers a point has in these fields.
+pub(crate) fn numbers(surface: &GeneratedSurface<'_>, sample: &Sample<'_>) -> usize {
+    columns(surface, sample).iter().map(|column| if matches!(column.taken, Taken::Scalars(..)) { 1 } else { 3 }).sum()
+}
 
-impl Points {
-    fn scalar(&self, name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<f64>) -> Field {
-        let values = self.0.iter().map(|point| point.as_ref().and_then(&of)).collect();
-        Field { name: name.into(), unit: unit.into(), meaning: meaning.into(), values: Values::Scalars(values) }
+/// A field that is being filled, point by point.
+struct Column<'s> {
+    name: String,
+    unit: String,
+    meaning: String,
+    taken: Taken<'s>,
+}
+
+type Of<'s, T> = Box<dyn Fn(&PointGeometry) -> Option<T> + 's>;
+
+/// What it takes from a point that is solved, and its values so far.
+enum Taken<'s> {
+    Scalars(Of<'s, f64>, Vec<Option<f64>>),
+    Vectors(Of<'s, Vector>, Vec<Option<Vector>>),
+}
+
+impl<'s> Column<'s> {
+    fn scalar(name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<f64> + 's) -> Column<'s> {
+        let taken = Taken::Scalars(Box::new(of), Vec::new());
+        Column { name: name.into(), unit: unit.into(), meaning: meaning.into(), taken }
     }
 
-    fn vector(&self, name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<Vector>) -> Field {
-        let values = self.0.iter().map(|point| point.as_ref().and_then(&of)).collect();
-        Field { name: name.into(), unit: unit.into(), meaning: meaning.into(), values: Values::Vectors(values) }
+    fn vector(name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<Vector> + 's) -> Column<'s> {
+        let taken = Taken::Vectors(Box::new(of), Vec::new());
+        Column { name: name.into(), unit: unit.into(), meaning: meaning.into(), taken }
+    }
+
+    fn take(&mut self, point: Option<&PointGeometry>) {
+        match &mut self.taken {
+            Taken::Scalars(of, values) => values.push(point.and_then(of)),
+            Taken::Vectors(of, values) => values.push(point.and_then(of)),
+        }
+    }
+
+    fn field(self) -> Field {
+        let values = match self.taken {
+            Taken::Scalars(_, values) => Values::Scalars(values.into()),
+            Taken::Vectors(_, values) => Values::Vectors(values.into()),
+        };
+        Field { name: self.name, unit: self.unit, meaning: self.meaning, values }
     }
 }
 
-fn bending(points: &Points) -> Vec<Field> {
+fn columns<'s>(surface: &'s GeneratedSurface<'_>, sample: &'s Sample<'_>) -> Vec<Column<'s>> {
+    let mut columns = bending();
+    columns.extend(contact(surface));
+    columns.extend(metric(sample));
+    columns
+}
+
+fn bending<'s>() -> Vec<Column<'s>> {
     let principal = |point: &PointGeometry| point.curvature.map(|curvature| curvature.principal());
     let direction = |k: usize| move |point: &PointGeometry| principal(point)?.directions.map(|both| both[k]);
     vec![
-        points.scalar("k1", "1/mm", "larger principal curvature, positive where the body is convex", |point| {
+        Column::scalar("k1", "1/mm", "larger principal curvature, positive where the body is convex", move |point| {
             principal(point).map(|principal| principal.k1)
         }),
-        points.scalar("k2", "1/mm", "smaller principal curvature, positive where the body is convex", |point| {
+        Column::scalar("k2", "1/mm", "smaller principal curvature, positive where the body is convex", move |point| {
             principal(point).map(|principal| principal.k2)
         }),
-        points.vector("d1", "1", "unit direction of k1; d1, d2 and the normal are right-handed", direction(0)),
-        points.vector("d2", "1", "unit direction of k2", direction(1)),
+        Column::vector("d1", "1", "unit direction of k1; d1, d2 and the normal are right-handed", direction(0)),
+        Column::vector("d2", "1", "unit direction of k2", direction(1)),
     ]
 }
 
 /// How tool and work touch, as far as there is something to say: with no motion they are the same surface.
-fn contact(points: &Points, surface: &GeneratedSurface<'_>) -> Vec<Field> {
+fn contact<'s>(surface: &'s GeneratedSurface<'_>) -> Vec<Column<'s>> {
     let motions = &surface.unknowns[surface.unknowns.len() - surface.generation.motions.len()..];
-    let mut fields: Vec<Field> = Vec::new();
+    let mut columns: Vec<Column<'s>> = Vec::new();
     for (k, motion) in motions.iter().enumerate() {
         let name = format!("sliding_{}", motion.name);
         let meaning = format!("velocity of the tool's point against the work along the motion `{}`", motion.name);
         let unit = if motion.dimension == Dimension::ANGLE { "mm/rad" } else { "mm/mm" };
-        fields.push(points.vector(&name, unit, &meaning, |point| point.contact.sliding[k]));
+        columns.push(Column::vector(&name, unit, &meaning, move |point| point.contact.sliding[k]));
     }
     if motions.len() == 1 {
         let meaning = "unit direction of the line along which tool and work touch at the instant";
-        fields.push(points.vector("contact_line", "1", meaning, |point| point.contact.line));
+        columns.push(Column::vector("contact_line", "1", meaning, |point| point.contact.line));
         let meaning = "angle between the contact line and the sliding velocity, 0 to 90";
         let degrees = |point: &PointGeometry| point.contact.sliding_angle().map(f64::to_degrees);
-        fields.push(points.scalar("sliding_angle", "deg", meaning, degrees));
+        columns.push(Column::scalar("sliding_angle", "deg", meaning, degrees));
     }
     if !motions.is_empty() && surface.generation.process != Process::Sweep {
-        fields.extend(induced(points));
+        columns.extend(induced());
     }
-    fields
+    columns
 }
 
-fn induced(points: &Points) -> Vec<Field> {
+fn induced<'s>() -> Vec<Column<'s>> {
     let principal =
         |point: &PointGeometry| -> Option<Principal> { point.contact.induced.map(|induced| induced.principal()) };
     let meaning = "normal curvature of the gap between tool and work; negative where the tool cuts into the surface";
     vec![
-        points.scalar("induced_k1", "1/mm", &format!("largest {meaning}"), |point| principal(point).map(|p| p.k1)),
-        points.scalar("induced_k2", "1/mm", &format!("smallest {meaning}"), |point| principal(point).map(|p| p.k2)),
-        points.vector("induced_d1", "1", "unit direction of induced_k1", |point| {
+        Column::scalar("induced_k1", "1/mm", &format!("largest {meaning}"), move |point| {
+            principal(point).map(|p| p.k1)
+        }),
+        Column::scalar("induced_k2", "1/mm", &format!("smallest {meaning}"), move |point| {
+            principal(point).map(|p| p.k2)
+        }),
+        Column::vector("induced_d1", "1", "unit direction of induced_k1", move |point| {
             principal(point)?.directions.map(|both| both[0])
         }),
     ]
 }
 
-fn metric(points: &Points, sample: &Sample<'_>) -> Vec<Field> {
+fn metric<'s>(sample: &'s Sample<'_>) -> Vec<Column<'s>> {
     let [a, b] = &sample.coordinates;
-    let field = |name: &str, pair: [Dimension; 2], meaning: &str, of: fn(Metric) -> f64| {
-        points.scalar(name, &unit_of_metric(pair), meaning, |point| point.metric.map(of))
+    let column = |name: &str, pair: [Dimension; 2], meaning: &str, of: fn(Metric) -> f64| {
+        Column::scalar(name, &unit_of_metric(pair), meaning, move |point| point.metric.map(of))
     };
     let (one, two) = (&a.name, &b.name);
     let along = |name: &str| format!("square of the arc length along the surface for a step of `{name}` alone");
     let mixed = format!("product of the arc lengths for steps of `{one}` and `{two}`, times the cosine of their angle");
     vec![
-        field("metric_e", [a.dimension; 2], &along(one), |metric| metric.e),
-        field("metric_f", [a.dimension, b.dimension], &mixed, |metric| metric.f),
-        field("metric_g", [b.dimension; 2], &along(two), |metric| metric.g),
+        column("metric_e", [a.dimension; 2], &along(one), |metric| metric.e),
+        column("metric_f", [a.dimension, b.dimension], &mixed, |metric| metric.f),
+        column("metric_g", [b.dimension; 2], &along(two), |metric| metric.g),
     ]
 }
 

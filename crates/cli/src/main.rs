@@ -20,6 +20,7 @@ mod import;
 mod inspect;
 mod limits;
 mod measure;
+mod memory;
 mod new;
 mod plot;
 mod progress;
@@ -62,6 +63,8 @@ enum Ending {
     Usage,
     /// 3: done, but something asked for could not be solved, and it is listed.
     Unsolved,
+    /// 4: the system has not the memory that it takes.
+    OutOfMemory,
     /// 141: done, but who read what was printed has gone away; as shells count a program that the signal of a broken pipe ends.
     Unread,
 }
@@ -73,6 +76,7 @@ impl Ending {
             Ending::Wrong => 1,
             Ending::Usage => 2,
             Ending::Unsolved => 3,
+            Ending::OutOfMemory => 4,
             Ending::Unread => 141,
         }
     }

@@ -127,7 +127,7 @@ impl<'j, 'g> Placed<'j, 'g> {
 
 /// Points alone.
 fn wanted(means: Means) -> Wanted {
-    Wanted { geometry: false, sensitivity: false, certificates: false, together: None, means }
+    Wanted { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, means }
 }
 
 /// So many shares from end to end, without the margins.

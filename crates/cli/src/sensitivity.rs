@@ -1,6 +1,7 @@
 //! `flank solve --sensitivity`: how far each parameter moves the surfaces.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
 use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
@@ -34,7 +35,7 @@ struct Influence {
     dimension: Dimension,
     /// The change that parameters are ranked by, in the same unit.
     usual_change: f64,
-    values: Vec<Option<f64>>,
+    values: Arc<[Option<f64>]>,
     /// Root of the mean square, and the largest, over all points with a value.
     rms: f64,
     largest: f64,
@@ -47,19 +48,28 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
     let exact =
         NormalSensitivity::new(&surface.surface, &parameters).expect("a job without errors leaves nothing unbound");
     let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| exact.at(&point.unknowns)).flatten();
-    let moved: Vec<Option<Vec<f64>>> = points.iter().map(at).collect();
-    let continuous = job.parameters.iter().enumerate().filter(|(_, parameter)| !parameter.is_count);
-    let of_all = |k: usize| moved.iter().map(move |point| Some(point.as_ref()?[k]));
-    let influences = continuous.map(|(k, parameter)| Influence::new(parameter, of_all(k))).collect();
-    let counts = job.parameters.iter().filter(|parameter| parameter.is_count);
-    let counts = counts.map(|parameter| parameter.name.clone()).collect();
-    Sensitivity { influences, counts, points: moved.iter().flatten().count() }
+    let (counts, continuous): (Vec<_>, Vec<_>) =
+        job.parameters.iter().enumerate().partition(|(_, parameter)| parameter.is_count);
+    // one number of each parameter and point is all that is kept of a point
+    let mut moved: Vec<Vec<Option<f64>>> = vec![Vec::with_capacity(points.len()); continuous.len()];
+    let mut known = 0;
+    for point in points {
+        let of_all = at(point);
+        known += usize::from(of_all.is_some());
+        for ((k, _), values) in continuous.iter().zip(&mut moved) {
+            values.push(of_all.as_ref().map(|of_all| of_all[*k]));
+        }
+    }
+    let influences = continuous.iter().zip(moved);
+    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, moved)).collect();
+    let counts = counts.into_iter().map(|(_, parameter)| parameter.name.clone()).collect();
+    Sensitivity { influences, counts, points: known }
 }
 
 impl Influence {
-    fn new(parameter: &Parameter<'_>, moved: impl Iterator<Item = Option<f64>>) -> Influence {
+    fn new(parameter: &Parameter<'_>, moved: Vec<Option<f64>>) -> Influence {
         let (size, step) = small_step(parameter.dimension);
-        let values: Vec<Option<f64>> = moved.map(|mm| Some(1e3 * size * mm?)).collect();
+        let values: Arc<[Option<f64>]> = moved.into_iter().map(|mm| Some(1e3 * size * mm?)).collect();
         let known = || values.iter().flatten();
         let squares: f64 = known().map(|um| um * um).sum();
         Influence {
@@ -82,7 +92,7 @@ impl Influence {
                 "normal displacement of the surface for a change of `{}`; plus is more material",
                 self.parameter
             ),
-            values: Values::Scalars(self.values.clone()),
+            values: Values::Scalars(Arc::clone(&self.values)),
         }
     }
 

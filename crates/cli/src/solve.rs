@@ -34,10 +34,12 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         sensitivity: arguments.sensitivity,
         certificates: arguments.certify,
         together: None,
+        of_shown: false,
         means: arguments.means,
     };
     let mut ending = Ending::Done;
     for job in asked(&jobs)? {
+        stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let limited = job.surfaces.iter().filter(|_| arguments.limits);
@@ -97,6 +99,8 @@ pub(crate) struct Wanted {
     pub(crate) certificates: bool,
     /// What else needs all points together, if something does.
     pub(crate) together: Option<&'static str>,
+    /// Whether geometry and sensitivity are wanted of the points that are shown alone, where a surface has too many to keep.
+    pub(crate) of_shown: bool,
     pub(crate) means: Means,
 }
 
@@ -108,7 +112,7 @@ pub(crate) fn solve_surface<'j, 'g>(
 ) -> Option<Result<Solved<'j, 'g>, String>> {
     let sample = surface.sample.as_ref()?;
     match stream::is_streamed(job, surface, sample, wanted) {
-        Ok(true) => return Some(Ok(in_bands(job, surface, sample, wanted.means))),
+        Ok(true) => return Some(Ok(in_bands(job, surface, sample, wanted))),
         Ok(false) => {}
         Err(reason) => return Some(Err(reason)),
     }
@@ -127,15 +131,14 @@ pub(crate) fn solve_surface<'j, 'g>(
     let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
     let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
     let kept_out = kept_out(job, surface, (&effort, &summary), wanted.means);
-    let (counts, streamed) = (sample.counts, None);
     Some(Ok(Solved {
         surface,
         sample,
         bindings: job.bindings(),
         summary,
         points,
-        counts,
-        streamed,
+        lines: sample.counts.map(|count| (0..count).collect()),
+        streamed: None,
         needed,
         effort,
         branches,
@@ -153,25 +156,25 @@ fn in_bands<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &'j Sample<'g>,
-    means: Means,
+    wanted: Wanted,
 ) -> Solved<'j, 'g> {
-    let streamed = Streamed::new(job, surface, sample, means);
-    let Kept { summary, effort, drawn, counts } = streamed.look();
+    let streamed = Streamed::new(job, surface, sample, wanted.means);
+    let Kept { summary, effort, drawn } = streamed.look();
     Solved {
         surface,
         sample,
         bindings: job.bindings(),
         needed: Vec::new(),
-        points: drawn,
-        counts,
+        lines: streamed.drawn(),
         branches: streamed.problem().points(&effort.branches),
-        kept_out: kept_out(job, surface, (&effort, &summary), means),
+        kept_out: kept_out(job, surface, (&effort, &summary), wanted.means),
         summary,
         streamed: Some(streamed),
         effort,
         radii: None,
-        fields: Vec::new(),
-        sensitivity: None,
+        fields: if wanted.geometry { geometry::fields(job, surface, sample, &drawn) } else { Vec::new() },
+        sensitivity: wanted.sensitivity.then(|| sensitivity::of(job, surface, &drawn)),
+        points: drawn,
         trims: Vec::new(),
         cut: None,
     }
@@ -255,7 +258,7 @@ pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
 /// The points of all surfaces, with all that is known of them, and lines on them.
 pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'_, '_>], header: Header) -> Dataset {
     let surfaces = solved.iter().map(|solved| {
-        let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.counts[k] };
+        let axis = |k: usize| Axis { label: solved.sample.labels[k].clone(), count: solved.counts()[k] };
         let asked = solved.summary.asked;
         let name = match solved.streamed {
             Some(_) => format!("{} ({} of {asked} points drawn)", solved.surface.name, solved.points.len()),

@@ -1,16 +1,26 @@
 //! Surfaces of more points than are kept: solved band after band, as often as they are needed.
+//!
+//! What needs all points of a surface together is told what it would take before anything is solved.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Banded, Patch, Point, Taker, WriteError};
 use flank_solver::{Band, Effort, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::Means;
+use crate::geometry;
 use crate::progress::Working;
 use crate::solve::{Wanted, patch, point, problem};
 use crate::summary::Summary;
 
-/// Surfaces of more points are streamed if nothing needs all of them together: kept, each takes about a kilobyte.
+/// Surfaces of more points are streamed if nothing needs all of them together.
 const KEPT: usize = 1 << 16;
+/// Bytes that the points of a job may take together where they are kept: what machines of today can spare.
+const MOST_BYTES: usize = 1 << 30;
+/// Bytes of a point that is kept: verdict, place, normal and residual, as the solver gives them and as they are written, with what the
+/// system's memory takes for two lists of unknowns; and of each unknown, and each number of a field, which may be missing.
+const OF_POINT: usize = size_of::<SurfacePoint>() + size_of::<Point>() + 2 * 16;
+const OF_UNKNOWN: usize = 2 * size_of::<f64>();
+const OF_NUMBER: usize = size_of::<Option<f64>>();
 /// Points that are handed over at once, if rows are not longer than that.
 const HANDED_OVER: usize = 8192;
 /// Rows, and columns, of a picture.
@@ -29,9 +39,46 @@ pub(crate) struct Streamed<'j, 'g> {
 pub(crate) struct Kept {
     pub(crate) summary: Summary,
     pub(crate) effort: Effort,
-    /// Some rows and columns for a picture, and how many of each.
+    /// Those in some rows and columns, for pictures.
     pub(crate) drawn: Vec<SurfacePoint>,
-    pub(crate) counts: [usize; 2],
+}
+
+/// What the points of a job take where they are kept.
+///
+/// # Errors
+/// If that is more than they may: in words, with a way out.
+pub(crate) fn check_kept<'s, 'g: 's>(
+    job: &Job<'g>,
+    surfaces: impl IntoIterator<Item = &'s GeneratedSurface<'g>>,
+    wanted: Wanted,
+) -> Result<(), String> {
+    let (mut points, mut bytes, mut needed) = (0_usize, 0_usize, None);
+    for (surface, sample) in surfaces.into_iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?))) {
+        let count = sample.counts[0] * sample.counts[1];
+        if let Some(what) = needs_all(job, surface, sample, wanted).filter(|_| count > KEPT) {
+            points += count;
+            bytes += count * bytes_of_point(job, surface, sample, wanted);
+            needed.get_or_insert(what);
+        }
+    }
+    match needed {
+        Some(what) if bytes > MOST_BYTES => Err(format!(
+            "job {} asks for {points} points that {what} needs all together: they would take about {:.1} GB, and {:.1} GB is \
+             the most; ask for fewer points, for one surface at a time, or do without it",
+            job.name,
+            bytes as f64 / 1e9,
+            MOST_BYTES as f64 / 1e9
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn bytes_of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> usize {
+    let parameters = job.parameters.iter().filter(|parameter| !parameter.is_count).count();
+    let geometry = if wanted.geometry { geometry::numbers(surface, sample) } else { 0 };
+    let sensitivity = if wanted.sensitivity { parameters } else { 0 };
+    let numbers = geometry + sensitivity + 2 * usize::from(wanted.certificates);
+    OF_POINT + OF_UNKNOWN * surface.unknowns.len() + OF_NUMBER * numbers
 }
 
 /// Whether the points of a surface are too many to keep.
@@ -62,8 +109,12 @@ fn needs_all(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>,
     let between = trim.or(surface.cut_by.map(|by| ("cut", by)));
     let between = between.map(|(word, by)| format!("`{word} {} by {}`", surface.name, job.surfaces[by].name));
     let required = sample.limits.first().map(|limit| format!("what its sample requires of `{}`", limit.of.name));
-    let flags =
-        [(wanted.geometry, "--geometry"), (wanted.sensitivity, "--sensitivity"), (wanted.certificates, "--certify")];
+    let of_each = |is_given: bool| is_given && !wanted.of_shown;
+    let flags = [
+        (of_each(wanted.geometry), "--geometry"),
+        (of_each(wanted.sensitivity), "--sensitivity"),
+        (wanted.certificates, "--certify"),
+    ];
     let flag = flags.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
     between.or(required).or(wanted.together.or(flag).map(str::to_string))
 }
@@ -86,6 +137,11 @@ impl<'j, 'g> Streamed<'j, 'g> {
         }
     }
 
+    /// The rows and the columns that are kept for pictures.
+    pub(crate) fn drawn(&self) -> [Vec<usize>; 2] {
+        self.sample.counts.map(|count| (0..count).step_by(count.div_ceil(DRAWN).max(1)).collect())
+    }
+
     /// Looks at all points.
     pub(crate) fn look(&self) -> Kept {
         let counts = self.sample.counts;
@@ -103,7 +159,7 @@ impl<'j, 'g> Streamed<'j, 'g> {
             Ok::<_, std::convert::Infallible>(())
         });
         let Ok(effort) = looked;
-        Kept { summary, effort, drawn, counts: [0, 1].map(|k| counts[k].div_ceil(step[k])) }
+        Kept { summary, effort, drawn }
     }
 
     pub(crate) fn problem(&self) -> &SurfaceProblem {

@@ -31,8 +31,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) summary: Summary,
     /// All of them; some for a picture if there are too many to keep.
     pub(crate) points: Vec<SurfacePoint>,
-    /// Rows and columns of these points.
-    pub(crate) counts: [usize; 2],
+    /// The sample's rows and columns that these points stand in.
+    pub(crate) lines: [Vec<usize>; 2],
     /// What hands over the points if they are too many to keep.
     pub(crate) streamed: Option<Streamed<'j, 'g>>,
     pub(crate) effort: Effort,
@@ -151,6 +151,17 @@ fn none(surface: &GeneratedSurface<'_>, summary: &Summary) -> String {
 }
 
 impl<'g> Solved<'_, 'g> {
+    /// Rows and columns of its points.
+    pub(crate) fn counts(&self) -> [usize; 2] {
+        [0, 1].map(|k| self.lines[k].len())
+    }
+
+    /// Where one of its points stands in the sample: row and column.
+    pub(crate) fn place(&self, at: usize) -> [usize; 2] {
+        let columns = self.lines[1].len();
+        [self.lines[0][at / columns], self.lines[1][at % columns]]
+    }
+
     pub(crate) fn row(&self) -> Row<'_, 'g> {
         Row { name: &self.surface.name, surface: self.surface, summary: &self.summary }
     }

@@ -1,5 +1,7 @@
 //! What the solver's results look like to a writer of files.
 
+use std::sync::Arc;
+
 use crate::conventions::one_line;
 use crate::error::Malformed;
 use crate::tally::Tally;
@@ -60,13 +62,13 @@ pub struct Field {
     pub values: Values,
 }
 
-/// The values of a field. `None` where it is not defined; what a point that is not solved has is not written.
+/// The values of a field, shared by its clones. `None` where it is not defined; what a point that is not solved has is not written.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     /// A number for each point.
-    Scalars(Vec<Option<f64>>),
+    Scalars(Arc<[Option<f64>]>),
     /// A vector in the patch's frame for each point.
-    Vectors(Vec<Option<[f64; 3]>>),
+    Vectors(Arc<[Option<[f64; 3]>]>),
 }
 
 /// One direction of a grid.

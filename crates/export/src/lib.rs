@@ -36,7 +36,7 @@
 //!             name: "k1".into(),
 //!             unit: "1/mm".into(),
 //!             meaning: "larger principal curvature, positive where the body is convex".into(),
-//!             values: Values::Scalars(vec![Some(1.0 / 32.0), None]),
+//!             values: Values::Scalars([Some(1.0 / 32.0), None].into()),
 //!         }],
 //!     }],
 //! };

@@ -114,7 +114,7 @@ fn fields_follow_the_status() {
     // the unit of another field of that name, and the name of an unknown
     second.fields[0].unit = "1/um".into();
     second.fields[1].name = "phi".into();
-    second.fields[1].values = Values::Scalars(vec![Some(0.5)]);
+    second.fields[1].values = Values::Scalars([Some(0.5)].into());
     let text = text_of(&dataset("job", vec![first, second]));
     let (titles, records) = read(&text);
     let last = ["d1_x", "d1_y", "d1_z", "k1 [1/um]", "phi [1]"];
@@ -166,10 +166,10 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     endless.points[4].normal[1] = f64::INFINITY;
     assert_eq!(refusal(endless), Malformed::NotANumber { surface: "flank".into(), i: 2, j: 0 });
     let mut partial = with_fields(sound());
-    partial.fields[1].values = Values::Vectors(vec![None; 5]);
+    partial.fields[1].values = Values::Vectors([None; 5].into());
     assert_eq!(refusal(partial).to_string(), "surface `flank`, field `d1`: 5 values for 6 points");
     let mut undefined = with_fields(sound());
-    undefined.fields[0].values = Values::Scalars(vec![Some(f64::NAN); 6]);
+    undefined.fields[0].values = Values::Scalars([Some(f64::NAN); 6].into());
     assert_eq!(refusal(undefined), Malformed::NotANumber { surface: "flank".into(), i: 0, j: 0 });
     let mut huge = sound();
     huge.rows.count = usize::MAX;

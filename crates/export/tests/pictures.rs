@@ -53,9 +53,9 @@ fn with_maps() -> Dataset {
     let wave = |(s, t): (f64, f64)| (s > 0.1 || t > 0.2).then_some(8.0 * (s - 0.4) - 30.0 * (t - 0.3) * s);
     patch.fields = vec![
         field("d_normal/d_wave", Values::Scalars(shares.map(wave).collect())),
-        field("d_normal/d_constant", Values::Scalars(vec![Some(0.25); 375])),
-        field("vectors", Values::Vectors(vec![None; 375])),
-        field("none", Values::Scalars(vec![None; 375])),
+        field("d_normal/d_constant", Values::Scalars([Some(0.25); 375].into())),
+        field("vectors", Values::Vectors([None; 375].into())),
+        field("none", Values::Scalars([None; 375].into())),
     ];
     synthetic::dataset("job", vec![patch])
 }

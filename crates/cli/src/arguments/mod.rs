@@ -36,8 +36,8 @@ Examples:
   flank fmt specs/tools/*.chain                         the settled layout
 
 Exit codes: 0 done; 1 what was read is wrong or has not what is asked of it, or a file cannot be read or written; 2 the
-command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed;
-141 done, but nobody read to the end what was printed."
+command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed; 4 the
+system gave no more memory; 141 done, but nobody read to the end what was printed."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]

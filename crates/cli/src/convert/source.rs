@@ -7,7 +7,7 @@ use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
 use crate::arguments::Means;
 use crate::solve::{self, Wanted};
-use crate::{table, units};
+use crate::{stream, table, units};
 
 /// Points that lie no farther apart than this share of a motion's range have it at one value: what differs is rounding.
 const STILL: f64 = 1e-9;
@@ -51,10 +51,21 @@ struct Made<'j, 'g> {
     told: String,
 }
 
-impl<'j, 'g> Source<'j, 'g> {
+/// Which of a job's tools is carried over: what is known of it before any point is solved.
+pub(super) struct Chosen<'j, 'g> {
+    job: &'j Job<'g>,
+    pub(super) work: String,
+    pub(super) tool: String,
+    /// The surfaces that the tool makes there over the motions.
+    mates: Vec<&'j GeneratedSurface<'g>>,
+    is_one_of_several: bool,
+    pub(super) motions: Vec<&'j Bounded<'g>>,
+}
+
+impl<'j, 'g> Chosen<'j, 'g> {
     /// # Errors
     /// In words, if it is not clear which tool is meant, or nothing moves.
-    pub(crate) fn of(job: &'j Job<'g>, asked: Option<&str>, means: Means) -> Result<Source<'j, 'g>, String> {
+    pub(super) fn of(job: &'j Job<'g>, asked: Option<&str>) -> Result<Chosen<'j, 'g>, String> {
         let path =
             |surface: &GeneratedSurface<'g>| (surface.frame.clone(), surface.generation.tool_frame().to_string());
         let named = |surface: &&&GeneratedSurface<'g>| match asked {
@@ -66,6 +77,7 @@ impl<'j, 'g> Source<'j, 'g> {
             let names: Vec<&str> = all.iter().map(|surface| surface.name.as_str()).collect();
             return Err(format!("{} has no such surface: --surface {}", job.name, names.join(" or ")));
         };
+        let is_one_of_several = all.iter().any(|surface| path(surface) != path(first));
         if asked.is_none()
             && let Some(other) = all.iter().find(|surface| path(surface) != path(first))
         {
@@ -83,11 +95,33 @@ impl<'j, 'g> Source<'j, 'g> {
                 generation.tool_name, first.name
             ));
         }
-        let mates = all
-            .iter()
-            .filter(|surface| path(surface) == path(first) && surface.generation.motions == generation.motions);
-        let surfaces = mates.clone().map(|surface| surface.name.as_str()).collect();
-        let made: Vec<Made<'j, 'g>> = mates.map(|&surface| made(job, surface, means)).collect::<Result<_, String>>()?;
+        let is_mate = |surface: &&&GeneratedSurface<'g>| {
+            path(surface) == path(first) && surface.generation.motions == generation.motions
+        };
+        let mates = all.iter().filter(is_mate).copied().collect();
+        let (work, tool) = path(first);
+        Ok(Chosen { job, work, tool, mates, is_one_of_several, motions })
+    }
+}
+
+impl<'j, 'g> Source<'j, 'g> {
+    /// With its sampled points.
+    ///
+    /// # Errors
+    /// In words, if a surface has more points than can be carried over.
+    pub(super) fn of(chosen: Chosen<'j, 'g>, means: Means) -> Result<Source<'j, 'g>, String> {
+        let Chosen { job, work, tool, mates, is_one_of_several, motions } = chosen;
+        let wanted = Wanted {
+            geometry: false,
+            sensitivity: false,
+            certificates: false,
+            together: Some("carrying its tool over"),
+            of_shown: false,
+            means,
+        };
+        stream::check_kept(job, mates.iter().copied(), wanted)?;
+        let made: Vec<Made<'j, 'g>> =
+            mates.iter().map(|&surface| made(job, surface, wanted)).collect::<Result<_, String>>()?;
         let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &made)).collect();
         let unsolved = made.iter().map(|made| made.told.as_str()).collect();
         let count = made.len();
@@ -104,7 +138,6 @@ impl<'j, 'g> Source<'j, 'g> {
         } else {
             Vec::new()
         };
-        let (work, tool) = path(first);
         let whole: Vec<Range> = motions.iter().map(|motion| Range { low: motion.low, high: motion.high }).collect();
         let stands = |(needed, whole): (&Range, &Range)| needed.high - needed.low <= STILL * (whole.high - whole.low);
         let (ranges, still) = if needed.iter().zip(&whole).all(stands) {
@@ -112,13 +145,12 @@ impl<'j, 'g> Source<'j, 'g> {
         } else {
             (needed, None)
         };
-        let is_one_of_several = all.iter().any(|surface| path(surface) != path(first));
         Ok(Source {
             work,
             tool,
-            surfaces,
+            surfaces: mates.iter().map(|surface| surface.name.as_str()).collect(),
             is_one_of_several,
-            driven: &generation.driven,
+            driven: &mates[0].generation.driven,
             motions,
             ranges,
             still,
@@ -175,14 +207,7 @@ impl Flank<'_, '_> {
 }
 
 /// The points of a surface; none where no sample asks for any.
-fn made<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Result<Made<'j, 'g>, String> {
-    let wanted = Wanted {
-        geometry: false,
-        sensitivity: false,
-        certificates: false,
-        together: Some("carrying its tool over"),
-        means,
-    };
+fn made<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, wanted: Wanted) -> Result<Made<'j, 'g>, String> {
     let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
         return Ok(Made { surface, points: Vec::new(), told: String::new() });
     };

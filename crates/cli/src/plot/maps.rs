@@ -74,7 +74,7 @@ pub(super) fn curvature(subject: &Subject<'_, '_>, options: &PictureOptions) -> 
         };
         let Some(((k1, larger), (k2, smaller))) = values("k1").zip(values("k2")) else { return Vec::new() };
         let both = |of: fn(f64, f64) -> f64| {
-            let pairs = larger.iter().zip(smaller);
+            let pairs = larger.iter().zip(smaller.iter());
             Values::Scalars(pairs.map(|(a, b)| Some(of((*a)?, (*b)?))).collect())
         };
         let field = |name: &str, unit: &str, meaning: &str, values: Values| Field {

@@ -7,6 +7,7 @@ use flank_solver::{Outcome, SurfacePoint};
 
 use crate::arguments::{Means, What};
 use crate::solve::{self, Wanted};
+use crate::stream;
 use crate::table::Solved;
 
 pub(crate) struct Subject<'j, 'g> {
@@ -38,9 +39,11 @@ impl<'j, 'g> Subject<'j, 'g> {
             geometry: kinds.contains(&What::Curvature) || kinds.is_empty(),
             sensitivity: kinds.contains(&What::Sensitivity),
             certificates: false,
-            together: Some("a picture"),
+            together: None,
+            of_shown: true,
             means,
         };
+        stream::check_kept(job, &job.surfaces, wanted)?;
         let solve_one = |surface: usize| {
             let is_chosen = mapped.contains(&&*job.surfaces[surface].name);
             let points_only = Wanted { geometry: false, sensitivity: false, ..wanted };
@@ -81,7 +84,7 @@ impl<'j, 'g> Subject<'j, 'g> {
     /// In words, if none is solved.
     pub(super) fn middle(&self) -> Result<(usize, &SurfacePoint), String> {
         let solved = self.first();
-        let [rows, columns] = solved.sample.counts;
+        let [rows, columns] = solved.counts();
         let off = |at: usize| {
             let [i, j] = [at / columns, at % columns];
             (2 * i).abs_diff(rows - 1) * columns + (2 * j).abs_diff(columns - 1) * rows

@@ -52,7 +52,7 @@ fn curvatures(findings: &Findings<'_, '_>) -> Block {
         let mut name = solved.surface.name.clone();
         for bend in bends(solved) {
             let [x, y, z] = solved.points[bend.at].position;
-            let (row, column) = (bend.at / solved.sample.counts[1], bend.at % solved.sample.counts[1]);
+            let [row, column] = solved.place(bend.at);
             let which = if bend.field == "k1" { "largest, k1" } else { "smallest, k2" };
             let mut cells = vec![
                 std::mem::take(&mut name),
@@ -112,9 +112,9 @@ fn range(of: &Bounded<'_>) -> String {
 /// The extreme curvatures of a surface.
 pub(super) fn json(solved: &Solved<'_, '_>) -> Value {
     let entry = |bend: Bend| {
-        let columns = solved.sample.counts[1];
+        let [i, j] = solved.place(bend.at);
         json!({
-            "name": bend.field, "unit": "1/mm", "value": bend.value, "i": bend.at / columns, "j": bend.at % columns,
+            "name": bend.field, "unit": "1/mm", "value": bend.value, "i": i, "j": j,
             "position": solved.points[bend.at].position,
         })
     };

@@ -26,7 +26,7 @@ use crate::spec::Origin;
 use crate::step::{self, Smooth};
 use crate::table::{self, Solved};
 use crate::travel::{self, Run};
-use crate::{Ending, certify, cut, eprint, print, required, spec};
+use crate::{Ending, certify, cut, eprint, print, required, spec, stream};
 use target::Target;
 
 pub(crate) fn run(arguments: &Report) -> Result<Ending, Failure> {
@@ -75,9 +75,11 @@ impl<'j, 'g> Findings<'j, 'g> {
             geometry: true,
             sensitivity: true,
             certificates: arguments.certify,
-            together: Some("a report"),
+            together: None,
+            of_shown: true,
             means: arguments.means,
         };
+        stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
         let mut lines = Vec::new();

@@ -16,6 +16,7 @@ pub(super) fn of(findings: &Findings<'_, '_>) -> Unchecked {
     let of_job = [
         not_sampled(findings),
         not_certified(findings),
+        not_kept(findings),
         not_excluded(findings),
         one_place(findings),
         not_trimmed(findings),
@@ -62,6 +63,20 @@ fn not_certified(findings: &Findings<'_, '_>) -> Option<String> {
     let is_open =
         |solved: &Solved<'_, '_>| certify::proven(solved).is_some_and(|(count, _)| count < solved.summary.solved());
     those(findings, is_open).map(|names| format!("Some solved points could not be certified, on {names}."))
+}
+
+fn not_kept(findings: &Findings<'_, '_>) -> Option<String> {
+    let parts = findings.solved().iter().filter(|solved| solved.streamed.is_some());
+    let parts: Vec<String> = parts
+        .map(|solved| format!("{} of {} of {}", solved.points.len(), solved.summary.asked, solved.surface.name))
+        .collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "All points were solved; curvatures, what moves the surfaces, how far axes go and pictures are those of some rows and \
+             columns: {} points.",
+            parts.join(", ")
+        )
+    })
 }
 
 fn not_excluded(findings: &Findings<'_, '_>) -> Option<String> {

@@ -8,7 +8,7 @@ mod thin;
 mod tools;
 
 use flank_chain_dsl::{Bounded, Job};
-use flank_export::{Dataset, Field, PageMotion, Scene, Tally, Values};
+use flank_export::{Dataset, Field, PageMotion, Patch, Scene, Tally, Values};
 use flank_expr::Graph;
 use serde_json::{Value, json};
 
@@ -20,12 +20,12 @@ use crate::limits::Line;
 use crate::solve::{self, Wanted};
 use crate::spec::Origin;
 use crate::table::{self, Solved};
-use crate::{Ending, eprint, print, spec};
+use crate::{Ending, eprint, print, spec, stream};
 use functions::Functions;
 
 /// What a surface can be coloured by and what a click tells of a point.
 fn wanted(means: Means) -> Wanted {
-    Wanted { geometry: true, sensitivity: true, certificates: false, together: Some("a page"), means }
+    Wanted { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, means }
 }
 
 /// Share of what a motion passes over that its slider goes beyond.
@@ -37,14 +37,15 @@ pub(crate) fn run(arguments: &View) -> Result<Ending, Failure> {
     let origin = Origin::of(&compilation);
     let mut ending = Ending::Done;
     for job in solve::asked(&jobs)? {
-        let solved =
-            job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted(arguments.means)));
+        let wanted = wanted(arguments.means);
+        stream::check_kept(job, &job.surfaces, wanted)?;
+        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let trims = solved.iter().flat_map(|solved| &solved.trims);
         let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
         let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &arguments.which, &origin));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
-        let tally = Tally::of(&dataset.patches);
+        let tally = tally(&solved, &mut dataset.patches);
         let mut told = table::failures(job, &solved);
         let written = if tally.solved == 0 {
             told += &format!("no page: job `{}` has no point to show\n", job.name);
@@ -73,6 +74,19 @@ fn as_json(job: &Job<'_>, tally: &Tally, written: Option<&Written>, told: &str) 
     format!("{value:#}\n")
 }
 
+/// Of all points of the surfaces, however few of them the page shows, and of the lines on them; the patches of surfaces come first and
+/// get their plain names.
+fn tally(solved: &[Solved<'_, '_>], patches: &mut [Patch]) -> Tally {
+    let (surfaces, lines) = patches.split_at_mut(solved.len());
+    let mut tally = Tally::of(&*lines);
+    for (solved, patch) in solved.iter().zip(surfaces) {
+        patch.name.clone_from(&solved.surface.name);
+        tally.asked += solved.summary.asked;
+        tally.solved += solved.summary.solved();
+    }
+    tally
+}
+
 /// Whether a field is not zero everywhere, as is that of a parameter without influence.
 fn is_something(field: &Field) -> bool {
     match &field.values {
@@ -97,10 +111,21 @@ fn write<'g>(
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
     let mut scene = scene(graph, job, solved);
-    if step > 1 {
-        let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
-        eprint(&format!("note: {note}\n"));
+    let is_part = solved.iter().any(|solved| solved.streamed.is_some());
+    if is_part {
+        let asked: usize = solved.iter().map(|solved| solved.summary.asked).sum();
+        let shown: usize = surfaces.iter().map(|patch| thin::kept(patch, step).len()).sum();
+        let note = format!(
+            "the page shows {shown} of the {asked} points that the job samples, in some of their rows and columns; what moves \
+             surfaces, and by how much, is told of some of them"
+        );
         scene.notes.push(note);
+    } else if step > 1 {
+        let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
+        scene.notes.push(note);
+    }
+    scene.notes.iter().for_each(|note| eprint(&format!("note: {note}\n")));
+    if step > 1 {
         for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
             surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();
             for shares in &mut surface.shares {

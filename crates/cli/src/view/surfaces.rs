@@ -34,8 +34,11 @@ pub(super) fn of<'g>(
         tool_frame,
         contact: (0..made.unknowns.len()).filter(|k| surface.generation.motions.contains(&made.unknowns[*k])).collect(),
         coordinates: sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
-        targets: sample.targets(),
-        shares: sample.counts.map(|count| (0..count).map(|k| k as f64 / (count.max(2) - 1) as f64).collect()),
+        targets: (0..solved.points.len()).map(|at| solved.place(at)).map(|[i, j]| sample.grid.at(i, j)).collect(),
+        shares: [0, 1].map(|k| {
+            let last = sample.counts[k].max(2) - 1;
+            solved.lines[k].iter().map(|line| *line as f64 / last as f64).collect()
+        }),
         corners: functions.add("corners", &[], &titled(sample.ends.corners().as_flattened(), "coordinates")),
         ranges: surface.unknowns.iter().map(|unknown| [unknown.low, unknown.high]).collect(),
         motions: made.unknowns.iter().map(motion).collect(),

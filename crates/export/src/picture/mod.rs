@@ -139,7 +139,7 @@ pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
 ///         name: "k1".into(),
 ///         unit: "1/mm".into(),
 ///         meaning: "larger principal curvature".into(),
-///         values: Values::Scalars(vec![Some(0.03), Some(0.04)]),
+///         values: Values::Scalars([Some(0.03), Some(0.04)].into()),
 ///     }],
 /// #   name: "side".into(),
 /// #   frame: "m.table".into(),
