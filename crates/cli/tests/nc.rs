@@ -25,6 +25,7 @@ fn read(program: &str) -> (Positions, String) {
     for line in program.lines() {
         let remark = line.strip_prefix("; ").or(line.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')));
         if let Some(remark) = remark {
+            let remark = remark.strip_prefix("+ ").unwrap_or(remark);
             remarks = format!("{remarks} {remark}").to_ascii_lowercase();
             continue;
         }
