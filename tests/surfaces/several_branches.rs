@@ -36,21 +36,19 @@ fn is_solved(point: &SurfacePoint) -> bool {
 }
 
 /// The wheel of a globoid drive has two branches that cross along a line over the whole of its sample. On one of them, on which both
-/// motions are equal, the surface is a line in space: no point of it is solved. The other one is followed up to the crossing, and told
-/// to go on beyond.
+/// motions are equal, the surface is a line in space: no point of it is solved. The other one is followed up to the crossing; beyond, the
+/// tool cuts away what it generates.
 #[test]
 fn no_step_leads_on_to_a_branch_that_crosses() {
     let graph = Graph::new();
     let compilation = compile_file(&graph, &repository("tests/surfaces/specs/hindley.chain"), &[]);
-    let (points, effort) = solved(&compilation.jobs[0], "wheel");
+    let (points, _) = solved(&compilation.jobs[0], "wheel");
     let solved: Vec<&SurfacePoint> = points.iter().filter(|point| is_solved(point)).collect();
     assert!(solved.len() > 250, "{} points", solved.len());
     for point in solved {
         let [_, worm_turn, mesh] = point.unknowns[..] else { panic!("three unknowns") };
-        assert!(worm_turn - mesh > 1e-3, "{point:?}");
+        assert!(worm_turn - mesh > 1e-5, "{point:?}");
     }
-    let beyond = effort.elsewhere.iter().map(|other| other.root.unknowns[2] - other.root.unknowns[1]);
-    assert!(effort.elsewhere.len() == 1 && beyond.fold(0.0, f64::max) > 1e-3, "{:?}", effort.elsewhere);
 }
 
 /// The search by a table over z ends undecided. A turn of the spindle away stands the next tooth, as the search by z finds.

@@ -371,11 +371,13 @@ impl SurfaceProblem {
     fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
         let (tape, between) = &self.keep;
         let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
+        let planes = TangentPlanes { system: &self.system, slopes: &self.slopes, ranges: &self.ranges };
         let keep = Keep { tape, between, ranges: &self.kept_ranges };
         solve(&Choice {
             roots: &roots,
             keep: Some(keep).filter(|_| !between.is_empty()),
-            planes: Some(TangentPlanes { system: &self.system, slopes: &self.slopes, ranges: &self.ranges }),
+            // on a singular line there is none
+            planes: Some(planes).filter(|_| self.several == Several::Refuse),
             several: self.several,
             most_boxes: if self.is_line() { MOST_BOXES_OF_WHOLE_LINE } else { BOXES_OF_ALL * self.most_boxes },
             reach: self.reach.as_ref(),

@@ -9,7 +9,7 @@ use flank_expr::LANES;
 
 use crate::anchor::{Choice, Followed, follow_alone, is_same_root};
 use crate::field::Field;
-use crate::grid::{Effort, Elsewhere, Grid};
+use crate::grid::{Effort, Elsewhere, Grid, extrapolated};
 use crate::lanes::LaneNewton;
 use crate::newton::solve_with;
 use crate::reach::{back_into, is_within};
@@ -30,8 +30,6 @@ const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 const MISSING: usize = 16;
 /// Boxes after which no further place is looked at.
 const MOST_BOXES_OF_ALL: u64 = 20_000;
-/// Blocks of starts at a place of a grid that is complete.
-const BLOCKS: u32 = 2;
 /// Points of the largest grid on which several further branches are followed; of larger ones the first is told.
 const MOST_FOLLOWED: usize = 4096;
 /// Branches that are told of, at the most.
@@ -121,39 +119,27 @@ fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>)
     let field = &followed.field;
     let missing: Vec<usize> = (0..field.len()).filter(|point| !field.is_solved(*point)).collect();
     points.extend(missing.iter().step_by(missing.len().div_ceil(MISSING).max(1)));
+    let mut others = Others { own: &followed.field, found: Vec::new() };
+    for (point, start) in beyond(grid, &followed.field) {
+        grid.evaluation.set_parameters(&grid.targets[point]);
+        let root = solve_with(&mut grid.evaluation, grid.ranges, &start);
+        grid.effort.evaluations += u64::from(root.iterations);
+        others.learn(grid, choice, point, root);
+    }
     let mut seen = Vec::new();
-    let mut others: Vec<(Elsewhere, Field)> = Vec::new();
     let kept = choice.kept(grid.ranges);
-    'places: for point in points {
-        if seen.contains(&point) || grid.effort.boxes >= MOST_BOXES_OF_ALL || others.len() >= TOLD {
+    for point in points {
+        if seen.contains(&point) || grid.effort.boxes >= MOST_BOXES_OF_ALL {
             continue;
         }
         seen.push(point);
         let found = (choice.roots)(&kept, &grid.targets[point]);
         grid.effort.boxes += found.boxes;
         for root in found.isolated.into_iter().map(|root| root.solution).chain(found.unproven) {
-            let is_on = |field: &Field| {
-                // of singular points, too: roots without a normal, say
-                let is_somewhere = !matches!(field.outcome(point), None | Some(Outcome::NotConverged { .. }));
-                let own: Vec<f64> = field.unknowns(point).collect();
-                is_somewhere && is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic)
-            };
-            let is_new = !is_on(&followed.field) && others.iter().all(|(_, field)| !is_on(field));
-            if is_new && qualifies(&root, choice) {
-                let beside = followed.field.solution(point).filter(|own| {
-                    own.is_root() && is_within(&back_into(grid.ranges, choice.periodic, &own.unknowns), grid.ranges)
-                });
-                let elsewhere = Elsewhere { place: grid.targets[point], root: root.clone(), beside };
-                let mut own = grid.within(grid.ranges);
-                let field = own.fill(&mut Solvers::new(grid.system, grid.ranges), point, &root);
-                grid.effort.evaluations += own.effort.evaluations;
-                others.push((elsewhere, field));
-                if grid.targets.len() > MOST_FOLLOWED {
-                    break 'places;
-                }
-            }
+            others.learn(grid, choice, point, root);
         }
     }
+    let others = others.found;
     let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
     if is_undecided && !others.is_empty() {
         grid.effort.places = vec![grid.effort.anchor];
@@ -169,6 +155,59 @@ fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>)
         grid.effort.elsewhere = others.into_iter().map(|(elsewhere, _)| elsewhere).collect();
     }
     followed
+}
+
+/// Branches beside the one that was followed.
+struct Others<'f> {
+    own: &'f Field,
+    /// Each with what it leads to.
+    found: Vec<(Elsewhere, Field)>,
+}
+
+impl Others<'_> {
+    /// Keeps a root at a point if it is one of another branch that qualifies.
+    fn learn(&mut self, grid: &mut Grid<'_>, choice: &Choice<'_>, point: usize, root: Solution) {
+        let most = if grid.targets.len() > MOST_FOLLOWED { 1 } else { TOLD };
+        let is_on = |field: &Field| {
+            // of singular points, too: roots without a normal, say
+            let is_somewhere = !matches!(field.outcome(point), None | Some(Outcome::NotConverged { .. }));
+            let own: Vec<f64> = field.unknowns(point).collect();
+            is_somewhere && is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic)
+        };
+        let is_known = is_on(self.own) || self.found.iter().any(|(_, field)| is_on(field));
+        if self.found.len() >= most || is_known || !qualifies(&root, choice) {
+            return;
+        }
+        let beside = self.own.solution(point).filter(|own| {
+            own.is_root() && is_within(&back_into(grid.ranges, choice.periodic, &own.unknowns), grid.ranges)
+        });
+        let elsewhere = Elsewhere { place: grid.targets[point], root: root.clone(), beside };
+        let mut own = grid.within(grid.ranges);
+        let field = own.fill(&mut Solvers::new(grid.system, grid.ranges), point, &root);
+        grid.effort.evaluations += own.effort.evaluations;
+        self.found.push((elsewhere, field));
+    }
+}
+
+/// Points that are missing beside two that are solved, with starts straight on from these: where branches cross, the way that no step
+/// takes.
+fn beyond(grid: &Grid<'_>, field: &Field) -> Vec<(usize, Vec<f64>)> {
+    let [rows, columns] = [grid.rows, grid.columns];
+    let start = |point: usize| {
+        let (i, j) = (point / columns, point % columns);
+        let at = |di: isize, dj: isize| {
+            let (i, j) = (i.checked_add_signed(di)?, j.checked_add_signed(dj)?);
+            Some(i * columns + j).filter(|at| i < rows && j < columns && field.is_solved(*at))
+        };
+        let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
+        let (near, far) = ways.into_iter().find_map(|(di, dj)| Some((at(di, dj)?, at(2 * di, 2 * dj)?)))?;
+        let near: Vec<f64> = field.unknowns(near).collect();
+        Some((point, extrapolated(&near, field.unknowns(far), 1.0)))
+    };
+    let edge: Vec<(usize, Vec<f64>)> =
+        (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(start).collect();
+    let step = edge.len().div_ceil(MISSING).max(1);
+    edge.into_iter().step_by(step).collect()
 }
 
 /// The unknowns of a branch at points spread over a grid.
@@ -193,33 +232,29 @@ fn beside_complete(
     let mut others: Vec<Elsewhere> = Vec::new();
     let kept = choice.kept(grid.ranges);
     let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
-    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
+    // in the middle all roots are known
+    let around = shares.filter(|shares| *shares != [0.5; 2]);
+    let mut points: Vec<usize> = around.map(|shares| grid.nearest(shares)).collect();
     points.dedup();
-    let starts: Vec<Vec<f64>> = (1..=BLOCKS * LANES as u32).map(|k| probe(&kept, k)).collect();
-    for point in points {
+    for (number, point) in points.into_iter().enumerate() {
         let own: Vec<f64> = field.unknowns(point).collect();
         let target = grid.targets[point];
-        for block in starts.chunks(LANES) {
-            for (lane, start) in block.iter().enumerate() {
-                newton.put(lane, start.iter().copied(), &target);
-                newton.determinant()[lane] = f64::NAN;
+        for lane in 0..LANES {
+            newton.put(lane, probe(&kept, (number * LANES + lane + 1) as u32).into_iter(), &target);
+            newton.determinant()[lane] = f64::NAN;
+        }
+        newton.run(&[true; LANES], true);
+        for lane in 0..LANES {
+            if !newton.is_root(lane) || newton.outcome(lane) != Outcome::Solved {
+                continue;
             }
-            newton.run(&[true; LANES][..block.len()], true);
-            for lane in 0..block.len() {
-                if !newton.is_root(lane) || newton.outcome(lane) != Outcome::Solved {
-                    continue;
-                }
-                let unknowns: Vec<f64> = (0..own.len()).map(|k| newton.input(k)[lane]).collect();
-                if is_same_root(&unknowns, &own, grid.ranges, choice.periodic) {
-                    continue;
-                }
-                let residual = newton.residuals()[lane];
-                let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
-                if qualifies(&root, choice) {
-                    let beside = field.solution(point);
-                    others.push(Elsewhere { place: target, root, beside });
-                    return others;
-                }
+            let unknowns: Vec<f64> = (0..own.len()).map(|k| newton.input(k)[lane]).collect();
+            let residual = newton.residuals()[lane];
+            let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
+            let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
+            if !is_own && qualifies(&root, choice) {
+                others.push(Elsewhere { place: target, root, beside: field.solution(point) });
+                return others;
             }
         }
     }

@@ -17,7 +17,7 @@ use crate::system::System;
 const COLLAPSED: f64 = 1e-6;
 /// Points that are looked at to see whether a sheet has tangent planes at all, at the most. Between bifurcations, over which no step
 /// leads, a sheet has them all over or nowhere, but for lines on which its determinant vanishes, too.
-const SAMPLED: usize = 25;
+const SAMPLED: usize = 7;
 
 /// What a branch must be like.
 pub(crate) struct Keep<'c> {
