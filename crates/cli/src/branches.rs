@@ -145,8 +145,12 @@ pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> String {
         for (told, (root, beside)) in solved.effort.elsewhere.iter().zip(&solved.elsewhere) {
             let values: Vec<String> = unknowns.iter().zip(&root.unknowns).map(|(u, x)| named(u, *x)).collect();
             let [x, y, z] = root.position.map(|x| fixed(x, DECIMALS));
-            let _ =
-                writeln!(out, "  at {}: {}, at [{x}, {y}, {z}] mm", place(&solved.sample.coordinates, told.place), values.join(", "));
+            let _ = writeln!(
+                out,
+                "  at {}: {}, at [{x}, {y}, {z}] mm",
+                place(&solved.sample.coordinates, told.place),
+                values.join(", ")
+            );
             let own = beside.as_ref().or(solved.points.iter().find(|point| point.outcome == Outcome::Solved));
             if let Some(keep) = own.and_then(|own| keep::against(unknowns, own, root)) {
                 let _ = writeln!(out, "     {} would select it", keep.text());

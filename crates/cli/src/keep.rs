@@ -117,11 +117,7 @@ fn chosen(unknowns: &[Bounded<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
 
 /// For each of some branches; none if there are not several, or nothing tells them apart. `courses` are the unknowns of each at
 /// further points, as far as they are known.
-pub(crate) fn proposed(
-    unknowns: &[Bounded<'_>],
-    branches: &[SurfacePoint],
-    courses: &[Vec<Vec<f64>>],
-) -> Vec<Keep> {
+pub(crate) fn proposed(unknowns: &[Bounded<'_>], branches: &[SurfacePoint], courses: &[Vec<Vec<f64>>]) -> Vec<Keep> {
     let points = |(number, branch): (usize, &SurfacePoint)| {
         let followed = courses.get(number).into_iter().flatten().cloned();
         std::iter::once(branch.unknowns.clone()).chain(followed).collect()

@@ -28,8 +28,6 @@ const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Points that are missing at which branches are looked for.
 const MISSING: usize = 16;
-/// Boxes after which no further place is looked at.
-const MOST_BOXES_OF_ALL: u64 = 20_000;
 /// Points of the largest grid on which several further branches are followed; of larger ones the first is told.
 const MOST_FOLLOWED: usize = 4096;
 /// Branches that are told of, at the most.
@@ -129,7 +127,7 @@ fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>)
     let mut seen = Vec::new();
     let kept = choice.kept(grid.ranges);
     for point in points {
-        if seen.contains(&point) || grid.effort.boxes >= MOST_BOXES_OF_ALL {
+        if seen.contains(&point) || grid.effort.boxes >= choice.most_boxes {
             continue;
         }
         seen.push(point);
