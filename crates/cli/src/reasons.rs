@@ -6,7 +6,7 @@ use flank_solver::{CutBy, Outcome};
 use crate::summary::{Places, Summary};
 use crate::table::Solved;
 use crate::units;
-use crate::{branches, reach};
+use crate::{branches, reach, secondary};
 
 /// Why points of a surface were not solved, with the number of points for each reason.
 pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
@@ -21,26 +21,27 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         let (most, place) = (amount(unknown, outside.most), whereabouts(solved, &outside.places));
         tell(outside.places.count, format!("{} outside its range, by up to {most}{place}", unknown.name));
     }
-    for (condition, count) in &summary.not_kept {
-        tell(*count, outside_keep(solved.surface, *condition));
-    }
     let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
-    for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(trims) {
+    let elsewhere = summary.cut_elsewhere.iter().map(|(by, count)| (CutBy::ItsToolElsewhere(*by), *count));
+    for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(elsewhere).chain(trims) {
         let is_whole = cutter == CutBy::ItsTool && count == summary.asked;
         let side = if is_whole && is_inside_out(job, solved) {
             "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
         } else {
             ""
         };
-        tell(count, format!("cut away {}{side}", by_what(job, solved.surface, cutter)));
+        let depth = match cutter {
+            CutBy::ItsToolElsewhere(by) => secondary::depth(solved, by),
+            CutBy::ItsTool | CutBy::Other(_) => String::new(),
+        };
+        tell(count, format!("cut away {}{depth}{side}", by_what(job, solved.surface, cutter)));
     }
     tell(
         summary.count(Outcome::Undecided),
         "undecided, the lines of the grid disagree on what a trim leaves of them, or several branches of what trims lie beside them"
             .to_string(),
     );
-    let singular =
-        "singular, the equations do not fix a single point there, or the surface has no normal or no tangent plane";
+    let singular = "singular, the equations do not fix a single point there, or the surface has no normal";
     tell(summary.count(Outcome::Singular), singular.to_string());
     let least = summary.least_residual;
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
@@ -128,7 +129,6 @@ pub(crate) fn of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, outcome: O
             let unknown = &surface.unknowns[unknown];
             format!("{} by {}", unknown.name, amount(unknown, by))
         }
-        Outcome::NotKept { condition } => outside_keep(surface, condition),
         Outcome::CutAway(cutter) => by_what(job, surface, cutter),
         Outcome::NotConverged { iterations: 0 } => "no start leads there".to_string(),
         Outcome::NotConverged { iterations } => units::counted(iterations as usize, "iteration"),
@@ -136,18 +136,12 @@ pub(crate) fn of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, outcome: O
     }
 }
 
-/// Which condition of the sample a point does not meet.
-fn outside_keep(surface: &GeneratedSurface<'_>, condition: usize) -> String {
-    let kept = surface.sample.as_ref().and_then(|sample| sample.keep.get(condition));
-    kept.map_or_else(String::new, |(of, (low, high))| {
-        let text = |x: f64| units::text(of.dimension, x, 4);
-        format!("outside of `keep {}: {} .. {}`", of.name, text(*low), text(*high))
-    })
-}
-
 fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> String {
     match cutter {
         CutBy::ItsTool => "by the tool itself, beyond the singular line of the envelope (undercut)".to_string(),
+        CutBy::ItsToolElsewhere(by) => {
+            format!("by {} in another position of the tool", job.surfaces[by].generation.tool_name)
+        }
         CutBy::Other(number) => {
             format!("by what makes {}, as `trim` asks for", job.surfaces[surface.trimmed_by[number]].name)
         }

@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::files::Folder;
 use crate::limits::{self, Line};
 use crate::progress::Working;
+use crate::secondary::{self, Positions};
 use crate::sensitivity::{self, Sensitivity};
 use crate::spec::Origin;
 use crate::step::{self, Smooth};
@@ -68,9 +69,9 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         eprint(
             &(branches::begun(&solved)
                 + &branches::undecided(&solved)
-                + &branches::elsewhere(&solved)
                 + &limits::untold(&lines)
-                + &step::told(&faces)),
+                + &step::told(&faces)
+                + &secondary::given_up(&solved)),
         );
         if !told.is_empty() {
             eprint(&told);
@@ -121,9 +122,8 @@ pub(crate) fn solve_surface<'j, 'g>(
         Err(reason) => return Some(Err(reason)),
     }
     let _working = Working::on(format!("solving {}", surface.name));
-    let Found { problem, points, effort, trims } = points(job, surface, sample, wanted);
+    let Found { problem, points, effort, trims, positions } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
-    let elsewhere = elsewhere(&problem, &effort);
     let needed = reach::needed(surface, &points);
     let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets(), &points));
     let mut fields = Vec::new();
@@ -147,12 +147,12 @@ pub(crate) fn solve_surface<'j, 'g>(
         needed,
         effort,
         branches,
-        elsewhere,
         kept_out,
         radii,
         fields,
         sensitivity,
         trims,
+        positions,
         cut,
     }))
 }
@@ -173,7 +173,6 @@ fn in_bands<'j, 'g>(
         needed: Vec::new(),
         lines: streamed.drawn(),
         branches: streamed.problem().points(&effort.branches),
-        elsewhere: elsewhere(streamed.problem(), &effort),
         kept_out: kept_out(job, surface, (&effort, &summary), wanted.means),
         summary,
         streamed: Some(streamed),
@@ -183,6 +182,7 @@ fn in_bands<'j, 'g>(
         sensitivity: wanted.sensitivity.then(|| sensitivity::of(job, surface, &drawn)),
         points: drawn,
         trims: Vec::new(),
+        positions: secondary::STREAMED,
         cut: None,
     }
 }
@@ -193,9 +193,11 @@ pub(crate) struct Found<'j, 'g> {
     pub(crate) points: Vec<SurfacePoint>,
     effort: Effort,
     trims: Vec<Line<'j, 'g>>,
+    positions: Positions,
 }
 
-/// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away.
+/// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away, or its own tool in another
+/// position.
 pub(crate) fn points<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
@@ -210,7 +212,8 @@ pub(crate) fn points<'j, 'g>(
         trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.means))
     });
     let trims = trims.collect();
-    Found { problem, points, effort, trims }
+    let positions = secondary::judge(job, surface, &mut points, sample.counts);
+    Found { problem, points, effort, trims, positions }
 }
 
 /// Points of a surface at values of two coordinates, on the branch that its sample keeps.
@@ -238,7 +241,6 @@ fn on_any_branch<'g>(
         .expect("a job without errors leaves nothing unbound")
         .reaching(reach::followed(surface))
         .on(means.instructions())
-        .boxes(means.boxes())
 }
 
 /// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.
@@ -256,12 +258,6 @@ fn kept_out<'g>(
     let found = problem.all_points(effort.anchor);
     let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();
     problem.points(&found)
-}
-
-/// Branches at other places, each with the point of the surface's own branch there if it has one.
-fn elsewhere(problem: &SurfaceProblem, effort: &Effort) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
-    let point = |root: &Solution| problem.points(std::slice::from_ref(root)).remove(0);
-    effort.elsewhere.iter().map(|other| (point(&other.root), other.beside.as_ref().map(point))).collect()
 }
 
 /// Where the unknowns of a surface are looked for.

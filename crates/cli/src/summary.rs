@@ -65,9 +65,9 @@ pub(crate) struct Summary {
     pub(crate) unknowns: Vec<Ends>,
     /// For each unknown.
     pub(crate) outside: Vec<Outside>,
-    /// For each condition that the branch is kept by.
-    pub(crate) not_kept: BTreeMap<usize, usize>,
     pub(crate) cut_by_tool: usize,
+    /// By the surface whose tool cuts it away in another position.
+    pub(crate) cut_elsewhere: BTreeMap<usize, usize>,
     /// By the number of the trim.
     pub(crate) trimmed: BTreeMap<usize, usize>,
     /// Of the points that did not converge; NaN if none came near.
@@ -85,8 +85,8 @@ impl Summary {
             z: Ends::default(),
             unknowns: vec![Ends::default(); unknowns],
             outside: vec![Outside { places: Places::new(counts), most: 0.0 }; unknowns],
-            not_kept: BTreeMap::new(),
             cut_by_tool: 0,
+            cut_elsewhere: BTreeMap::new(),
             trimmed: BTreeMap::new(),
             least_residual: f64::NAN,
         }
@@ -114,8 +114,8 @@ impl Summary {
                 outside.most = outside.most.max(by);
                 outside.places.add(self.asked);
             }
-            Outcome::NotKept { condition } => *self.not_kept.entry(condition).or_default() += 1,
             Outcome::CutAway(CutBy::ItsTool) => self.cut_by_tool += 1,
+            Outcome::CutAway(CutBy::ItsToolElsewhere(by)) => *self.cut_elsewhere.entry(by).or_default() += 1,
             Outcome::CutAway(CutBy::Other(number)) => *self.trimmed.entry(number).or_default() += 1,
             Outcome::NotConverged { .. } => self.least_residual = self.least_residual.min(point.residual),
             Outcome::Undecided | Outcome::Singular | Outcome::Ambiguous => {}
@@ -132,6 +132,11 @@ impl Summary {
     pub(crate) fn has_unreached(&self) -> bool {
         let is_outside = self.outside.iter().any(|outside| outside.places.count > 0);
         is_outside || self.count(Outcome::NotConverged { iterations: 0 }) > 0
+    }
+
+    /// How many points their own tool cuts away, in whatever position.
+    pub(crate) fn cut_by_its_tool(&self) -> usize {
+        self.cut_by_tool + self.cut_elsewhere.values().sum::<usize>()
     }
 
     pub(crate) fn solved(&self) -> usize {

@@ -13,6 +13,7 @@ use crate::cut::Cut;
 use crate::failure::not_done;
 use crate::limits::Line;
 use crate::reach::Needed;
+use crate::secondary::{self, Positions};
 use crate::sensitivity::{self, Sensitivity};
 use crate::step::{self, Smooth};
 use crate::stream::Streamed;
@@ -38,10 +39,10 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) effort: Effort,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
+    /// Which positions of its tool its points were held against.
+    pub(crate) positions: Positions,
     /// Where each of the branches at the anchor is.
     pub(crate) branches: Vec<SurfacePoint>,
-    /// Branches that have points at other places, each with the point of its own branch there if that has one.
-    pub(crate) elsewhere: Vec<(SurfacePoint, Option<SurfacePoint>)>,
     /// Where nothing was found: the branches there that the sample's `keep` does not take.
     pub(crate) kept_out: Vec<SurfacePoint>,
     /// How near exactly one root is proven to each point, mm, if that was asked for.
@@ -265,6 +266,7 @@ pub(crate) fn surface_json(solved: &Solved<'_, '_>) -> Value {
     entries.insert("cut".to_string(), cut::json(solved));
     entries.insert("sensitivity".to_string(), sensitivity::json(solved));
     entries.insert("branches".to_string(), branches::json(solved));
+    entries.insert("positions".to_string(), secondary::json(solved));
     entries.insert("not_as_required".to_string(), required::json(solved));
     Value::Object(entries)
 }

@@ -76,7 +76,7 @@ fn limits_are_listed_and_written() {
     let arguments = ["solve", "specs/hobbing/spur_gear.chain", "--set", "teeth=10", "--set", "module=5 mm", "--limits"];
     let more = ["--set", "profile_shift=0", "--set", "r.tip_height=6.25 mm", "--set", "r.tip_radius=1.9 mm", "--json"];
     let run = flank(&[&arguments[..], &more[..], &["--out", out.to_str().unwrap()]].concat());
-    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
     let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let lines = table["lines"].as_array().expect("lines");
     let line = |name: &str| lines.iter().find(|line| line["name"] == name).expect("the line is listed");

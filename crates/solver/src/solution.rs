@@ -107,13 +107,7 @@ pub enum Outcome {
         /// By how much, in its own unit.
         by: f64,
     },
-    /// There is a root in the ranges, but not where the branch is to be kept: see
-    /// [`SurfaceProblem::keeping`](crate::SurfaceProblem::keeping).
-    NotKept {
-        /// Index of the first condition that does not hold.
-        condition: usize,
-    },
-    /// The Jacobian has no inverse where the iteration ended, or the surface no normal or no tangent plane there.
+    /// The Jacobian has no inverse where the iteration ended, or the surface no normal there.
     Singular,
     /// The iteration ended without a root.
     NotConverged {
@@ -130,6 +124,9 @@ pub enum CutBy {
     /// The tool itself, before or after it generates the point: undercut, see
     /// [`Surface::clearance_minors`](flank_expr::geometry::Surface::clearance_minors).
     ItsTool,
+    /// The tool itself in another of its positions, by the piece of its surface that has this number for
+    /// [`SecondaryCutting`](crate::SecondaryCutting).
+    ItsToolElsewhere(usize),
     /// Another surface, by the number that it has for [`trim`](crate::trim).
     Other(usize),
 }
@@ -141,7 +138,7 @@ impl Outcome {
             Outcome::Solved => "solved",
             Outcome::CutAway(_) => "cut away",
             Outcome::Undecided => "undecided",
-            Outcome::Outside { .. } | Outcome::NotKept { .. } => "outside",
+            Outcome::Outside { .. } => "outside",
             Outcome::Singular => "singular",
             Outcome::NotConverged { .. } => "not converged",
             Outcome::Ambiguous => "ambiguous",
@@ -165,7 +162,7 @@ impl Outcome {
         match self {
             Outcome::Solved => 4,
             Outcome::CutAway(_) | Outcome::Undecided => 3,
-            Outcome::Outside { .. } | Outcome::NotKept { .. } => 2,
+            Outcome::Outside { .. } => 2,
             Outcome::Singular => 1,
             Outcome::NotConverged { .. } | Outcome::Ambiguous => 0,
         }

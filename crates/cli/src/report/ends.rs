@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::Findings;
 use crate::limits::Line;
+use crate::secondary;
 use crate::units;
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
@@ -30,16 +31,27 @@ fn undercut(findings: &Findings<'_, '_>) -> Block {
     let cut: Vec<String> = findings
         .solved()
         .iter()
-        .filter(|solved| solved.summary.cut_by_tool > 0)
+        .filter(|solved| solved.summary.cut_by_its_tool() > 0)
         .map(|solved| {
-            format!("{}: {} of {} points", solved.surface.name, solved.summary.cut_by_tool, solved.summary.asked)
+            let count = solved.summary.cut_by_its_tool();
+            format!("{}: {count} of {} points", solved.surface.name, solved.summary.asked)
         })
         .collect();
-    if cut.is_empty() {
+    if !cut.is_empty() {
+        return Block::Notice(
+            Tone::Bad,
+            "Undercut: the tool itself cuts away points that it generates".to_string(),
+            cut,
+        );
+    }
+    let unseen = secondary::unseen(findings.solved());
+    if unseen.is_empty() {
         let text = "No point that was asked for is cut away by the tool that generates it.";
         return Block::Notice(Tone::Good, text.to_string(), Vec::new());
     }
-    Block::Notice(Tone::Bad, "Undercut: the tool itself cuts away points that it generates".to_string(), cut)
+    let text = "No point that was asked for is cut away by the tool that generates it, in the positions that were looked at: just \
+        before and after it generates the point, and all others but these.";
+    Block::Notice(Tone::Open, text.to_string(), unseen)
 }
 
 fn lines(found: &[&Line<'_, '_>]) -> Block {
@@ -111,5 +123,5 @@ pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
 
 /// Points that their own tool cuts away, of all surfaces.
 pub(super) fn undercut_count(findings: &Findings<'_, '_>) -> usize {
-    findings.solved().iter().map(|solved| solved.summary.cut_by_tool).sum()
+    findings.solved().iter().map(|solved| solved.summary.cut_by_its_tool()).sum()
 }

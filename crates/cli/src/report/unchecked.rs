@@ -3,8 +3,8 @@
 use flank_chain_dsl::LawSource;
 
 use super::Findings;
-use crate::certify;
 use crate::table::Solved;
+use crate::{certify, secondary};
 
 /// What of this job was not looked at, then what no report looks at.
 pub(super) struct Unchecked {
@@ -20,6 +20,7 @@ pub(super) fn of(findings: &Findings<'_, '_>) -> Unchecked {
         not_excluded(findings),
         one_place(findings),
         not_trimmed(findings),
+        other_positions(findings),
         steps_of_the_tool(findings),
         counts(findings),
         without_travel(findings),
@@ -97,8 +98,14 @@ fn not_trimmed(findings: &Findings<'_, '_>) -> Option<String> {
     let is_alone = |solved: &Solved<'_, '_>| solved.surface.trimmed_by.is_empty();
     let names = those(findings, is_alone)?;
     Some(format!(
-        "What other surfaces of the tool, or other tools, cut away of {names}: no \u{201c}trim\u{201d} asks for it."
+        "What surfaces of the tool that the job does not generate along the same motions, or other tools, cut away of {names}: no \u{201c}trim\u{201d} asks for it."
     ))
+}
+
+fn other_positions(findings: &Findings<'_, '_>) -> Option<String> {
+    let unseen = secondary::unseen(findings.solved());
+    (!unseen.is_empty())
+        .then(|| format!("Whether the tool, in another of its positions, cuts away points of {}.", unseen.join("; ")))
 }
 
 fn has_count(solved: &Solved<'_, '_>) -> bool {

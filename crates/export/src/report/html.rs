@@ -106,6 +106,7 @@ fn write_notice(tone: Tone, text: &str, more: &[String], out: &mut dyn Write) ->
     let (class, mark) = match tone {
         Tone::Good => ("good", "\u{2713}"),
         Tone::Bad => ("bad", "!"),
+        Tone::Open => ("open", "?"),
     };
     write!(out, "<div class=\"notice {class}\">\n<p><b>{mark}</b> {}</p>\n", escaped(text))?;
     if !more.is_empty() {

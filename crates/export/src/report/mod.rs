@@ -61,6 +61,8 @@ pub enum Tone {
     Good,
     /// Something is not.
     Bad,
+    /// Not all of it was looked at.
+    Open,
 }
 
 /// A column of a table.

@@ -1,0 +1,240 @@
+//! Points that the tool cuts away in another position than the one that generates them, against positions sampled densely, without
+//! equations.
+
+mod support;
+
+use std::path::Path;
+
+use support::{flank, folder, text, written};
+
+/// A point of a table.
+struct Row {
+    surface: String,
+    position: [f64; 2],
+    status: String,
+    reason: String,
+}
+
+fn rows(table: &Path) -> Vec<Row> {
+    let csv = std::fs::read_to_string(table).expect("written");
+    let mut lines = csv.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let titles = lines.next().expect("titles");
+    let column = |name: &str| titles.iter().position(|title| *title == name).expect(name);
+    let [x, y, status] = ["x", "y", "status"].map(column);
+    let row = |row: Vec<&str>| Row {
+        surface: row[0].to_string(),
+        position: [x, y].map(|at| row[at].parse().unwrap_or(f64::NAN)),
+        status: row[status].to_string(),
+        reason: row.get(status + 1).unwrap_or(&"").to_string(),
+    };
+    lines.map(row).collect()
+}
+
+/// The deepest that a point comes into a body over a range: densely sampled, then closer about each sample that is deeper than its
+/// neighbours. `depth` is negative outside.
+fn deepest(depth: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> f64 {
+    const SAMPLES: usize = 4000;
+    let step = (high - low) / SAMPLES as f64;
+    let at = |k: usize| low + k as f64 * step;
+    let sampled: Vec<f64> = (0..=SAMPLES).map(|k| depth(at(k))).collect();
+    let mut most = sampled.iter().copied().fold(f64::MIN, f64::max);
+    for k in 1..SAMPLES {
+        if sampled[k] >= sampled[k - 1] && sampled[k] >= sampled[k + 1] {
+            let (mut a, mut b) = (at(k - 1), at(k + 1));
+            for _ in 0..60 {
+                let [c, d] = [a + (b - a) / 3.0, b - (b - a) / 3.0];
+                if depth(c) > depth(d) { b = d } else { a = c }
+            }
+            most = most.max(depth(0.5 * (a + b)));
+        }
+    }
+    most
+}
+
+/// Holds the verdict on a point against the depth to which the tool comes; what is touched lies between.
+fn held_against(row: &Row, depth: f64) {
+    let is_cut = row.status == "cut away";
+    assert!(is_cut || row.status == "solved", "{}: {}", row.surface, row.status);
+    if depth > 1e-8 {
+        assert!(is_cut, "{} {:?} lies {depth:e} mm in the steel, told {}", row.surface, row.position, row.status);
+    } else if depth < 1e-10 {
+        assert!(
+            !is_cut,
+            "{} {:?} is out of the steel by {:e} mm, told cut away {}",
+            row.surface, row.position, -depth, row.reason
+        );
+    }
+}
+
+struct Cycloid {
+    pins: u32,
+    eccentricity: f64,
+    circle_radius: f64,
+    pin_radius: f64,
+    crank: [f64; 2],
+}
+
+impl Cycloid {
+    fn spec(&self, sample: &str) -> String {
+        let Cycloid { pins, eccentricity, circle_radius, pin_radius, crank } = self;
+        format!(
+            "machine cyclo {{
+    axis crank : rotary
+    frame housing
+    frame journal in housing = rotate_z(crank) translate_x({eccentricity} mm)
+    frame disc in journal = rotate_z(-crank * {pins} / ({pins} - 1))
+}}
+tool pin {{
+    surface side(theta: angle in 60 deg .. 300 deg, v: length in -20 mm .. 20 mm) {{
+        at = [{circle_radius} mm + {pin_radius} mm * cos(theta), {pin_radius} mm * sin(theta), v]
+        body towards [-cos(theta), -sin(theta), 0]
+    }}
+}}
+job cycloid_disc {{
+    machine m = cyclo()
+    tool p = pin()
+    mount p on m.housing
+    motion crank : angle in {} deg .. {} deg
+    drive m.crank = crank
+    surface disc in m.disc = envelope(p.side, over: crank)
+    sample disc {{ {sample} }}
+}}
+",
+            crank[0], crank[1]
+        )
+    }
+
+    /// How deep a point of the disc comes into the part of the pin that the tool has.
+    fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+        let depth = |crank: f64| {
+            let turned = crank - crank * f64::from(self.pins) / f64::from(self.pins - 1);
+            let from_pin = [
+                self.eccentricity * crank.cos() + turned.cos() * x - turned.sin() * y - self.circle_radius,
+                self.eccentricity * crank.sin() + turned.sin() * x + turned.cos() * y,
+            ];
+            let theta = from_pin[1].atan2(from_pin[0]).to_degrees().rem_euclid(360.0);
+            let depth = self.pin_radius - from_pin[0].hypot(from_pin[1]);
+            if (60.0..=300.0).contains(&theta) { depth } else { depth.min(0.0) }
+        };
+        deepest(depth, self.crank.map(f64::to_radians))
+    }
+}
+
+fn solved(name: &str, spec: &str, job: &str, more: &[&str]) -> Vec<Row> {
+    let at = folder(name);
+    let out = at.to_str().expect("a plain path");
+    let run = flank(&[&["solve", spec, "--no-picture", "--out", out], more].concat());
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", text(&run.stderr));
+    rows(&at.join(format!("{job}.csv")))
+}
+
+/// Between a cusp and where the disc's profile crosses itself the clearance's Hessian is positive, and the pin takes the points away all
+/// the same, half a turn of the crank farther.
+#[test]
+fn a_pin_cuts_what_it_has_made() {
+    let cycloid = |pins, eccentricity, circle_radius, pin_radius, crank| Cycloid {
+        pins,
+        eccentricity,
+        circle_radius,
+        pin_radius,
+        crank,
+    };
+    let half_turns = [-180.0, 180.0];
+    let cycloids = [
+        (cycloid(12, 2.5, 60.0, 20.0, half_turns), "crank: 66 deg .. 96 deg by 11, v: 0 mm .. 10 mm by 2"),
+        (cycloid(12, 2.5, 60.0, 20.0, [-360.0, 360.0]), "crank: 66 deg .. 96 deg by 11, v: 0 mm .. 10 mm by 2"),
+        (cycloid(12, 2.5, 60.0, 20.0, half_turns), "crank: 20 deg .. 170 deg by 301, v: 0 mm .. 10 mm by 5"),
+        (cycloid(12, 2.5, 60.0, 12.0, half_turns), "crank: 20 deg .. 170 deg by 61, v: 0 mm .. 10 mm by 2"),
+        (cycloid(10, 3.0, 60.0, 18.0, half_turns), "crank: 20 deg .. 170 deg by 61, v: 0 mm .. 10 mm by 2"),
+        (cycloid(20, 1.5, 80.0, 16.0, half_turns), "crank: 20 deg .. 170 deg by 61, v: 0 mm .. 10 mm by 2"),
+    ];
+    let mut told = [0, 0];
+    for (number, (cycloid, sample)) in cycloids.iter().enumerate() {
+        let at = folder("secondary_cycloids");
+        let spec = written(&at, &format!("cycloid_{number}.chain"), &cycloid.spec(sample));
+        for row in solved("secondary_cycloid", &spec, "cycloid_disc", &[]) {
+            held_against(&row, cycloid.depth(row.position));
+            told[usize::from(row.reason.contains("in another position"))] += 1;
+        }
+    }
+    assert!(told[0] > 100 && told[1] > 100, "{told:?}");
+}
+
+/// The tooth of a rack: flanks, roundings and the land of the tip. x is the height over the datum line, away from the work.
+struct Rack {
+    module: f64,
+    shift: f64,
+    teeth: f64,
+}
+
+impl Rack {
+    /// How deep a point of the gear comes into the rack, along the datum line.
+    fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+        let alpha = 20f64.to_radians();
+        let [tip, radius] = [1.25, 0.38].map(|share| share * self.module);
+        let center = [
+            tip - radius,
+            std::f64::consts::PI * self.module / 4.0 - (tip - radius) * alpha.tan() - radius / alpha.cos(),
+        ];
+        let half_width = |below: f64| {
+            if below > center[0] + radius * alpha.sin() {
+                center[1] + (radius * radius - (below - center[0]).powi(2)).sqrt()
+            } else {
+                std::f64::consts::PI * self.module / 4.0 - below * alpha.tan()
+            }
+        };
+        let reference = self.module * self.teeth / 2.0;
+        let depth = |phi: f64| {
+            let (sine, cosine) = phi.sin_cos();
+            let below = reference + self.shift - (cosine * x - sine * y);
+            let along = sine * x + cosine * y - reference * phi;
+            // a gear that is far from the tooth does not count
+            if (-self.module..tip).contains(&below) { half_width(below) - along.abs() } else { -1.0 }
+        };
+        deepest(depth, [-60.0, 60.0].map(f64::to_radians))
+    }
+}
+
+/// Flank and fillet of few teeth cross each other, and no `trim` says so.
+#[test]
+fn a_rack_cuts_flanks_by_its_rounding_and_fillets_by_its_flank() {
+    for teeth in [7, 8, 10, 12, 14, 17, 24] {
+        let rack = Rack { module: 3.0, shift: 0.6, teeth: f64::from(teeth) };
+        let set = format!("teeth={teeth}");
+        let rows = solved("secondary_rack", "specs/hobbing/spur_gear.chain", "spur_gear", &["--set", &set]);
+        let cut = rows.iter().filter(|row| row.status == "cut away").count();
+        // a spur gear is the same at each height
+        let mut seen: Vec<[f64; 2]> = Vec::new();
+        for row in &rows {
+            if !seen.iter().any(|other| (0..2).all(|k| (other[k] - row.position[k]).abs() < 1e-6)) {
+                seen.push(row.position);
+                held_against(row, rack.depth(row.position));
+            }
+        }
+        assert_eq!(cut > 0, teeth < 13, "{teeth} teeth: {cut}");
+    }
+}
+
+/// What was not looked at is said, and only then.
+#[test]
+fn what_was_not_looked_at_is_said() {
+    let at = folder("secondary_unseen");
+    let out = at.to_str().expect("a plain path");
+    let told = |spec: &str, more: &[&str]| {
+        let run = flank(&[&["solve", spec, "--no-picture", "--json", "--out", out], more].concat());
+        let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let unseen = |surface: &serde_json::Value| {
+            (surface["name"].as_str().unwrap().to_string(), surface["positions"]["not_looked_at"].clone())
+        };
+        table["surfaces"].as_array().unwrap().iter().map(unseen).collect::<Vec<_>>()
+    };
+    let spur = told("specs/hobbing/spur_gear.chain", &[]);
+    assert!(spur.iter().all(|(_, unseen)| unseen.is_null()), "{spur:?}");
+    let helical = told("specs/hobbing/helical_gear.chain", &[]);
+    assert!(
+        helical.iter().all(|(_, unseen)| unseen.as_str().unwrap().contains("several motions at once")),
+        "{helical:?}"
+    );
+    let wheel = told("specs/double_envelope/hourglass_worm_wheel.chain", &[]);
+    assert!(wheel[0].1.is_null() && wheel[1].1.as_str().unwrap().contains("generated itself"), "{wheel:?}");
+}
