@@ -8,6 +8,7 @@ use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
 use serde_json::{Value, json};
 
+use crate::keep::{self, Keep};
 use crate::table::Solved;
 use crate::units;
 
@@ -17,22 +18,45 @@ const DECIMALS: usize = 4;
 /// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
 pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
     let refused = |solved: &&Solved<'_, '_>| solved.summary.count(Outcome::Ambiguous) > 0;
-    solved.iter().filter(refused).map(|solved| listed(solved.surface, &solved.branches, &anchor(solved))).collect()
+    let told = |solved: &Solved<'_, '_>| {
+        let places = &solved.effort.places;
+        let at = if places.is_empty() { anchor(solved) } else { "different places of its sample".to_string() };
+        listed_with(solved.surface, &solved.branches, &proposed(solved), &at, |number| {
+            let at = places.get(number).map(|target| place(&solved.sample.coordinates, *target));
+            at.map_or_else(String::new, |at| format!("{at}: "))
+        })
+    };
+    solved.iter().filter(refused).map(told).collect()
+}
+
+/// What would select each of the branches of a surface.
+fn proposed(solved: &Solved<'_, '_>) -> Vec<Keep> {
+    keep::proposed(&solved.surface.unknowns, &solved.branches, &solved.effort.courses)
 }
 
 /// The branches of a surface at a place, with what would select each.
 pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], at: &str) -> String {
+    let keeps = keep::proposed(&surface.unknowns, branches, &[]);
+    listed_with(surface, branches, &keeps, at, |_| String::new())
+}
+
+/// The same with what selects each, and where each is.
+fn listed_with(
+    surface: &GeneratedSurface<'_>,
+    branches: &[SurfacePoint],
+    keeps: &[Keep],
+    at: &str,
+    place: impl Fn(usize) -> String,
+) -> String {
     let (name, unknowns) = (&surface.name, &surface.unknowns);
     let mut out = format!("ambiguous: the ranges of {name} hold {} branches at {at}\n", branches.len());
-    let chosen = tells_apart(branches, unknowns);
     for (number, branch) in branches.iter().enumerate() {
         let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
         let [x, y, z] = branch.position.map(|x| fixed(x, DECIMALS));
-        let _ = writeln!(out, "  {}: {}, at [{x}, {y}, {z}] mm", number + 1, values.join(", "));
-        if let Some(unknown) = chosen {
-            let (low, high) = around(branches, number, &unknowns[unknown], unknown);
-            let of = &unknowns[unknown];
-            let _ = writeln!(out, "     keep {}: {} .. {}", of.name, value(of, low), value(of, high));
+        let place = place(number);
+        let _ = writeln!(out, "  {}: {place}{}, at [{x}, {y}, {z}] mm", number + 1, values.join(", "));
+        if let Some(keep) = keeps.get(number) {
+            let _ = writeln!(out, "     {}", keep.text());
         }
     }
     let _ = writeln!(
@@ -103,6 +127,39 @@ pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> String {
     out
 }
 
+/// Branches that have points in the ranges at other places of the sample, and none of the points; empty if none is known.
+pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved.iter().filter(|solved| !solved.elsewhere.is_empty()) {
+        let (name, unknowns) = (&solved.surface.name, &solved.surface.unknowns);
+        let many = if solved.elsewhere.len() == 1 {
+            "another branch".to_string()
+        } else {
+            format!("{} other branches", solved.elsewhere.len())
+        };
+        let _ = writeln!(
+            out,
+            "note: the ranges of {name} hold {many} that {} not among its points",
+            if solved.elsewhere.len() == 1 { "is" } else { "are" }
+        );
+        for (told, (root, beside)) in solved.effort.elsewhere.iter().zip(&solved.elsewhere) {
+            let values: Vec<String> = unknowns.iter().zip(&root.unknowns).map(|(u, x)| named(u, *x)).collect();
+            let [x, y, z] = root.position.map(|x| fixed(x, DECIMALS));
+            let _ = writeln!(
+                out,
+                "  at {}: {}, at [{x}, {y}, {z}] mm",
+                place(&solved.sample.coordinates, told.place),
+                values.join(", ")
+            );
+            let own = beside.as_ref().or(solved.points.iter().find(|point| point.outcome == Outcome::Solved));
+            if let Some(keep) = own.and_then(|own| keep::against(unknowns, own, root)) {
+                let _ = writeln!(out, "     {} would select it", keep.text());
+            }
+        }
+    }
+    out
+}
+
 /// What could not be decided of the ranges of each surface; empty if everything could.
 pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
     let mut out = String::new();
@@ -126,8 +183,30 @@ pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
         if count > SHOWN {
             let _ = writeln!(out, "  and {} more", count - SHOWN);
         }
+        let _ = writeln!(out, "  {}", what_decides(solved));
     }
     out
+}
+
+/// What would decide whether there are further branches.
+fn what_decides(solved: &Solved<'_, '_>) -> String {
+    let unknowns = &solved.surface.unknowns;
+    let share = |k: usize| {
+        let widest = solved.effort.undecided.iter().map(|doubt| doubt.ranges[k].high - doubt.ranges[k].low);
+        widest.fold(0.0, f64::max) / (unknowns[k].high - unknowns[k].low)
+    };
+    // of what was hardly divided, the widest
+    let open: Vec<&str> = (0..unknowns.len()).filter(|&k| share(k) > 0.5).map(|k| unknowns[k].name.as_str()).collect();
+    let narrower = match open[..] {
+        [] => String::new(),
+        _ => format!("a narrower range of {}, ", open.join(" or ")),
+    };
+    let more = if solved.effort.undecided.iter().any(|doubt| doubt.why == Doubt::Budget) {
+        format!(" or a longer search, `--boxes {}`,", 10 * solved.effort.boxes.max(1))
+    } else {
+        String::new()
+    };
+    format!("{narrower}a `keep` of one of them{more} would decide it")
 }
 
 /// The branches of a surface at the place where they were looked for, and what is not excluded there.
@@ -137,16 +216,13 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
         let [low, high] = [low, high].map(|x| units::shown(of.dimension, x));
         json!({ "name": of.name, "unit": units::symbol(of.dimension), "low": low, "high": high })
     };
-    let chosen = tells_apart(&solved.branches, unknowns).filter(|_| solved.branches.len() > 1);
+    let keeps = proposed(solved);
     let branch = |(number, branch): (usize, &SurfacePoint)| {
         let values = unknowns.iter().zip(&branch.unknowns);
         let values: Vec<Value> = values
             .map(|(of, x)| json!({ "name": of.name, "unit": units::symbol(of.dimension), "value": units::shown(of.dimension, *x) }))
             .collect();
-        let keep = chosen.map(|k| {
-            let (low, high) = around(&solved.branches, number, &unknowns[k], k);
-            range(&unknowns[k], low, high)
-        });
+        let keep = keeps.get(number).map(Keep::json);
         json!({ "unknowns": values, "position": branch.position, "keep": keep })
     };
     let sides = |ranges: &[Range]| {
@@ -158,6 +234,7 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
         "boxes": solved.effort.boxes,
         "found": solved.branches.iter().enumerate().map(branch).collect::<Vec<Value>>(),
         "undecided": undecided.collect::<Vec<Value>>(),
+        "elsewhere": solved.elsewhere.iter().map(|(root, _)| (usize::MAX, root)).map(branch).collect::<Vec<Value>>(),
     })
 }
 
@@ -172,32 +249,11 @@ pub(crate) fn place([a, b]: &[Coordinate<'_>; 2], [x, y]: [f64; 2]) -> String {
     format!("{}, {}", show(&a.name, a.dimension, x), show(&b.name, b.dimension, y))
 }
 
-/// The unknown in which the nearest two branches are farthest apart, as a share of its range.
-fn tells_apart(branches: &[SurfacePoint], unknowns: &[Bounded<'_>]) -> Option<usize> {
-    let gap = |k: usize| {
-        let mut values: Vec<f64> = branches.iter().map(|branch| branch.unknowns[k]).collect();
-        values.sort_by(f64::total_cmp);
-        let least = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        least / (unknowns[k].high - unknowns[k].low)
-    };
-    // what the decimals can tell apart
-    (0..unknowns.len()).filter(|&k| gap(k) > 1e-3).max_by(|&a, &b| gap(a).total_cmp(&gap(b)))
-}
-
-/// From halfway to the branch below to halfway to the one above.
-fn around(branches: &[SurfacePoint], number: usize, of: &Bounded<'_>, unknown: usize) -> (f64, f64) {
-    let at = branches[number].unknowns[unknown];
-    let others = branches.iter().map(|branch| branch.unknowns[unknown]);
-    let below = others.clone().filter(|x| *x < at).reduce(f64::max).map_or(of.low, |x| 0.5 * (x + at));
-    let above = others.filter(|x| *x > at).reduce(f64::min).map_or(of.high, |x| 0.5 * (x + at));
-    (below, above)
-}
-
 fn why(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::Singular => "the equations are singular there",
         Doubt::Undefined => "the equations are not smooth everywhere there",
-        Doubt::Budget => "too many boxes; narrower ranges need fewer",
+        Doubt::Budget => "too many boxes",
     }
 }
 

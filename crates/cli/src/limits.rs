@@ -23,7 +23,8 @@ pub(crate) struct Line<'j, 'g> {
     pub(crate) points: Vec<SurfacePoint>,
     /// Lines of this kind that cross the place at which they were looked for; `points` are those of the longest.
     pub(crate) several: usize,
-    /// No point of it was found, but it is not excluded either: the search was given up, or left a part of the ranges undecided.
+    /// No point of it was found within the ranges, but it is not excluded there either: the search was given up, or left a part of
+    /// them undecided.
     pub(crate) is_open: bool,
 }
 
@@ -46,7 +47,8 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
     let open = match open[..] {
         [] => String::new(),
         _ => format!(
-            "note: not found, and not excluded, since not all of the ranges could be looked at: {}; narrower ranges tell more\n",
+            "note: not found within the ranges, and not excluded, since not all of them could be looked at: {}; narrower ranges tell \
+             more\n",
             open.join(", ")
         ),
     };
@@ -94,8 +96,7 @@ fn line<'j, 'g>(
     let (points, effort) = problem.solve(&targets, [1, targets.len()]);
     let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
     let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
-    let is_nowhere = summary.solved() == 0 && !summary.outcomes.contains_key("outside");
-    let is_open = is_nowhere && (effort.is_given_up || !effort.undecided.is_empty());
+    let is_open = summary.solved() == 0 && (effort.is_given_up || !effort.undecided.is_empty());
     Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len(), is_open }
 }
 

@@ -18,6 +18,7 @@ mod fmt;
 mod geometry;
 mod import;
 mod inspect;
+mod keep;
 mod limits;
 mod measure;
 mod memory;

@@ -21,6 +21,9 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         let (most, place) = (amount(unknown, outside.most), whereabouts(solved, &outside.places));
         tell(outside.places.count, format!("{} outside its range, by up to {most}{place}", unknown.name));
     }
+    for (condition, count) in &summary.not_kept {
+        tell(*count, outside_keep(solved.surface, *condition));
+    }
     let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
     let elsewhere = summary.cut_elsewhere.iter().map(|(by, count)| (CutBy::ItsToolElsewhere(*by), *count));
     for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(elsewhere).chain(trims) {
@@ -41,7 +44,8 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         "undecided, the lines of the grid disagree on what a trim leaves of them, or several branches of what trims lie beside them"
             .to_string(),
     );
-    let singular = "singular, the equations do not fix a single point there, or the surface has no normal";
+    let singular =
+        "singular, the equations do not fix a single point there, or the surface has no normal or no tangent plane";
     tell(summary.count(Outcome::Singular), singular.to_string());
     let least = summary.least_residual;
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
@@ -129,11 +133,21 @@ pub(crate) fn of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, outcome: O
             let unknown = &surface.unknowns[unknown];
             format!("{} by {}", unknown.name, amount(unknown, by))
         }
+        Outcome::NotKept { condition } => outside_keep(surface, condition),
         Outcome::CutAway(cutter) => by_what(job, surface, cutter),
         Outcome::NotConverged { iterations: 0 } => "no start leads there".to_string(),
         Outcome::NotConverged { iterations } => units::counted(iterations as usize, "iteration"),
         Outcome::Solved | Outcome::Undecided | Outcome::Singular | Outcome::Ambiguous => String::new(),
     }
+}
+
+/// Which condition of the sample a point does not meet.
+fn outside_keep(surface: &GeneratedSurface<'_>, condition: usize) -> String {
+    let kept = surface.sample.as_ref().and_then(|sample| sample.keep.get(condition));
+    kept.map_or_else(String::new, |(of, (low, high))| {
+        let text = |x: f64| units::text(of.dimension, x, 4);
+        format!("outside of `keep {}: {} .. {}`", of.name, text(*low), text(*high))
+    })
 }
 
 fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> String {

@@ -69,6 +69,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         eprint(
             &(branches::begun(&solved)
                 + &branches::undecided(&solved)
+                + &branches::elsewhere(&solved)
                 + &limits::untold(&lines)
                 + &step::told(&faces)
                 + &secondary::given_up(&solved)),
@@ -124,6 +125,7 @@ pub(crate) fn solve_surface<'j, 'g>(
     let _working = Working::on(format!("solving {}", surface.name));
     let Found { problem, points, effort, trims, positions } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
+    let elsewhere = elsewhere(&problem, &effort);
     let needed = reach::needed(surface, &points);
     let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets(), &points));
     let mut fields = Vec::new();
@@ -147,6 +149,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         needed,
         effort,
         branches,
+        elsewhere,
         kept_out,
         radii,
         fields,
@@ -173,6 +176,7 @@ fn in_bands<'j, 'g>(
         needed: Vec::new(),
         lines: streamed.drawn(),
         branches: streamed.problem().points(&effort.branches),
+        elsewhere: elsewhere(streamed.problem(), &effort),
         kept_out: kept_out(job, surface, (&effort, &summary), wanted.means),
         summary,
         streamed: Some(streamed),
@@ -241,6 +245,7 @@ fn on_any_branch<'g>(
         .expect("a job without errors leaves nothing unbound")
         .reaching(reach::followed(surface))
         .on(means.instructions())
+        .boxes(means.boxes())
 }
 
 /// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.
@@ -258,6 +263,12 @@ fn kept_out<'g>(
     let found = problem.all_points(effort.anchor);
     let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();
     problem.points(&found)
+}
+
+/// Branches at other places, each with the point of the surface's own branch there if it has one.
+fn elsewhere(problem: &SurfaceProblem, effort: &Effort) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
+    let point = |root: &Solution| problem.points(std::slice::from_ref(root)).remove(0);
+    effort.elsewhere.iter().map(|other| (point(&other.root), other.beside.as_ref().map(point))).collect()
 }
 
 /// Where the unknowns of a surface are looked for.

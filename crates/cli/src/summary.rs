@@ -65,6 +65,8 @@ pub(crate) struct Summary {
     pub(crate) unknowns: Vec<Ends>,
     /// For each unknown.
     pub(crate) outside: Vec<Outside>,
+    /// For each condition that the branch is kept by.
+    pub(crate) not_kept: BTreeMap<usize, usize>,
     pub(crate) cut_by_tool: usize,
     /// By the surface whose tool cuts it away in another position.
     pub(crate) cut_elsewhere: BTreeMap<usize, usize>,
@@ -85,6 +87,7 @@ impl Summary {
             z: Ends::default(),
             unknowns: vec![Ends::default(); unknowns],
             outside: vec![Outside { places: Places::new(counts), most: 0.0 }; unknowns],
+            not_kept: BTreeMap::new(),
             cut_by_tool: 0,
             cut_elsewhere: BTreeMap::new(),
             trimmed: BTreeMap::new(),
@@ -114,6 +117,7 @@ impl Summary {
                 outside.most = outside.most.max(by);
                 outside.places.add(self.asked);
             }
+            Outcome::NotKept { condition } => *self.not_kept.entry(condition).or_default() += 1,
             Outcome::CutAway(CutBy::ItsTool) => self.cut_by_tool += 1,
             Outcome::CutAway(CutBy::ItsToolElsewhere(by)) => *self.cut_elsewhere.entry(by).or_default() += 1,
             Outcome::CutAway(CutBy::Other(number)) => *self.trimmed.entry(number).or_default() += 1,

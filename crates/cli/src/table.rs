@@ -43,6 +43,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) positions: Positions,
     /// Where each of the branches at the anchor is.
     pub(crate) branches: Vec<SurfacePoint>,
+    /// Branches that have points at other places, each with the point of its own branch there if that has one.
+    pub(crate) elsewhere: Vec<(SurfacePoint, Option<SurfacePoint>)>,
     /// Where nothing was found: the branches there that the sample's `keep` does not take.
     pub(crate) kept_out: Vec<SurfacePoint>,
     /// How near exactly one root is proven to each point, mm, if that was asked for.

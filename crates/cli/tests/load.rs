@@ -11,7 +11,7 @@ use support::{flank, folder, self_contained, text, top, written};
 
 /// A job in which one rack makes so many flanks, of so many points in each direction.
 fn many(surfaces: usize, points: usize) -> String {
-    let mut spec = self_contained(&["machines/rack_generating", "tools/rack"]);
+    let mut spec = self_contained(&["machines/hobbing_6axis", "machines/rack_generating", "tools/rack"]);
     spec += "
         job many {
             machine m = rack_generating(reference_radius: 36 mm, shift: 0 mm)
@@ -133,6 +133,6 @@ fn lines_that_are_not_excluded_are_named() {
     let spec = "specs/hobbing/crowned_gear_quartic.chain";
     let run = flank(&["solve", spec, "--limits", "--out", plain(&out), "--no-picture"]);
     let told = text(&run.stderr);
-    assert!(told.contains("note: not found, and not excluded"), "{told}");
+    assert!(told.contains("note: not found within the ranges, and not excluded"), "{told}");
     assert!(told.contains("lower_flank.singular_line"), "{told}");
 }

@@ -160,6 +160,39 @@ fn the_value_that_a_keep_saw_is_told() {
     }
 }
 
+/// A `keep` that is narrower than its branch is told at the points beyond it, as the reason and beside each of them.
+#[test]
+fn points_beyond_a_keep_are_told() {
+    let out = folder("narrow_keep");
+    let first = "sample flank_plus  { rho: low .. high by 9, z: -10 mm .. 10 mm by 5 }";
+    let spec = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let kept = first.replace(" }", "\n keep u: -1 mm .. 1 mm }");
+    let spec = written(&out, "narrow.chain", &spec.replacen(first, &kept, 1));
+    let run = flank(&["solve", &spec, "--job", "first_gear", "--no-picture", "--out", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stdout));
+    let told = text(&run.stderr);
+    assert!(told.contains(": outside of `keep u: -1.0000 mm .. 1.0000 mm`"), "{told}");
+    let points = std::fs::read_to_string(out.join("first_gear.csv")).expect("it is written");
+    assert!(points.contains("outside,outside of `keep u: -1.0000 mm .. 1.0000 mm`"), "{points}");
+}
+
+/// What is left undecided by the search is told with what would decide it, and how long it looked.
+#[test]
+fn what_would_decide_a_search_is_told() {
+    let solve = |boxes: &[&str]| {
+        let out = folder("boxes");
+        let spec = ["solve", "specs/hobbing/worm_wheel.chain", "--no-picture", "--out", out.to_str().unwrap()];
+        let run = flank(&[&spec[..], boxes].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        text(&run.stderr)
+    };
+    let told = solve(&[]);
+    assert!(told.contains("(2000 boxes looked at)") && told.contains("a longer search, `--boxes 20000`,"), "{told}");
+    assert!(told.contains("a narrower range of s or tau or spindle, a `keep`"), "{told}");
+    let told = solve(&["--boxes", "100"]);
+    assert!(told.contains("(100 boxes looked at)") && told.contains("`--boxes 1000`"), "{told}");
+}
+
 /// Along a straight tooth z is the rack's v, and each roll makes the points of one u.
 #[test]
 fn coordinates_that_follow_from_each_other_are_told() {

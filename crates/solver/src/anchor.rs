@@ -1,28 +1,38 @@
 //! Where a grid begins: the branch that is meant, found at one of its points.
 //!
-//! The branch counts by where it is at the point in the middle of the grid, within the ranges or beyond them. Where it has no point
-//! there and nothing is kept of several branches, other points are tried, ever closer together.
+//! The branch counts by where it is in the middle of the rectangle that the grid covers, within the ranges or beyond them, however many
+//! rows and columns there are. Where it has no point there and nothing is kept of several branches, other points are tried, ever
+//! closer together.
 
 use std::cmp::Ordering;
 use std::collections::VecDeque;
+use std::ops;
 
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::field::Field;
 use crate::grid::{Effort, Grid};
+use crate::path::Path;
 use crate::reach::{Reach, back_into, follow_on, is_within, nearest_turn, settle};
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::solution::{Outcome, Range, Solution, distance};
 use crate::solvers::Solvers;
 use crate::start::{WIDELY, scan};
+use crate::survey::{course, surveyed, turned_copies};
 use crate::system::System;
+use crate::verdicts::{Keep, TangentPlanes};
 
 /// Points that are tried beside the middle.
 const MOST_ANCHORS: usize = 256;
 /// Boxes that are looked at, at all of them together, before the search is given up.
-pub(crate) const MOST_BOXES_OF_ALL: u64 = 10 * MOST_BOXES;
+const MOST_BOXES_OF_ALL: u64 = 10 * MOST_BOXES;
+/// Where the branch that is meant is looked for first, as shares of the way across the grid.
+const MIDDLE: [f64; 2] = [0.5; 2];
 /// Roots that are nearer to each other than this share of the ranges are the same.
 const SAME_ROOT: f64 = 1e-6;
+
+/// Branches that are followed to see where they run, if several qualify.
+const MOST_COURSES: usize = 8;
 
 /// What is done where several branches qualify.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,26 +56,35 @@ pub(crate) struct Choice<'c> {
     pub(crate) reach: Option<&'c Reach>,
     /// Unknowns that mean the same after a turn.
     pub(crate) periodic: &'c [bool],
-}
-
-/// What a branch must be like at the point in the middle.
-#[derive(Clone, Copy)]
-pub(crate) struct Keep<'c> {
-    pub(crate) keeps: &'c dyn Fn(&[f64]) -> bool,
-    /// Where its unknowns may be.
-    pub(crate) ranges: &'c [Range],
+    /// Sees where the roots are no points of a surface; all are if there is none.
+    pub(crate) planes: Option<TangentPlanes<'c>>,
 }
 
 impl Choice<'_> {
-    /// Whether a branch with these unknowns at the point in the middle qualifies.
-    fn keeps(&self, unknowns: &[f64]) -> bool {
-        self.keep.is_none_or(|keep| (keep.keeps)(unknowns))
+    /// Whether a branch with these unknowns in the middle qualifies.
+    pub(crate) fn keeps(&self, unknowns: &[f64]) -> bool {
+        self.keep.as_ref().is_none_or(|keep| keep.broken(unknowns).is_none())
+    }
+
+    /// Whether a root is a point of a surface at all.
+    pub(crate) fn has_tangent_plane(&self, unknowns: &[f64]) -> bool {
+        self.planes.is_none_or(|planes| !planes.is_collapsed(unknowns))
+    }
+
+    /// The verdicts on some points of a field that was settled in these ranges.
+    pub(crate) fn judge(&self, field: &mut Field, points: ops::Range<usize>, ranges: &[Range]) {
+        if let Some(planes) = &self.planes {
+            planes.judge(field, points.clone());
+        }
+        if let Some(keep) = &self.keep {
+            keep.judge(field, points, ranges, self.periodic);
+        }
     }
 
     /// Those of some ranges in which a branch can qualify.
-    fn kept(&self, ranges: &[Range]) -> Vec<Range> {
+    pub(crate) fn kept(&self, ranges: &[Range]) -> Vec<Range> {
         let common = |(range, kept): (&Range, &Range)| range.common(*kept);
-        self.keep.map_or_else(|| ranges.to_vec(), |keep| ranges.iter().zip(keep.ranges).map(common).collect())
+        self.keep.as_ref().map_or_else(|| ranges.to_vec(), |keep| ranges.iter().zip(keep.ranges).map(common).collect())
     }
 }
 
@@ -102,6 +121,7 @@ pub fn solve_grid(
         most_boxes: MOST_BOXES_OF_ALL,
         reach: None,
         periodic: &[],
+        planes: None,
     };
     let grid = Grid::new(system, ranges, (targets, counts), None);
     let (field, effort) = solve_settled(grid, None, &choice);
@@ -115,21 +135,35 @@ pub(crate) fn solve_settled(mut grid: Grid<'_>, start: Option<&[f64]>, choice: &
     let mut solvers = Solvers::new(grid.system, grid.ranges);
     let Followed { mut field, .. } = follow(&mut grid, &mut solvers, start, choice);
     let all = 0..field.len();
-    settle(&mut grid, &mut field, &mut solvers.careful, all, choice.periodic);
+    settle(&mut grid, &mut field, &mut solvers.careful, all.clone(), choice.periodic);
+    choice.judge(&mut field, all, grid.ranges);
     (field, grid.effort)
 }
 
-/// A grid as far as its branch can be followed from where it is found.
+/// A grid as far as its branch can be followed from where it is found, with what is known of other branches.
 pub(crate) fn follow(
     grid: &mut Grid<'_>,
     solvers: &mut Solvers<'_>,
     start: Option<&[f64]>,
     choice: &Choice<'_>,
 ) -> Followed {
-    let within = |field| Followed { field, is_beyond: false };
     if grid.targets.is_empty() {
-        return within(grid.field());
+        return Followed { field: grid.field(), is_beyond: false };
     }
+    if start.is_some() || choice.several == Several::TakeWidest {
+        return follow_alone(grid, solvers, start, choice);
+    }
+    surveyed(grid, solvers, choice)
+}
+
+/// A grid as far as its branch can be followed from where it is found.
+pub(crate) fn follow_alone(
+    grid: &mut Grid<'_>,
+    solvers: &mut Solvers<'_>,
+    start: Option<&[f64]>,
+    choice: &Choice<'_>,
+) -> Followed {
+    let within = |field| Followed { field, is_beyond: false };
     match begin(grid, solvers, start, choice) {
         Beginning::At(anchor, field) => match choice.reach.filter(|_| !field.is_complete()) {
             Some(reach) => follow_on(grid, reach, anchor, field),
@@ -175,17 +209,29 @@ fn begin(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, start: Option<&[f64]>, 
 
 /// At the point in the middle, within the ranges.
 fn begin_within(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &Choice<'_>) -> Option<Beginning> {
-    let middle = grid.middle();
-    let found = (choice.roots)(&choice.kept(grid.ranges), &grid.targets[middle]);
-    let mut branches = branches_of(found, grid, middle, choice);
+    let (middle, target) = (grid.middle(), grid.target_at(MIDDLE));
+    let kept = choice.kept(grid.ranges);
+    let mut found = (choice.roots)(&kept, &target);
+    if !found.undecided.is_empty() && choice.several == Several::Refuse {
+        found.unproven.extend(turned_copies(grid, &kept, &target, &found));
+    }
+    let mut branches = branches_of(found, grid, target, choice);
     branches.retain(|root| choice.keeps(&root.unknowns));
     grid.effort.branches.clone_from(&branches);
     match branches.len() {
         0 => None,
-        2.. if choice.several == Several::Refuse => Some(Beginning::Ambiguous),
+        2.. if choice.several == Several::Refuse => {
+            for root in branches.iter().take(MOST_COURSES) {
+                let from = grid.led_to(middle, target, root);
+                let found = from.map(|root| course(&grid.fill(solvers, middle, &root)));
+                grid.effort.courses.push(found.unwrap_or_default());
+            }
+            Some(Beginning::Ambiguous)
+        }
         _ => {
             let mut leads = Leads::default();
             for root in branches {
+                let Some(root) = grid.led_to(middle, target, &root) else { continue };
                 let field = grid.fill(solvers, middle, &root);
                 let solved = field.solved();
                 leads.add(root, field, solved);
@@ -206,11 +252,11 @@ fn begin_beyond(
     choice: &Choice<'_>,
     last_resort: &mut Option<Beginning>,
 ) -> Option<Beginning> {
-    let (middle, ranges) = (grid.middle(), grid.ranges);
+    let (middle, ranges, target) = (grid.middle(), grid.ranges, grid.target_at(MIDDLE));
     // of the ranges themselves
     let undecided = std::mem::take(&mut grid.effort.undecided);
-    let found = (choice.roots)(&choice.kept(&reach.searched), &grid.targets[middle]);
-    let mut branches = branches_of(found, grid, middle, choice);
+    let found = (choice.roots)(&choice.kept(&reach.searched), &target);
+    let mut branches = branches_of(found, grid, target, choice);
     grid.effort.undecided = undecided;
     branches.retain(|root| choice.keeps(&root.unknowns));
     let off = |root: &Solution| {
@@ -220,6 +266,7 @@ fn begin_beyond(
     let mut follower = Follower::new(grid, Some(reach));
     let mut leads = Leads::default();
     for root in branches {
+        let Some(root) = follower.grid.led_to(middle, target, &root) else { continue };
         let (field, inside) = follower.follow(middle, &root, (grid.ranges, choice.periodic));
         leads.add(root, field, inside);
     }
@@ -247,7 +294,8 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
         let mut leads = Leads::default();
         let mut leads_to_middle = true;
         let found = ahead.roots(choice, ranges, grid.targets, &points[number..]);
-        for root in branches_of(found, grid, point, choice) {
+        let target = grid.targets[point];
+        for root in branches_of(found, grid, target, choice) {
             let (field, inside) = follower.follow(point, &root, (ranges, choice.periodic));
             let at_middle: Vec<f64> = field.unknowns(middle).collect();
             let has_middle = field.is_root(middle);
@@ -264,7 +312,7 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
         }
     }
     grid.effort.evaluations += follower.grid.effort.evaluations;
-    grid.effort.anchor = grid.targets[middle];
+    grid.effort.anchor = grid.target_at(MIDDLE);
     grid.effort.undecided = undecided;
     None
 }
@@ -351,28 +399,31 @@ impl Leads {
 }
 
 /// All branches among the roots at a point, the one nearest the middle of the ranges first; those that are the same after a turn once.
-fn branches_of(found: Roots, grid: &mut Grid<'_>, point: usize, choice: &Choice<'_>) -> Vec<Solution> {
+fn branches_of(found: Roots, grid: &mut Grid<'_>, target: [f64; 2], choice: &Choice<'_>) -> Vec<Solution> {
     let ranges = grid.ranges;
     let middle: Vec<f64> = ranges.iter().map(|range| range.middle()).collect();
     let off = |root: &Solution| distance(&root.unknowns, &middle, ranges);
     let proven = found.isolated.into_iter().map(|root| root.solution);
     let mut all: Vec<Solution> = proven.chain(found.unproven).collect();
+    all.retain(|root| choice.has_tangent_plane(&root.unknowns));
     // of two that are the same the one that qualifies
     all.sort_by(|a, b| (!choice.keeps(&a.unknowns)).cmp(&!choice.keeps(&b.unknowns)).then(off(a).total_cmp(&off(b))));
     let mut branches: Vec<Solution> = Vec::new();
     for root in all {
-        let is_same = |other: &Solution| {
-            let turned = nearest_turn(&root.unknowns, &other.unknowns, choice.periodic);
-            distance(&turned, &other.unknowns, ranges) <= SAME_ROOT
-        };
+        let is_same = |other: &Solution| is_same_root(&root.unknowns, &other.unknowns, ranges, choice.periodic);
         if !branches.iter().any(is_same) {
             branches.push(root);
         }
     }
     grid.effort.boxes += found.boxes;
-    grid.effort.anchor = grid.targets[point];
+    grid.effort.anchor = target;
     grid.effort.undecided = found.undecided;
     branches
+}
+
+/// Whether two roots at the same targets are one, but for turns of what is periodic.
+pub(crate) fn is_same_root(root: &[f64], other: &[f64], ranges: &[Range], periodic: &[bool]) -> bool {
+    distance(&nearest_turn(root, other, periodic), other, ranges) <= SAME_ROOT
 }
 
 /// The points that a grid may begin at: ever finer lattices, the middles of what the coarser ones leave.
@@ -410,8 +461,20 @@ impl Grid<'_> {
         (self.rows / 2) * self.columns + self.columns / 2
     }
 
+    /// The root at a point on the branch of a root at some targets near it.
+    fn led_to(&mut self, point: usize, from: [f64; 2], root: &Solution) -> Option<Solution> {
+        let to = self.targets[point];
+        if from == to {
+            return Some(root.clone());
+        }
+        let mut path = Path::new(&mut self.evaluation, self.ranges, [from, to]);
+        let solution = path.follow(root.unknowns.clone(), root.unknowns.clone());
+        self.effort.evaluations += path.evaluations;
+        solution.is_root().then_some(solution)
+    }
+
     /// Every point so.
-    fn ambiguous(&mut self) -> Field {
+    pub(crate) fn ambiguous(&mut self) -> Field {
         let mut field = self.field();
         let ambiguous = Solution { outcome: Outcome::Ambiguous, ..Solution::never_reached(self.ranges) };
         (0..field.len()).for_each(|point| field.put(point, &ambiguous));

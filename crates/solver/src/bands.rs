@@ -117,6 +117,7 @@ pub(crate) fn solve_in_bands<E>(
     let Followed { field: mut known, is_beyond } = follow(&mut apart, &mut solvers, start, choice);
     if rows == 1 {
         settle(&mut apart, &mut known, &mut solvers.careful, 0..columns, choice.periodic);
+        choice.judge(&mut known, 0..columns, ranges);
         return each(0..1, known, 0).map(|_| apart.effort);
     }
     let mut effort = apart.effort;
@@ -144,7 +145,8 @@ pub(crate) fn solve_in_bands<E>(
         bands.learn(k + 1, &field, own.end - 1);
         let mut grid = Grid::new(system, ranges, (&targets, [targets.len() / columns, columns]), None);
         let points = own.start * columns..own.end * columns;
-        settle(&mut grid, &mut field, &mut own_solvers.careful, points, choice.periodic);
+        settle(&mut grid, &mut field, &mut own_solvers.careful, points.clone(), choice.periodic);
+        choice.judge(&mut field, points, ranges);
         effort.evaluations += grid.effort.evaluations;
         let is_last = k + 1 == bands.count();
         let told = bands.places[k]..bands.places[k + 1] + usize::from(is_last);

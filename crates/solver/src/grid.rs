@@ -8,17 +8,16 @@ use flank_expr::LANES;
 use rayon::prelude::*;
 
 use crate::Outcome;
-use crate::field::{Along, Field, Lines, NEAR, OnLine, Strip};
+use crate::field::{Along, Field, Lines, OnLine, Strip};
 use crate::lanes::LaneNewton;
 use crate::line::{Midpoint, denser, divided_difference, lattice, levels};
 use crate::newton::{LONGEST_STEP, solve_with};
+use crate::path::Path;
 use crate::roots::Undecided;
-use crate::solution::{Range, Solution, distance};
+use crate::solution::{Range, Solution};
 use crate::solvers::Solvers;
 use crate::system::{Evaluation, System};
 
-/// Parts into which the way to a neighbour is divided where one step is too long.
-const SUBSTEPS: [u32; 3] = [1, 4, 16];
 /// A corrected point may lie this share of the tangent's length from where the tangent leads; beyond, it may be on another
 /// branch, and the step is divided. The last step to where a branch turns back like a parabola has one.
 pub(crate) const ASTRAY: f64 = 0.75;
@@ -39,20 +38,18 @@ pub struct Effort {
     /// All roots in the ranges at the anchor that qualify, the one nearest the middle of the ranges first: more than one
     /// means that the ranges hold several branches.
     pub branches: Vec<Solution>,
+    /// Where these roots are, if they are not all at the anchor.
+    pub places: Vec<[f64; 2]>,
+    /// If there are several: the unknowns of each at points spread over the grid, as far as it can be followed in the ranges.
+    pub courses: Vec<Vec<Vec<f64>>>,
+    /// Further branches that have points in the ranges at other places of the grid's rectangle, and are not among the points.
+    pub elsewhere: Vec<Elsewhere>,
     /// Boxes of the ranges at the anchor in which further branches are not excluded.
     pub undecided: Vec<Undecided>,
     /// Whether the search for an anchor was given up before it had looked at all points.
     pub is_given_up: bool,
     /// Whether the branch has no point in the middle, so that what it is kept by was looked at elsewhere, at the anchor.
     pub is_kept_elsewhere: bool,
-}
-
-/// Where a step may lead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sides {
-    /// Not across where the Jacobian has no inverse.
-    Same,
-    Both,
 }
 
 pub(crate) struct Grid<'s> {
@@ -64,9 +61,22 @@ pub(crate) struct Grid<'s> {
     pub(crate) columns: usize,
     /// The rows are too far apart to step from one to the next.
     pub(crate) are_rows_apart: bool,
+    /// Branches may cross: the lattice is solved point by point.
+    pub(crate) is_careful: bool,
     /// Of a field that is not needed any more.
     memory: Option<Field>,
     pub(crate) effort: Effort,
+}
+
+/// A branch that has a point in the ranges somewhere, and is not the one of the points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elsewhere {
+    /// The targets there.
+    pub place: [f64; 2],
+    /// The point.
+    pub root: Solution,
+    /// Another point there that belongs to the branch of the points, if that has one.
+    pub beside: Option<Solution>,
 }
 
 impl<'s> Grid<'s> {
@@ -85,6 +95,7 @@ impl<'s> Grid<'s> {
             rows: counts[0],
             columns: counts[1],
             are_rows_apart: false,
+            is_careful: false,
             memory,
             effort: Effort::default(),
         }
@@ -97,7 +108,30 @@ impl<'s> Grid<'s> {
     {
         let mut other = Grid::new(self.system, ranges, (self.targets, [self.rows, self.columns]), None);
         other.are_rows_apart = self.are_rows_apart;
+        other.is_careful = self.is_careful;
         other
+    }
+
+    /// The targets at shares of the way from the first row to the last one and from the first column to the last one: the same however
+    /// many rows and columns there are.
+    pub(crate) fn target_at(&self, shares: [f64; 2]) -> [f64; 2] {
+        let along = |share: f64, count: usize| {
+            let at = share * (count - 1) as f64;
+            let before = (at as usize).min(count - 1);
+            (before, (before + 1).min(count - 1), at - before as f64)
+        };
+        let (above, below, down) = along(shares[0], self.rows);
+        let (left, right, across) = along(shares[1], self.columns);
+        let target = |i: usize, j: usize| self.targets[i * self.columns + j];
+        let between = |a: [f64; 2], b: [f64; 2], share: f64| [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+        let rows = [above, below].map(|i| between(target(i, left), target(i, right), across));
+        between(rows[0], rows[1], down)
+    }
+
+    /// The point nearest to shares of the way from the first row to the last one and from the first column to the last one.
+    pub(crate) fn nearest(&self, shares: [f64; 2]) -> usize {
+        let at = |share: f64, count: usize| (share * (count - 1) as f64).round() as usize;
+        at(shares[0], self.rows) * self.columns + at(shares[1], self.columns)
     }
 
     /// The root that a start leads to: at once if that is near, else with care.
@@ -128,7 +162,10 @@ impl<'s> Grid<'s> {
         solvers.decide(&root.unknowns, &self.targets[anchor]);
         let newton = solvers.newton();
         self.settle(&mut field, newton, &[anchor]);
-        let by_hand = self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]);
+        let by_hand = match self.is_careful {
+            true => VecDeque::from([anchor]),
+            false => self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]),
+        };
         if !by_hand.is_empty() {
             let solved = self.spread(&mut field, by_hand, &rows, &columns);
             self.settle(&mut field, newton, &solved);
@@ -291,9 +328,9 @@ impl<'s> Grid<'s> {
         (rows.start * self.columns..rows.end * self.columns).filter(is_edge).collect()
     }
 
-    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns. Where
-    /// the Jacobian has no inverse a sheet ends at a fold, with another sheet behind it, or crosses another one: steps
-    /// across are taken when nothing else is left. Gives the points it has solved.
+    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns, along
+    /// the branch: never across a place where the Jacobian has no inverse. There a sheet ends at a fold, with another sheet
+    /// behind it, or crosses another branch. Gives the points it has solved.
     fn spread(
         &mut self,
         field: &mut Field,
@@ -301,11 +338,9 @@ impl<'s> Grid<'s> {
         rows: &[usize],
         columns: &[usize],
     ) -> Vec<usize> {
-        let (mut solved, mut across) = (Vec::new(), VecDeque::new());
+        let mut solved = Vec::new();
         let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
-        loop {
-            let sides = if queue.is_empty() { Sides::Both } else { Sides::Same };
-            let Some(point) = queue.pop_front().or_else(|| across.pop_front()) else { break };
+        while let Some(point) = queue.pop_front() {
             let (i, j) = (point / self.columns, point % self.columns);
             let (at_row, at_column) = (place(rows, i), place(columns, j));
             for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
@@ -328,10 +363,10 @@ impl<'s> Grid<'s> {
                         extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
                     },
                 );
-                let (mut solution, leads_across) = self.step(point, next, [&near, &start], sides);
-                if leads_across {
-                    across.push_back(point);
-                }
+                let ways = [self.targets[point], self.targets[next]];
+                let mut path = Path::new(&mut self.evaluation, self.ranges, ways);
+                let mut solution = path.follow(near, start);
+                self.effort.evaluations += path.evaluations;
                 if let Some(earlier) = field.solution(next) {
                     solution = earlier.better(solution);
                 }
@@ -343,79 +378,6 @@ impl<'s> Grid<'s> {
             }
         }
         solved
-    }
-
-    /// From a solved point to its neighbour: at once from a good start, else in ever shorter steps along the way. Also whether
-    /// there is a way to the other side of where the Jacobian has no inverse that was not taken.
-    fn step(&mut self, from: usize, to: usize, [near, start]: [&[f64]; 2], sides: Sides) -> (Solution, bool) {
-        let (a, b) = (self.targets[from], self.targets[to]);
-        self.evaluation.set_parameters(&a);
-        self.evaluation.at(near);
-        self.effort.evaluations += 1;
-        let orientation = self.evaluation.orientation(self.ranges);
-        let (mut last, mut leads_across) = (None, false);
-        for parts in SUBSTEPS {
-            let (mut at, mut reached) = (near.to_vec(), a);
-            // straight on as before: where branches cross, the way leads across
-            let first_step = |(near, start): (&f64, &f64)| near + (start - near) / f64::from(parts);
-            let mut first: Vec<f64> = near.iter().zip(start).map(first_step).collect();
-            let mut stepped = None;
-            for part in 1..=parts {
-                let share = f64::from(part) / f64::from(parts);
-                let target = if part == parts { b } else { [0, 1].map(|k| a[k] + (b[k] - a[k]) * share) };
-                self.evaluation.set_parameters(&target);
-                let solution = solve_with(&mut self.evaluation, self.ranges, &first);
-                self.effort.evaluations += u64::from(solution.iterations);
-                let is_across = self.evaluation.orientation(self.ranges) * orientation < 0.0;
-                let is_near =
-                    solution.is_root() && self.stays_near([&at, &solution.unknowns], [&reached, &target], is_across);
-                let stays = is_near && (!is_across || sides == Sides::Both);
-                leads_across |= is_near && !stays;
-                first = extrapolated(&solution.unknowns, at.iter().copied(), 1.0);
-                at.clone_from(&solution.unknowns);
-                reached = target;
-                stepped = Some((solution, stays));
-                if !stays {
-                    break;
-                }
-            }
-            match stepped {
-                Some((solution, true)) => return (solution, false),
-                Some((solution, false)) => last = Some(solution),
-                None => {}
-            }
-        }
-        let mut lost = last.unwrap_or_else(|| Solution::never_reached(self.ranges));
-        if lost.is_root() {
-            // a root, but not one that the way leads to, or not of this target: its residual would mislead
-            lost.outcome = Outcome::NotConverged { iterations: lost.iterations };
-            lost.residual = f64::NAN;
-        }
-        (lost, leads_across)
-    }
-
-    /// Whether the tangents at two solved points lead from one to the other. Across a place without an inverse both must: one
-    /// of them allows any step where branches cross or turn back. Else the shorter one tells; the other one leads far away
-    /// where a fold is near.
-    fn stays_near(&mut self, points: [&[f64]; 2], targets: [&[f64; 2]; 2], is_across: bool) -> bool {
-        if distance(points[0], points[1], self.ranges) <= NEAR {
-            return true;
-        }
-        let [there, back] = [0, 1].map(|k| {
-            self.evaluation.set_parameters(targets[1 - k]);
-            self.evaluation.at(points[k]);
-            self.effort.evaluations += 1;
-            let led = self.evaluation.tangent_point(self.ranges);
-            let length = distance(points[k], &led, self.ranges);
-            (length, distance(&led, points[1 - k], self.ranges) <= ASTRAY * length + NEAR)
-        });
-        if is_across {
-            there.1 && back.1
-        } else if there.0 <= back.0 {
-            there.1
-        } else {
-            back.1
-        }
     }
 }
 
@@ -439,6 +401,6 @@ fn refine_lines(
 }
 
 /// The start for the next point in line, `ratio` times as far away as the one before: straight on.
-fn extrapolated(near: &[f64], far: impl Iterator<Item = f64>, ratio: f64) -> Vec<f64> {
+pub(crate) fn extrapolated(near: &[f64], far: impl Iterator<Item = f64>, ratio: f64) -> Vec<f64> {
     near.iter().zip(far).map(|(a, b)| a + ratio * (a - b)).collect()
 }

@@ -165,16 +165,20 @@ impl Evaluation<'_> {
         unknowns.map(|(column, p)| self.jacobian(row, column).abs() * p.abs().max(1.0)).sum()
     }
 
-    /// The sign of the Jacobian's determinant at the point of the last evaluation: it changes only where the Jacobian has no
-    /// inverse. Zero where there is none, or no number.
-    pub(crate) fn orientation(&self, ranges: &[Range]) -> f64 {
+    /// The Jacobian's determinant at the point of the last evaluation, with unknowns scaled by their ranges: along a branch it vanishes
+    /// only where the branch turns back or meets another one. Not finite where it is no number.
+    pub(crate) fn determinant(&self, ranges: &[Range]) -> f64 {
+        let n = ranges.len();
+        Mat::from_fn(n, n, |i, j| self.jacobian(i, j) * ranges[j].width()).determinant()
+    }
+
+    /// The same with each equation scaled by its largest entry there: how far the Jacobian is from having no inverse.
+    pub(crate) fn scaled_determinant(&self, ranges: &[Range]) -> f64 {
         let n = ranges.len();
         let sizes: Vec<f64> = (0..n)
             .map(|i| (0..n).map(|j| (self.jacobian(i, j) * ranges[j].width()).abs()).fold(0.0, f64::max))
             .collect();
-        let scaled = Mat::from_fn(n, n, |i, j| self.jacobian(i, j) * ranges[j].width() / sizes[i]);
-        let determinant = scaled.determinant();
-        if determinant == 0.0 || determinant.is_nan() { 0.0 } else { determinant.signum() }
+        Mat::from_fn(n, n, |i, j| self.jacobian(i, j) * ranges[j].width() / sizes[i]).determinant()
     }
 
     /// Where the tangent at the point of the last evaluation says that the root lies.

@@ -107,7 +107,13 @@ pub enum Outcome {
         /// By how much, in its own unit.
         by: f64,
     },
-    /// The Jacobian has no inverse where the iteration ended, or the surface no normal there.
+    /// There is a root in the ranges, but not where the branch is to be kept: see
+    /// [`SurfaceProblem::keeping`](crate::SurfaceProblem::keeping).
+    NotKept {
+        /// Index of the first condition that does not hold.
+        condition: usize,
+    },
+    /// The Jacobian has no inverse where the iteration ended, or the surface no normal or no tangent plane there.
     Singular,
     /// The iteration ended without a root.
     NotConverged {
@@ -138,7 +144,7 @@ impl Outcome {
             Outcome::Solved => "solved",
             Outcome::CutAway(_) => "cut away",
             Outcome::Undecided => "undecided",
-            Outcome::Outside { .. } => "outside",
+            Outcome::Outside { .. } | Outcome::NotKept { .. } => "outside",
             Outcome::Singular => "singular",
             Outcome::NotConverged { .. } => "not converged",
             Outcome::Ambiguous => "ambiguous",
@@ -162,7 +168,7 @@ impl Outcome {
         match self {
             Outcome::Solved => 4,
             Outcome::CutAway(_) | Outcome::Undecided => 3,
-            Outcome::Outside { .. } => 2,
+            Outcome::Outside { .. } | Outcome::NotKept { .. } => 2,
             Outcome::Singular => 1,
             Outcome::NotConverged { .. } | Outcome::Ambiguous => 0,
         }

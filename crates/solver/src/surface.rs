@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
-use crate::anchor::{Choice, Keep, MOST_BOXES_OF_ALL, Several, solve_settled};
+use crate::anchor::{Choice, Several, solve_settled};
 use crate::angles::SearchSystem;
 use crate::bands::{Band, Targets, solve_in_bands};
 use crate::field::Field;
@@ -15,6 +15,7 @@ use crate::reach::{Reach, periodic_in};
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::solution::{Outcome, Range, Solution, verdict};
 use crate::system::System;
+use crate::verdicts::{Keep, TangentPlanes};
 
 /// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
 pub const MOST_AT_ONCE: usize = 1 << 20;
@@ -22,6 +23,8 @@ pub const MOST_AT_ONCE: usize = 1 << 20;
 /// surface has such lines mostly beyond what it is used for, or none; those of the library's jobs are found at the first four points.
 const MOST_BOXES_OF_LINE: u64 = 400;
 const MOST_BOXES_OF_WHOLE_LINE: u64 = 5 * MOST_BOXES_OF_LINE;
+/// Boxes that are looked at at all points of a surface together, as many times those of one point.
+const BOXES_OF_ALL: u64 = 10;
 /// Bands that a grid which is just too large for one piece makes.
 const BANDS: usize = 4;
 
@@ -34,6 +37,8 @@ pub struct SurfaceProblem {
     point: Tape,
     /// The unknowns that the coordinates are, where they are unknowns.
     asked: [Option<usize>; 2],
+    /// The derivatives of the position by each unknown.
+    slopes: Tape,
     ranges: Vec<Range>,
     several: Several,
     /// Functions of the unknowns, and between which values they lie on the branch that is meant.
@@ -46,6 +51,8 @@ pub struct SurfaceProblem {
     reach: Option<Reach>,
     /// Points of the largest grid that is solved in one piece.
     at_once: usize,
+    /// Boxes that a search for all roots looks at.
+    most_boxes: u64,
 }
 
 /// A point that was asked for.
@@ -163,6 +170,8 @@ impl SurfaceProblem {
         let asked = coordinates.map(|coordinate| bound.unknowns.iter().position(|unknown| *unknown == coordinate));
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         let point = Tape::new(&point, &bound.unknowns)?;
+        let slopes = bound.unknowns.iter().flat_map(|unknown| bound.position.derivative(*unknown).0);
+        let slopes = Tape::new(&slopes.collect::<Vec<Expr<'g>>>(), &bound.unknowns)?;
         let decisive = Tape::new(conditions, &inputs)?;
         Ok(SurfaceProblem {
             periodic: periodic_in(&[system.residual_tape(), &point, &decisive], &ranges),
@@ -171,10 +180,12 @@ impl SurfaceProblem {
             system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
             point,
             asked,
+            slopes,
             kept_ranges: vec![Range::EVERYTHING; ranges.len()],
             ranges,
             several,
             at_once: MOST_AT_ONCE,
+            most_boxes: MOST_BOXES,
             keep: (Tape::new(&[], &bound.unknowns)?, Vec::new()),
         })
     }
@@ -188,6 +199,12 @@ impl SurfaceProblem {
     /// takes that is handed over band by band, and which of its points are solved before which: their last digits may differ.
     pub fn at_once(self, points: usize) -> SurfaceProblem {
         SurfaceProblem { at_once: points, ..self }
+    }
+
+    /// The same problem, whose searches for all roots look at so many boxes before they leave the rest undecided; [`MOST_BOXES`]
+    /// otherwise.
+    pub fn boxes(self, most: u64) -> SurfaceProblem {
+        SurfaceProblem { most_boxes: most, ..self }
     }
 
     /// The system that is solved for each point.
@@ -208,15 +225,15 @@ impl SurfaceProblem {
     }
 
     fn roots(&self, ranges: &[Range], target: &[f64]) -> Roots {
-        let most_boxes = if self.is_line() { MOST_BOXES_OF_LINE } else { MOST_BOXES };
+        let most_boxes = if self.is_line() { MOST_BOXES_OF_LINE } else { self.most_boxes };
         match &self.search {
             Some(search) => search.all_roots(ranges, target, most_boxes),
             None => all_roots(&self.system, ranges, target, most_boxes),
         }
     }
 
-    /// The same problem, where only those branches qualify on which functions of the unknowns lie in ranges at the point
-    /// that is looked for first.
+    /// The same problem, where only those branches qualify on which functions of the unknowns lie in ranges at the place
+    /// that is looked at first, and of these only the points at which they do: others are [`Outcome::NotKept`].
     ///
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor bound.
@@ -352,19 +369,17 @@ impl SurfaceProblem {
 
     /// Calls something with the choice among branches that this problem makes.
     fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
-        let (tape, ranges) = &self.keep;
-        let keeps = |unknowns: &[f64]| {
-            let mut values = vec![0.0; ranges.len()];
-            ScalarEvaluator::new(tape).run(unknowns, &mut values);
-            values.iter().zip(ranges).all(|(value, range)| range.low <= *value && *value <= range.high)
-        };
+        let (tape, between) = &self.keep;
         let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
-        let keep = Keep { keeps: &keeps, ranges: &self.kept_ranges };
+        let planes = TangentPlanes { system: &self.system, slopes: &self.slopes, ranges: &self.ranges };
+        let keep = Keep { tape, between, ranges: &self.kept_ranges };
         solve(&Choice {
             roots: &roots,
-            keep: Some(keep).filter(|_| !ranges.is_empty()),
+            keep: Some(keep).filter(|_| !between.is_empty()),
+            // on a singular line there is none
+            planes: Some(planes).filter(|_| self.several == Several::Refuse),
             several: self.several,
-            most_boxes: if self.is_line() { MOST_BOXES_OF_WHOLE_LINE } else { MOST_BOXES_OF_ALL },
+            most_boxes: if self.is_line() { MOST_BOXES_OF_WHOLE_LINE } else { BOXES_OF_ALL * self.most_boxes },
             reach: self.reach.as_ref(),
             periodic: &self.periodic,
         })

@@ -15,11 +15,11 @@ fn plane(
     graph: &Graph,
     coordinates: impl for<'g> Fn(Expr<'g>, Expr<'g>) -> [Expr<'g>; 2],
     ranges: [Range; 2],
-    keep: Option<Range>,
+    keep: Option<(usize, Range)>,
 ) -> SurfaceProblem {
     let [u, v] = ["u", "v"].map(|name| graph.variable(name));
     let surface = Surface::parametric([u, v], Vector3([u, v, graph.constant(0.0)]), false);
-    let keep: Vec<_> = keep.into_iter().map(|range| (v, range)).collect();
+    let keep: Vec<_> = keep.into_iter().map(|(unknown, range)| ([u, v][unknown], range)).collect();
     let problem = SurfaceProblem::new(&surface, coordinates(u, v), ranges.to_vec(), &[]).expect("nothing is unbound");
     let problem = problem.reaching(ranges.map(|range| range.beyond(0.0)).to_vec());
     problem.keeping(&[u, v], &keep, &[]).expect("nothing is unbound")
@@ -81,7 +81,7 @@ fn a_branch_looked_for_elsewhere_is_the_same_on_any_number_of_threads() {
     }
 }
 
-/// v = a - u, and sin u = b: the sample keeps the branch near u = 2 pi, which has v below its range in the middle, and within it
+/// v = a - u, and sin u = b: the sample keeps the branch about u = 2 pi, which has v below its range in the middle, and within it
 /// farther on. The branches before it are within the range in the middle already.
 #[test]
 fn what_is_kept_counts_in_the_middle_even_out_of_range() {
@@ -92,7 +92,7 @@ fn what_is_kept_counts_in_the_middle_even_out_of_range() {
         let targets = grid(counts, [range(0.0, 8.566), range(-0.5, 0.5)]);
         let middle = targets[(counts[0] / 2) * counts[1] + counts[1] / 2];
         let out = middle[0] - fold(middle[1]);
-        let problem = plane(&graph, |u, v| [u + v, u.sin()], ranges, Some(range(out - 0.5, out + 0.5)));
+        let problem = plane(&graph, |u, v| [u + v, u.sin()], ranges, Some((0, range(TAU - 1.0, TAU + 1.0))));
         let (points, effort) = problem.solve(&targets, counts);
         assert!(out < 0.0 && !effort.is_kept_elsewhere, "{out}");
         for ([a, b], point) in targets.iter().zip(&points) {
@@ -104,11 +104,27 @@ fn what_is_kept_counts_in_the_middle_even_out_of_range() {
     }
 }
 
+/// A branch is kept as far as the condition holds, not in the middle alone.
+#[test]
+fn what_is_kept_is_so_at_every_point() {
+    let graph = Graph::new();
+    let ranges = [range(-3.0, 3.0), range(-3.0, 3.0)];
+    let problem = plane(&graph, |u, v| [u, v], ranges, Some((0, range(-1.0, 0.5))));
+    for counts in [[5, 5], [31, 40]] {
+        let targets = grid(counts, [range(-2.0, 2.0), range(-2.0, 2.0)]);
+        let (points, _) = problem.solve(&targets, counts);
+        for ([a, _], point) in targets.iter().zip(&points) {
+            let expected = if (-1.0..=0.5).contains(a) { Outcome::Solved } else { Outcome::NotKept { condition: 0 } };
+            assert_eq!(point.outcome, expected, "{a}");
+        }
+    }
+}
+
 /// The surface turns back at a = 0, so that no branch has a point in the middle: what is kept is told by where it was looked at.
 #[test]
 fn what_is_kept_elsewhere_is_told() {
     let graph = Graph::new();
-    let problem = plane(&graph, |u, v| [v * v, u], [range(-1.0, 1.0), range(-3.0, 3.0)], Some(range(0.0, 3.0)));
+    let problem = plane(&graph, |u, v| [v * v, u], [range(-1.0, 1.0), range(-3.0, 3.0)], Some((1, range(0.0, 3.0))));
     let targets = grid([9, 5], [range(-6.0, 2.0), range(-0.5, 0.5)]);
     let (points, effort) = problem.solve(&targets, [9, 5]);
     assert!(effort.is_kept_elsewhere && effort.anchor[0] > 0.0, "{effort:?}");

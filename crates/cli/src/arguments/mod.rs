@@ -12,6 +12,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flank_chain_dsl::{Code, Job, Request};
 use flank_expr::InstructionSet;
+use flank_solver::MOST_BOXES;
 
 use crate::failure::Failure;
 
@@ -183,11 +184,22 @@ pub(crate) struct Means {
     /// without that one for each processor
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<NonZero<usize>>,
+
+    /// Boxes that a search for all branches looks at before it leaves the rest of the ranges undecided
+    #[arg(long, value_name = "N", default_value_t = MOST_BOXES, value_parser = clap::value_parser!(u64).range(1..=MOST_ASKED_FOR))]
+    boxes: u64,
 }
+
+/// More boxes take minutes, and rarely decide what these do not.
+const MOST_ASKED_FOR: u64 = 10_000_000;
 
 impl Means {
     pub(crate) fn threads(self) -> Option<NonZero<usize>> {
         self.threads
+    }
+
+    pub(crate) fn boxes(self) -> u64 {
+        self.boxes
     }
 
     pub(crate) fn instructions(self) -> InstructionSet {

@@ -10,6 +10,7 @@ use super::strip::{Strip, is_astray, keeps_sign};
 use super::{Field, block_of, take};
 use crate::lanes::{LaneNewton, Lanes};
 use crate::line::{divided_difference, stencil};
+use crate::path::is_between;
 use crate::solution::Range;
 
 /// Some places on some lines, all of whose points are roots.
@@ -146,15 +147,19 @@ impl Strip<'_> {
                 },
             );
             // those that are known come to themselves
+            let expected = *newton.determinant();
             evaluations += newton.run(&[true; LANES][..width], rough);
             rough = newton.were_rough();
-            if self.take_plain(line, newton) {
+            let is_checked = rough && !newton.has_all_given();
+            let found = *newton.determinant();
+            let stays = |lane: usize| !is_checked || is_between([expected[lane]; 2], 0.0, found[lane]);
+            if (0..width).all(stays) && self.take_plain(line, newton) {
                 continue;
             }
             for lane in 0..width {
                 let apart = || along.apart(&between, (lane, k), self.ranges);
                 let is_open = !self.marks[line][lane].is_root();
-                if is_open && newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+                if is_open && stays(lane) && newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
                     let values = block_of(shape, self.values, line);
                     take(shape, values, &mut self.marks[line], lane, newton, lane);
                 }

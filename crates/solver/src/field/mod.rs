@@ -39,6 +39,7 @@ enum Mark {
     Solved,
     CutByItsTool,
     Outside,
+    NotKept,
     Singular,
     NotConverged,
     Ambiguous,
@@ -46,7 +47,7 @@ enum Mark {
 
 impl Mark {
     fn is_root(self) -> bool {
-        matches!(self, Mark::Solved | Mark::CutByItsTool | Mark::Outside)
+        matches!(self, Mark::Solved | Mark::CutByItsTool | Mark::Outside | Mark::NotKept)
     }
 
     fn of(outcome: Outcome) -> Mark {
@@ -54,6 +55,7 @@ impl Mark {
             Outcome::Solved => Mark::Solved,
             Outcome::CutAway(_) | Outcome::Undecided => Mark::CutByItsTool,
             Outcome::Outside { .. } => Mark::Outside,
+            Outcome::NotKept { .. } => Mark::NotKept,
             Outcome::Singular => Mark::Singular,
             Outcome::NotConverged { .. } => Mark::NotConverged,
             Outcome::Ambiguous => Mark::Ambiguous,
@@ -215,6 +217,8 @@ impl Field {
             Mark::Solved => Some(Outcome::Solved),
             Mark::CutByItsTool => Some(Outcome::CutAway(CutBy::ItsTool)),
             Mark::Outside => Some(verdict(&self.unknowns(point).collect::<Vec<_>>(), &self.ranges, true, false)),
+            // the number of the condition takes the place of the determinant
+            Mark::NotKept => Some(Outcome::NotKept { condition: self.determinant(point) as usize }),
             Mark::Singular => Some(Outcome::Singular),
             Mark::NotConverged => Some(Outcome::NotConverged { iterations: self.determinant(point) as u32 }),
             Mark::Ambiguous => Some(Outcome::Ambiguous),
@@ -239,6 +243,24 @@ impl Field {
         self.mark(point).is_root()
     }
 
+    pub(crate) fn is_solved(&self, point: usize) -> bool {
+        self.mark(point) == Mark::Solved
+    }
+
+    /// Changes the verdict on a root, and nothing else.
+    pub(crate) fn judge(&mut self, point: usize, outcome: Outcome) {
+        let (block, lane) = self.shape.place(point);
+        self.marks[block][lane] = Mark::of(outcome);
+        if let Outcome::NotKept { condition } = outcome {
+            self.set_determinant(point, condition as f64);
+        }
+    }
+
+    /// Other values of the unknowns that mean the same.
+    pub(crate) fn turn(&mut self, point: usize, unknowns: &[f64]) {
+        unknowns.iter().enumerate().for_each(|(k, value)| self.set(point, k, *value));
+    }
+
     pub(crate) fn is_outside(&self, point: usize) -> bool {
         self.mark(point) == Mark::Outside
     }
@@ -251,6 +273,11 @@ impl Field {
     /// Whether its points were looked for in other ranges than these.
     pub(crate) fn is_of_others(&self, ranges: &[Range]) -> bool {
         self.ranges != ranges
+    }
+
+    /// The ranges that its points were looked for in.
+    pub(crate) fn ranges(&self) -> &[Range] {
+        &self.ranges
     }
 
     /// What is outside is told by these ranges from now on.
@@ -286,6 +313,7 @@ impl Field {
         let determinant = match solution.outcome {
             // where there is no root, the number of iterations takes the place
             Outcome::NotConverged { iterations } => f64::from(iterations),
+            Outcome::NotKept { condition } => condition as f64,
             _ => f64::NAN,
         };
         self.set(point, self.shape.size, determinant);

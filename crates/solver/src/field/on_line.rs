@@ -124,7 +124,15 @@ mod tests {
         };
         let targets: Vec<[f64; 2]> = (0..counts[0] * counts[1]).map(target).collect();
         let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(&system, ranges, targets, MOST_BOXES);
-        let choice = Choice { roots: &roots, keep: None, several: Several::Refuse, reach: None, periodic: &[] };
+        let choice = Choice {
+            roots: &roots,
+            keep: None,
+            several: Several::Refuse,
+            most_boxes: MOST_BOXES,
+            reach: None,
+            periodic: &[],
+            planes: None,
+        };
         let grid = Grid::new(&system, &ranges, (&targets, counts), None);
         let (field, _) = solve_settled(grid, None, &choice);
         for (k, [a, b]) in targets.iter().enumerate() {

@@ -7,6 +7,7 @@ use flank_expr::LANES;
 use super::{Along, Mark, NEAR, OnLine, SAME_DETERMINANT, Shape, block_of, number, take};
 use crate::lanes::{LaneNewton, Lanes};
 use crate::line::{Midpoint, STENCIL};
+use crate::path::is_between;
 use crate::solution::Range;
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
@@ -72,8 +73,9 @@ impl Strip<'_> {
                 evaluations += newton.run(&active[..self.width], rough);
             }
             rough = newton.were_rough();
-            plain = self.take_plain(midpoint.at, newton);
-            full[midpoint.at] = plain || self.take_lanes(midpoint, newton);
+            let stays = self.stay_on_branch(midpoint, newton);
+            plain = stays[..self.width].iter().all(|stays| *stays) && self.take_plain(midpoint.at, newton);
+            full[midpoint.at] = plain || self.take_lanes(midpoint, newton, &stays);
         }
         *newton.targets() = ordered;
         evaluations
@@ -223,8 +225,29 @@ impl Strip<'_> {
         are_plain
     }
 
+    /// Where the determinant is what it is along the branch of both neighbours. Of lanes that took no step that is known before, and
+    /// what is given in closed form has no other branch.
+    fn stay_on_branch(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> [bool; LANES] {
+        let mut stays = [true; LANES];
+        if newton.were_rough() && !newton.has_all_given() {
+            let [before, behind] = midpoint.beside;
+            let share = (midpoint.at - before) as f64 / (behind - before) as f64;
+            let [before, behind] = [before, behind].map(|line| self.plane(line, self.shape.size));
+            let (instructions, determinant) = (newton.instructions(), newton.determinant());
+            instructions.dispatch(
+                #[inline(always)]
+                || {
+                    for lane in 0..LANES {
+                        stays[lane] = is_between([before[lane], behind[lane]], share, determinant[lane]);
+                    }
+                },
+            );
+        }
+        stays
+    }
+
     /// Takes what the lanes have come to, one by one; whether all of them are roots now.
-    fn take_lanes(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> bool {
+    fn take_lanes(&mut self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>, stays: &[bool; LANES]) -> bool {
         let (line, shape) = (midpoint.at, self.shape);
         for lane in 0..self.width {
             let [before, behind] = midpoint.beside;
@@ -234,7 +257,7 @@ impl Strip<'_> {
                 };
                 self.ranges.iter().enumerate().map(share).fold(0.0, f64::max)
             };
-            if newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+            if stays[lane] && newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
                 let values = block_of(shape, self.values, line);
                 take(shape, values, &mut self.marks[line], lane, newton, lane);
             }

@@ -1,0 +1,293 @@
+//! What is known of branches beside the one that a grid follows.
+//!
+//! A grid that is not complete is looked at as a part of a finer one, so that which of its points are solved does not depend on how
+//! many of them there are. Roots are looked for at places of the grid's rectangle that do not depend on that either.
+
+use std::f64::consts::TAU;
+
+use flank_expr::LANES;
+
+use crate::anchor::{Choice, Followed, follow_alone, is_same_root};
+use crate::field::Field;
+use crate::grid::{Effort, Elsewhere, Grid, extrapolated};
+use crate::lanes::LaneNewton;
+use crate::newton::solve_with;
+use crate::reach::{back_into, is_within};
+use crate::roots::Roots;
+use crate::solution::{Outcome, Range, Solution};
+use crate::solvers::Solvers;
+use crate::start::probe;
+
+/// Steps from the first row, or column, to the last one that a finer grid has at the least.
+const FINE: usize = 32;
+/// Points of the largest grid that is looked at as a part of a finer one.
+const MOST_REFINED: usize = 1024;
+/// Shares of the way across a grid at which branches are looked for beside the middle.
+const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
+/// The same where points are missing.
+const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Points that are missing at which branches are looked for.
+const MISSING: usize = 16;
+/// Points of the largest grid on which several further branches are followed; of larger ones the first is told.
+const MOST_FOLLOWED: usize = 4096;
+/// Branches that are told of, at the most.
+const TOLD: usize = 4;
+/// Points of a branch that tell where it runs, about.
+const COURSE: usize = 64;
+/// Turns of each unknown that a root is looked for again at.
+const TURNS: i32 = 2;
+
+/// A grid as far as its branch can be followed; further branches stand in the grid's effort.
+pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &Choice<'_>) -> Followed {
+    let mut followed = follow_alone(grid, solvers, None, choice);
+    let leads_astray = |field: &Field| choice.planes.is_some_and(|planes| planes.are_missing(field, 0..field.len()));
+    if !grid.is_careful && leads_astray(&followed.field) {
+        grid.is_careful = true;
+        let evaluations = grid.effort.evaluations;
+        grid.effort = Effort { evaluations, ..Effort::default() };
+        followed = follow_alone(grid, solvers, None, choice);
+    }
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
+        return followed;
+    }
+    if followed.field.is_complete() {
+        if !followed.is_beyond {
+            grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, &followed.field, choice);
+        }
+        return followed;
+    }
+    if grid.are_rows_apart {
+        return followed;
+    }
+    let factors = [grid.rows, grid.columns].map(|count| FINE.div_ceil(count.max(2) - 1));
+    if factors == [1, 1] || grid.targets.len() > MOST_REFINED {
+        return with_others(grid, followed, choice);
+    }
+    let (targets, counts) = refined(grid, factors);
+    let mut fine = Grid::new(grid.system, grid.ranges, (&targets, counts), None);
+    fine.is_careful = grid.is_careful;
+    let found = follow_alone(&mut fine, solvers, None, choice);
+    let found = with_others(&mut fine, found, choice);
+    let evaluations = grid.effort.evaluations;
+    grid.effort = fine.effort;
+    grid.effort.evaluations += evaluations;
+    let counts_of_own = [grid.rows, grid.columns];
+    let mut field = Field::new(found.field.ranges(), counts_of_own, grid.system.extra_count(), None);
+    for point in 0..grid.targets.len() {
+        let (i, j) = (point / grid.columns, point % grid.columns);
+        let same = i * grid.factor(factors, 0) * counts[1] + j * grid.factor(factors, 1);
+        field.copy(point, &found.field, same);
+    }
+    Followed { field, is_beyond: found.is_beyond }
+}
+
+impl Grid<'_> {
+    /// How many steps of a finer grid one of this is.
+    fn factor(&self, factors: [usize; 2], direction: usize) -> usize {
+        if [self.rows, self.columns][direction] == 1 { 1 } else { factors[direction] }
+    }
+}
+
+/// The targets of a grid with further points between its own.
+fn refined(grid: &Grid<'_>, factors: [usize; 2]) -> (Vec<[f64; 2]>, [usize; 2]) {
+    let own = [grid.rows, grid.columns];
+    let counts = [0, 1].map(|k| (own[k] - 1) * grid.factor(factors, k) + 1);
+    let share = |k: usize, at: usize| at as f64 / (counts[k].max(2) - 1) as f64;
+    let target = |point: usize| {
+        let (i, j) = (point / counts[1], point % counts[1]);
+        let [down, across] = [grid.factor(factors, 0), grid.factor(factors, 1)];
+        // its own points bit for bit
+        if i.is_multiple_of(down) && j.is_multiple_of(across) {
+            grid.targets[i / down * grid.columns + j / across]
+        } else {
+            grid.target_at([share(0, i), share(1, j)])
+        }
+    };
+    ((0..counts[0] * counts[1]).map(target).collect(), counts)
+}
+
+/// Of a grid that is not complete: branches at places spread over it and at points that are missing. If the branch that was followed
+/// has no point in the middle, and another one has points, too, nothing says which is meant.
+fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>) -> Followed {
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
+        return followed;
+    }
+    let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
+    let field = &followed.field;
+    let missing: Vec<usize> = (0..field.len()).filter(|point| !field.is_solved(*point)).collect();
+    points.extend(missing.iter().step_by(missing.len().div_ceil(MISSING).max(1)));
+    let mut others = Others { own: &followed.field, found: Vec::new() };
+    for (point, start) in beyond(grid, &followed.field) {
+        grid.evaluation.set_parameters(&grid.targets[point]);
+        let root = solve_with(&mut grid.evaluation, grid.ranges, &start);
+        grid.effort.evaluations += u64::from(root.iterations);
+        others.learn(grid, choice, point, root);
+    }
+    let mut seen = Vec::new();
+    let kept = choice.kept(grid.ranges);
+    for point in points {
+        if seen.contains(&point) || grid.effort.boxes >= choice.most_boxes {
+            continue;
+        }
+        seen.push(point);
+        let found = (choice.roots)(&kept, &grid.targets[point]);
+        grid.effort.boxes += found.boxes;
+        for root in found.isolated.into_iter().map(|root| root.solution).chain(found.unproven) {
+            others.learn(grid, choice, point, root);
+        }
+    }
+    let others = others.found;
+    let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
+    if is_undecided && !others.is_empty() {
+        grid.effort.places = vec![grid.effort.anchor];
+        grid.effort.courses = vec![course(&followed.field)];
+        for (other, field) in others {
+            grid.effort.places.push(other.place);
+            grid.effort.branches.push(other.root);
+            grid.effort.courses.push(course(&field));
+        }
+        followed.field = grid.ambiguous();
+        followed.is_beyond = false;
+    } else {
+        grid.effort.elsewhere = others.into_iter().map(|(elsewhere, _)| elsewhere).collect();
+    }
+    followed
+}
+
+/// Branches beside the one that was followed.
+struct Others<'f> {
+    own: &'f Field,
+    /// Each with what it leads to.
+    found: Vec<(Elsewhere, Field)>,
+}
+
+impl Others<'_> {
+    /// Keeps a root at a point if it is one of another branch that qualifies.
+    fn learn(&mut self, grid: &mut Grid<'_>, choice: &Choice<'_>, point: usize, root: Solution) {
+        let most = if grid.targets.len() > MOST_FOLLOWED { 1 } else { TOLD };
+        let is_on = |field: &Field| {
+            // of singular points, too: roots without a normal, say
+            let is_somewhere = !matches!(field.outcome(point), None | Some(Outcome::NotConverged { .. }));
+            let own: Vec<f64> = field.unknowns(point).collect();
+            is_somewhere && is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic)
+        };
+        let is_known = is_on(self.own) || self.found.iter().any(|(_, field)| is_on(field));
+        if self.found.len() >= most || is_known || !qualifies(&root, choice) {
+            return;
+        }
+        let beside = self.own.solution(point).filter(|own| {
+            own.is_root() && is_within(&back_into(grid.ranges, choice.periodic, &own.unknowns), grid.ranges)
+        });
+        let elsewhere = Elsewhere { place: grid.targets[point], root: root.clone(), beside };
+        let mut own = grid.within(grid.ranges);
+        let field = own.fill(&mut Solvers::new(grid.system, grid.ranges), point, &root);
+        grid.effort.evaluations += own.effort.evaluations;
+        self.found.push((elsewhere, field));
+    }
+}
+
+/// Points that are missing beside two that are solved, with starts straight on from these: where branches cross, the way that no step
+/// takes.
+fn beyond(grid: &Grid<'_>, field: &Field) -> Vec<(usize, Vec<f64>)> {
+    let [rows, columns] = [grid.rows, grid.columns];
+    let start = |point: usize| {
+        let (i, j) = (point / columns, point % columns);
+        let at = |di: isize, dj: isize| {
+            let (i, j) = (i.checked_add_signed(di)?, j.checked_add_signed(dj)?);
+            Some(i * columns + j).filter(|at| i < rows && j < columns && field.is_solved(*at))
+        };
+        let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
+        let (near, far) = ways.into_iter().find_map(|(di, dj)| Some((at(di, dj)?, at(2 * di, 2 * dj)?)))?;
+        let near: Vec<f64> = field.unknowns(near).collect();
+        Some((point, extrapolated(&near, field.unknowns(far), 1.0)))
+    };
+    let edge: Vec<(usize, Vec<f64>)> =
+        (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(start).collect();
+    let step = edge.len().div_ceil(MISSING).max(1);
+    edge.into_iter().step_by(step).collect()
+}
+
+/// The unknowns of a branch at points spread over a grid.
+pub(crate) fn course(field: &Field) -> Vec<Vec<f64>> {
+    let solved: Vec<usize> = (0..field.len()).filter(|point| field.is_solved(*point)).collect();
+    let step = solved.len().div_ceil(COURSE).max(1);
+    solved.into_iter().step_by(step).map(|point| field.unknowns(point).collect()).collect()
+}
+
+/// Whether a root is a point that another branch would have solved.
+fn qualifies(root: &Solution, choice: &Choice<'_>) -> bool {
+    root.is_solved() && choice.keeps(&root.unknowns) && choice.has_tangent_plane(&root.unknowns)
+}
+
+/// Of a grid that is complete: roots beside its own at a few places, from starts spread over the ranges, many at once.
+fn beside_complete(
+    grid: &mut Grid<'_>,
+    newton: &mut LaneNewton<'_>,
+    field: &Field,
+    choice: &Choice<'_>,
+) -> Vec<Elsewhere> {
+    let mut others: Vec<Elsewhere> = Vec::new();
+    let kept = choice.kept(grid.ranges);
+    let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
+    // in the middle all roots are known
+    let around = shares.filter(|shares| *shares != [0.5; 2]);
+    let mut points: Vec<usize> = around.map(|shares| grid.nearest(shares)).collect();
+    points.dedup();
+    for (number, point) in points.into_iter().enumerate() {
+        let own: Vec<f64> = field.unknowns(point).collect();
+        let target = grid.targets[point];
+        for lane in 0..LANES {
+            newton.put(lane, probe(&kept, (number * LANES + lane + 1) as u32).into_iter(), &target);
+            newton.determinant()[lane] = f64::NAN;
+        }
+        newton.run(&[true; LANES], true);
+        for lane in 0..LANES {
+            if !newton.is_root(lane) || newton.outcome(lane) != Outcome::Solved {
+                continue;
+            }
+            let unknowns: Vec<f64> = (0..own.len()).map(|k| newton.input(k)[lane]).collect();
+            let residual = newton.residuals()[lane];
+            let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
+            let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
+            if !is_own && qualifies(&root, choice) {
+                others.push(Elsewhere { place: target, root, beside: field.solution(point) });
+                return others;
+            }
+        }
+    }
+    others
+}
+
+/// Roots that are whole turns of some unknowns away from those that are known, or nearly so: a thread comes by again when spindle or
+/// thread have turned once more, and the search may not have come so far.
+pub(crate) fn turned_copies(grid: &mut Grid<'_>, ranges: &[Range], target: &[f64; 2], found: &Roots) -> Vec<Solution> {
+    let known: Vec<Solution> =
+        found.isolated.iter().map(|root| root.solution.clone()).chain(found.unproven.iter().cloned()).collect();
+    let turning: Vec<usize> = (0..ranges.len()).filter(|k| ranges[*k].width() > 0.5 * TAU).collect();
+    let mut turns: Vec<Vec<(usize, i32)>> = Vec::new();
+    let all = || (-TURNS..=TURNS).filter(|turn| *turn != 0);
+    for (number, k) in turning.iter().enumerate() {
+        turns.extend(all().map(|turn| vec![(*k, turn)]));
+        for other in &turning[number + 1..] {
+            turns.extend(all().map(|turn| vec![(*k, turn), (*other, -turn)]));
+        }
+    }
+    let mut copies = Vec::new();
+    grid.evaluation.set_parameters(target);
+    for root in &known {
+        for turn in &turns {
+            let mut start = root.unknowns.clone();
+            turn.iter().for_each(|(k, turns)| start[*k] += TAU * f64::from(*turns));
+            if start.iter().zip(ranges).any(|(x, range)| range.excess(*x) > 0.5 * TAU) {
+                continue;
+            }
+            let solution = solve_with(&mut grid.evaluation, grid.ranges, &start);
+            grid.effort.evaluations += u64::from(solution.iterations);
+            if solution.is_solved() {
+                copies.push(solution);
+            }
+        }
+    }
+    copies
+}

@@ -1,0 +1,96 @@
+//! Several branches in the ranges: none is followed on to another one, none is taken silently, and which one is taken does not depend on
+//! how many points a sample has.
+
+use flank_chain_dsl::{Job, compile_file, compile_text};
+use flank_expr::Graph;
+use flank_solver::{Effort, Outcome, SurfacePoint};
+use flank_tests::{difference, problem, repository};
+
+/// The points of a surface at its sample, which has so many rows and columns.
+fn solved(job: &Job<'_>, surface: &str) -> (Vec<SurfacePoint>, Effort) {
+    let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
+    let sample = surface.sample.as_ref().expect("points are asked for");
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    problem(job, surface, coordinates).solve(&sample.targets(), sample.counts)
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(repository("tests/surfaces/specs").join(name)).expect("the spec is there")
+}
+
+/// The points of a spec with one surface, whose sample has other counts than it says there.
+fn with_counts(spec: &str, counts: [[usize; 2]; 2]) -> (Vec<SurfacePoint>, Effort) {
+    let graph = Graph::new();
+    let mut text = text(spec);
+    for [own, other] in counts {
+        assert!(text.contains(&format!(" by {own}\n")));
+        text = text.replacen(&format!(" by {own}\n"), &format!(" by {other}\n"), 1);
+    }
+    let compilation = compile_text(&graph, spec, &text, &[]);
+    assert!(!compilation.has_errors());
+    solved(&compilation.jobs[0], "f")
+}
+
+fn is_solved(point: &SurfacePoint) -> bool {
+    point.outcome == Outcome::Solved
+}
+
+/// The wheel of a globoid drive has two branches that cross along a line over the whole of its sample. On one of them, on which both
+/// motions are equal, the surface is a line in space: no point of it is solved. The other one is followed up to the crossing; beyond, the
+/// tool cuts away what it generates.
+#[test]
+fn no_step_leads_on_to_a_branch_that_crosses() {
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &repository("tests/surfaces/specs/hindley.chain"), &[]);
+    let (points, _) = solved(&compilation.jobs[0], "wheel");
+    let solved: Vec<&SurfacePoint> = points.iter().filter(|point| is_solved(point)).collect();
+    assert!(solved.len() > 250, "{} points", solved.len());
+    for point in solved {
+        let [_, worm_turn, mesh] = point.unknowns[..] else { panic!("three unknowns") };
+        assert!(worm_turn - mesh > 1e-5, "{point:?}");
+    }
+}
+
+/// The search by a table over z ends undecided. A turn of the spindle away stands the next tooth, as the search by z finds.
+#[test]
+fn what_comes_by_again_after_a_turn_is_found() {
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &repository("tests/surfaces/specs/sampled_by_table.chain"), &[]);
+    for job in &compilation.jobs {
+        let (points, effort) = solved(job, "flank");
+        assert!(points.iter().all(|point| point.outcome == Outcome::Ambiguous), "{}", job.name);
+        let [one, other] = &effort.branches[..] else { panic!("{}: {:?}", job.name, effort.branches) };
+        let turns = (one.unknowns[2] - other.unknowns[2]).abs() / std::f64::consts::TAU;
+        assert!((turns - 1.0).abs() < 1e-9, "{}: {turns}", job.name);
+    }
+}
+
+/// Between the points of a coarse grid the branch is followed as closely as in a fine one.
+#[test]
+fn a_coarse_grid_has_the_points_of_a_fine_one() {
+    let (coarse, _) = with_counts("branch_that_ends.chain", [[3, 3], [6, 6]]);
+    assert_eq!(coarse.iter().filter(|point| is_solved(point)).count(), 10);
+    for fineness in [2, 5] {
+        let columns = 5 * fineness + 1;
+        let (fine, _) = with_counts("branch_that_ends.chain", [[3, 3], [6, columns]]);
+        for (k, point) in coarse.iter().enumerate() {
+            let same = &fine[k / 6 * columns + k % 6 * fineness];
+            assert_eq!(is_solved(point), is_solved(same), "{point:?} {same:?}");
+            assert!(!is_solved(point) || difference(&point.position, &same.position) < 1e-9);
+        }
+    }
+}
+
+/// Two branches, neither of them in the middle: whatever the grid, the same one is taken, and the other one told.
+#[test]
+fn which_branch_is_taken_does_not_depend_on_the_counts() {
+    let (coarse, told) = with_counts("two_branches.chain", [[6, 6], [9, 9]]);
+    assert!(coarse.iter().any(is_solved) && !told.elsewhere.is_empty());
+    let (fine, told) = with_counts("two_branches.chain", [[6, 26], [9, 41]]);
+    assert!(!told.elsewhere.is_empty());
+    for (k, point) in coarse.iter().enumerate() {
+        let same = &fine[5 * (k / 9) * 41 + 5 * (k % 9)];
+        assert_eq!(is_solved(point), is_solved(same), "{point:?} {same:?}");
+        assert!(!is_solved(point) || difference(&point.position, &same.position) < 1e-9);
+    }
+}
