@@ -58,11 +58,12 @@ fn what_is_asked_for_outside_is_outside() {
         let last = verdicts(&folder.join("j.csv"), "a").pop().expect("a row");
         assert_eq!(last, format!("outside: {name} by {by}"));
     }
-    // what lies within is found all the same
+    // what lies within is found all the same; rolling the rail densely, without equations, cuts u = 4, 5 and 6 mm by up to 0.1228 mm
     let mixed = RAIL.replace("SAMPLE", "u: -3 mm .. 57 mm by 61, v: 0 mm");
     let (table, told) = solved(&folder, &format!("{library}{mixed}"), &[]);
     assert_eq!(table["surfaces"][0]["outcomes"]["outside"], 45, "{told}");
-    assert!(table["surfaces"][0]["solved"].as_u64() >= Some(9), "{table}");
+    assert_eq!(table["surfaces"][0]["solved"], 7, "{table}");
+    assert!(told.contains("3: cut away by t.flank in another position of the tool, by up to 0.1"), "{told}");
     assert!(!told.contains("not converged"), "{told}");
 }
 
