@@ -18,6 +18,8 @@ const COLLAPSED: f64 = 1e-6;
 /// Points that are looked at to see whether a sheet has tangent planes at all, at the most. Between bifurcations, over which no step
 /// leads, a sheet has them all over or nowhere, but for lines on which its determinant vanishes, too.
 const SAMPLED: usize = 7;
+/// Points of the largest grid all of which are looked at where some are missing: a sheet may end at a branch that crosses it.
+const MOST_LOOKED_AT: usize = 4096;
 
 /// What a branch must be like.
 pub(crate) struct Keep<'c> {
@@ -107,7 +109,8 @@ impl TangentPlanes<'_> {
     /// The verdicts on some points of a field: of those that the careful path has solved one by one, and of all if it is so at some of
     /// them.
     pub(crate) fn judge(&self, field: &mut Field, points: ops::Range<usize>) {
-        if self.are_missing(field, points.clone()) {
+        let has_gaps = points.len() <= MOST_LOOKED_AT && !points.clone().all(|point| field.is_root(point));
+        if has_gaps || self.are_missing(field, points.clone()) {
             for point in points {
                 if self.is_missing(field, point) {
                     field.judge(point, Outcome::Singular);
