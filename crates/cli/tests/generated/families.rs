@@ -73,7 +73,8 @@ pub fn case(seed: u64) -> Option<Case> {
     for _ in 0..8 {
         random.0.roll(2);
     }
-    const FAMILIES: [(&str, fn(&mut Random) -> Parts); 11] = [
+    type Family = (&'static str, fn(&mut Random) -> Parts);
+    const FAMILIES: [Family; 11] = [
         ("cycloid", cycloid),
         ("gerotor", gerotor),
         ("rack", rack),
