@@ -6,23 +6,24 @@ use std::rc::Rc;
 
 use flank_expr::Graph;
 
-use crate::codes::Code;
-use crate::context::{Context, Role, Scope, Value, did_you_mean, quoted};
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::dimension::Dimension;
-use crate::functions;
-use crate::instance::{Overrides, Source};
+use crate::definitions::instance::{Overrides, Source};
+use crate::definitions::machine::{self, Machines};
+use crate::definitions::tool::{self, Tools};
+use crate::definitions::unused;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{FileId, Name, Sources, Span};
+use crate::diagnostics::{Diagnostic, Severity};
 use crate::job::{self, Definitions};
 use crate::limits;
 use crate::load::{self, Loaded};
-use crate::machine::{self, Machines};
 use crate::model::{Job, within};
-use crate::source::{FileId, Name, Sources, Span};
 use crate::syntax::ast::{self, Item};
 use crate::syntax::parse_expression;
-use crate::tables::Tables;
-use crate::tool::{self, Tools};
-use crate::unused;
+use crate::values::context::{Context, Role, did_you_mean, quoted};
+use crate::values::dimension::Dimension;
+use crate::values::functions;
+use crate::values::table_files::Tables;
+use crate::values::value::{Scope, Value};
 
 /// What became of a text.
 #[derive(Clone, Debug)]

@@ -32,49 +32,31 @@
 //! assert_eq!(compilation.jobs[0].surfaces[0].surface.constraints.len(), 1);
 //! ```
 
-mod codes;
 mod compile;
-mod context;
+mod definitions;
 mod derivation;
-mod diagnostic;
-mod dimension;
-mod evaluate;
-mod explain;
+mod diagnostics;
 mod format;
-mod functions;
-mod instance;
 mod job;
 pub mod limits;
 mod load;
-mod machine;
 mod model;
-mod nc_word;
-mod profile;
-mod render;
-mod requirement;
-mod sample;
-mod source;
-mod spelling;
-mod steel;
 pub mod syntax;
-mod tables;
-mod tool;
-mod transforms;
-mod unused;
+mod values;
 
-pub use codes::Code;
 pub use compile::{Compilation, Request, compile_file, compile_request, compile_text, compile_with_machine};
 pub use derivation::{derivation, described, equations};
-pub use diagnostic::{Diagnostic, Note, Severity};
-pub use dimension::Dimension;
-pub use explain::UnknownCode;
+pub use diagnostics::codes::Code;
+pub use diagnostics::explain::UnknownCode;
+pub use diagnostics::render::render;
+pub use diagnostics::source::{FileId, Name, SourceFile, Sources, Span, Spanned};
+pub use diagnostics::spelling::closest;
+pub use diagnostics::{Diagnostic, Note, Severity};
 pub use format::format;
+pub use job::sample::spaced;
 pub use load::{read_file, read_other_file};
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
     Parameter, PieceEnds, Process, Sample, SampleEnds, SampleGrid, ToolShape,
 };
-pub use render::render;
-pub use sample::spaced;
-pub use source::{FileId, Name, SourceFile, Sources, Span, Spanned};
-pub use spelling::closest;
+pub use values::dimension::Dimension;

@@ -1,9 +1,9 @@
 //! The limits of the language, in one place. Each is far above what machines and gears need; all together keep any text, also
 //! a hostile one, within seconds and a few hundred megabytes.
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
-use crate::source::Span;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 
 /// What a text may ask for at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{FileId, Name, Sources, Span, Spanned};
 use crate::limits::{self, Limit};
-use crate::source::{FileId, Name, Sources, Span, Spanned};
 use crate::syntax::ast::{File, Item};
 use crate::syntax::parse;
 

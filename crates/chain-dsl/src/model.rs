@@ -6,9 +6,8 @@ use std::path::PathBuf;
 use flank_expr::geometry::{Chain, Edge, Step, Surface, Vector3};
 use flank_expr::{Expr, Graph};
 
-use crate::dimension::Dimension;
-use crate::machine;
-use crate::source::Span;
+use crate::diagnostics::source::Span;
+use crate::values::dimension::Dimension;
 
 /// One job, ready to be solved: its parameters are variables with values beside them.
 #[derive(Clone, Debug)]
@@ -384,9 +383,30 @@ impl<'g> Machine<'g> {
     /// The pose of frame `to` in frame `from`, in axis variables; `None` if the machine has no such frame.
     pub fn chain(&self, graph: &'g Graph, from: &str, to: &str) -> Option<Chain<'g>> {
         let place = |name: &str| self.frames.iter().position(|frame| frame.name == name);
-        let hops = machine::path(&self.frames, place(from)?, place(to)?);
+        let hops = path(&self.frames, place(from)?, place(to)?);
         Some(Chain::new(graph, hops.into_iter().flat_map(|(_, steps)| steps).collect()))
     }
+}
+
+/// The steps from one frame of a machine to another: up to the frame that both hang on, then down. Each hop is named by
+/// the frame that it arrives in.
+pub(crate) fn path<'g>(frames: &[Frame<'g>], from: usize, to: usize) -> Vec<(usize, Vec<Step<'g>>)> {
+    let line = |start: usize| std::iter::successors(Some(start), |&k| frames[k].parent).collect::<Vec<_>>();
+    let (mut up, mut down) = (line(from), line(to));
+    // frames above the meeting point belong to neither way
+    while up.len() > 1 && down.len() > 1 && up[up.len() - 2] == down[down.len() - 2] {
+        up.pop();
+        down.pop();
+    }
+    let mut hops = vec![(from, Vec::new())];
+    for pair in up.windows(2) {
+        let steps = frames[pair[0]].steps.iter().rev().map(|step| step.inverse()).collect();
+        hops.push((pair[1], steps));
+    }
+    for pair in down.windows(2).rev() {
+        hops.push((pair[0], frames[pair[0]].steps.clone()));
+    }
+    hops
 }
 
 impl<'g> Generation<'g> {

@@ -18,34 +18,21 @@
 //! assert_eq!(out, [0.0, 3.0]);
 //! ```
 
-mod cost;
-mod curve;
-mod derivative;
 mod emit;
-mod evaluate;
+mod enclosure;
 pub mod geometry;
-mod graph;
-mod hash;
-mod interpret;
-mod interval;
-mod kernel;
-mod lanes;
-mod op;
-mod print;
-mod rules;
+mod symbolic;
 mod tape;
-mod taylor;
-mod terms;
 
-pub use cost::Cost;
-pub use curve::{Curve, CurveError};
-pub use derivative::Linear;
 pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
-pub use evaluate::ScalarEvaluator;
-pub use graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
-pub use interval::{Interval, IntervalEvaluator};
-pub use lanes::{InstructionSet, LANES, LaneEvaluator, LaneTape, Varies};
-pub use op::{Binary, Unary};
-pub use print::{Definition, Listing, Style};
+pub use enclosure::interval::{Interval, IntervalEvaluator};
+pub use enclosure::taylor::{Coefficient, TaylorEvaluator};
+pub use symbolic::curve::{Curve, CurveError};
+pub use symbolic::derivative::Linear;
+pub use symbolic::graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
+pub use symbolic::op::{Binary, Unary};
+pub use symbolic::print::{Definition, Listing, Style};
+pub use tape::cost::Cost;
+pub use tape::evaluate::ScalarEvaluator;
+pub use tape::lanes::{InstructionSet, LANES, LaneEvaluator, LaneTape, Varies};
 pub use tape::{Instruction, Operation, Tape, TapeError};
-pub use taylor::{Coefficient, TaylorEvaluator};

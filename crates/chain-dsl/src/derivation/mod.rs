@@ -7,8 +7,8 @@ use std::fmt::Write;
 use flank_expr::geometry::{Axis as Line, Pose, Step, Vector3};
 use flank_expr::{Expr, Style};
 
-use crate::dimension::{Dimension, shown};
 use crate::model::{GeneratedSurface, Generation, Job, LawSource, Machine, Process, ToolShape};
+use crate::values::dimension::{Dimension, shown};
 
 /// Writes what the compiler built for a job: frames, the chain from tool to work with each elementary matrix, the product
 /// and its 3 × 3 vector part, the twist of each motion, position and normal, the equation of meshing, and how much is

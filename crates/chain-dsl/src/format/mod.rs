@@ -17,8 +17,8 @@ mod statements;
 mod tokens;
 mod tree;
 
-use crate::diagnostic::Diagnostic;
-use crate::source::FileId;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::source::FileId;
 use crate::syntax;
 
 /// Longest line, in characters. Only what cannot be broken is longer: a word, a text, a comment.

@@ -3,7 +3,7 @@
 use std::iter::Peekable;
 use std::slice::Iter;
 
-use crate::source::line_starts;
+use crate::diagnostics::source::line_starts;
 use crate::syntax::{Comment, CommentKind};
 
 /// A word or a sign.

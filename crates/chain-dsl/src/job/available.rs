@@ -1,11 +1,11 @@
 //! What a surface may be made from: surfaces of tools and earlier surfaces of the job, whole or piece by piece.
 
-use crate::codes::Code;
-use crate::context::{Context, READABLE, quoted};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
 use crate::model::{Bounded, ToolShape};
-use crate::source::{Name, Span};
 use crate::syntax::ast;
+use crate::values::context::{Context, READABLE, quoted};
 
 use super::{Builder, FrameRef};
 

@@ -2,14 +2,14 @@
 
 use flank_expr::Expr;
 
-use crate::codes::Code;
-use crate::context::{Context, quoted};
-use crate::diagnostic::Diagnostic;
-use crate::dimension::Dimension;
-use crate::machine::LawKind;
+use crate::definitions::machine::LawKind;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::model::{Axis, LawSource, Machine};
-use crate::source::Span;
 use crate::syntax::ast;
+use crate::values::context::{Context, quoted};
+use crate::values::dimension::Dimension;
 
 use super::Builder;
 

@@ -1,10 +1,10 @@
 //! `cut flank by edges`: single edges instead of the surface that they would leave if there were no end of them.
 
-use crate::codes::Code;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
 use crate::model::{GeneratedSurface, Process};
 use crate::syntax::ast;
+use crate::values::context::Context;
 
 use super::Builder;
 use super::available::joined;

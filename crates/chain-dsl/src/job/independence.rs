@@ -3,11 +3,11 @@
 use flank_expr::Expr;
 use nalgebra::DMatrix;
 
-use crate::codes::Code;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::model::{GeneratedSurface, Sample};
-use crate::source::Span;
+use crate::values::context::Context;
 
 use super::sliding::{LOOKS, share, value};
 

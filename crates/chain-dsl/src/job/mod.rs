@@ -1,5 +1,7 @@
 //! Jobs: machines and tools get values, axes their laws, tools leave surfaces.
 
+pub(crate) mod sample;
+
 mod available;
 mod axes;
 mod cut;
@@ -13,18 +15,18 @@ use std::path::Path;
 
 use flank_expr::Expr;
 
-use crate::codes::Code;
-use crate::context::{Context, Role, Scope, Value};
-use crate::diagnostic::Diagnostic;
-use crate::instance::{Binder, Overrides, Source};
+use crate::definitions::instance::{Binder, Overrides, Source};
+use crate::definitions::machine::{self, Built, Machines};
+use crate::definitions::requirement;
+use crate::definitions::tool::{self, BuiltTool, Tools};
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
 use crate::limits;
-use crate::machine::{self, Built, Machines};
 use crate::model::{Bounded, GeneratedSurface, Job, Machine, Parameter};
-use crate::requirement;
-use crate::sample;
-use crate::source::{Name, Span};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
-use crate::tool::{self, BuiltTool, Tools};
+use crate::values::context::{Context, Role};
+use crate::values::value::{Scope, Value};
 
 /// The definitions that jobs draw on.
 pub(crate) struct Definitions<'a> {

@@ -3,11 +3,11 @@
 use flank_expr::Expr;
 use flank_expr::geometry::Surface;
 
-use crate::codes::Code;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::model::{Bounded, Parameter};
-use crate::source::Span;
+use crate::values::context::Context;
 
 use super::Builder;
 

@@ -3,15 +3,15 @@
 use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Step, Surface};
 
-use crate::codes::Code;
-use crate::context::{Context, Value, quoted};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
+use crate::job::sample;
 use crate::limits;
-use crate::machine;
-use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape};
-use crate::sample;
-use crate::source::Span;
+use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape, path};
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
+use crate::values::context::{Context, quoted};
+use crate::values::value::Value;
 
 use super::available::{Available, joined, which_piece};
 use super::independence::check_independence;
@@ -193,7 +193,7 @@ impl<'g> Builder<'_, 'g> {
             context.report(Diagnostic::new(Code::UnrelatedFrames, span, message).help(help));
             return None;
         }
-        let hops = machine::path(&self.machines[from.0].2.frames, from.1, to.1);
+        let hops = path(&self.machines[from.0].2.frames, from.1, to.1);
         Some(hops.into_iter().map(|(frame, steps)| (self.frame_name((from.0, frame)), steps)).collect())
     }
 

@@ -2,12 +2,12 @@
 
 use flank_expr::geometry::{Chain, Edge};
 
-use crate::codes::Code;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
+use crate::definitions::material_side::{self, Seen};
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::model::Bounded;
-use crate::source::Span;
-use crate::steel::{self, Seen};
+use crate::values::context::Context;
 
 use super::available::Available;
 
@@ -27,14 +27,14 @@ pub(super) fn side<'g>(
     let mut seen = Vec::new();
     for k in order {
         let raw = edge.raw_normal(driven, motions[k].0.variable);
-        match steel::side(context, &unknowns, raw, edge.steel) {
+        match material_side::side(context, &unknowns, raw, edge.steel) {
             Ok(flipped) => return Some((k, flipped)),
             Err(what) => seen.push((k, what)),
         }
     }
     seen.sort_by_key(|(k, _)| *k);
     let diagnostic = match seen.iter().find(|(_, seen)| seen.is_undefined()) {
-        Some((_, seen)) => steel::no_side([available.named; 2], &unknowns, seen),
+        Some((_, seen)) => material_side::no_side([available.named; 2], &unknowns, seen),
         None => no_side(available.named, motions, &seen),
     };
     context.report(diagnostic);

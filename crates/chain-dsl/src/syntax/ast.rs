@@ -3,7 +3,7 @@
 //! After a mistake, a value may be [`ExpressionKind::Error`] and a name the empty string (a frame's parent, a dimension, a
 //! definition that is not there): both have been reported, and whoever meets one says nothing.
 
-use crate::source::{Name, Span, Spanned};
+use crate::diagnostics::source::{Name, Span, Spanned};
 
 /// One parsed file.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
-use crate::spelling::closest;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::spelling::closest;
 
 use super::expected::{self, Before};
 use super::grammar::Rule;

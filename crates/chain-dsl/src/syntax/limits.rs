@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::source::{FileId, Span};
 use crate::limits::{FILE_BYTES, NESTING, STATEMENT_TOKENS, WORD};
-use crate::source::{FileId, Span};
 
 use super::scan::{Kind, Scan};
 

@@ -20,8 +20,8 @@ mod scan;
 mod tests;
 mod words;
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::FileId;
+use crate::diagnostics::source::FileId;
+use crate::diagnostics::{Diagnostic, Severity};
 
 pub(crate) use concrete::{Kind, Part};
 pub use scan::{Comment, CommentKind};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::source::{Name, Span, Spanned};
+use crate::diagnostics::source::{Name, Span, Spanned};
 
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,

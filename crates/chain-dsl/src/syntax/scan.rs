@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::source::{FileId, Span};
+use crate::diagnostics::source::{FileId, Span};
 
 use super::lex::{is_invisible, token};
 use super::{pieces, words};

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::Diagnostic;
-use crate::source::FileId;
-use crate::spelling::closest;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::source::FileId;
+use crate::diagnostics::spelling::closest;
 
 use super::grammar::{self, Rule};
 use super::scan::Scan;

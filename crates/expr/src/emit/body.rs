@@ -3,8 +3,8 @@
 use super::Language;
 use super::helpers::{Helper, Helpers};
 use super::names::{Scope, curve, local};
-use crate::curve::Curve;
-use crate::op::{Binary, Unary};
+use crate::symbolic::curve::Curve;
+use crate::symbolic::op::{Binary, Unary};
 use crate::tape::{Instruction, Operation, Tape};
 
 /// The statements of a function and the helpers that they call.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Language;
-use crate::op::{INVOLUTE_SERIES, INVOLUTE_SERIES_BELOW};
+use crate::symbolic::op::{INVOLUTE_SERIES, INVOLUTE_SERIES_BELOW};
 
 /// An operation with a function of its own.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,7 +5,7 @@ mod helpers;
 mod language;
 mod names;
 
-use crate::graph::Expr;
+use crate::symbolic::graph::Expr;
 use crate::tape::{Tape, TapeError};
 use body::Body;
 use language::{Arrays, Frame};

@@ -1,7 +1,7 @@
 //! Names that all languages take for identifiers.
 
 use super::helpers::Helper;
-use crate::print::GREEK;
+use crate::symbolic::print::GREEK;
 
 /// The names of one function: its own and those of its arguments, all different and free of what the body uses.
 pub(super) struct Scope {

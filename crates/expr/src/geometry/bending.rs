@@ -3,7 +3,7 @@
 use crate::geometry::minors::cofactors;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Vector3;
-use crate::graph::Expr;
+use crate::symbolic::graph::Expr;
 
 /// Unknowns up to which the minors of the Jacobian are written out: their number grows with its factorial.
 const MOST_UNKNOWNS: usize = 4;

@@ -2,8 +2,8 @@
 
 use crate::geometry::pose::{Pose, Twist};
 use crate::geometry::vector::{Matrix3, Vector3};
-use crate::graph::{Expr, Graph};
-use crate::terms::{Sum, product};
+use crate::symbolic::graph::{Expr, Graph};
+use crate::symbolic::terms::{Sum, product};
 
 /// The line that a rotation turns about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

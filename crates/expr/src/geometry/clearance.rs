@@ -3,7 +3,7 @@
 use crate::geometry::minors::determinant;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Vector3;
-use crate::graph::{Expr, Graph};
+use crate::symbolic::graph::{Expr, Graph};
 
 impl<'g> Surface<'g> {
     /// The leading minors of the Hessian of the clearance, one for each constraint: all positive where the tool leaves the

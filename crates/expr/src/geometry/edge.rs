@@ -3,7 +3,7 @@
 use crate::geometry::chain::Chain;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Vector3;
-use crate::graph::Expr;
+use crate::symbolic::graph::Expr;
 
 /// A cutting edge `position(u)` in its tool's frame, with a direction that points from it into the tool's steel.
 #[derive(Clone, Debug, PartialEq, Eq)]

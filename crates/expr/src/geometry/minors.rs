@@ -1,6 +1,6 @@
 //! Determinants of small symbolic matrices, written out.
 
-use crate::graph::{Expr, Graph};
+use crate::symbolic::graph::{Expr, Graph};
 
 /// The determinant of some columns of `rows`, as many as there are rows, by Laplace's expansion. Entries that are zero leave no
 /// trace. The number of terms grows with the factorial of the number of rows.

@@ -1,7 +1,7 @@
 //! Rotation and translation, kept apart.
 
 use crate::geometry::vector::{Matrix3, Vector3};
-use crate::graph::{Expr, Graph};
+use crate::symbolic::graph::{Expr, Graph};
 
 /// The pose of a child frame in its parent: `p_parent = rotation · p_child + translation`.
 ///

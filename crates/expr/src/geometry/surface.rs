@@ -2,7 +2,7 @@
 
 use crate::geometry::chain::Chain;
 use crate::geometry::vector::Vector3;
-use crate::graph::Expr;
+use crate::symbolic::graph::Expr;
 
 /// A surface as four symbolic things: unknowns, position, normal, constraints.
 ///

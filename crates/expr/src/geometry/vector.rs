@@ -2,8 +2,8 @@
 
 use std::ops::{Add, Neg, Sub};
 
-use crate::graph::{Expr, Graph};
-use crate::terms::{Products, Sum};
+use crate::symbolic::graph::{Expr, Graph};
+use crate::symbolic::terms::{Products, Sum};
 
 /// A vector of three scalars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,10 +5,10 @@ use std::vec::IntoIter;
 
 use pest::iterators::Pair;
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span, Spanned};
 use crate::limits::OPERATIONS;
-use crate::source::{Name, Span, Spanned};
 
 use super::super::ast::{Argument, BinaryOperator, Call, Expression, ExpressionKind, Path, UnaryOperator};
 use super::super::grammar::Rule;

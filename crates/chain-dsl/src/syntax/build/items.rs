@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use crate::source::{Name, Spanned};
+use crate::diagnostics::source::{Name, Spanned};
 
 use super::super::ast::{Function, Item, Job, Let, Machine, Tool, Type};
 use super::super::grammar::Rule;

@@ -12,10 +12,10 @@ pub(super) use surfaces::SurfaceParts;
 
 use pest::iterators::{Pair, Pairs};
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span, Spanned};
 use crate::limits::POWER;
-use crate::source::{Name, Span, Spanned};
 
 use super::ast::{self, Dimension, Path, Range};
 use super::grammar::Rule;

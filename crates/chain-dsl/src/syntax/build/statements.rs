@@ -2,9 +2,9 @@
 
 use pest::iterators::Pair;
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
-use crate::source::{Name, Span};
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,

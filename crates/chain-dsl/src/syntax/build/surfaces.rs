@@ -2,9 +2,9 @@
 
 use pest::iterators::Pair;
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
-use crate::source::{Name, Span};
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{Body, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface};
 use super::super::grammar::Rule;

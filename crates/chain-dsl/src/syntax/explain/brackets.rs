@@ -1,6 +1,6 @@
 //! Brackets that are not closed, and those that close nothing.
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
 
 use super::Mistake;
 

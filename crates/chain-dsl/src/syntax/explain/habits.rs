@@ -1,7 +1,7 @@
 //! Habits from other languages and from paper, and how the same is said here.
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
 
 use super::super::grammar::Rule;
 use super::super::scan::{Kind, Scan};

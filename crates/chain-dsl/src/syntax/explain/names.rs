@@ -1,7 +1,7 @@
 //! Words that are no units, and units and other words that are no names.
 
-use crate::diagnostic::Diagnostic;
-use crate::spelling::closest;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::spelling::closest;
 
 use super::super::expected;
 use super::super::grammar::Rule;

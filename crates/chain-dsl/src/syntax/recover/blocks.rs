@@ -2,9 +2,9 @@
 
 use pest::iterators::Pair;
 
-use crate::diagnostic::Note;
-use crate::source::Span;
-use crate::spelling::closest;
+use crate::diagnostics::Note;
+use crate::diagnostics::source::Span;
+use crate::diagnostics::spelling::closest;
 
 use super::super::ast::{Item, Job, Machine, Profile, Segment, Tool, ToolStatement};
 use super::super::build::Head;

@@ -8,10 +8,10 @@ use std::ops::Range;
 
 use pest::iterators::Pair;
 
-use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::spelling::closest;
 use crate::limits::MISTAKES;
-use crate::spelling::closest;
 
 use super::ast::{Expression, ExpressionKind, File, Item};
 use super::build::Build;

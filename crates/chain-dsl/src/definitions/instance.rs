@@ -1,0 +1,277 @@
+//! Parameters of machines and tools get their values.
+
+use std::collections::{HashMap, HashSet};
+
+use flank_expr::Expr;
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
+use crate::model::{Bounded, Giver, Parameter};
+use crate::syntax::ast::{Argument, Dimension, Expression, Param};
+use crate::values::context::{Context, Role, quoted};
+use crate::values::dimension::shown;
+use crate::values::functions::plural;
+use crate::values::value::{Constant, Scope, Value};
+
+/// Values from outside the text, by full name (`ratio`, `m.swivel`): they win over what the text says.
+pub(crate) type Overrides = HashMap<String, Expression>;
+
+/// Where a parameter's values come from.
+pub(crate) enum Source<'a, 'g> {
+    /// A definition by itself: no values unless by default.
+    Definition,
+    /// `machine m = definition(setting: value, …)` in a job.
+    Instance { name: &'a Name, definition: &'a str, settings: &'a [Argument], job: &'a Scope<'g> },
+    /// A machine by itself, under its own name: settings may have no value.
+    Standing { name: &'a Name },
+    /// The job itself.
+    Job,
+}
+
+impl<'a> Source<'a, '_> {
+    /// The place of the one who gives the values.
+    pub(crate) fn user(&self) -> Option<Span> {
+        match self {
+            Source::Instance { name, .. } => Some(name.span),
+            Source::Definition | Source::Standing { .. } | Source::Job => None,
+        }
+    }
+
+    /// Who gives the value that a parameter has where nobody gives another one.
+    fn by_default(&self) -> Giver {
+        match self {
+            Source::Instance { definition, .. } => Giver::Definition((*definition).to_string()),
+            Source::Standing { name } => Giver::Definition(name.node.clone()),
+            Source::Definition | Source::Job => Giver::Job,
+        }
+    }
+}
+
+/// The value of a parameter as somebody gives it.
+struct Given<'g> {
+    definition: Expr<'g>,
+    written: Span,
+    by: Giver,
+}
+
+impl<'g> Given<'g> {
+    /// As a number; NaN while it depends on parameters without values.
+    fn number(&self, context: &mut Context<'g>, param: &Param) -> Option<f64> {
+        match context.constant(self.definition) {
+            Constant::Unknown => Some(f64::NAN),
+            _ => context.require_constant(self.definition, self.written, &shown_name(param)),
+        }
+    }
+}
+
+/// The short name: a default is looked at once by itself and once for each use, and both must say the same.
+fn shown_name(param: &Param) -> String {
+    format!("`{}`", param.name.node)
+}
+
+/// Makes a variable for each `param`, puts it into the scope and gives the list of them.
+pub(crate) struct Binder<'a, 'g> {
+    pub(crate) source: Source<'a, 'g>,
+    pub(crate) overrides: &'a Overrides,
+    pub(crate) parameters: Vec<Parameter<'g>>,
+    pub(crate) missing: Vec<Name>,
+    /// All of them, of a machine that stands by itself.
+    pub(crate) standing: Vec<Bounded<'g>>,
+    /// The settings of an instance by name.
+    settings: HashMap<&'a str, &'a Expression>,
+}
+
+impl<'a, 'g> Binder<'a, 'g> {
+    pub(crate) fn new(source: Source<'a, 'g>, overrides: &'a Overrides) -> Binder<'a, 'g> {
+        let given: &[Argument] = match source {
+            Source::Instance { settings, .. } => settings,
+            Source::Definition | Source::Standing { .. } | Source::Job => &[],
+        };
+        let named = given.iter().filter_map(|setting| Some((setting.name.as_ref()?.node.as_str(), &setting.value)));
+        // of two with one name the first counts: the second is reported
+        let settings = named.rev().collect();
+        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new(), standing: Vec::new(), settings }
+    }
+
+    /// One parameter.
+    pub(crate) fn bind(&mut self, context: &mut Context<'g>, param: &Param, scope: &mut Scope<'g>) {
+        let value = self.bound(context, param, scope).unwrap_or(Value::Poison);
+        scope.insert(param.name.node.clone(), value);
+    }
+
+    /// The variable that stands for it; nothing if something is wrong (and reported).
+    fn bound(&mut self, context: &mut Context<'g>, param: &Param, scope: &Scope<'g>) -> Option<Value<'g>> {
+        let dimension = context.dimension(&param.dimension)?;
+        let name = match &self.source {
+            Source::Instance { name, .. } | Source::Standing { name } => format!("{}.{}", name.node, param.name.node),
+            Source::Definition | Source::Job => param.name.node.clone(),
+        };
+        let given = match self.given(context, param, &name, scope) {
+            Some((expression, value, by)) => {
+                let definition = context.require(&value, dimension, expression.span, &shown_name(param))?;
+                Some(Given { definition, written: expression.span, by })
+            }
+            None => None,
+        };
+        if given.is_none() && !matches!(self.source, Source::Definition | Source::Standing { .. }) {
+            self.missing.push(param.name.clone());
+        }
+        let value = given.as_ref().map_or(Some(f64::NAN), |given| given.number(context, param))?;
+        let checked_at = given.as_ref().map_or(param.name.span, |given| given.written);
+        // what follows from a value that is refused is no finding of its own
+        let range = self.check_value(context, param, value, scope, checked_at).ok()?;
+        let variable = context.variable(name.clone(), Role::Parameter, value);
+        let is_count = is_count(&param.dimension);
+        if matches!(self.source, Source::Standing { .. }) {
+            let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            self.standing.push(Bounded { name: name.clone(), variable, dimension, low, high, is_count, piece: None });
+        }
+        if let Some(Given { definition, written, by: given_by }) = given {
+            let doc = param.doc.clone();
+            self.parameters.push(Parameter {
+                name,
+                variable,
+                dimension,
+                definition,
+                value,
+                is_count,
+                range,
+                doc,
+                given_by,
+                written,
+            });
+        }
+        Some(Value::Scalar(variable, dimension))
+    }
+
+    /// What a parameter is set to, and who says so: the caller before the job before the definition.
+    fn given<'p>(
+        &self,
+        context: &mut Context<'g>,
+        param: &'p Param,
+        full_name: &str,
+        scope: &Scope<'g>,
+    ) -> Option<(&'p Expression, Value<'g>, Giver)>
+    where
+        'a: 'p,
+    {
+        let setting = self.settings.get(param.name.node.as_str()).copied();
+        let overridden = match self.source {
+            Source::Definition => None,
+            _ => self.overrides.get(full_name),
+        };
+        match (overridden, setting, &self.source) {
+            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), Giver::Caller)),
+            (None, Some(value), Source::Instance { job, .. }) => {
+                Some((value, context.evaluate(value, job), Giver::Job))
+            }
+            _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
+        }
+    }
+
+    /// Counts are whole, and not negative unless their declared range says so; values lie in that range, which is given back if there
+    /// is one.
+    ///
+    /// # Errors
+    /// If the value is refused, which has been reported.
+    fn check_value(
+        &self,
+        context: &mut Context<'g>,
+        param: &Param,
+        value: f64,
+        scope: &Scope<'g>,
+        span: Span,
+    ) -> Result<Option<(f64, f64)>, Refused> {
+        let what = shown_name(param);
+        let is_count = is_count(&param.dimension) && value.is_finite();
+        if is_count && value.fract() != 0.0 {
+            let message = format!("{what} is a count: it must be a whole number, not {value}");
+            context.report(Diagnostic::new(Code::WrongDimension, span, message));
+            return Err(Refused);
+        }
+        let (Some(range), Some(dimension)) = (&param.range, context.dimension(&param.dimension)) else {
+            if is_count && value < 0.0 {
+                let message = format!(
+                    "{what} is a count, and {value} is below 0: without a range of its own a count starts from 0"
+                );
+                let name = &param.name.node;
+                let help =
+                    format!("if it may be negative, give it a range: `param {name} : count in {value} .. {}`", -value);
+                context.report(Diagnostic::new(Code::WrongDimension, span, message).help(help));
+                return Err(Refused);
+            }
+            return Ok(None);
+        };
+        let Some((low, high)) = context.range(range, scope, dimension, &what) else { return Ok(None) };
+        if value < low || value > high {
+            let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
+            let message = format!("{what} is {value}, outside its range {low} .. {high}");
+            let diagnostic =
+                Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");
+            context.report(diagnostic);
+            return Err(Refused);
+        }
+        Ok(Some((low, high)))
+    }
+
+    /// What was given too little or too much.
+    pub(crate) fn finish(&self, context: &mut Context<'g>, known: &[&Param]) {
+        let names: Vec<&str> = self.missing.iter().map(|name| name.node.as_str()).collect();
+        match &self.source {
+            Source::Definition | Source::Standing { .. } => {}
+            Source::Job => {
+                for name in &self.missing {
+                    let message = format!("`{}` has no value", name.node);
+                    let help = "give it one: `param name : dimension = value`";
+                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                }
+            }
+            Source::Instance { name, definition, settings, .. } => {
+                let known: HashSet<&str> = known.iter().map(|param| param.name.node.as_str()).collect();
+                let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
+                let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
+                // a misspelt setting is one mistake, not also a missing one
+                if names.len() > unknown {
+                    let message = format!("`{}` needs {}", name.node, quoted(&names));
+                    let help =
+                        format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
+                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                }
+                check_settings(context, settings, &known);
+            }
+        }
+    }
+}
+
+/// A value cannot stay, which has been reported.
+struct Refused;
+
+/// Whether a dimension is that of something that is counted.
+pub(crate) fn is_count(dimension: &Dimension) -> bool {
+    dimension.factors.iter().any(|(name, _)| name.node == "count")
+}
+
+fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &HashSet<&str>) {
+    let mut seen: HashMap<&str, Span> = HashMap::new();
+    for setting in settings {
+        match &setting.name {
+            None => {
+                let message = "a setting has a name: `name: value`";
+                context.report(Diagnostic::new(Code::WrongArguments, setting.value.span, message));
+            }
+            Some(name) if !known.contains(name.node.as_str()) => {
+                context.unknown(name, "setting", known.iter().copied());
+            }
+            Some(name) => match seen.get(name.node.as_str()) {
+                Some(&first) => {
+                    let message = format!("`{}` is given twice", name.node);
+                    let diagnostic =
+                        Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first given here");
+                    context.report(diagnostic);
+                }
+                None => drop(seen.insert(&name.node, name.span)),
+            },
+        }
+    }
+}

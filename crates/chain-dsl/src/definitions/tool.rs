@@ -1,0 +1,312 @@
+//! Tools: parametric surfaces and the side on which their steel lies.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use flank_expr::Expr;
+use flank_expr::geometry::{Edge, Surface, Vector3};
+
+use crate::definitions::instance::{Binder, Overrides, Source, is_count};
+use crate::definitions::material_side::{self, Places};
+use crate::definitions::profile;
+use crate::definitions::requirement;
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Name;
+use crate::job::sample;
+use crate::model::{Bounded, Parameter, PieceEnds, ToolShape};
+use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
+use crate::values::context::{Context, Role};
+use crate::values::dimension::Dimension;
+use crate::values::segment::Segment;
+use crate::values::value::{Constant, Scope, Value};
+
+/// All tools of a compilation by name.
+pub(crate) type Tools = HashMap<String, ast::Tool>;
+
+/// A tool with values.
+pub(crate) struct BuiltTool<'g> {
+    pub(crate) parameters: Vec<Parameter<'g>>,
+    pub(crate) scope: Scope<'g>,
+    pub(crate) surfaces: Vec<ToolSurface<'g>>,
+}
+
+/// One surface of a tool in the tool's frame.
+pub(crate) struct ToolSurface<'g> {
+    pub(crate) name: String,
+    /// Its smooth pieces; `None` if it is not known which they are (and that is reported), or nobody wants them.
+    pub(crate) pieces: Option<Vec<Piece<'g>>>,
+}
+
+/// All of a surface, or the piece of it along one segment of a profile.
+#[derive(Clone)]
+pub(crate) struct Piece<'g> {
+    /// The name of the segment.
+    pub(crate) name: Option<String>,
+    /// `None` if something in it is wrong (and reported), or nobody wants it.
+    pub(crate) surface: Option<(ToolShape<'g>, Vec<Bounded<'g>>)>,
+}
+
+/// A segment of a profile.
+#[derive(Clone, Copy)]
+struct Along<'a, 'g> {
+    profile: &'a str,
+    segment: &'a Rc<Segment<'g>>,
+    /// The segments before and behind it.
+    beside: [Option<&'a str>; 2],
+}
+
+/// Whether somebody wants a surface, or a piece of it.
+pub(crate) type Wanted<'w> = &'w dyn Fn(&str, Option<&str>) -> bool;
+
+/// Gives values to the parameters and builds the surfaces that are wanted; the others have no pieces that are known.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    tool: &ast::Tool,
+    source: Source<'_, 'g>,
+    overrides: &Overrides,
+    wanted: Wanted<'_>,
+) -> BuiltTool<'g> {
+    let user = source.user();
+    let mut binder = Binder::new(source, overrides);
+    let mut scope = Scope::new();
+    let mut seen: HashMap<&str, crate::Span> = HashMap::new();
+    for statement in &tool.statements {
+        let name = match statement {
+            ToolStatement::Param(param) => Some(&param.name),
+            ToolStatement::Let(binding) => Some(&binding.name),
+            ToolStatement::Profile(profile) => Some(&profile.name),
+            ToolStatement::Surface(surface) => Some(&surface.name),
+            ToolStatement::Require(_) => None,
+        };
+        if let Some(name) = name
+            && let Some(first) = seen.insert(&name.node, name.span)
+        {
+            context.duplicate(name, first);
+        }
+        match statement {
+            ToolStatement::Param(param) => binder.bind(context, param, &mut scope),
+            ToolStatement::Let(binding) => {
+                let value = context.evaluate(&binding.value, &scope);
+                scope.insert(binding.name.node.clone(), value);
+            }
+            ToolStatement::Profile(written) => profile::build(context, written, &mut scope),
+            ToolStatement::Require(required) => requirement::check(context, required, &scope, user),
+            ToolStatement::Surface(_) => {}
+        }
+    }
+    let params: Vec<&ast::Param> = tool
+        .statements
+        .iter()
+        .filter_map(|statement| match statement {
+            ToolStatement::Param(param) => Some(param),
+            _ => None,
+        })
+        .collect();
+    binder.finish(context, &params);
+    let parameters = binder.parameters;
+    let mut surfaces = Vec::new();
+    for statement in &tool.statements {
+        if let ToolStatement::Surface(written) = statement {
+            let is_wanted = wanted(&written.name.node, None);
+            let pieces = if is_wanted { pieces(context, written, &scope, wanted) } else { None };
+            surfaces.push(ToolSurface { name: written.name.node.clone(), pieces });
+        }
+    }
+    BuiltTool { parameters, scope, surfaces }
+}
+
+/// The smooth pieces of a surface: one for each segment of the profile that it runs along.
+fn pieces<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+    wanted: Wanted<'_>,
+) -> Option<Vec<Piece<'g>>> {
+    let mut along = written.parameters.iter().filter_map(|parameter| match parameter {
+        SurfaceParameter::Along(name, profile) => Some((name, profile)),
+        SurfaceParameter::Within(_) => None,
+    });
+    let Some((_, name)) = along.next() else {
+        let surface = build_surface(context, written, scope, None);
+        return Some(vec![Piece { name: None, surface }]);
+    };
+    if let Some((second, _)) = along.next() {
+        let message = "a surface runs along one profile";
+        context.report(Diagnostic::new(Code::WrongArguments, second.span, message).note(name.span, "along this one"));
+        return None;
+    }
+    let profile = match scope.get(&name.node) {
+        Some(Value::Profile(profile)) => profile,
+        Some(Value::Poison) => return None,
+        Some(other) => {
+            let message = format!("`{}` is {}, not a profile", name.node, other.described());
+            context.report(Diagnostic::new(Code::WrongKind, name.span, message));
+            return None;
+        }
+        None => {
+            let profiles = scope.iter().filter(|(_, value)| matches!(value, Value::Profile(_)));
+            context.unknown(name, "profile", profiles.map(|(name, _)| name.as_str()));
+            return None;
+        }
+    };
+    let named = |place: Option<usize>| profile.segments.get(place?).map(|segment| segment.name.as_str());
+    let piece = |(k, segment): (usize, &Rc<Segment<'g>>)| Piece {
+        name: Some(segment.name.clone()),
+        surface: if wanted(&written.name.node, Some(&segment.name)) {
+            let beside = [named(k.checked_sub(1)), named(Some(k + 1))];
+            build_surface(context, written, scope, Some(Along { profile: &name.node, segment, beside }))
+        } else {
+            None
+        },
+    };
+    Some(profile.segments.iter().enumerate().map(piece).collect())
+}
+
+fn build_surface<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+    along: Option<Along<'_, 'g>>,
+) -> Option<(ToolShape<'g>, Vec<Bounded<'g>>)> {
+    let (scope, unknowns) = own_names(context, written, scope, along)?;
+    let (position, steel) = point_and_steel(context, written, &scope)?;
+    let shape = match (written.parameters.len(), unknowns.as_slice()) {
+        (1, [u]) => ToolShape::Edge(Edge { parameter: u.variable, position, steel }),
+        (2, [u, v]) => {
+            let parameters = [u.variable, v.variable];
+            let raw = Surface::raw_normal(parameters, position);
+            let segment = along.map(|along| along.segment.span);
+            let places = Places { point: written.at.span, side: written.body.span, segment };
+            let flipped = material_side::is_flipped(context, places, &unknowns, raw, -steel)?;
+            ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
+        }
+        // the range of a parameter is wrong, and reported
+        _ => return None,
+    };
+    Some((shape, unknowns))
+}
+
+/// The names that a surface has beside those of the tool, and its parameters: without those whose range is wrong (and reported).
+fn own_names<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+    along: Option<Along<'_, 'g>>,
+) -> Option<(Scope<'g>, Vec<Bounded<'g>>)> {
+    if !context.spend(scope.len(), written.name.span) {
+        return None;
+    }
+    let mut scope = scope.clone();
+    let mut unknowns = Vec::new();
+    if let Some(Along { profile, segment, .. }) = along {
+        scope.insert(profile.to_string(), Value::Segment(Rc::clone(segment)));
+    }
+    for parameter in &written.parameters {
+        sample::check_unknown(context, parameter.name(), "surface parameter");
+        let bounded = match (parameter, along) {
+            (SurfaceParameter::Within(parameter), _) => bounded(context, parameter, &scope, Role::SurfaceParameter),
+            (SurfaceParameter::Along(name, _), Some(Along { segment, beside, .. })) => {
+                Some(run_along(context, name, segment, beside.map(|name| name.map(str::to_string))))
+            }
+            (SurfaceParameter::Along(..), None) => None,
+        };
+        let value = match &bounded {
+            Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
+            None => Value::Poison,
+        };
+        scope.insert(parameter.name().node.clone(), value);
+        unknowns.extend(bounded);
+    }
+    if !matches!(written.parameters.len(), 1 | 2) {
+        let message = format!(
+            "a surface has two parameters (a cutting edge one), `{}` has {}",
+            written.name.node,
+            written.parameters.len()
+        );
+        context.report(Diagnostic::new(Code::WrongArguments, written.name.span, message));
+        return None;
+    }
+    for binding in &written.lets {
+        let value = context.evaluate(&binding.value, &scope);
+        scope.insert(binding.name.node.clone(), value);
+    }
+    Some((scope, unknowns))
+}
+
+/// The point of a surface, and a direction from it into the steel.
+fn point_and_steel<'g>(
+    context: &mut Context<'g>,
+    written: &ast::ToolSurface,
+    scope: &Scope<'g>,
+) -> Option<(Vector3<'g>, Vector3<'g>)> {
+    let position = context.vector(&written.at, scope, Dimension::LENGTH, "the point");
+    let towards = match &written.body.side {
+        Side::Towards(direction) => direction_of_steel(context, direction, scope),
+        Side::Inside | Side::Outside => position,
+    };
+    let (position, towards) = (Vector3(position?), Vector3(towards?));
+    let radial = Vector3([position.0[0], position.0[1], context.graph.constant(0.0)]);
+    let steel = match &written.body.side {
+        Side::Inside => -radial,
+        Side::Outside => radial,
+        Side::Towards(_) => towards,
+    };
+    Some((position, steel))
+}
+
+/// The run along a profile within one segment of it, which has those two beside it.
+fn run_along<'g>(
+    context: &mut Context<'g>,
+    name: &Name,
+    segment: &Segment<'g>,
+    beside: [Option<String>; 2],
+) -> Bounded<'g> {
+    let [low, high] = [segment.from, segment.to].map(|end| match context.constant(end) {
+        Constant::Known(value) => value,
+        _ => f64::NAN,
+    });
+    let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
+    let piece = Some(PieceEnds { name: segment.name.clone(), beside });
+    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high, is_count: false, piece }
+}
+
+/// A direction: lengths or numbers alike.
+fn direction_of_steel<'g>(
+    context: &mut Context<'g>,
+    direction: &ast::Expression,
+    scope: &Scope<'g>,
+) -> Option<[Expr<'g>; 3]> {
+    let findings = context.findings();
+    let is_length = match context.evaluate(direction, scope) {
+        Value::Vector(parts) => {
+            matches!(parts.first(), Some(Value::Scalar(_, dimension)) if dimension.length == 1)
+        }
+        _ => false,
+    };
+    if context.findings() > findings {
+        return None;
+    }
+    let wanted = if is_length { Dimension::LENGTH } else { Dimension::NUMBER };
+    context.vector(direction, scope, wanted, "the direction of the steel")
+}
+
+/// A variable with its range; where the range is not known yet its ends are NaN.
+pub(crate) fn bounded<'g>(
+    context: &mut Context<'g>,
+    parameter: &ast::Parameter,
+    scope: &Scope<'g>,
+    role: Role,
+) -> Option<Bounded<'g>> {
+    let name = parameter.name.node.clone();
+    let dimension = context.dimension(&parameter.dimension)?;
+    let what = format!("`{name}`");
+    let (low, high) = context.range(&parameter.range, scope, dimension, &what).unwrap_or((f64::NAN, f64::NAN));
+    let is_count = is_count(&parameter.dimension);
+    for end in [low, high].into_iter().filter(|end| is_count && end.is_finite() && end.fract() != 0.0) {
+        let message = format!("{what} is a count: it runs between whole numbers, not to {end}");
+        context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
+    }
+    let variable = context.variable(name.clone(), role, f64::NAN);
+    Some(Bounded { name, variable, dimension, low, high, is_count, piece: None })
+}

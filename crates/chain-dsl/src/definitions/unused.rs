@@ -1,0 +1,225 @@
+//! Warnings about what a file declares and nobody uses.
+
+use std::collections::HashSet;
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Name;
+use crate::syntax::ast::{
+    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, SampleValues, Side,
+    SurfaceParameter, ToolStatement,
+};
+use crate::values::context::Context;
+
+/// Words that occur in expressions and paths; of a path every segment.
+#[derive(Default)]
+struct Used {
+    words: HashSet<String>,
+    /// Those behind a dot: what belongs to a machine or a tool.
+    members: HashSet<String>,
+}
+
+/// Looks at the items of one file; `all` are the items of every file of the compilation, which may use them.
+pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
+    let machines =
+        || all.iter().filter_map(|item| if let Item::Machine(machine) = item { Some(machine) } else { None });
+    let jobs = || all.iter().filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
+    let mut by_jobs = Used::default();
+    jobs().for_each(|job| by_jobs.job(job));
+    // machines extend each other and jobs read their parameters: whoever mentions the name may mean it
+    let mut by_machines = Used::default();
+    machines().for_each(|machine| by_machines.machine(machine));
+    // a machine that others extend may hang frames on one that a variant has replaced
+    let parents: HashSet<&str> = machines().flat_map(written_frames).filter_map(parent).collect();
+    for item in &file.items {
+        match item {
+            Item::Machine(machine) => {
+                let params = machine.statements.iter().filter_map(|statement| match statement {
+                    MachineStatement::Param(param) => Some(&param.name),
+                    _ => None,
+                });
+                let unused = params.filter(|name| !by_machines.has(name) && !by_jobs.has_member(name));
+                unused.for_each(|name| parameter(context, name));
+                frames(context, machine, &parents, &by_jobs, jobs().next().is_some());
+            }
+            Item::Tool(tool) => {
+                let mut used = Used::default();
+                used.tool(tool);
+                for statement in &tool.statements {
+                    if let ToolStatement::Param(param) = statement
+                        && !used.has(&param.name)
+                        && !by_jobs.has_member(&param.name)
+                    {
+                        parameter(context, &param.name);
+                    }
+                }
+            }
+            Item::Job(job) => {
+                let mut used = Used::default();
+                used.job(job);
+                for statement in &job.statements {
+                    match statement {
+                        JobStatement::Param(param) if !used.has(&param.name) => parameter(context, &param.name),
+                        JobStatement::Motion(motion) if !used.has(&motion.name) => {
+                            let message = format!("`{}` moves nothing", motion.name.node);
+                            let help = format!("drive an axis with it: `drive m.X = {}`", motion.name.node);
+                            context.report(Diagnostic::new(Code::UnusedMotion, motion.name.span, message).help(help));
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            Item::Use(_) | Item::Function(_) => {}
+        }
+    }
+}
+
+fn parameter(context: &mut Context<'_>, name: &Name) {
+    if !name.node.is_empty() {
+        let message = format!("nothing uses `{}`", name.node);
+        context.report(Diagnostic::new(Code::UnusedParameter, name.span, message).help("use it or leave it out"));
+    }
+}
+
+fn written_frames(machine: &ast::Machine) -> impl Iterator<Item = &ast::Frame> {
+    machine.statements.iter().filter_map(|statement| match statement {
+        MachineStatement::Frame(frame) => Some(frame),
+        _ => None,
+    })
+}
+
+fn parent(frame: &ast::Frame) -> Option<&str> {
+    Some(frame.parent.as_ref()?.node.as_str())
+}
+
+/// Frames at the ends of the tree that carry nothing, where jobs say what is carried.
+fn frames(context: &mut Context<'_>, machine: &ast::Machine, parents: &HashSet<&str>, by_jobs: &Used, has_jobs: bool) {
+    if !has_jobs || !by_jobs.words.contains(&machine.name.node) {
+        return;
+    }
+    let carries = |frame: &&ast::Frame| parents.contains(frame.name.node.as_str()) || by_jobs.has(&frame.name);
+    for frame in written_frames(machine).filter(|frame| !carries(frame)) {
+        let message =
+            format!("no job reaches frame `{}`: no tool sits on it and no surface is given in it", frame.name.node);
+        context.report(Diagnostic::new(Code::UnreachedFrame, frame.name.span, message));
+    }
+}
+
+impl Used {
+    fn has(&self, name: &Name) -> bool {
+        self.words.contains(&name.node)
+    }
+
+    fn has_member(&self, name: &Name) -> bool {
+        self.members.contains(&name.node)
+    }
+
+    fn path(&mut self, path: &ast::Path) {
+        self.words.extend(path.segments.iter().map(|segment| segment.node.clone()));
+        self.members.extend(path.segments.iter().skip(1).map(|segment| segment.node.clone()));
+    }
+
+    fn call(&mut self, call: &Call) {
+        self.words.insert(call.function.node.clone());
+        call.arguments.iter().for_each(|argument| self.expression(&argument.value));
+    }
+
+    fn expression(&mut self, expression: &Expression) {
+        expression.each(&mut |part| match &part.kind {
+            ExpressionKind::Path(path) => self.path(path),
+            ExpressionKind::Call(call) => drop(self.words.insert(call.function.node.clone())),
+            _ => {}
+        });
+    }
+
+    fn range(&mut self, range: &ast::Range) {
+        self.expression(&range.low);
+        self.expression(&range.high);
+    }
+
+    fn param(&mut self, param: &ast::Param) {
+        param.range.iter().for_each(|range| self.range(range));
+        param.default.iter().for_each(|value| self.expression(value));
+    }
+
+    fn machine(&mut self, machine: &ast::Machine) {
+        for statement in &machine.statements {
+            match statement {
+                MachineStatement::Param(param) => self.param(param),
+                MachineStatement::Let(binding) => self.expression(&binding.value),
+                MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
+                MachineStatement::Frame(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
+                MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
+                MachineStatement::Nc(word) => {
+                    self.expression(&word.value);
+                    word.increment.iter().for_each(|increment| self.expression(increment));
+                }
+                MachineStatement::Require(required) => self.expression(&required.condition),
+            }
+        }
+    }
+
+    fn tool(&mut self, tool: &ast::Tool) {
+        for statement in &tool.statements {
+            match statement {
+                ToolStatement::Param(param) => self.param(param),
+                ToolStatement::Let(binding) => self.expression(&binding.value),
+                ToolStatement::Require(required) => self.expression(&required.condition),
+                ToolStatement::Profile(profile) => {
+                    profile.segments.iter().for_each(|segment| self.expression(&segment.value));
+                }
+                ToolStatement::Surface(surface) => {
+                    for parameter in &surface.parameters {
+                        match parameter {
+                            SurfaceParameter::Within(parameter) => self.range(&parameter.range),
+                            SurfaceParameter::Along(_, profile) => drop(self.words.insert(profile.node.clone())),
+                        }
+                    }
+                    surface.lets.iter().for_each(|binding| self.expression(&binding.value));
+                    self.expression(&surface.at);
+                    if let Side::Towards(direction) = &surface.body.side {
+                        self.expression(direction);
+                    }
+                }
+            }
+        }
+    }
+
+    fn job(&mut self, job: &ast::Job) {
+        for statement in &job.statements {
+            match statement {
+                JobStatement::Param(param) => self.param(param),
+                JobStatement::Let(binding) => self.expression(&binding.value),
+                JobStatement::Require(required) => self.expression(&required.condition),
+                JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
+                    self.words.insert(instance.definition.node.clone());
+                    instance.settings.iter().for_each(|setting| self.expression(&setting.value));
+                }
+                JobStatement::Mount { frame, .. } => self.path(frame),
+                JobStatement::Motion(motion) => self.range(&motion.range),
+                JobStatement::Drive(drive) => self.expression(&drive.value),
+                JobStatement::Surface(surface) => {
+                    self.path(&surface.frame);
+                    self.expression(&surface.value);
+                }
+                JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
+                JobStatement::Sample(sample) => {
+                    for entry in &sample.entries {
+                        entry.definition.iter().for_each(|definition| self.expression(definition));
+                        match &entry.values {
+                            SampleValues::Value(value) => self.expression(value),
+                            SampleValues::Range(range, by) => {
+                                self.range(range);
+                                self.expression(by);
+                            }
+                        }
+                    }
+                    for keep in sample.keeps.iter().chain(sample.limits.iter().map(|limit| &limit.within)) {
+                        keep.definition.iter().for_each(|definition| self.expression(definition));
+                        self.range(&keep.range);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! Which points of a surface are asked for.
+
+use flank_expr::Expr;
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Name;
+use crate::limits;
+use crate::model::{Coordinate, GeneratedSurface, Limit, Sample, SampleEnds, SampleGrid};
+use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
+use crate::values::context::{Context, quoted};
+use crate::values::dimension::Dimension;
+use crate::values::value::{Scope, Value};
+
+/// Corners of a flank in the axial section.
+const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
+
+/// The one coordinate that comes round to itself.
+const POLAR_ANGLE: &str = "polar_angle";
+/// What every point has.
+const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
+
+/// Reports an unknown of surfaces that is called as a coordinate of their points: a sample could mean either.
+pub(crate) fn check_unknown(context: &mut Context<'_>, name: &Name, what: &str) {
+    if OF_POINTS.contains(&name.node.as_str()) {
+        let message = format!("`{}` is a coordinate of points: a {what} cannot be called so", name.node);
+        let help = "give it a name of its own, which samples can ask for beside the coordinates";
+        context.report(Diagnostic::new(Code::DuplicateName, name.span, message).help(help));
+    }
+}
+
+/// The grid that a `sample` statement asks for, the branch that it keeps to, and what it requires of the points.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    let keep: Vec<_> = written.keeps.iter().map(|keep| kept(context, keep, surface, scope)).collect();
+    let limits: Vec<_> = written.limits.iter().map(|limit| limited(context, limit, surface, scope)).collect();
+    let grid = grid(context, written, surface, scope)?;
+    let (keep, limits) = (keep.into_iter().collect::<Option<_>>()?, limits.into_iter().collect::<Option<_>>()?);
+    Some(Sample { keep, limits, ..grid })
+}
+
+fn kept<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Keep,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<(Coordinate<'g>, (f64, f64))> {
+    let coordinate = coordinate(context, (&written.key, written.definition.as_ref()), surface, scope)?;
+    let (low, high) = context.range(&written.range, scope, coordinate.dimension, &format!("`{}`", written.key.node))?;
+    Some((surface.about(coordinate, 0.5 * (low + high)), (low, high)))
+}
+
+fn limited<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Limit,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Limit<'g>> {
+    let (of, ends) = kept(context, &written.within, surface, scope)?;
+    Some(Limit { of, ends, message: written.message.clone() })
+}
+
+fn grid<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    // the parser has reported an entry without a key
+    if written.entries.iter().any(|entry| entry.key.node.is_empty()) {
+        return None;
+    }
+    for (k, entry) in written.entries.iter().enumerate() {
+        if let Some(first) = written.entries[..k].iter().find(|earlier| earlier.key.node == entry.key.node) {
+            let message = format!("`{}` is given twice", entry.key.node);
+            let diagnostic =
+                Diagnostic::new(Code::DuplicateName, entry.key.span, message).note(first.key.span, "first here");
+            context.report(diagnostic);
+            return None;
+        }
+    }
+    let is_outline = |entry: &SampleEntry| {
+        CORNERS.contains(&entry.key.node.as_str()) || ["lengthwise", "profilewise"].contains(&entry.key.node.as_str())
+    };
+    if written.entries.iter().any(is_outline) {
+        return outline(context, written, surface, scope);
+    }
+    let [rows, columns] = written.entries.as_slice() else {
+        let message = format!("a sample takes two coordinates, this one has {}", written.entries.len());
+        let help = "for example `sample flank { z: -5 mm .. 5 mm by 11, rho: 48 mm .. 52 mm by 9 }`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    };
+    let row_coordinate = coordinate(context, (&rows.key, rows.definition.as_ref()), surface, scope);
+    let column_coordinate = coordinate(context, (&columns.key, columns.definition.as_ref()), surface, scope);
+    let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
+    let row_values = values(context, rows, scope, row_coordinate.dimension);
+    let column_values = values(context, columns, scope, column_coordinate.dimension);
+    let ((row_values, row_ends), (column_values, column_ends)) = (row_values?, column_values?);
+    check_size(context, written, row_values.len(), column_values.len())?;
+    let counts = [row_values.len(), column_values.len()];
+    let grid = SampleGrid::Values([row_values, column_values]);
+    let [row_middle, column_middle] = grid.middle(counts);
+    Some(Sample {
+        labels: [row_coordinate.name.clone(), column_coordinate.name.clone()],
+        coordinates: [surface.about(row_coordinate, row_middle), surface.about(column_coordinate, column_middle)],
+        counts,
+        grid,
+        ends: SampleEnds { values: [row_ends, column_ends], corners: None },
+        keep: Vec::new(),
+        limits: Vec::new(),
+    })
+}
+
+impl<'g> GeneratedSurface<'g> {
+    /// The functions of its unknowns that points can be asked for by: `x`, `y`, `z`, `rho` (distance from the z axis),
+    /// `polar_angle` (about it, in (−π, π]; see [`GeneratedSurface::about`]), `nx`, `ny`, `nz` (the unit normal out
+    /// of the body), then its unknowns by their names.
+    pub fn coordinates(&self) -> Vec<Coordinate<'g>> {
+        let [x, y, z] = self.surface.position.0;
+        let [nx, ny, nz] = self.surface.normal.0;
+        let of_point = [
+            (x, Dimension::LENGTH),
+            (y, Dimension::LENGTH),
+            (z, Dimension::LENGTH),
+            ((x * x + y * y).sqrt(), Dimension::LENGTH),
+            (y.atan2(x), Dimension::ANGLE),
+            (nx, Dimension::NUMBER),
+            (ny, Dimension::NUMBER),
+            (nz, Dimension::NUMBER),
+        ];
+        let of_point = OF_POINTS.into_iter().zip(of_point).map(|(name, (value, dimension))| (name, value, dimension));
+        let unknowns = self.unknowns.iter().map(|u| (u.name.as_str(), u.variable, u.dimension));
+        let coordinate =
+            |(name, value, dimension): (&str, _, _)| Coordinate { name: name.to_string(), value, dimension };
+        of_point.chain(unknowns).map(coordinate).collect()
+    }
+
+    /// One of [`GeneratedSurface::coordinates`] by its name, or one that the surface's own sample defines.
+    pub fn coordinate(&self, name: &str) -> Option<Coordinate<'g>> {
+        let sampled = self.sample.iter().flat_map(|sample| sample.coordinates.iter().cloned());
+        self.coordinates().into_iter().chain(sampled).find(|coordinate| coordinate.name == name)
+    }
+
+    /// The coordinate itself; a polar angle measured so that it does not jump within half a turn of the middle of the values that it
+    /// is asked for at, radians.
+    pub fn about(&self, coordinate: Coordinate<'g>, middle: f64) -> Coordinate<'g> {
+        if coordinate.name != POLAR_ANGLE || middle == 0.0 {
+            return coordinate;
+        }
+        let [x, y, _] = self.surface.position.0;
+        let [sine, cosine, middle] = [middle.sin(), middle.cos(), middle].map(|value| x.graph().constant(value));
+        let turned_back = (cosine * y - sine * x).atan2(cosine * x + sine * y);
+        Coordinate { value: middle + turned_back, ..coordinate }
+    }
+}
+
+fn coordinate<'g>(
+    context: &mut Context<'g>,
+    (key, definition): (&Name, Option<&Expression>),
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Coordinate<'g>> {
+    if let Some(definition) = definition {
+        if surface.coordinates().iter().any(|known| known.name == key.node) {
+            let message = format!("`{}` is a coordinate of the surface", key.node);
+            let help = "give your own coordinate another name";
+            context.report(Diagnostic::new(Code::DuplicateName, key.span, message).help(help));
+            return None;
+        }
+        if !context.spend(scope.len(), definition.span) {
+            return None;
+        }
+        let mut scope = scope.clone();
+        for known in surface.coordinates() {
+            scope.insert(known.name, Value::Scalar(known.value, known.dimension));
+        }
+        let value = context.evaluate(definition, &scope);
+        let Value::Scalar(value, dimension) = value else {
+            if !matches!(value, Value::Poison) {
+                let message =
+                    format!("a coordinate must be a number, a length or an angle, this is {}", value.described());
+                context.report(Diagnostic::new(Code::WrongDimension, definition.span, message));
+            }
+            return None;
+        };
+        return Some(Coordinate { name: key.node.clone(), value, dimension });
+    }
+    let found = surface.coordinate(&key.node);
+    if found.is_none() {
+        let known = surface.coordinates();
+        context.unknown(key, "coordinate", known.iter().map(|coordinate| coordinate.name.as_str()));
+    }
+    found
+}
+
+/// The values, and the first and the last one as written.
+fn values<'g>(
+    context: &mut Context<'g>,
+    entry: &SampleEntry,
+    scope: &Scope<'g>,
+    dimension: Dimension,
+) -> Option<(Vec<f64>, [Expr<'g>; 2])> {
+    let what = format!("`{}`", entry.key.node);
+    match &entry.values {
+        SampleValues::Value(value) => {
+            let expr = context.scalar(value, scope, dimension, &what)?;
+            Some((vec![context.require_constant(expr, value.span, &what)?], [expr; 2]))
+        }
+        SampleValues::Range(range, by) => {
+            let ends = context.ends(range, scope, dimension, &what);
+            let count = context.scalar(by, scope, Dimension::NUMBER, "the number of points");
+            let count = context.require_constant(count?, by.span, "the number of points")?;
+            if count.fract() != 0.0 || count < 1.0 {
+                let message = format!("the number of points must be a whole number from 1, not {count}");
+                context.report(Diagnostic::new(Code::SampleShape, by.span, message));
+                return None;
+            }
+            if count > limits::SAMPLE_POINTS.most as f64 {
+                context.report(limits::SAMPLE_POINTS.exceeded(by.span));
+                return None;
+            }
+            let (ends, [low, high]) = ends?;
+            let written = if count > 1.0 { [low, high] } else { [0.5 * (low + high); 2] };
+            Some((spaced(ends, count as usize), written))
+        }
+    }
+}
+
+/// `count` values evenly from end to end, both included, none beyond them; a single one is the middle.
+pub fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
+    let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
+    let between = |share: f64| low * (1.0 - share) + high * share;
+    (0..count).map(|k| between(share(k)).max(low.min(high)).min(low.max(high))).collect()
+}
+
+fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {
+    context.sample_points = context.sample_points.saturating_add(rows.saturating_mul(columns));
+    if context.sample_points <= limits::SAMPLE_POINTS.most {
+        return Some(());
+    }
+    context.report(limits::SAMPLE_POINTS.exceeded(written.surface.span));
+    None
+}
+
+/// The flank of a blank between four corners `[z, rho]`, divided evenly from root to tip and from toe to heel.
+fn outline<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Sample,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    let mut corners: [Option<Corner<'g>>; 4] = [None; 4];
+    let (mut profile, mut length) = (None, None);
+    for entry in &written.entries {
+        let name = entry.key.node.as_str();
+        if let Some(corner) = CORNERS.iter().position(|known| *known == name) {
+            corners[corner] = Some(corner_point(context, entry, scope)?);
+        } else if name == "profilewise" {
+            profile = values(context, entry, scope, Dimension::NUMBER);
+            profile.as_ref()?;
+        } else if name == "lengthwise" {
+            length = values(context, entry, scope, Dimension::NUMBER);
+            length.as_ref()?;
+        } else {
+            context.unknown(
+                &entry.key,
+                "corner or direction",
+                CORNERS.into_iter().chain(["lengthwise", "profilewise"]),
+            );
+            return None;
+        }
+    }
+    let missing: Vec<&str> = (0..4).filter(|&k| corners[k].is_none()).map(|k| CORNERS[k]).collect();
+    if !missing.is_empty() {
+        let verb = if missing.len() == 1 { "is" } else { "are" };
+        let message = format!("an outline has four corners: {} {verb} missing", quoted(&missing));
+        let help = "a corner is `[z, rho]`: `toe_root: [92 mm, 25.7 mm]`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    }
+    let (Some((profile, profile_ends)), Some((length, length_ends))) = (profile, length) else {
+        let message = "an outline is divided twice: `profilewise` from root to tip, `lengthwise` from toe to heel";
+        let help = "give both as shares: `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
+        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        return None;
+    };
+    check_size(context, written, profile.len(), length.len())?;
+    let [toe_root, heel_root, toe_tip, heel_tip] = corners;
+    let corners = [toe_root?, heel_root?, toe_tip?, heel_tip?];
+    Some(Sample {
+        coordinates: [surface.coordinate("z")?, surface.coordinate("rho")?],
+        labels: ["root -> tip".to_string(), "toe -> heel".to_string()],
+        counts: [profile.len(), length.len()],
+        grid: SampleGrid::Shares { shares: [profile, length], corners: corners.map(|corner| corner.values) },
+        ends: SampleEnds { values: [profile_ends, length_ends], corners: Some(corners.map(|corner| corner.written)) },
+        keep: Vec::new(),
+        limits: Vec::new(),
+    })
+}
+
+/// z and rho of a corner, as numbers and as written.
+#[derive(Clone, Copy)]
+struct Corner<'g> {
+    values: [f64; 2],
+    written: [Expr<'g>; 2],
+}
+
+fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scope<'g>) -> Option<Corner<'g>> {
+    let what = format!("`{}`", entry.key.node);
+    let SampleValues::Value(written) = &entry.values else {
+        let message = format!("{what} is one point `[z, rho]`, not a range");
+        context.report(Diagnostic::new(Code::SampleShape, entry.key.span, message));
+        return None;
+    };
+    let parts = match context.evaluate(written, scope) {
+        Value::Vector(parts) => parts,
+        Value::Poison => return None,
+        other => {
+            let message = format!("{what} must be a point `[z, rho]`, this is {}", other.described());
+            context.report(Diagnostic::new(Code::SampleShape, written.span, message));
+            return None;
+        }
+    };
+    let [z, rho] = parts.as_slice() else {
+        let message = format!("{what} must be a point `[z, rho]`, this is a vector of {}", parts.len());
+        context.report(Diagnostic::new(Code::SampleShape, written.span, message));
+        return None;
+    };
+    let z = context.require(z, Dimension::LENGTH, written.span, &format!("z of {what}"));
+    let rho = context.require(rho, Dimension::LENGTH, written.span, &format!("rho of {what}"));
+    let both = [z?, rho?];
+    let values = [
+        context.require_constant(both[0], written.span, &format!("z of {what}"))?,
+        context.require_constant(both[1], written.span, &format!("rho of {what}"))?,
+    ];
+    Some(Corner { values, written: both })
+}

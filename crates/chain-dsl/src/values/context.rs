@@ -1,0 +1,314 @@
+//! What a compilation knows while it runs: variables with their values, functions, findings.
+
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use flank_expr::{Expr, Graph};
+
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
+use crate::diagnostics::spelling::closest;
+use crate::diagnostics::{Diagnostic, Severity};
+use crate::limits;
+use crate::syntax::ast;
+use crate::values::dimension::Dimension;
+use crate::values::table_files::Tables;
+use crate::values::value::{Constant, Value};
+
+/// Names that a reader takes in at once.
+pub(crate) const READABLE: usize = 16;
+
+/// What a variable stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Parameter,
+    Axis,
+    Motion,
+    SurfaceParameter,
+}
+
+impl Role {
+    pub(crate) fn described(self) -> &'static str {
+        match self {
+            Role::Parameter => "parameter",
+            Role::Axis => "axis",
+            Role::Motion => "motion",
+            Role::SurfaceParameter => "surface parameter",
+        }
+    }
+}
+
+/// The state of one compilation.
+pub(crate) struct Context<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) functions: HashMap<String, Rc<ast::Function>>,
+    pub(crate) tables: Tables,
+    /// Whether a file is used that was not read.
+    pub(crate) lacks_files: bool,
+    variables: Vec<Expr<'g>>,
+    roles: Vec<Role>,
+    values: Vec<f64>,
+    diagnostics: Vec<Diagnostic>,
+    /// Errors among them.
+    errors: usize,
+    reported: HashSet<(Code, Span)>,
+    /// The axes of the machine whose constants are being looked at.
+    pub(crate) moving: HashSet<String>,
+    /// Names that the item being looked at uses without their being defined.
+    unknown: HashSet<String>,
+    /// Whether a requirement did not hold in the item being looked at.
+    is_unmet: bool,
+    /// Steps of evaluation so far: expressions looked at and nodes walked over.
+    steps: Cell<usize>,
+    /// A limit on the work has been exceeded and reported.
+    exhausted: bool,
+    /// Points of the samples so far.
+    pub(crate) sample_points: usize,
+    pub(crate) call_depth: usize,
+}
+
+impl<'g> Context<'g> {
+    pub(crate) fn new(graph: &'g Graph, tables: Tables) -> Context<'g> {
+        assert_eq!(graph.variable_count(), 0, "a compilation starts with a graph of its own");
+        Context {
+            graph,
+            functions: HashMap::new(),
+            tables,
+            lacks_files: false,
+            variables: Vec::new(),
+            roles: Vec::new(),
+            values: Vec::new(),
+            diagnostics: Vec::new(),
+            errors: 0,
+            reported: HashSet::new(),
+            unknown: HashSet::new(),
+            is_unmet: false,
+            moving: HashSet::new(),
+            steps: Cell::new(0),
+            exhausted: false,
+            sample_points: 0,
+            call_depth: 0,
+        }
+    }
+
+    /// Reports the second definition of a name, unless the parser has reported that the name is missing.
+    pub(crate) fn duplicate(&mut self, name: &Name, first: Span) {
+        self.duplicate_with(name, first, None);
+    }
+
+    /// The same with a way out.
+    pub(crate) fn duplicate_with(&mut self, name: &Name, first: Span, help: Option<&str>) {
+        if !name.node.is_empty() {
+            let message = format!("`{}` is defined twice", name.node);
+            let twice = Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here");
+            self.report(match help {
+                Some(help) => twice.help(help),
+                None => twice,
+            });
+        }
+    }
+
+    /// Keeps a finding, unless the same was found at the same place before (a definition is looked at once by itself and
+    /// once for each use), or there are enough of them.
+    pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
+        if diagnostic.severity() == Severity::Warning || self.errors < limits::MISTAKES.most {
+            self.keep(diagnostic);
+        } else if self.errors == limits::MISTAKES.most {
+            self.keep(limits::MISTAKES.exceeded(diagnostic.span));
+        }
+    }
+
+    fn keep(&mut self, diagnostic: Diagnostic) {
+        // formulas that were cut off are wrong in ways that nobody wrote, and so are those of values that are not as required
+        let is_cut_off = diagnostic.code != Code::LimitExceeded && self.graph.is_full();
+        let follows = diagnostic.code == Code::NotANumber && self.is_unmet;
+        let is_own_fault = !is_cut_off && !follows;
+        self.is_unmet |= diagnostic.code == Code::Unmet;
+        if is_own_fault && self.reported.insert((diagnostic.code, diagnostic.span)) {
+            self.errors += usize::from(diagnostic.severity() == Severity::Error);
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    pub(crate) fn finish(self) -> Vec<Diagnostic> {
+        self.diagnostics
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Number of findings so far, to ask later whether there are new ones.
+    pub(crate) fn findings(&self) -> usize {
+        self.diagnostics.len()
+    }
+
+    pub(crate) fn variable(&mut self, name: impl Into<String>, role: Role, value: f64) -> Expr<'g> {
+        let variable = self.graph.variable(name);
+        self.variables.push(variable);
+        self.roles.push(role);
+        self.values.push(value);
+        variable
+    }
+
+    /// The variables that expressions depend on.
+    pub(crate) fn variables_of(&self, exprs: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.graph.variables_of(exprs).into_iter().map(|variable| self.variables[variable.index()]).collect()
+    }
+
+    /// The value of a variable; NaN where it has none yet.
+    pub(crate) fn value_of(&self, variable: Expr<'g>) -> f64 {
+        variable.as_variable().map_or(f64::NAN, |variable| self.values[variable.index()])
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The number that an expression of parameters is.
+    pub(crate) fn constant(&self, expr: Expr<'g>) -> Constant {
+        if let Some(value) = expr.as_constant() {
+            return Constant::Known(value);
+        }
+        if self.steps.get() > limits::EVALUATION_STEPS.most {
+            return Constant::Unknown;
+        }
+        self.steps.set(self.steps.get() + self.graph.count(&[expr]).shared);
+        let variables = self.graph.variables_of(&[expr]);
+        if let Some(moving) = variables.iter().find(|variable| self.roles[variable.index()] != Role::Parameter) {
+            let role = self.roles[moving.index()].described();
+            return Constant::Moves(format!("the {role} `{}`", self.graph.variable_name(*moving)));
+        }
+        if variables.iter().any(|variable| self.values[variable.index()].is_nan()) {
+            return Constant::Unknown;
+        }
+        Constant::Known(self.graph.evaluate(&[expr], &self.values)[0])
+    }
+
+    /// The number behind a value that must be one; `None` (reported where it is the user's fault) if it is not.
+    pub(crate) fn require_constant(&mut self, expr: Expr<'g>, span: Span, what: &str) -> Option<f64> {
+        match self.constant(expr) {
+            Constant::Known(value) if value.is_finite() => Some(value),
+            Constant::Known(value) => {
+                let (reason, help) = if value.is_nan() {
+                    (
+                        "cannot be computed",
+                        "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0",
+                    )
+                } else {
+                    ("is infinite", "look for a division by zero, or a value that grows too large")
+                };
+                self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
+                None
+            }
+            Constant::Unknown => None,
+            Constant::Moves(name) => {
+                let message = format!("{what} must stand still, but depends on {name}");
+                self.report(Diagnostic::new(Code::NotConstant, span, message));
+                None
+            }
+        }
+    }
+
+    /// A scalar of the wanted dimension, or `None` with the reason reported.
+    pub(crate) fn require(&mut self, value: &Value<'g>, wanted: Dimension, span: Span, what: &str) -> Option<Expr<'g>> {
+        match value {
+            Value::Poison => None,
+            Value::Scalar(expr, dimension) if wanted.accepts(*dimension) => Some(*expr),
+            other => {
+                let wanted_text = Value::Scalar(self.graph.constant(0.0), wanted).described();
+                let message = format!("{what} must be {wanted_text}, this is {}", other.described());
+                let mut diagnostic = Diagnostic::new(Code::WrongDimension, span, message);
+                diagnostic.help = unit_help(wanted, other);
+                self.report(diagnostic);
+                None
+            }
+        }
+    }
+
+    /// Whether another mistake would be told: looking for a near name among many takes long.
+    pub(crate) fn tells_more(&self) -> bool {
+        self.errors <= limits::MISTAKES.most
+    }
+
+    /// Begins with a machine, tool, job or function.
+    pub(crate) fn begin_item(&mut self) {
+        self.unknown.clear();
+        self.is_unmet = false;
+    }
+
+    /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.
+    pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
+        // the parser has reported a missing name
+        if name.node.is_empty() || !self.tells_more() || !self.unknown.insert(name.node.clone()) {
+            return;
+        }
+        let message = format!("there is no {kind} `{}`", name.node);
+        let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
+        diagnostic.help = did_you_mean(&name.node, known);
+        self.report(diagnostic);
+    }
+
+    /// The same for what other files may declare: nothing is missing while one that is used could not be read, which has been reported.
+    pub(crate) fn unknown_item<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
+        if !self.lacks_files {
+            self.unknown(name, kind, known);
+        }
+    }
+
+    /// Counts one step of evaluation; false (reported once) when a text asks for too many.
+    pub(crate) fn step(&mut self, span: Span) -> bool {
+        self.spend(1, span)
+    }
+
+    /// The same for many steps.
+    pub(crate) fn spend(&mut self, steps: usize, span: Span) -> bool {
+        self.steps.set(self.steps.get().saturating_add(steps));
+        let exceeded = if self.steps.get() > limits::EVALUATION_STEPS.most {
+            limits::EVALUATION_STEPS
+        } else if self.graph.is_full() {
+            limits::GRAPH_OPERATIONS
+        } else {
+            return true;
+        };
+        if !std::mem::replace(&mut self.exhausted, true) {
+            self.report(exceeded.exceeded(span));
+        }
+        false
+    }
+}
+
+/// What to write where a plain number stands for an angle or a length.
+fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<String> {
+    let Value::Scalar(expr, Dimension::NUMBER) = found else {
+        return None;
+    };
+    let unit = match wanted {
+        Dimension::ANGLE => "deg",
+        Dimension::LENGTH => "mm",
+        _ => return None,
+    };
+    Some(match expr.as_constant() {
+        Some(value) => format!("give it a unit: `{value} {unit}`"),
+        None if wanted == Dimension::ANGLE => "a number of radians becomes an angle by `* 1 rad`".to_string(),
+        None => format!("a number of millimetres becomes a length by `* 1 {unit}`"),
+    })
+}
+
+/// The nearest of the known names, as a sentence.
+pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    let mut known: Vec<&str> = known.collect();
+    known.sort_unstable();
+    known.dedup();
+    match closest(name, known.iter().copied()) {
+        Some(meant) => Some(format!("did you mean `{meant}`?")),
+        None if !known.is_empty() && known.len() <= READABLE => Some(format!("there is: {}", quoted(&known))),
+        None => None,
+    }
+}
+
+/// Names in a list.
+pub(crate) fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}

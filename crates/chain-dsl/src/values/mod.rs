@@ -1,0 +1,10 @@
+//! What expressions mean: values with dimensions, names in reach, functions, tables.
+
+pub(crate) mod context;
+pub(crate) mod dimension;
+pub(crate) mod evaluate;
+pub(crate) mod functions;
+pub(crate) mod segment;
+pub(crate) mod table_files;
+pub(crate) mod tables;
+pub(crate) mod value;

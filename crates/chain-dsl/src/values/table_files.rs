@@ -1,0 +1,167 @@
+//! Files of tables: where they are looked for, their texts, the numbers in two of their columns.
+
+use std::collections::HashMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use flank_expr::CurveId;
+
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{FileId, Sources};
+use crate::limits::{self, Limit};
+use crate::load::tidy;
+use crate::values::dimension::{self, Dimension};
+use crate::values::value::article;
+
+/// Two columns of a table.
+pub(crate) type Rows = Vec<(f64, f64)>;
+
+/// A table by its path, columns and their dimensions.
+pub(crate) type Key = (PathBuf, [String; 2], [Dimension; 2]);
+
+/// Where tables are looked for, and those that have been read.
+#[derive(Default)]
+pub(crate) struct Tables {
+    /// The project folder of each source file; a text that is not a file has none.
+    projects: HashMap<FileId, PathBuf>,
+    /// The folder of each source file, as the user knows it and as it really is.
+    folders: HashMap<FileId, [PathBuf; 2]>,
+    /// The files that have been read with their texts, in the order in which they were first needed.
+    texts: Vec<([PathBuf; 2], Rc<str>)>,
+    /// Where a file is among them, by its real path.
+    known: HashMap<PathBuf, usize>,
+    /// Tables that have been read.
+    pub(crate) rows: HashMap<Key, Rc<Rows>>,
+    /// One table is one curve however often it is named.
+    pub(crate) curves: HashMap<Key, CurveId>,
+    /// Size of all tables that have been read.
+    bytes: u64,
+}
+
+impl Tables {
+    pub(crate) fn new(projects: HashMap<FileId, PathBuf>, sources: &Sources) -> Tables {
+        let folders = sources.files().filter_map(|(id, file)| {
+            Some((id, [file.path.parent()?.to_path_buf(), file.file.as_ref()?.parent()?.to_path_buf()]))
+        });
+        Tables { projects, folders: folders.collect(), ..Tables::default() }
+    }
+
+    /// Adds the texts that were read to those of the compilation.
+    pub(crate) fn tell(&self, sources: &mut Sources) {
+        for ([shown, real], text) in &self.texts {
+            sources.add_file(shown, real, &**text);
+        }
+    }
+
+    /// The path of a table named in a file, as the user knows it and as it really is, or why it may not be read.
+    pub(crate) fn locate(&self, named: &str, file: FileId) -> Result<[PathBuf; 2], (Code, String)> {
+        let Some(project) = self.projects.get(&file) else {
+            return Err((Code::UnreadableFile, "a text that is not a file cannot use files".to_string()));
+        };
+        let [shown, folder] = self.folders.get(&file).cloned().unwrap_or_default();
+        let real = std::fs::canonicalize(folder.join(named)).map_err(|error| {
+            (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
+        })?;
+        if Path::new(named).is_absolute() || !real.starts_with(project) {
+            return Err((
+                Code::OutsideProject,
+                format!("`{named}` lies outside the project folder {}", project.display()),
+            ));
+        }
+        Ok([tidy(&shown.join(named)), real])
+    }
+
+    /// The text of a table, read once; each time counts.
+    pub(crate) fn text(&mut self, paths: &[PathBuf; 2]) -> Result<Rc<str>, Reason> {
+        let [_, real] = paths;
+        if let Some(&known) = self.known.get(real) {
+            let text = Rc::clone(&self.texts[known].1);
+            self.count(text.len() as u64)?;
+            return Ok(text);
+        }
+        let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
+        let kind = std::fs::metadata(real).map_err(|error| unreadable(&error))?;
+        if !kind.is_file() {
+            return Err(Reason::Wrong(Code::UnreadableFile, "it is not a plain file".to_string()));
+        }
+        self.count(kind.len())?;
+        let file = std::fs::File::open(real).map_err(|error| unreadable(&error))?;
+        let mut text = String::new();
+        file.take(kind.len()).read_to_string(&mut text).map_err(|error| unreadable(&error))?;
+        let text: Rc<str> = text.into();
+        self.known.insert(real.clone(), self.texts.len());
+        self.texts.push((paths.clone(), Rc::clone(&text)));
+        Ok(text)
+    }
+
+    fn count(&mut self, bytes: u64) -> Result<(), Reason> {
+        self.bytes += bytes;
+        if self.bytes > limits::TABLE_BYTES.most as u64 { Err(Reason::Exceeded(limits::TABLE_BYTES)) } else { Ok(()) }
+    }
+}
+
+/// Why a table is not read.
+pub(crate) enum Reason {
+    Exceeded(Limit),
+    Wrong(Code, String),
+}
+
+pub(crate) fn reader(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes())
+}
+
+/// Two columns of a text; lines that begin with `#` are remarks, the first other line names the columns.
+pub(crate) fn rows(text: &str, columns: [(&str, Dimension); 2]) -> Result<Rows, Reason> {
+    let mut reader = reader(text);
+    let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
+    let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let mut places = [(0, 1.0); 2];
+    for (place, (name, dimension)) in places.iter_mut().zip(columns) {
+        *place = found(&heads, name, dimension).map_err(wrong)?;
+    }
+    let mut points = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| wrong(error.to_string()))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |(column, size): (usize, f64)| {
+            let cell = record.get(column).unwrap_or("");
+            let value = cell.parse::<f64>().ok().map(|value| value * size).filter(|value| value.is_finite());
+            value.ok_or_else(|| wrong(format!("line {line}: `{cell}` is not a finite number")))
+        };
+        points.push((number(places[0])?, number(places[1])?));
+        if points.len() > limits::TABLE_ROWS.most {
+            return Err(Reason::Exceeded(limits::TABLE_ROWS));
+        }
+    }
+    Ok(points)
+}
+
+/// The column with a name, `s` or `s [mm]`, and the size of its unit: mm and degrees where none is given.
+fn found(heads: &csv::StringRecord, name: &str, dimension: Dimension) -> Result<(usize, f64), String> {
+    for (index, head) in heads.iter().enumerate() {
+        let (plain, unit) = match head.split_once('[') {
+            Some((plain, rest)) => (plain.trim(), Some(rest.trim_end_matches(']').trim())),
+            None => (head, None),
+        };
+        if plain != name {
+            continue;
+        }
+        let unit = unit.unwrap_or(match dimension {
+            Dimension::ANGLE => "deg",
+            Dimension::LENGTH => "mm",
+            _ => return Ok((index, 1.0)),
+        });
+        return match dimension::unit(unit) {
+            Some((size, found)) if found == dimension => Ok((index, size)),
+            Some((_, found)) => {
+                Err(format!("column `{name}` is {} {found}, not {} {dimension}", article(found), article(dimension)))
+            }
+            None if unit == "1" && dimension == Dimension::NUMBER => Ok((index, 1.0)),
+            None => Err(format!("column `{name}`: `{unit}` is not a unit")),
+        };
+    }
+    let known: Vec<&str> = heads.iter().collect();
+    let commas = if known.len() == 1 && known[0].contains([';', '\t']) { "; columns are parted by commas" } else { "" };
+    Err(format!("there is no column `{name}`; there is: {}{commas}", known.join(", ")))
+}

@@ -1,0 +1,4 @@
+//! What is proven: intervals, and power series with bounds.
+
+pub(crate) mod interval;
+pub(crate) mod taylor;

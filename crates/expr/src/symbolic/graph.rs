@@ -1,0 +1,561 @@
+//! A graph in which equal expressions are one node.
+
+use std::cell::RefCell;
+use std::fmt;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
+
+use crate::symbolic::curve::Curve;
+use crate::symbolic::hash::NodeMap;
+use crate::symbolic::op::{Binary, Unary};
+use crate::symbolic::rules;
+
+/// Index of a node. Operands always have smaller indices than what is made of them.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct NodeId(pub(crate) u32);
+
+/// Index of a variable, in order of creation.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct VariableId(pub(crate) u32);
+
+impl VariableId {
+    /// Position in a slice that holds one entry per variable of the graph.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Index of a curve.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct CurveId(pub(crate) u32);
+
+/// One node of the graph.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// A number, kept as its bits so that it can be a key. There is one zero and one NaN.
+    Constant(u64),
+    /// A variable.
+    Variable(VariableId),
+    /// An operation on one node.
+    Unary(Unary, NodeId),
+    /// An operation on two nodes.
+    Binary(Binary, NodeId, NodeId),
+    /// A derivative of a curve, of an order, at a node.
+    Curve(CurveId, u8, NodeId),
+}
+
+impl Node {
+    pub(crate) fn constant(value: f64) -> Node {
+        let settled = if value == 0.0 {
+            0.0
+        } else if value.is_nan() {
+            f64::NAN
+        } else {
+            value
+        };
+        Node::Constant(settled.to_bits())
+    }
+
+    /// The nodes it is made of.
+    pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
+        let (a, b) = match self {
+            Node::Constant(_) | Node::Variable(_) => (None, None),
+            Node::Unary(_, a) | Node::Curve(_, _, a) => (Some(a), None),
+            Node::Binary(_, a, b) => (Some(a), Some(b)),
+        };
+        a.into_iter().chain(b)
+    }
+
+    /// The same of other nodes.
+    pub(crate) fn with_operands(self, other: impl Fn(NodeId) -> NodeId) -> Node {
+        match self {
+            Node::Constant(_) | Node::Variable(_) => self,
+            Node::Unary(op, a) => Node::Unary(op, other(a)),
+            Node::Binary(op, a, b) => Node::Binary(op, other(a), other(b)),
+            Node::Curve(curve, order, a) => Node::Curve(curve, order, other(a)),
+        }
+    }
+}
+
+#[derive(Default)]
+struct Store {
+    nodes: Vec<Node>,
+    index: NodeMap<Node, NodeId>,
+    variables: Vec<String>,
+    curves: Vec<Arc<Curve>>,
+    /// Operations asked for so far, new or not.
+    operations: usize,
+    room: Option<usize>,
+    derivatives: NodeMap<(VariableId, NodeId), NodeId>,
+}
+
+impl Store {
+    fn is_full(&self) -> bool {
+        self.room.is_some_and(|room| self.operations > room)
+    }
+}
+
+/// The arena of all symbolic scalars of one model.
+///
+/// Nodes are never removed; two equal expressions are the same node, so a derivative or a product costs only what is new
+/// in it.
+///
+/// ```
+/// let graph = flank_expr::Graph::new();
+/// let x = graph.variable("x");
+/// let f = (x * 2.0).sin() * x;
+/// let slope = f.derivative(x);
+/// assert_eq!(graph.evaluate(&[slope], &[0.0]), [0.0]);
+/// ```
+#[derive(Default)]
+pub struct Graph {
+    store: RefCell<Store>,
+    visits: RefCell<Visits>,
+}
+
+/// Where walks through the graph have been. The memory is kept, so that a walk costs only what it comes to.
+#[derive(Default)]
+struct Visits {
+    walk: u32,
+    /// The last walk that came to each node, and where the node stands in its order.
+    last: Vec<(u32, u32)>,
+}
+
+impl Visits {
+    fn begin(&mut self, nodes: usize) {
+        if self.walk == u32::MAX {
+            *self = Visits::default();
+        }
+        self.walk += 1;
+        self.last.resize(nodes, (0, 0));
+    }
+
+    /// Whether it is the first visit.
+    fn is_first(&mut self, id: NodeId) -> bool {
+        std::mem::replace(&mut self.last[id.0 as usize].0, self.walk) != self.walk
+    }
+
+    /// As if the walk had not been there.
+    fn forget(&mut self, id: NodeId) {
+        self.last[id.0 as usize].0 = 0;
+    }
+
+    /// Puts what the walk came to in order.
+    fn sort(&self, nodes: &mut Vec<NodeId>) {
+        let (Some(&first), Some(&last)) = (nodes.iter().min(), nodes.iter().max()) else { return };
+        let width = (last.0 - first.0) as usize;
+        if width > 16 * nodes.len() {
+            return nodes.sort_unstable();
+        }
+        nodes.clear();
+        nodes.extend((first.0..=last.0).map(NodeId).filter(|id| self.last[id.0 as usize].0 == self.walk));
+    }
+}
+
+/// Nodes, each after what it is made of.
+pub(crate) struct Order {
+    pub(crate) nodes: Vec<Placed>,
+    /// The place of each root.
+    pub(crate) roots: Vec<usize>,
+}
+
+/// A node among others.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed {
+    pub(crate) id: NodeId,
+    pub(crate) node: Node,
+    /// The places of its operands: the only one twice, none as zeros.
+    pub(crate) operands: [usize; 2],
+}
+
+impl fmt::Debug for Graph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Graph({} nodes)", self.len())
+    }
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Graph {
+        Graph::default()
+    }
+
+    /// Number of nodes made so far.
+    pub fn len(&self) -> usize {
+        self.store.borrow().nodes.len()
+    }
+
+    /// Sets how many operations it may be asked for from its beginning on, known ones or new: a bound on memory and time. At
+    /// first there is none.
+    ///
+    /// A full graph still makes variables, and NaN of everything else: whoever sets a bound asks [`Graph::is_full`].
+    pub fn set_room(&self, room: Option<usize>) {
+        self.store.borrow_mut().room = room;
+    }
+
+    /// True if the room is used up: expressions made since then mean nothing.
+    pub fn is_full(&self) -> bool {
+        self.store.borrow().is_full()
+    }
+
+    /// True before the first node.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A number.
+    pub fn constant(&self, value: f64) -> Expr<'_> {
+        self.intern(Node::constant(value))
+    }
+
+    /// A new variable; names are for printing, two variables of one name are two variables.
+    pub fn variable(&self, name: impl Into<String>) -> Expr<'_> {
+        let id = {
+            let mut store = self.store.borrow_mut();
+            store.variables.push(name.into());
+            VariableId(store.variables.len() as u32 - 1)
+        };
+        self.intern(Node::Variable(id))
+    }
+
+    /// Takes in a curve, which expressions then can be put into.
+    pub fn curve(&self, curve: Curve) -> CurveId {
+        let mut store = self.store.borrow_mut();
+        store.curves.push(Arc::new(curve));
+        CurveId(store.curves.len() as u32 - 1)
+    }
+
+    pub(crate) fn curve_of(&self, id: CurveId) -> Arc<Curve> {
+        Arc::clone(&self.store.borrow().curves[id.0 as usize])
+    }
+
+    /// Number of variables made so far.
+    pub fn variable_count(&self) -> usize {
+        self.store.borrow().variables.len()
+    }
+
+    /// The name of a variable.
+    pub fn variable_name(&self, variable: VariableId) -> String {
+        self.store.borrow().variables[variable.index()].clone()
+    }
+
+    /// An expression of another graph would silently mean some other node.
+    pub(crate) fn assert_owns(&self, expr: Expr<'_>) {
+        assert!(std::ptr::eq(self, expr.graph), "expressions of two graphs");
+    }
+
+    pub(crate) fn node(&self, id: NodeId) -> Node {
+        self.store.borrow().nodes[id.0 as usize]
+    }
+
+    pub(crate) fn expr(&self, id: NodeId) -> Expr<'_> {
+        Expr { graph: self, id }
+    }
+
+    pub(crate) fn intern(&self, node: Node) -> Expr<'_> {
+        let mut guard = self.store.borrow_mut();
+        let store = &mut *guard;
+        store.operations += 1;
+        let node = match node {
+            Node::Variable(_) => node,
+            _ if store.is_full() => Node::constant(f64::NAN),
+            _ => node,
+        };
+        let next = NodeId(u32::try_from(store.nodes.len()).expect("fewer than 2³² nodes"));
+        let id = *store.index.entry(node).or_insert(next);
+        if id == next {
+            store.nodes.push(node);
+        }
+        drop(guard);
+        self.expr(id)
+    }
+
+    pub(crate) fn known_derivative(&self, variable: VariableId, id: NodeId) -> Option<NodeId> {
+        self.store.borrow().derivatives.get(&(variable, id)).copied()
+    }
+
+    pub(crate) fn remember_derivative(&self, variable: VariableId, id: NodeId, derivative: NodeId) {
+        self.store.borrow_mut().derivatives.insert((variable, id), derivative);
+    }
+
+    /// Every node that the roots are made of, operands before what is made of them.
+    pub(crate) fn reachable(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
+        self.reachable_where(roots, |_| true)
+    }
+
+    /// The same without nodes of a kind, and what only these are made of.
+    pub(crate) fn reachable_where(
+        &self,
+        roots: impl IntoIterator<Item = NodeId>,
+        is_wanted: impl Fn(NodeId) -> bool,
+    ) -> Vec<NodeId> {
+        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
+        visits.begin(store.nodes.len());
+        let mut stack: Vec<NodeId> = roots.into_iter().collect();
+        let mut found = Vec::new();
+        while let Some(id) = stack.pop() {
+            if !visits.is_first(id) {
+                continue;
+            }
+            if is_wanted(id) {
+                found.push(id);
+                stack.extend(store.nodes[id.0 as usize].operands());
+            } else {
+                visits.forget(id);
+            }
+        }
+        visits.sort(&mut found);
+        found
+    }
+
+    /// What the roots are made of.
+    pub(crate) fn order(&self, roots: &[Expr<'_>]) -> Order {
+        let found = self.reachable(roots.iter().map(|root| root.id));
+        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
+        for (place, id) in found.iter().enumerate() {
+            visits.last[id.0 as usize].1 = place as u32;
+        }
+        let place = |id: NodeId| visits.last[id.0 as usize].1 as usize;
+        let placed = |id: NodeId| {
+            let node = store.nodes[id.0 as usize];
+            let mut operands = node.operands().map(place);
+            let first = operands.next().unwrap_or(0);
+            Placed { id, node, operands: [first, operands.next().unwrap_or(first)] }
+        };
+        Order {
+            nodes: found.iter().copied().map(placed).collect(),
+            roots: roots.iter().map(|root| place(root.id)).collect(),
+        }
+    }
+
+    /// Operations that depend on at least one of the `variables`: what has to be done anew where these change, with equal
+    /// parts done once.
+    pub fn work(&self, roots: &[Expr<'_>], variables: &[Expr<'_>]) -> usize {
+        let variables: Vec<Option<VariableId>> = variables.iter().map(|variable| variable.as_variable()).collect();
+        let mut changes: Vec<bool> = Vec::new();
+        let mut work = 0;
+        for Placed { node, operands: [a, b], .. } in self.order(roots).nodes {
+            let changed = match node {
+                Node::Constant(_) => false,
+                Node::Variable(id) => variables.contains(&Some(id)),
+                _ => changes[a] || changes[b],
+            };
+            work += usize::from(changed && !matches!(node, Node::Variable(_)));
+            changes.push(changed);
+        }
+        work
+    }
+
+    /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.
+    pub fn count(&self, roots: &[Expr<'_>]) -> NodeCount {
+        let order = self.order(roots);
+        let mut written: Vec<f64> = Vec::with_capacity(order.nodes.len());
+        for Placed { node, operands, .. } in &order.nodes {
+            let operands = operands.iter().take(node.operands().count());
+            written.push(operands.map(|place| written[*place]).sum::<f64>() + 1.0);
+        }
+        NodeCount { written_out: order.roots.iter().map(|root| written[*root]).sum(), shared: order.nodes.len() }
+    }
+}
+
+/// Size of a set of expressions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeCount {
+    /// Nodes when every use of a part is written out again (a float: it grows exponentially).
+    pub written_out: f64,
+    /// Nodes when equal parts are shared.
+    pub shared: usize,
+}
+
+/// A symbolic scalar: a handle into its graph.
+#[derive(Clone, Copy)]
+pub struct Expr<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) id: NodeId,
+}
+
+impl PartialEq for Expr<'_> {
+    /// Same node of the same graph.
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id && std::ptr::eq(self.graph, other.graph)
+    }
+}
+
+impl Eq for Expr<'_> {}
+
+impl fmt::Debug for Expr<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl<'g> Expr<'g> {
+    /// The graph it lives in.
+    pub fn graph(self) -> &'g Graph {
+        self.graph
+    }
+
+    /// What it is made of.
+    pub fn node(self) -> Node {
+        self.graph.node(self.id)
+    }
+
+    /// Its value if it is a number.
+    pub fn as_constant(self) -> Option<f64> {
+        match self.node() {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// Its variable if it is one.
+    pub fn as_variable(self) -> Option<VariableId> {
+        match self.node() {
+            Node::Variable(id) => Some(id),
+            _ => None,
+        }
+    }
+
+    /// Numerator and denominator.
+    pub(crate) fn as_quotient(self) -> (Expr<'g>, Expr<'g>) {
+        match self.node() {
+            Node::Binary(Binary::Div, a, b) => (self.graph.expr(a), self.graph.expr(b)),
+            Node::Unary(Unary::Neg, a) => {
+                let (numerator, denominator) = self.graph.expr(a).as_quotient();
+                (-numerator, denominator)
+            }
+            _ => (self, self.graph.constant(1.0)),
+        }
+    }
+
+    /// True for the number zero.
+    pub fn is_zero(self) -> bool {
+        self.as_constant() == Some(0.0)
+    }
+
+    /// An operation on it, simplified.
+    pub fn unary(self, op: Unary) -> Expr<'g> {
+        rules::unary(op, self)
+    }
+
+    /// An operation on it and another one, simplified.
+    ///
+    /// # Panics
+    /// If the two are of different graphs.
+    pub fn binary(self, op: Binary, other: Expr<'g>) -> Expr<'g> {
+        self.graph.assert_owns(other);
+        rules::binary(op, self, other)
+    }
+
+    /// A derivative of a curve (order 0: its value) here.
+    pub fn on_curve(self, curve: CurveId, order: u8) -> Expr<'g> {
+        if let Some(x) = self.as_constant() {
+            return self.graph.constant(self.graph.curve_of(curve).value(order, x));
+        }
+        self.graph.intern(Node::Curve(curve, order, self.id))
+    }
+
+    /// x·x.
+    pub fn squared(self) -> Expr<'g> {
+        self * self
+    }
+
+    /// Integer power by repeated squaring; negative ones divide.
+    pub fn powi(self, exponent: i32) -> Expr<'g> {
+        let one = self.graph.constant(1.0);
+        let (mut result, mut square, mut left) = (one, self, exponent.unsigned_abs());
+        while left > 0 {
+            if left & 1 == 1 {
+                result = result * square;
+            }
+            left >>= 1;
+            if left > 0 {
+                square = square.squared();
+            }
+        }
+        if exponent < 0 { one / result } else { result }
+    }
+}
+
+macro_rules! unary_methods {
+    ($($method:ident $op:ident $doc:literal;)*) => {
+        impl<'g> Expr<'g> {
+            $(#[doc = $doc] pub fn $method(self) -> Expr<'g> { self.unary(Unary::$op) })*
+        }
+    };
+}
+
+unary_methods! {
+    sqrt Sqrt "Square root; NaN below zero.";
+    sin Sin "Sine of radians.";
+    cos Cos "Cosine of radians.";
+    tan Tan "Tangent of radians.";
+    asin Asin "Arc sine in radians; NaN outside [−1, 1].";
+    acos Acos "Arc cosine in radians; NaN outside [−1, 1].";
+    atan Atan "Arc tangent in radians.";
+    sinh Sinh "Hyperbolic sine.";
+    cosh Cosh "Hyperbolic cosine.";
+    tanh Tanh "Hyperbolic tangent.";
+    asinh Asinh "Inverse hyperbolic sine.";
+    acosh Acosh "Inverse hyperbolic cosine; NaN below 1.";
+    atanh Atanh "Inverse hyperbolic tangent; NaN outside [−1, 1].";
+    arcinv Arcinv "The angle in radians whose involute function tan a − a is given.";
+    exp Exp "Exponential.";
+    ln Ln "Natural logarithm; NaN below zero.";
+    abs Abs "Absolute value; its derivative at zero is taken as zero.";
+    sign Sign "−1, 0 or 1.";
+}
+
+macro_rules! binary_methods {
+    ($($method:ident $op:ident $doc:literal;)*) => {
+        impl<'g> Expr<'g> {
+            $(#[doc = $doc] pub fn $method(self, other: Expr<'g>) -> Expr<'g> { self.binary(Binary::$op, other) })*
+        }
+    };
+}
+
+binary_methods! {
+    pow Pow "Power with any exponent.";
+    atan2 Atan2 "Angle of the point (x = `other`, y = `self`) in (−π, π].";
+    min Min "The smaller of two.";
+    max Max "The larger of two.";
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $op:ident;)*) => {$(
+        impl<'g> $trait for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                self.binary(Binary::$op, other)
+            }
+        }
+
+        impl<'g> $trait<f64> for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $method(self, other: f64) -> Expr<'g> {
+                self.binary(Binary::$op, self.graph.constant(other))
+            }
+        }
+
+        impl<'g> $trait<Expr<'g>> for f64 {
+            type Output = Expr<'g>;
+            fn $method(self, other: Expr<'g>) -> Expr<'g> {
+                other.graph.constant(self).binary(Binary::$op, other)
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add Add;
+    Sub sub Sub;
+    Mul mul Mul;
+    Div div Div;
+}
+
+impl<'g> Neg for Expr<'g> {
+    type Output = Expr<'g>;
+    fn neg(self) -> Expr<'g> {
+        self.unary(Unary::Neg)
+    }
+}

@@ -1,0 +1,10 @@
+//! Scalars that share everything: the graph, its simplifications, exact derivatives, and how they print.
+
+pub(crate) mod curve;
+pub(crate) mod derivative;
+pub(crate) mod graph;
+pub(crate) mod hash;
+pub(crate) mod op;
+pub(crate) mod print;
+pub(crate) mod rules;
+pub(crate) mod terms;
