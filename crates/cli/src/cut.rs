@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
+use flank_draw::{Picture, PictureOptions, field_maps};
+use flank_export::{Dataset, Field, Values};
 use flank_solver::{CuttingEdges, Left, SurfacePoint};
 use serde_json::{Value, json};
 

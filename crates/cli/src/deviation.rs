@@ -5,7 +5,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Job};
-use flank_export::{Axis, Dataset, Field, Patch, PictureOptions, Values, field_maps, fixed};
+use flank_draw::{PictureOptions, field_maps};
+use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
 use flank_expr::Graph;
 use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint};
 use serde_json::{Value, json};

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
-    Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Picture, Report, Scene, Surfaces, Target,
-    WriteError, make_folder, write_3mf, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv,
-    write_motion_json, write_nc, write_obj, write_page, write_parquet, write_report_html, write_report_markdown,
-    write_step, write_stl, write_vtp,
+    Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Surfaces, Target, WriteError, make_folder,
+    write_3mf, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv, write_motion_json, write_nc,
+    write_obj, write_parquet, write_step, write_stl, write_vtp,
 };
 
 use crate::arguments::{Format, PictureFormat, ReportFormat, TableFormat};

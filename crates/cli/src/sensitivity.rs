@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
-use flank_export::{Dataset, Field, Picture, PictureOptions, Values, field_maps};
+use flank_draw::{Picture, PictureOptions, field_maps};
+use flank_export::{Dataset, Field, Values};
 use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
 use serde_json::{Value, json};
 

@@ -3,9 +3,8 @@
 use std::time::Instant;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
-use flank_export::{
-    Axis, Banded, Dataset, Face, Header, Outcome, Patch, PictureOptions, Point, Surfaces, Unit, Unknown, picture,
-};
+use flank_draw::{PictureOptions, picture};
+use flank_export::{Axis, Banded, Dataset, Face, Header, Outcome, Patch, Point, Surfaces, Unit, Unknown};
 use flank_expr::{Expr, Graph};
 use flank_solver::{Effort, Range, Solution, SurfacePoint, SurfaceProblem};
 

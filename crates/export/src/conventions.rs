@@ -35,6 +35,6 @@ fn with_own(fixed: &[&str], header: &Header) -> Vec<String> {
 }
 
 /// Text that stays on its line, whatever a user has put into it.
-pub(crate) fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

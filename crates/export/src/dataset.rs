@@ -145,7 +145,7 @@ impl Unit {
     }
 
     /// A value as it is written: radians become degrees.
-    pub(crate) fn written(self, value: f64) -> f64 {
+    pub fn written(self, value: f64) -> f64 {
         match self {
             Unit::Degree => value.to_degrees(),
             Unit::Millimetre | Unit::One => value,
@@ -155,7 +155,7 @@ impl Unit {
 
 impl Field {
     /// The titles of its columns: its name, or that with `_x`, `_y`, `_z`.
-    pub(crate) fn columns(&self) -> Vec<String> {
+    pub fn columns(&self) -> Vec<String> {
         match self.values {
             Values::Scalars(_) => vec![self.name.clone()],
             Values::Vectors(_) => ["x", "y", "z"].map(|axis| format!("{}_{axis}", self.name)).into(),
@@ -242,7 +242,7 @@ impl Patch {
     }
 
     /// Points with their row and column, in the order of files; `first` is the number of the first.
-    pub(crate) fn numbered<'p>(
+    pub fn numbered<'p>(
         &self,
         first: usize,
         points: &'p [Point],

@@ -103,9 +103,6 @@ pub enum WriteError {
     /// A motion table makes no NC program.
     #[error(transparent)]
     Nc(#[from] NcError),
-    /// The picture cannot be drawn.
-    #[error(transparent)]
-    Picture(#[from] PictureError),
     /// The table could not be written.
     #[cfg(feature = "parquet")]
     #[error(transparent)]
@@ -113,22 +110,6 @@ pub enum WriteError {
     /// The stream refused.
     #[error("{}", plain_words(.0))]
     Io(#[from] io::Error),
-}
-
-/// Why a picture could not become a PNG.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum PictureError {
-    /// There is no memory for that many pixels.
-    #[error("a picture of {width} x {height} pixels is too large")]
-    TooLarge {
-        /// Pixels across.
-        width: u32,
-        /// Pixels down.
-        height: u32,
-    },
-    /// The encoder refused.
-    #[error("the picture could not be encoded as PNG: {0}")]
-    Encoding(String),
 }
 
 /// Why a file could not be written. What was there before is still there.

@@ -3,7 +3,7 @@
 use crate::bands::Banded;
 use crate::dataset::Point;
 use crate::error::WriteError;
-use crate::vector::{add, cross, dot, length, sub};
+use crate::shape::vector::{add, cross, dot, length, sub};
 
 /// The triangles between the rows of a surface, as these are handed over.
 pub(crate) struct Mesh {

@@ -79,7 +79,7 @@ struct UnknownOut<'a> {
 
 /// What is said of a field before its values.
 #[derive(Serialize)]
-pub(crate) struct FieldOut<'a> {
+struct FieldOut<'a> {
     name: &'a str,
     unit: &'a str,
     components: usize,
@@ -155,7 +155,7 @@ fn surface_out<'a>(surface: &'a dyn Banded, tally: &Tally) -> SurfaceOut<'a> {
     }
 }
 
-pub(crate) fn field(field: &Field) -> FieldOut<'_> {
+fn field(field: &Field) -> FieldOut<'_> {
     FieldOut { name: &field.name, unit: &field.unit, components: field.columns().len(), meaning: &field.meaning }
 }
 

@@ -1,4 +1,4 @@
-//! Solved tooth surfaces as files: CSV, JSON, Parquet, STL, OBJ, 3MF, VTK, STEP, SVG and PNG; and what axes do over a motion: CSV, JSON, NC programs.
+//! Solved tooth surfaces as files: CSV, JSON, Parquet, STL, OBJ, 3MF, VTK, STEP; and what axes do over a motion: CSV, JSON, NC programs.
 //!
 //! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
 //! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
@@ -59,7 +59,6 @@
 
 mod atomic_file;
 mod bands;
-mod base64;
 mod columns;
 mod conventions;
 mod csv_file;
@@ -73,18 +72,16 @@ mod measuring;
 mod motion;
 mod number;
 mod obj_file;
-mod page;
 #[cfg(feature = "parquet")]
 mod parquet_file;
-mod picture;
 mod regions;
-mod report;
+pub mod shape;
 mod step;
 mod stl_file;
 mod tally;
+pub mod text;
 mod threemf_file;
 mod unfinished;
-mod vector;
 mod vtp_file;
 mod xml;
 
@@ -93,7 +90,7 @@ pub use bands::{Banded, Surfaces, Taker};
 pub use conventions::sentences as conventions;
 pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
-pub use error::{FileError, FolderError, Malformed, PictureError, WriteError};
+pub use error::{FileError, FolderError, Malformed, WriteError};
 pub use json_file::{SCHEMA, write_json};
 pub use measuring::{
     FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,
@@ -105,20 +102,9 @@ pub use motion::{
 };
 pub use number::{degrees, fixed};
 pub use obj_file::write_obj;
-pub use page::{
-    PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
-    ToolForm, write_page,
-};
 #[cfg(feature = "parquet")]
 pub use parquet_file::write_parquet;
-pub use picture::{
-    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions, Section, SectionLine, ToolPosition,
-    axis_positions, field_lines, field_maps, machine, picture, rows_follow_profile, section, topography,
-};
 pub use regions::Target;
-pub use report::{
-    Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,
-};
 pub use step::{Deviation, Face, write_step};
 pub use stl_file::write_stl;
 pub use tally::Tally;

@@ -50,7 +50,7 @@ pub(crate) fn push_shortest(value: f64, text: &mut Vec<u8>) {
 }
 
 /// A length for people: to the micrometre, without trailing zeros, with a real minus sign.
-pub(crate) fn dimension(millimetres: f64) -> String {
+pub fn dimension(millimetres: f64) -> String {
     let text = if millimetres.abs() > ROUNDING && !(1e-3..1e7).contains(&millimetres.abs()) {
         format!("{millimetres:.2e}")
     } else {
@@ -60,7 +60,7 @@ pub(crate) fn dimension(millimetres: f64) -> String {
 }
 
 /// A bound of bands that are `step` wide, for people: as many decimals as the step needs, with a real minus sign.
-pub(crate) fn levelled(value: f64, step: f64) -> String {
+pub fn levelled(value: f64, step: f64) -> String {
     let size = value.abs().max(step);
     let text = if value == 0.0 && step < 1e-3 {
         "0".to_owned()
@@ -74,7 +74,7 @@ pub(crate) fn levelled(value: f64, step: f64) -> String {
 }
 
 /// A unit for people.
-pub(crate) fn shown_unit(unit: &str) -> String {
+pub fn shown_unit(unit: &str) -> String {
     if unit == "1" {
         return "no unit".to_owned();
     }
@@ -83,7 +83,7 @@ pub(crate) fn shown_unit(unit: &str) -> String {
 }
 
 /// A text with numbers, with real minus signs before them.
-pub(crate) fn with_minus(text: &str) -> String {
+pub fn with_minus(text: &str) -> String {
     let letters: Vec<char> = text.chars().collect();
     let is_sign = |at: usize| {
         let behind = letters.get(at + 1).is_some_and(char::is_ascii_digit);
@@ -93,7 +93,7 @@ pub(crate) fn with_minus(text: &str) -> String {
 }
 
 /// A residual for people: two significant digits.
-pub(crate) fn residual(value: f64) -> String {
+pub fn residual(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
 

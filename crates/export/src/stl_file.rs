@@ -8,7 +8,7 @@ use crate::dataset::Header;
 use crate::error::WriteError;
 use crate::facets::{Numbered, each_facet};
 use crate::regions::Target;
-use crate::vector::{cross, sub, unit};
+use crate::shape::vector::{cross, sub, unit};
 
 /// Writes all patches as one binary STL mesh, mm.
 ///

@@ -1,7 +1,7 @@
 //! Text inside XML and HTML.
 
 /// Text as XML allows it: its special letters escaped, those it forbids left out.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut safe = String::new();
     for letter in text.chars() {
         match letter {

@@ -1,7 +1,8 @@
 //! One surface held against another one, as a map and as a topography.
 
 use flank_chain_dsl::Job;
-use flank_export::{Dataset, PictureOptions, field_maps, topography};
+use flank_draw::{PictureOptions, field_maps, topography};
+use flank_export::Dataset;
 
 use super::{Drawing, Drawn, name, options, told, with_origin, write};
 use crate::arguments::{Plot, What};

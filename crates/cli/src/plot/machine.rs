@@ -1,9 +1,8 @@
 //! The machine of a job as a kinematic diagram, in the posture in which the middle of the first surface is made.
 
 use flank_chain_dsl::{Axis, Dimension, Frame, Machine, Parameter};
-use flank_export::{
-    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Outcome, Patch, PictureOptions, Point, fixed, machine as diagram,
-};
+use flank_draw::{DrawnFrame, LinkKind, MachineDrawing, MachineLink, PictureOptions, machine as diagram};
+use flank_export::{Outcome, Patch, Point, fixed};
 use flank_expr::Expr;
 use flank_expr::geometry::{Chain, Pose, Step, Vector3};
 

@@ -1,7 +1,8 @@
 //! Numbers over flanks: maps, lines, reliefs.
 
 use flank_chain_dsl::Dimension;
-use flank_export::{Dataset, Field, Patch, PictureOptions, Values, field_lines, field_maps, topography as relief};
+use flank_draw::{PictureOptions, field_lines, field_maps, topography as relief};
+use flank_export::{Dataset, Field, Patch, Values};
 use flank_solver::Outcome;
 
 use super::subject::Subject;

@@ -10,7 +10,8 @@ mod tool;
 
 use clap::ValueEnum;
 use flank_chain_dsl::Job;
-use flank_export::{Dataset, Header, Picture, PictureOptions};
+use flank_draw::{Picture, PictureOptions};
+use flank_export::{Dataset, Header};
 use flank_expr::Graph;
 use serde_json::json;
 
@@ -148,7 +149,7 @@ pub(crate) fn draw(
         What::Surface => {
             let patches = subject.in_space.iter().map(|at| subject.dataset.patches[*at].clone()).collect();
             let shown = Dataset { header: subject.dataset.header.clone(), patches };
-            let picture = flank_export::picture(&shown, &options);
+            let picture = flank_draw::picture(&shown, &options);
             Ok(Drawing { picture, shows: format!("{} in space", counted(shown.patches.len(), "surface")) })
         }
         What::Topography => maps::topography(subject, &options),

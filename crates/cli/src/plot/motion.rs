@@ -1,7 +1,8 @@
 //! What the axes of a machine do over the motions.
 
 use flank_chain_dsl::{Bounded, Dimension};
-use flank_export::{MachineAxis, MotionRow, MotionTable, PictureOptions, Unknown, axis_positions};
+use flank_draw::{PictureOptions, axis_positions};
+use flank_export::{MachineAxis, MotionRow, MotionTable, Unknown};
 use flank_expr::Expr;
 use flank_solver::Range;
 

@@ -1,7 +1,9 @@
 //! A section through the tooth space, square to the tooth, with the tool at some moments.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_export::{Patch, PictureOptions, Section, SectionLine, ToolPosition, fixed, rows_follow_profile, section};
+use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
+use flank_export::shape::rows_follow_profile;
+use flank_export::{Patch, fixed};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, System, solve};

@@ -1,6 +1,6 @@
 //! Where a report comes from, and how its numbers and files are meant.
 
-use flank_export::{Block, ReportSection};
+use flank_draw::{Block, ReportSection};
 use flank_solver::TOLERANCE;
 
 use super::Findings;

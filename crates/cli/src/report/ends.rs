@@ -1,7 +1,7 @@
 //! Undercut, and the lines at which surfaces and contact end.
 
 use flank_chain_dsl::Dimension;
-use flank_export::{Block, Column, ReportSection, Tone};
+use flank_draw::{Block, Column, ReportSection, Tone};
 use serde_json::{Value, json};
 
 use super::Findings;

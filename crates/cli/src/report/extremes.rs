@@ -1,7 +1,8 @@
 //! The largest and the smallest of what was found.
 
 use flank_chain_dsl::{Bounded, Dimension};
-use flank_export::{Block, Column, ReportSection, Values, fixed};
+use flank_draw::{Block, Column, ReportSection};
+use flank_export::{Values, fixed};
 use serde_json::{Value, json};
 
 use super::Findings;

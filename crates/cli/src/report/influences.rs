@@ -1,6 +1,6 @@
 //! What moves the surfaces.
 
-use flank_export::{Block, Column, ReportSection};
+use flank_draw::{Block, Column, ReportSection};
 
 use super::Findings;
 use crate::table::Solved;

@@ -1,7 +1,8 @@
 //! What a job was given: parameters, settings and motions.
 
 use flank_chain_dsl::{Bounded, Dimension, Giver, Parameter};
-use flank_export::{Block, Column, ReportSection, fixed};
+use flank_draw::{Block, Column, ReportSection};
+use flank_export::fixed;
 use serde_json::{Value, json};
 
 use super::Findings;

@@ -1,7 +1,7 @@
 //! The machines of a job as they were built: frames, axes with their laws and how far they go, chains from work to tool.
 
 use flank_chain_dsl::{Axis, Dimension, Frame, LawSource, Machine, described};
-use flank_export::{Block, Column, ReportSection};
+use flank_draw::{Block, Column, ReportSection};
 use flank_expr::{Expr, Style};
 use serde_json::{Value, json};
 

@@ -12,7 +12,8 @@ mod target;
 mod unchecked;
 
 use flank_chain_dsl::{Job, Sources};
-use flank_export::{Block, Header, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_draw::{Block, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! The pictures of a report.
 
-use flank_export::{Block, Figure, PictureOptions, ReportSection};
+use flank_draw::{Block, Figure, PictureOptions, ReportSection};
 
 use super::Findings;
 use crate::arguments::What;

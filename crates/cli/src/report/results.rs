@@ -1,7 +1,8 @@
 //! What was solved, and how well.
 
 use flank_chain_dsl::{GeneratedSurface, Process};
-use flank_export::{Block, Column, Face, ReportSection, Tone};
+use flank_draw::{Block, Column, ReportSection, Tone};
+use flank_export::Face;
 use serde_json::{Value, json};
 
 use super::Findings;

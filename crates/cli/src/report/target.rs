@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::Job;
-use flank_export::{Face, Report as Document};
+use flank_draw::Report as Document;
+use flank_export::Face;
 
 use super::Findings;
 use crate::arguments::{PictureFormat, Report, ReportFormat};

@@ -1,7 +1,7 @@
 //! The machines of a job as functions of its motions and parameters.
 
 use flank_chain_dsl::{Axis, Job, LawSource, Machine};
-use flank_export::{PageAxis, PageFrame, PageJoint, PageMachine};
+use flank_draw::{PageAxis, PageFrame, PageJoint, PageMachine};
 use flank_expr::geometry::{Chain, Step, Vector3};
 use flank_expr::{Expr, Graph};
 

@@ -8,7 +8,8 @@ mod thin;
 mod tools;
 
 use flank_chain_dsl::{Bounded, Job};
-use flank_export::{Dataset, Field, PageMotion, Patch, Scene, Tally, Values};
+use flank_draw::{PageMotion, Scene};
+use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
 use serde_json::{Value, json};
 

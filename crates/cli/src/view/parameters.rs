@@ -1,7 +1,7 @@
 //! The parameters of a job, and how far the page lets them be moved.
 
 use flank_chain_dsl::{Dimension, Job, Parameter};
-use flank_export::PageParameter;
+use flank_draw::PageParameter;
 
 use super::functions::Functions;
 use crate::sensitivity::Sensitivity;

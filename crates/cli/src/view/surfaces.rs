@@ -1,7 +1,7 @@
 //! What the page knows of a surface beside its points: frames, and the equations that it solves anew.
 
 use flank_chain_dsl::{Job, Machine};
-use flank_export::PageSurface;
+use flank_draw::PageSurface;
 use flank_expr::{Expr, Graph};
 
 use super::functions::Functions;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use flank_chain_dsl::{GeneratedSurface, Job, ToolShape};
-use flank_export::{PageTool, Revolution, ToolForm};
+use flank_draw::{PageTool, Revolution, ToolForm};
 use flank_expr::geometry::{Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Range, Screw, symmetries};

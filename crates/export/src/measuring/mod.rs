@@ -5,8 +5,8 @@ mod json;
 mod measured;
 
 use crate::dataset::{Header, Patch, Point};
-use crate::picture::{Seen, Sides, is_last, is_thread, sides};
-use crate::vector::{Vector, add, sub};
+use crate::shape::vector::{Vector, add, sub};
+use crate::shape::{Seen, Sides, is_last, is_thread, sides};
 
 pub use csv::write_grid_csv;
 pub use json::{GRID_SCHEMA, write_grid_json};

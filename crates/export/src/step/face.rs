@@ -2,7 +2,7 @@
 
 use super::spline::SplineSurface;
 use crate::dataset::{Patch, Point};
-use crate::vector::{cross, dot};
+use crate::shape::vector::{cross, dot};
 
 /// A smooth face through points of a patch.
 #[derive(Debug, Clone)]

@@ -1,0 +1,20 @@
+//! Pictures, reports and pages of solved tooth surfaces: SVG and PNG, HTML and Markdown, one HTML file with everything in it.
+//!
+//! What is drawn is a [`flank_export::Dataset`]; this crate knows nothing of how its points were solved.
+
+mod base64;
+mod page;
+mod picture;
+mod report;
+
+pub use page::{
+    PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
+    ToolForm, write_page,
+};
+pub use picture::{
+    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureError, PictureOptions, Section, SectionLine,
+    ToolPosition, axis_positions, field_lines, field_maps, machine, picture, section, topography,
+};
+pub use report::{
+    Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,
+};
