@@ -151,13 +151,18 @@ pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> String {
                 place(&solved.sample.coordinates, told.place),
                 values.join(", ")
             );
-            let own = beside.as_ref().or(solved.points.iter().find(|point| point.outcome == Outcome::Solved));
-            if let Some(keep) = own.and_then(|own| keep::against(unknowns, own, root)) {
+            if let Some(keep) = selecting(solved, root, beside.as_ref()) {
                 let _ = writeln!(out, "     {} would select it", keep.text());
             }
         }
     }
     out
+}
+
+/// What selects a branch at another place: against the point of the surface's own branch there, else against any solved one.
+fn selecting(solved: &Solved<'_, '_>, root: &SurfacePoint, beside: Option<&SurfacePoint>) -> Option<Keep> {
+    let own = beside.or(solved.points.iter().find(|point| point.outcome == Outcome::Solved))?;
+    keep::against(&solved.surface.unknowns, own, root)
 }
 
 /// What could not be decided of the ranges of each surface; empty if everything could.
@@ -217,14 +222,16 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
         json!({ "name": of.name, "unit": units::symbol(of.dimension), "low": low, "high": high })
     };
     let keeps = proposed(solved);
-    let branch = |(number, branch): (usize, &SurfacePoint)| {
+    let branch = |branch: &SurfacePoint, keep: Option<&Keep>| {
         let values = unknowns.iter().zip(&branch.unknowns);
         let values: Vec<Value> = values
             .map(|(of, x)| json!({ "name": of.name, "unit": units::symbol(of.dimension), "value": units::shown(of.dimension, *x) }))
             .collect();
-        let keep = keeps.get(number).map(Keep::json);
-        json!({ "unknowns": values, "position": branch.position, "keep": keep })
+        json!({ "unknowns": values, "position": branch.position, "keep": keep.map(Keep::json) })
     };
+    let found = solved.branches.iter().enumerate().map(|(number, root)| branch(root, keeps.get(number)));
+    let elsewhere = solved.elsewhere.iter();
+    let elsewhere = elsewhere.map(|(root, beside)| branch(root, selecting(solved, root, beside.as_ref()).as_ref()));
     let sides = |ranges: &[Range]| {
         unknowns.iter().zip(ranges).map(|(of, side)| range(of, side.low, side.high)).collect::<Vec<Value>>()
     };
@@ -232,9 +239,9 @@ pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
     let undecided = undecided.map(|doubt| json!({ "ranges": sides(&doubt.ranges), "why": why(doubt.why) }));
     json!({
         "boxes": solved.effort.boxes,
-        "found": solved.branches.iter().enumerate().map(branch).collect::<Vec<Value>>(),
+        "found": found.collect::<Vec<Value>>(),
         "undecided": undecided.collect::<Vec<Value>>(),
-        "elsewhere": solved.elsewhere.iter().map(|(root, _)| (usize::MAX, root)).map(branch).collect::<Vec<Value>>(),
+        "elsewhere": elsewhere.collect::<Vec<Value>>(),
     })
 }
 

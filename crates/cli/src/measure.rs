@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Measure) -> Result<Ending, Failure> {
         if meant.is_empty() {
             continue;
         }
-        let flanks = meant.iter().map(|surface| flank(job, surface, arguments)).collect::<Result<_, String>>()?;
+        let flanks = meant.iter().map(|surface| flank(job, surface, arguments)).collect::<Result<_, Failure>>()?;
         let header = solve::header(&[job], &arguments.which, &origin);
         let grid = MeasuringGrid { header, margins: arguments.margin.shares(), flanks };
         let mut folder = Folder::at(&arguments.out, &origin)?;
@@ -66,27 +66,32 @@ pub(crate) struct Placed<'j, 'g> {
 
 impl<'j, 'g> Placed<'j, 'g> {
     /// # Errors
-    /// In words, if the surface is not sampled, or its sample does not tell root and tip from the length of the tooth.
+    /// If the surface is not sampled, several of its branches qualify, or its sample does not tell root and tip from the length of the
+    /// tooth.
     pub(crate) fn new(
         job: &'j Job<'g>,
         surface: &'j GeneratedSurface<'g>,
         margins: [f64; 2],
         means: Means,
-    ) -> Result<Placed<'j, 'g>, String> {
+    ) -> Result<Placed<'j, 'g>, Failure> {
         let name = &surface.name;
         let sample = surface.sample.as_ref().ok_or(format!(
             "`{name}` is not sampled: its sample says where it is measured; add `sample {name} {{ … }}`"
         ))?;
         if let Some(k) = sample.counts.iter().position(|count| *count < 2) {
-            return Err(format!(
+            return Err(Failure::from(format!(
                 "`{name}` is sampled at one value of `{}` only: a grid needs an area between two",
                 sample.labels[k]
-            ));
+            )));
         }
         let shares = spaced((0.0, 1.0), TRIAL);
         let trial = lattice(sample, false, [&shares, &shares]);
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
-        let patch = solve::patch(job, name, surface, axes, &solve::points(job, surface, &trial, wanted(means)).points);
+        let found = solve::points(job, surface, &trial, wanted(means));
+        if let Some(branches) = found.ambiguous(surface, &trial) {
+            return Err(Failure::from(branches).unsolved());
+        }
+        let patch = solve::patch(job, name, surface, axes, &found.points);
         let ends = FlankEnds::of(&patch).ok_or(format!(
             "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
              does: `toe_root: [z, rho]`, …"
@@ -160,7 +165,7 @@ fn between(values: [&Vec<f64>; 2], shares: [&[f64]; 2]) -> [Vec<f64>; 2] {
     })
 }
 
-fn flank<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, arguments: &Measure) -> Result<NominalFlank, String> {
+fn flank<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, arguments: &Measure) -> Result<NominalFlank, Failure> {
     let placed = Placed::new(job, surface, arguments.margin.shares(), arguments.means)?;
     let grid = placed.part([arguments.rows as usize, arguments.columns as usize]);
     let hand = Hand::of(&grid);

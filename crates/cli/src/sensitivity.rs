@@ -106,15 +106,29 @@ impl Influence {
         um * self.usual_change / self.step
     }
 
-    fn usual_change_text(&self) -> String {
+    /// The usual change and its unit, to three digits.
+    fn shown_usual_change(&self) -> (f64, String) {
         let (size, unit) = match self.dimension {
             Dimension::LENGTH => (self.usual_change, "mm".to_string()),
             Dimension::ANGLE => (self.usual_change / ARCMIN, "arcmin".to_string()),
             Dimension::NUMBER => (self.usual_change, String::new()),
             other => (self.usual_change, units::inside(other)),
         };
-        let rounded: f64 = format!("{size:.2e}").parse().unwrap_or(size);
-        format!("{rounded} {unit}").trim_end().to_string()
+        (format!("{size:.2e}").parse().unwrap_or(size), unit)
+    }
+
+    fn usual_change_text(&self) -> String {
+        let (size, unit) = self.shown_usual_change();
+        format!("{size} {unit}").trim_end().to_string()
+    }
+
+    fn json(&self) -> Value {
+        let (size, unit) = self.shown_usual_change();
+        let [rms, largest] = [self.rms, self.largest].map(|um| self.by_usual_change(um));
+        json!({
+            "name": self.parameter, "unit": self.unit, "rms": self.rms, "largest": self.largest,
+            "usual_change": { "size": size, "unit": unit, "rms_um": rms, "largest_um": largest },
+        })
     }
 }
 
@@ -190,11 +204,7 @@ impl Sensitivity {
     }
 
     fn json(&self) -> Value {
-        let ranked: Vec<Value> = self
-            .ranked()
-            .iter()
-            .map(|(_, one)| json!({ "name": one.parameter, "unit": one.unit, "rms": one.rms, "largest": one.largest }))
-            .collect();
+        let ranked: Vec<Value> = self.ranked().iter().map(|(_, one)| one.json()).collect();
         let (points, idle) = (self.points, self.idle());
         json!({ "points": points, "parameters": ranked, "no_influence": idle, "counts": self.counts })
     }

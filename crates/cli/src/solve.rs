@@ -199,6 +199,17 @@ pub(crate) struct Found<'j, 'g> {
     positions: Positions,
 }
 
+impl<'g> Found<'_, 'g> {
+    /// The branches that qualify where nothing chooses between several, with what would select each.
+    pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<String> {
+        let is_ambiguous = self.points.iter().any(|point| point.outcome == flank_solver::Outcome::Ambiguous);
+        is_ambiguous.then(|| {
+            let at = branches::place(&sample.coordinates, self.effort.anchor);
+            branches::listed(surface, &self.problem.points(&self.effort.branches), &at).trim_end().to_string()
+        })
+    }
+}
+
 /// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away, or its own tool in another
 /// position.
 pub(crate) fn points<'j, 'g>(

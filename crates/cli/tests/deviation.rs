@@ -208,6 +208,13 @@ fn several_branches_are_listed() {
     assert!(!told.contains("in common"), "{told}");
     let listed: serde_json::Value = serde_json::from_slice(&ambiguous.stdout).expect("JSON");
     assert!(listed["not_done"].to_string().contains("ambiguous"), "{listed}");
+    // nor is one taken to be measured
+    let spec = out.join("round_trip.chain");
+    let grid = flank(&["measure", spec.to_str().unwrap(), "--surface", "again", "--out", out.to_str().unwrap()]);
+    let told_by_measure = text(&grid.stderr);
+    assert_eq!(grid.status.code(), Some(3), "{told_by_measure}");
+    assert!(told_by_measure.contains("ambiguous: the ranges of again hold 2 branches"), "{told_by_measure}");
+    assert!(told_by_measure.contains(&format!("keep {keep}")), "{told_by_measure}");
     // as it says
     let chosen = run(&format!(", keep {keep}"));
     assert_eq!(chosen.status.code(), Some(0), "{}", text(&chosen.stderr));

@@ -161,6 +161,17 @@ fn influences_are_those_of_two_solves() {
                 assert!((exact - found).abs() < near, "{name} {key}: {exact} {found}");
                 assert!((shown.parse::<f64>().expect("a number") - exact).abs() <= 5.1e-5, "{name} {key}: {shown}");
             }
+            // ranked by 0.01 mm, one arcminute, a thousandth of 0.2
+            let usual = &one["usual_change"];
+            let times = match unit {
+                "um/mm" => 0.01,
+                "um/arcmin" => 1.0,
+                _ => 0.2,
+            };
+            for (key, by) in [("rms", "rms_um"), ("largest", "largest_um")] {
+                let [told, by] = [&one[key], &usual[by]].map(|number| number.as_f64().expect("a number"));
+                assert!((by - times * told).abs() < 1e-12 * told, "{name}: {one}");
+            }
             assert_eq!(of["counts"], serde_json::json!(["teeth"]));
             assert!(!fields.iter().any(|field| field["name"] == "d_normal/d_teeth"));
         }

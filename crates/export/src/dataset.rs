@@ -242,11 +242,7 @@ impl Patch {
     }
 
     /// Points with their row and column, in the order of files; `first` is the number of the first.
-    pub fn numbered<'p>(
-        &self,
-        first: usize,
-        points: &'p [Point],
-    ) -> impl Iterator<Item = (usize, usize, &'p Point)> {
+    pub fn numbered<'p>(&self, first: usize, points: &'p [Point]) -> impl Iterator<Item = (usize, usize, &'p Point)> {
         let columns = self.columns.count.max(1);
         (first..).zip(points).map(move |(at, point)| (at / columns, at % columns, point))
     }

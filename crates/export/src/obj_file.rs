@@ -20,12 +20,16 @@ pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wri
     let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     let [program, spec, hash, job] =
         [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
-    writeln!(out, "# {program}; spec: {spec}, hash {hash}; job: {job}")?;
-    sentences_of_mesh(header).iter().try_for_each(|sentence| writeln!(out, "# {sentence}"))?;
+    let origin = format!("{program}; spec: {spec}, hash {hash}; job: {job}");
+    let sentences = sentences_of_mesh(header);
+    // a backslash at the end of a line would join the next one to it
+    let mut remarks = std::iter::once(&origin).chain(&sentences).map(|text| text.trim_end_matches('\\'));
+    remarks.try_for_each(|text| writeln!(out, "# {text}"))?;
     let mut before = 0;
     for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {
         let outline = surface.outline();
-        writeln!(out, "# frame {}\no {}", one_line(&outline.frame), one_line(&outline.name))?;
+        let [frame, name] = [&outline.frame, &outline.name].map(|text| one_line(text));
+        writeln!(out, "# frame {}\no {}", frame.trim_end_matches('\\'), name.trim_end_matches('\\'))?;
         write_vectors(*surface, "v", |point| point.position, out)?;
         write_vectors(*surface, "vn", |point| point.normal, out)?;
         each_facet(*surface, &mut |corners| {

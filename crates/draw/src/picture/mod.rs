@@ -37,8 +37,8 @@ mod svg;
 pub(crate) use palette::{patch_colours, scale_colours};
 
 pub use error::PictureError;
-use flank_export::MotionTable;
 use flank_export::Dataset;
+use flank_export::MotionTable;
 pub use machine::{DrawnFrame, LinkKind, MachineDrawing, MachineLink};
 use maps::Style;
 use paint::Item;
