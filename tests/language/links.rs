@@ -71,13 +71,16 @@ fn links_and_pictures_are_there() {
     assert!(checked >= 20, "the pages have their links: {checked}");
 }
 
-/// Whoever opens the book at its contents finds every page.
+/// Whoever opens the book at its contents finds every page, in the repository as in the book that is built of it.
 #[test]
 fn contents_name_every_page() {
-    let contents = std::fs::read_to_string(repository("docs/README.md")).expect("the contents are there");
     let docs = repository("docs");
-    for page in flank_tests::pages() {
-        let name = page.strip_prefix(&docs).expect("a page of the book").to_string_lossy().replace('\\', "/");
-        assert!(name == "README.md" || contents.contains(&format!("]({name})")), "docs/README.md does not name {name}");
+    for contents in ["README.md", "SUMMARY.md"] {
+        let text = std::fs::read_to_string(docs.join(contents)).expect("the contents are there");
+        for page in flank_tests::pages() {
+            let name = page.strip_prefix(&docs).expect("a page of the book").to_string_lossy().replace('\\', "/");
+            let is_contents = ["README.md", "SUMMARY.md"].contains(&&*name);
+            assert!(is_contents || text.contains(&format!("]({name})")), "docs/{contents} does not name {name}");
+        }
     }
 }

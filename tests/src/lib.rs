@@ -37,7 +37,7 @@ pub fn pages() -> Vec<PathBuf> {
 /// # Panics
 /// If a folder cannot be read.
 pub fn all_pages() -> Vec<PathBuf> {
-    let top = ["README.md", "ARCHITECTURE.md"].map(repository);
+    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(repository);
     top.into_iter().chain(markdown(&repository("docs"))).collect()
 }
 
