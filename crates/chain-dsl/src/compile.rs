@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use flank_expr::Graph;
 
@@ -15,6 +16,7 @@ use crate::diagnostics::source::{FileId, Name, Sources, Span};
 use crate::diagnostics::{Diagnostic, Severity};
 use crate::job::{self, Definitions};
 use crate::limits;
+use crate::load::files::{Disk, Files};
 use crate::load::{self, Loaded};
 use crate::model::{Job, within};
 use crate::syntax::ast::{self, Item};
@@ -43,10 +45,10 @@ pub struct Compilation<'g> {
 }
 
 /// What is compiled beside the text of a file itself.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Request<'a> {
-    /// What stands in the file, of a text that comes from elsewhere: the file need not be there, its folder is.
-    pub text: Option<&'a str>,
+    /// What all texts are read from.
+    pub files: Arc<dyn Files>,
     /// A file whose last machine stands by itself: with the values that its settings have by default, or by `set` such as
     /// `free_form.root=10 deg`, and free axes.
     pub machine: Option<&'a Path>,
@@ -55,6 +57,12 @@ pub struct Request<'a> {
     /// Pairs of a name (`ratio`, `m.swivel`, in one job only `gear.m.swivel`) and a value as text (`2 mm`) that win over what the
     /// text says.
     pub set: &'a [(String, String)],
+}
+
+impl Default for Request<'_> {
+    fn default() -> Self {
+        Request { files: Arc::new(Disk), machine: None, job: None, set: &[] }
+    }
 }
 
 impl<'g> Compilation<'g> {
@@ -135,7 +143,7 @@ pub fn compile_with_machine<'g>(
 
 /// The same of a file, as it is asked for.
 pub fn compile_request<'g>(graph: &'g Graph, path: &Path, request: &Request<'_>) -> Compilation<'g> {
-    compile(graph, load::load(path, request.text, request.machine), request.job, request.set)
+    compile(graph, load::load(Arc::clone(&request.files), path, request.machine), request.job, request.set)
 }
 
 /// The same for a text in memory, which can use no other file.
@@ -149,9 +157,9 @@ fn compile<'g>(
     wanted: Option<&str>,
     overrides: &[(String, String)],
 ) -> Compilation<'g> {
-    let Loaded { mut sources, files, diagnostics, lacks_files, projects, beside } = loaded;
+    let Loaded { from, mut sources, files, diagnostics, lacks_files, projects, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
-    let mut context = Context::new(graph, Tables::new(projects, &sources));
+    let mut context = Context::new(graph, Tables::new(from, projects, &sources));
     context.lacks_files = lacks_files;
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, overrides);

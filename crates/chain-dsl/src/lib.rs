@@ -54,6 +54,7 @@ pub use diagnostics::spelling::closest;
 pub use diagnostics::{Diagnostic, Note, Severity};
 pub use format::format;
 pub use job::sample::spaced;
+pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
     Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{FileId, Sources, format, read_file};
+use flank_chain_dsl::{Disk, FileId, Sources, format, read_file};
 use flank_export::write_atomically;
 use serde_json::{Value, json};
 
@@ -67,7 +67,7 @@ fn as_json(path: &Path, to_stdout: bool, done: &Result<LaidOut, Failure>) -> Val
 /// Lays out a file, and writes it if that changes it and it may be written.
 fn in_place(path: &Path, check: bool) -> Result<LaidOut, Failure> {
     let mut sources = Sources::default();
-    let file = read_file(&mut sources, path).map_err(|finding| Failure::of_spec(&[finding], &sources))?;
+    let file = read_file(&Disk, &mut sources, path).map_err(|finding| Failure::of_spec(&[finding], &sources))?;
     let done = laid_out(&sources, file)?;
     if done.is_changed && !check {
         #[cfg(unix)]

@@ -2,9 +2,12 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use flank_chain_dsl::limits::FILE_BYTES;
-use flank_chain_dsl::{Compilation, Diagnostic, Job, Request, Sources, compile_request, read_other_file};
+use flank_chain_dsl::{
+    Buffers, Compilation, Diagnostic, Disk, Job, Request, Sources, compile_request, read_other_file,
+};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -28,8 +31,11 @@ pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'
 /// # Errors
 /// If the standard input cannot be read.
 pub(crate) fn compiled<'g>(graph: &'g Graph, file: &Path, request: Request<'_>) -> Result<Compilation<'g>, Failure> {
-    let text = is_stdin(file).then(stdin).transpose()?;
-    Ok(compile_request(graph, file, &Request { text: text.as_deref(), ..request }))
+    let request = match is_stdin(file) {
+        true => Request { files: Arc::new(Buffers::over(Arc::new(Disk)).with(file, stdin()?)), ..request },
+        false => request,
+    };
+    Ok(compile_request(graph, file, &request))
 }
 
 pub(crate) fn is_stdin(file: &Path) -> bool {
@@ -118,7 +124,7 @@ impl Origin {
     /// Why it cannot be read, in the words that are said of specs.
     pub(crate) fn other_text(&mut self, path: &Path, most: usize) -> Result<String, Failure> {
         let mut sources = Sources::default();
-        match read_other_file(&mut sources, path, most) {
+        match read_other_file(&Disk, &mut sources, path, most) {
             Ok(id) => {
                 let source = sources.file(id);
                 self.files.extend(source.file.clone());

@@ -1,15 +1,17 @@
 //! Files of tables: where they are looked for, their texts, the numbers in two of their columns.
 
 use std::collections::HashMap;
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use flank_expr::CurveId;
 
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Sources};
 use crate::limits::{self, Limit};
+use crate::load::files::Files;
 use crate::load::tidy;
 use crate::values::dimension::{self, Dimension};
 use crate::values::value::article;
@@ -21,8 +23,8 @@ pub(crate) type Rows = Vec<(f64, f64)>;
 pub(crate) type Key = (PathBuf, [String; 2], [Dimension; 2]);
 
 /// Where tables are looked for, and those that have been read.
-#[derive(Default)]
 pub(crate) struct Tables {
+    from: Arc<dyn Files>,
     /// The project folder of each source file; a text that is not a file has none.
     projects: HashMap<FileId, PathBuf>,
     /// The folder of each source file, as the user knows it and as it really is.
@@ -36,15 +38,24 @@ pub(crate) struct Tables {
     /// One table is one curve however often it is named.
     pub(crate) curves: HashMap<Key, CurveId>,
     /// Size of all tables that have been read.
-    bytes: u64,
+    bytes: usize,
 }
 
 impl Tables {
-    pub(crate) fn new(projects: HashMap<FileId, PathBuf>, sources: &Sources) -> Tables {
+    pub(crate) fn new(from: Arc<dyn Files>, projects: HashMap<FileId, PathBuf>, sources: &Sources) -> Tables {
         let folders = sources.files().filter_map(|(id, file)| {
             Some((id, [file.path.parent()?.to_path_buf(), file.file.as_ref()?.parent()?.to_path_buf()]))
         });
-        Tables { projects, folders: folders.collect(), ..Tables::default() }
+        Tables {
+            from,
+            projects,
+            folders: folders.collect(),
+            texts: Vec::new(),
+            known: HashMap::new(),
+            rows: HashMap::new(),
+            curves: HashMap::new(),
+            bytes: 0,
+        }
     }
 
     /// Adds the texts that were read to those of the compilation.
@@ -60,7 +71,7 @@ impl Tables {
             return Err((Code::UnreadableFile, "a text that is not a file cannot use files".to_string()));
         };
         let [shown, folder] = self.folders.get(&file).cloned().unwrap_or_default();
-        let real = std::fs::canonicalize(folder.join(named)).map_err(|error| {
+        let real = self.from.real_path(&folder.join(named)).map_err(|error| {
             (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
         })?;
         if Path::new(named).is_absolute() || !real.starts_with(project) {
@@ -77,27 +88,24 @@ impl Tables {
         let [_, real] = paths;
         if let Some(&known) = self.known.get(real) {
             let text = Rc::clone(&self.texts[known].1);
-            self.count(text.len() as u64)?;
+            self.count(text.len())?;
             return Ok(text);
         }
-        let unreadable = |error: &std::io::Error| Reason::Wrong(Code::UnreadableFile, crate::load::reason(error));
-        let kind = std::fs::metadata(real).map_err(|error| unreadable(&error))?;
-        if !kind.is_file() {
-            return Err(Reason::Wrong(Code::UnreadableFile, "it is not a plain file".to_string()));
-        }
-        self.count(kind.len())?;
-        let file = std::fs::File::open(real).map_err(|error| unreadable(&error))?;
-        let mut text = String::new();
-        file.take(kind.len()).read_to_string(&mut text).map_err(|error| unreadable(&error))?;
+        let room = limits::TABLE_BYTES.most.saturating_sub(self.bytes);
+        let text = self.from.read(real, room).map_err(|error| match error.kind() {
+            ErrorKind::FileTooLarge => Reason::Exceeded(limits::TABLE_BYTES),
+            _ => Reason::Wrong(Code::UnreadableFile, crate::load::reason(&error)),
+        })?;
+        self.count(text.len())?;
         let text: Rc<str> = text.into();
         self.known.insert(real.clone(), self.texts.len());
         self.texts.push((paths.clone(), Rc::clone(&text)));
         Ok(text)
     }
 
-    fn count(&mut self, bytes: u64) -> Result<(), Reason> {
+    fn count(&mut self, bytes: usize) -> Result<(), Reason> {
         self.bytes += bytes;
-        if self.bytes > limits::TABLE_BYTES.most as u64 { Err(Reason::Exceeded(limits::TABLE_BYTES)) } else { Ok(()) }
+        if self.bytes > limits::TABLE_BYTES.most { Err(Reason::Exceeded(limits::TABLE_BYTES)) } else { Ok(()) }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Files that use each other, and values from outside.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use flank_chain_dsl::{
-    Code, Request, Severity, compile_file, compile_request, compile_text, compile_with_machine, render,
+    Buffers, Code, Disk, Request, Severity, compile_file, compile_request, compile_text, compile_with_machine, render,
 };
 use flank_expr::Graph;
 
@@ -363,8 +364,9 @@ fn a_text_is_read_in_the_place_of_its_file() {
     let folder = project("text", &[("library.chain", LIBRARY), ("jobs/j.chain", "job of old")]);
     for name in ["jobs/j.chain", "jobs/new.chain"] {
         let graph = Graph::new();
-        let request = Request { text: Some(JOB), ..Request::default() };
-        let compilation = compile_request(&graph, &folder.join(name), &request);
+        let file = folder.join(name);
+        let files = Arc::new(Buffers::over(Arc::new(Disk)).with(&file, JOB));
+        let compilation = compile_request(&graph, &file, &Request { files, ..Request::default() });
         assert!(compilation.diagnostics.is_empty(), "{name}: {:?}", compilation.diagnostics);
         assert_eq!(compilation.jobs.len(), 1);
     }

@@ -1,17 +1,24 @@
 //! Reading a file and the files that it uses.
 
+pub(crate) mod files;
+
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Name, Sources, Span, Spanned};
 use crate::limits::{self, Limit};
+use crate::load::files::Files;
 use crate::syntax::ast::{File, Item};
 use crate::syntax::parse;
 
 /// All files of a compilation, each once, used ones before those that use them.
 pub(crate) struct Loaded {
+    /// What they were read from; tables are read from it, too.
+    pub(crate) from: Arc<dyn Files>,
     pub(crate) sources: Sources,
     pub(crate) files: Vec<(FileId, File)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
@@ -34,13 +41,13 @@ struct Loader {
     open: Vec<FileId>,
 }
 
-/// Reads `path` and everything it uses, after a file `beside` it and what that uses. With a `text`, that is taken for what stands in
-/// `path`, which need not be there.
+/// Reads `path` and everything it uses, after a file `beside` it and what that uses.
 ///
 /// Files that are used must lie in the [`project_folder`] of the one that was asked for.
-pub(crate) fn load(path: &Path, text: Option<&str>, beside: Option<&Path>) -> Loaded {
+pub(crate) fn load(from: Arc<dyn Files>, path: &Path, beside: Option<&Path>) -> Loaded {
     let mut loader = Loader {
         loaded: Loaded {
+            from,
             sources: Sources::default(),
             files: Vec::new(),
             diagnostics: Vec::new(),
@@ -55,16 +62,10 @@ pub(crate) fn load(path: &Path, text: Option<&str>, beside: Option<&Path>) -> Lo
     };
     if let Some(beside) = beside {
         loader.asked_for(beside);
-        loader.loaded.beside = real_path(beside).ok().and_then(|found| loader.known.get(&found).copied());
+        let real = loader.loaded.from.real_path(beside).ok();
+        loader.loaded.beside = real.and_then(|found| loader.known.get(&found).copied());
     }
-    match text {
-        Some(text) => {
-            let real = place_of(path);
-            loader.project = project_folder(&real);
-            loader.take(path, &real, text.to_string());
-        }
-        None => loader.asked_for(path),
-    }
+    loader.asked_for(path);
     loader.loaded
 }
 
@@ -72,31 +73,37 @@ pub(crate) fn load(path: &Path, text: Option<&str>, beside: Option<&Path>) -> Lo
 ///
 /// # Errors
 /// Says why it cannot be read; the place is an empty text of the file's name.
-pub fn read_file(sources: &mut Sources, path: &Path) -> Result<FileId, Diagnostic> {
-    read_as(sources, path, limits::FILE_BYTES.most, ReadError::report)
+pub fn read_file(from: &dyn Files, sources: &mut Sources, path: &Path) -> Result<FileId, Diagnostic> {
+    read_as(from, sources, path, limits::FILE_BYTES.most, unreadable)
 }
 
 /// The same for a text that is no spec, of at most so many bytes.
 ///
 /// # Errors
 /// As [`read_file`].
-pub fn read_other_file(sources: &mut Sources, path: &Path, most: usize) -> Result<FileId, Diagnostic> {
-    read_as(sources, path, most, |error, path, place| match error {
-        ReadError::TooLarge => {
+pub fn read_other_file(
+    from: &dyn Files,
+    sources: &mut Sources,
+    path: &Path,
+    most: usize,
+) -> Result<FileId, Diagnostic> {
+    read_as(from, sources, path, most, |error, path, place| match error.kind() {
+        ErrorKind::FileTooLarge => {
             let message = format!("cannot read `{}`: it has more than {} MiB", path.display(), most >> 20);
             Diagnostic::new(Code::UnreadableFile, place, message)
         }
-        ReadError::Io(_) => error.report(path, place),
+        _ => unreadable(error, path, place),
     })
 }
 
 fn read_as(
+    from: &dyn Files,
     sources: &mut Sources,
     path: &Path,
     most: usize,
-    report: impl Fn(&ReadError, &Path, Span) -> Diagnostic,
+    report: impl Fn(&std::io::Error, &Path, Span) -> Diagnostic,
 ) -> Result<FileId, Diagnostic> {
-    match real_path(path).map_err(ReadError::Io).and_then(|real| Ok((read_limited(&real, most)?, real))) {
+    match from.real_path(path).and_then(|real| Ok((from.read(&real, most)?, real))) {
         Ok((text, real)) => Ok(sources.add_file(path, &real, text)),
         Err(error) => Err(report(&error, path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
     }
@@ -118,13 +125,14 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
             ));
         }
     }
-    Loaded { sources, files: vec![(id, file)], diagnostics, lacks_files, projects: HashMap::new(), beside: None }
+    let (from, projects) = (Arc::new(files::Disk), HashMap::new());
+    Loaded { from, sources, files: vec![(id, file)], diagnostics, lacks_files, projects, beside: None }
 }
 
 /// The nearest folder above a file, given without links, that holds a `.git` or a `flank.toml`; else the folder above that of the
 /// file. It is the same from wherever the program is called.
-fn project_folder(real: &Path) -> PathBuf {
-    let is_marked = |folder: &&Path| [".git", "flank.toml"].iter().any(|mark| folder.join(mark).exists());
+fn project_folder(from: &dyn Files, real: &Path) -> PathBuf {
+    let is_marked = |folder: &&Path| [".git", "flank.toml"].iter().any(|mark| from.exists(&folder.join(mark)));
     let mut above = real.ancestors().skip(1);
     let folder = above.clone().find(is_marked).or_else(|| above.nth(1));
     folder.unwrap_or(Path::new("/")).to_path_buf()
@@ -133,18 +141,18 @@ fn project_folder(real: &Path) -> PathBuf {
 impl Loader {
     /// A file that no other one asks for; it lies in a project of its own.
     fn asked_for(&mut self, path: &Path) {
-        match real_path(path) {
+        match self.loaded.from.real_path(path) {
             Ok(real) if self.known.contains_key(&real) => {}
             Ok(real) => {
-                self.project = project_folder(&real);
+                self.project = project_folder(&*self.loaded.from, &real);
                 self.read(path, &real, None);
             }
-            Err(error) => self.unreadable(path, &ReadError::Io(error), None),
+            Err(error) => self.unreadable(path, &error, None),
         }
     }
 
     fn read(&mut self, shown: &Path, real: &Path, used_at: Option<Span>) {
-        match read_limited(real, limits::FILE_BYTES.most) {
+        match self.loaded.from.read(real, limits::FILE_BYTES.most) {
             Ok(text) => self.take(shown, real, text),
             Err(error) => self.unreadable(shown, &error, used_at),
         }
@@ -173,13 +181,13 @@ impl Loader {
         if Path::new(&used.node).is_absolute() {
             return self.outside(used);
         }
-        let real = match std::fs::canonicalize(here.join(&used.node)) {
+        let real = match self.loaded.from.real_path(&here.join(&used.node)) {
             Ok(real) => real,
             // a path that leaves the project says so whether the file exists or not
             Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.project) => {
                 return self.outside(used);
             }
-            Err(error) => return self.unreadable(&shown, &ReadError::Io(error), Some(used.span)),
+            Err(error) => return self.unreadable(&shown, &error, Some(used.span)),
         };
         if !real.starts_with(&self.project) {
             return self.outside(used);
@@ -211,12 +219,11 @@ impl Loader {
         self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
     }
 
-    fn unreadable(&mut self, shown: &Path, error: &ReadError, used_at: Option<Span>) {
+    fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
         self.loaded.lacks_files |= used_at.is_some();
         let span = self.place(shown, used_at);
-        let mut diagnostic = error.report(shown, span);
-        let is_missing = matches!(error, ReadError::Io(error) if error.kind() == std::io::ErrorKind::NotFound);
-        if used_at.is_some() && is_missing {
+        let mut diagnostic = unreadable(error, shown, span);
+        if used_at.is_some() && error.kind() == ErrorKind::NotFound {
             diagnostic = diagnostic.help("the path starts from the folder of the file that says `use`");
         }
         self.loaded.diagnostics.push(diagnostic);
@@ -228,53 +235,15 @@ impl Loader {
     }
 }
 
-enum ReadError {
-    Io(std::io::Error),
-    TooLarge,
-}
-
-impl ReadError {
-    fn report(&self, shown: &Path, span: Span) -> Diagnostic {
-        match self {
-            ReadError::Io(error) => {
-                let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
-                Diagnostic::new(Code::UnreadableFile, span, message)
-            }
-            ReadError::TooLarge => limits::FILE_BYTES.exceeded(span),
+/// A spec that cannot be read.
+fn unreadable(error: &std::io::Error, shown: &Path, place: Span) -> Diagnostic {
+    match error.kind() {
+        ErrorKind::FileTooLarge => limits::FILE_BYTES.exceeded(place),
+        _ => {
+            let message = format!("cannot read `{}`: {}", shown.display(), reason(error));
+            Diagnostic::new(Code::UnreadableFile, place, message)
         }
     }
-}
-
-/// Where a file would stand that need not be there: in a folder without links.
-fn place_of(path: &Path) -> PathBuf {
-    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
-    let (folder, name) = (absolute.parent().unwrap_or(Path::new("/")), absolute.file_name().unwrap_or_default());
-    std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf()).join(name)
-}
-
-/// The path of a file without links and `..`; a pipe may have none.
-fn real_path(path: &Path) -> std::io::Result<PathBuf> {
-    ask_plain(path)?;
-    std::fs::canonicalize(path)
-}
-
-/// A pipe would make the reader wait, a device never end.
-fn ask_plain(path: &Path) -> std::io::Result<()> {
-    let kind = std::fs::metadata(path)?;
-    if kind.is_file() || kind.is_dir() {
-        return Ok(());
-    }
-    let reason = "it is not a plain file: what comes from a pipe or a device may never end; save it to a file first";
-    Err(std::io::Error::other(reason))
-}
-
-fn read_limited(path: &Path, most: usize) -> Result<String, ReadError> {
-    use std::io::Read;
-    ask_plain(path).map_err(ReadError::Io)?;
-    let file = std::fs::File::open(path).map_err(ReadError::Io)?;
-    let mut text = String::new();
-    file.take(most as u64 + 1).read_to_string(&mut text).map_err(ReadError::Io)?;
-    if text.len() > most { Err(ReadError::TooLarge) } else { Ok(text) }
 }
 
 /// A path without `.` and without `folder/..`.
@@ -295,10 +264,10 @@ pub(crate) fn tidy(path: &Path) -> PathBuf {
 /// Why a file cannot be read, in words.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_string(),
-        std::io::ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
-        std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
-        std::io::ErrorKind::PermissionDenied => "reading it is not permitted".to_string(),
+        ErrorKind::NotFound => "there is no such file".to_string(),
+        ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
+        ErrorKind::IsADirectory => "it is a folder".to_string(),
+        ErrorKind::PermissionDenied => "reading it is not permitted".to_string(),
         _ => error.to_string(),
     }
 }

@@ -1,0 +1,110 @@
+//! Where texts come from: the disk, or texts in memory that lie over it.
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::load::tidy;
+
+/// What a compilation reads its texts from.
+pub trait Files: Debug + Send + Sync {
+    /// The path of a plain file or a folder, without links and `..`.
+    ///
+    /// # Errors
+    /// If nothing is there, or something that may never end, as a pipe.
+    fn real_path(&self, path: &Path) -> Result<PathBuf>;
+
+    /// Whether there is a file or a folder.
+    fn exists(&self, path: &Path) -> bool;
+
+    /// The text of a plain file of at most so many bytes, whose path has no links.
+    ///
+    /// # Errors
+    /// Of the kind [`ErrorKind::FileTooLarge`] if it has more, of the kind [`ErrorKind::InvalidData`] if it is not UTF-8.
+    fn read(&self, real: &Path, most: usize) -> Result<String>;
+}
+
+/// The files of the system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Disk;
+
+impl Files for Disk {
+    fn real_path(&self, path: &Path) -> Result<PathBuf> {
+        // a pipe may have no such path
+        ask_plain(path)?;
+        std::fs::canonicalize(path)
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        path.exists()
+    }
+
+    fn read(&self, real: &Path, most: usize) -> Result<String> {
+        ask_plain(real)?;
+        let mut text = String::new();
+        std::fs::File::open(real)?.take(most as u64 + 1).read_to_string(&mut text)?;
+        limited(text, most)
+    }
+}
+
+/// Texts in memory, such as an editor's buffers, over other files: each is taken for what stands in its file, which need not be there.
+#[derive(Clone, Debug)]
+pub struct Buffers {
+    below: Arc<dyn Files>,
+    texts: BTreeMap<PathBuf, String>,
+}
+
+impl Buffers {
+    /// No text yet.
+    pub fn over(below: Arc<dyn Files>) -> Buffers {
+        Buffers { below, texts: BTreeMap::new() }
+    }
+
+    /// The same with the text of one more file.
+    pub fn with(mut self, path: &Path, text: impl Into<String>) -> Buffers {
+        self.texts.insert(self.place(path), text.into());
+        self
+    }
+
+    /// Where a file would stand that need not be there: in a folder without links.
+    fn place(&self, path: &Path) -> PathBuf {
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        let absolute = tidy(&absolute);
+        let (folder, name) = (absolute.parent().unwrap_or(Path::new("/")), absolute.file_name().unwrap_or_default());
+        self.below.real_path(folder).unwrap_or_else(|_| folder.to_path_buf()).join(name)
+    }
+}
+
+impl Files for Buffers {
+    fn real_path(&self, path: &Path) -> Result<PathBuf> {
+        let place = self.place(path);
+        if self.texts.contains_key(&place) { Ok(place) } else { self.below.real_path(path) }
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        self.texts.contains_key(&self.place(path)) || self.below.exists(path)
+    }
+
+    fn read(&self, real: &Path, most: usize) -> Result<String> {
+        match self.texts.get(real) {
+            Some(text) => limited(text.clone(), most),
+            None => self.below.read(real, most),
+        }
+    }
+}
+
+fn limited(text: String, most: usize) -> Result<String> {
+    if text.len() > most { Err(ErrorKind::FileTooLarge.into()) } else { Ok(text) }
+}
+
+/// A pipe would make the reader wait, a device never end.
+fn ask_plain(path: &Path) -> Result<()> {
+    let kind = std::fs::metadata(path)?;
+    if kind.is_file() || kind.is_dir() {
+        return Ok(());
+    }
+    let reason = "it is not a plain file: what comes from a pipe or a device may never end; save it to a file first";
+    Err(Error::other(reason))
+}
