@@ -1,35 +1,24 @@
 //! `flank check`
 
-use flank_chain_dsl::Request;
-use flank_expr::Graph;
-use serde_json::{Value, json};
+use flank::{Checked, check};
+use serde_json::json;
 
 use crate::arguments::Check;
-use crate::failure::{Failure, as_json};
-use crate::spec::{compiled, shown, tell};
-use crate::{Ending, print};
+use crate::failure::{Failure, findings_in_full};
+use crate::{Ending, document, eprint, print, spec};
 
 pub(crate) fn run(arguments: &Check) -> Result<Ending, Failure> {
-    let mut ending = Ending::Done;
-    let mut files = Vec::new();
+    let mut files: Vec<Checked> = Vec::new();
     for file in &arguments.files {
-        let graph = Graph::new();
-        let compilation = compiled(&graph, file, Request::default())?;
-        let wrong = compilation.has_errors();
-        if wrong {
-            ending = Ending::Wrong;
+        let checked = check(&spec::project(file)?);
+        if !arguments.json {
+            eprint(&findings_in_full(&checked.findings));
+            print(&format!("{}: {}\n", checked.file, if checked.ok { "ok" } else { "wrong" }));
         }
-        if arguments.json {
-            let findings: Vec<Value> =
-                compilation.diagnostics.iter().map(|finding| as_json(finding, &compilation.sources)).collect();
-            files.push(json!({ "file": shown(file), "ok": !wrong, "findings": findings }));
-        } else {
-            tell(&compilation.diagnostics, &compilation.sources);
-            print(&format!("{}: {}\n", shown(file), if wrong { "wrong" } else { "ok" }));
-        }
+        files.push(checked);
     }
     if arguments.json {
-        print(&format!("{:#}\n", json!({ "schema": "flank.check/1", "files": files })));
+        print(&document::text("flank.check/1", &json!({ "files": files })));
     }
-    Ok(ending)
+    Ok(if files.iter().all(|checked| checked.ok) { Ending::Done } else { Ending::Wrong })
 }

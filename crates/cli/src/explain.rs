@@ -1,39 +1,30 @@
 //! `flank explain`
 
-use flank_chain_dsl::{Code, Severity};
-use serde_json::{Value, json};
+use flank::{ErrorCode, error_codes, error_page};
+use serde_json::json;
 
 use crate::arguments::Explain;
-use crate::{Ending, print};
+use crate::{Ending, document, print};
 
 pub(crate) fn run(arguments: &Explain) -> Ending {
     print(&match (arguments.code, arguments.json) {
-        (Some(code), false) => code.page().to_string(),
-        (Some(code), true) => as_text(&with(&described(code), "page", code.page())),
-        (None, false) => list(),
-        (None, true) => as_text(&json!({ "codes": Code::ALL.iter().copied().map(described).collect::<Vec<_>>() })),
+        (Some(code), false) => error_page(code).to_string(),
+        (Some(code), true) => {
+            let ErrorCode { code: name, severity, title } = code.into();
+            let page = error_page(code);
+            document::text(
+                "flank.explain/1",
+                &json!({ "code": name, "severity": severity, "title": title, "page": page }),
+            )
+        }
+        (None, false) => list(&error_codes()),
+        (None, true) => document::text("flank.explain/1", &json!({ "codes": error_codes() })),
     });
     Ending::Done
 }
 
 /// One line for each code.
-fn list() -> String {
-    let line = |code: &Code| format!("{}  {}\n", code.as_str(), code.title());
-    let lines: String = Code::ALL.iter().map(line).collect();
-    format!("{lines}\n`flank explain {}` prints the page about one of them\n", Code::ALL[0].as_str())
-}
-
-fn described(code: Code) -> Value {
-    let severity = if code.severity() == Severity::Error { "error" } else { "warning" };
-    json!({ "code": code.as_str(), "severity": severity, "title": code.title() })
-}
-
-fn with(object: &Value, key: &str, value: &str) -> Value {
-    let mut object = object.clone();
-    object[key] = json!(value);
-    object
-}
-
-fn as_text(value: &Value) -> String {
-    format!("{:#}\n", with(value, "schema", "flank.explain/1"))
+fn list(all: &[ErrorCode]) -> String {
+    let lines: String = all.iter().map(|code| format!("{}  {}\n", code.code, code.title)).collect();
+    format!("{lines}\n`flank explain {}` prints the page about one of them\n", all[0].code)
 }

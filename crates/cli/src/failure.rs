@@ -1,5 +1,6 @@
 //! Why a command did not do what it was asked for, in words and as data.
 
+use flank::Findings;
 use flank_chain_dsl::{Diagnostic, Severity, Sources, render};
 use serde_json::{Value, json};
 
@@ -29,7 +30,7 @@ impl Failure {
         Failure {
             ending: Ending::Wrong,
             text: in_full(diagnostics, sources),
-            message: counted(diagnostics),
+            message: counted(counts(diagnostics)),
             findings: diagnostics.iter().map(|finding| as_json(finding, sources)).collect(),
         }
     }
@@ -74,23 +75,55 @@ impl Failure {
     }
 }
 
+impl From<flank::Failure> for Failure {
+    fn from(failure: flank::Failure) -> Failure {
+        match failure {
+            flank::Failure::Findings(findings) => Failure {
+                ending: Ending::Wrong,
+                text: findings_in_full(&findings),
+                message: counted(findings.counts()),
+                findings: findings.list().iter().map(|finding| json!(finding)).collect(),
+            },
+            flank::Failure::Request(reason) => Failure::of_usage(reason),
+            flank::Failure::Folder(error) => format!("{error}; name another folder with --out").into(),
+            other => other.to_string().into(),
+        }
+    }
+}
+
 /// Findings with the source underlined, their number, and where to read more about the first error; empty without any.
+pub(crate) fn findings_in_full(findings: &Findings) -> String {
+    if findings.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("{}{}\n", findings.rendered(true), counted(findings.counts()));
+    if let Some(first) = findings.list().iter().find(|finding| finding.severity == flank::Severity::Error) {
+        out += &format!("`flank explain {}` tells more\n", first.code);
+    }
+    out
+}
+
+/// The same of what a compilation found.
 pub(crate) fn in_full(diagnostics: &[Diagnostic], sources: &Sources) -> String {
     if diagnostics.is_empty() {
         return String::new();
     }
-    let mut out = format!("{}{}\n", render(diagnostics, sources, true), counted(diagnostics));
+    let mut out = format!("{}{}\n", render(diagnostics, sources, true), counted(counts(diagnostics)));
     if let Some(first) = diagnostics.iter().find(|finding| finding.severity() == Severity::Error) {
         out += &format!("`flank explain {}` tells more\n", first.code.as_str());
     }
     out
 }
 
-/// How many errors and warnings there are.
-fn counted(diagnostics: &[Diagnostic]) -> String {
+fn counts(diagnostics: &[Diagnostic]) -> [usize; 2] {
     let count = |severity| diagnostics.iter().filter(|finding| finding.severity() == severity).count();
+    [Severity::Error, Severity::Warning].map(count)
+}
+
+/// How many errors and warnings there are.
+fn counted([errors, warnings]: [usize; 2]) -> String {
     let of = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    match (count(Severity::Error), count(Severity::Warning)) {
+    match (errors, warnings) {
         (0, warnings) => of(warnings, "warning"),
         (errors, 0) => of(errors, "error"),
         (errors, warnings) => format!("{}, {}", of(errors, "error"), of(warnings, "warning")),

@@ -2,21 +2,20 @@
 
 use std::path::Path;
 
-use flank_chain_dsl::{Disk, FileId, Sources, format, read_file};
-use flank_export::write_atomically;
+use flank::{Layout, lay_out};
 use serde_json::{Value, json};
 
 use crate::arguments::Fmt;
 use crate::failure::Failure;
-use crate::spec::{is_stdin, shown, stdin};
-use crate::{Ending, print};
+use crate::spec::{self, is_stdin, shown};
+use crate::{Ending, document, print};
 
 pub(crate) fn run(arguments: &Fmt) -> Ending {
     let mut ending = Ending::Done;
     let mut told = Vec::new();
     for path in &arguments.files {
         let to_stdout = is_stdin(path) && !arguments.check;
-        let done = if is_stdin(path) { stream() } else { in_place(path, arguments.check) };
+        let done = laid_out(path, arguments.check);
         if arguments.json {
             told.push(as_json(path, to_stdout, &done));
         }
@@ -33,18 +32,24 @@ pub(crate) fn run(arguments: &Fmt) -> Ending {
         }
     }
     if arguments.json {
-        print(&format!("{:#}\n", json!({ "schema": "flank.fmt/1", "files": told })));
+        print(&document::text("flank.fmt/1", &json!({ "files": told })));
     }
     ending
 }
 
-/// A text as it is laid out.
-struct LaidOut {
-    text: String,
-    is_changed: bool,
+/// Lays out a file, and writes it if that changes it and it may be written.
+fn laid_out(path: &Path, check: bool) -> Result<Layout, Failure> {
+    let project = spec::project(path)?;
+    let done = lay_out(&project)?;
+    if done.is_changed && !check && !is_stdin(path) {
+        #[cfg(unix)]
+        tell_other_names(path);
+        done.write(&project).map_err(flank::Failure::from)?;
+    }
+    Ok(done)
 }
 
-fn shown_change(path: &Path, to_stdout: bool, done: &LaidOut) -> String {
+fn shown_change(path: &Path, to_stdout: bool, done: &Layout) -> String {
     match (to_stdout, done.is_changed) {
         (true, _) => done.text.clone(),
         (false, true) => format!("{}\n", shown(path)),
@@ -52,7 +57,7 @@ fn shown_change(path: &Path, to_stdout: bool, done: &LaidOut) -> String {
     }
 }
 
-fn as_json(path: &Path, to_stdout: bool, done: &Result<LaidOut, Failure>) -> Value {
+fn as_json(path: &Path, to_stdout: bool, done: &Result<Layout, Failure>) -> Value {
     let failure = done.as_ref().err();
     let done = done.as_ref().ok();
     json!({
@@ -64,19 +69,6 @@ fn as_json(path: &Path, to_stdout: bool, done: &Result<LaidOut, Failure>) -> Val
     })
 }
 
-/// Lays out a file, and writes it if that changes it and it may be written.
-fn in_place(path: &Path, check: bool) -> Result<LaidOut, Failure> {
-    let mut sources = Sources::default();
-    let file = read_file(&Disk, &mut sources, path).map_err(|finding| Failure::of_spec(&[finding], &sources))?;
-    let done = laid_out(&sources, file)?;
-    if done.is_changed && !check {
-        #[cfg(unix)]
-        tell_other_names(path);
-        write_atomically(path, |out| Ok(out.write_all(done.text.as_bytes())?)).map_err(|error| error.to_string())?;
-    }
-    Ok(done)
-}
-
 /// What is written gets its name when it is whole, so that other names of the same file keep what it was.
 #[cfg(unix)]
 fn tell_other_names(path: &Path) {
@@ -86,17 +78,4 @@ fn tell_other_names(path: &Path) {
         let names = if others == 1 { "another name".to_string() } else { format!("{others} other names") };
         crate::eprint(&format!("note: {} has {names} (hard links), where the text stays as it was\n", shown(path)));
     }
-}
-
-/// Lays out what comes from stdin.
-fn stream() -> Result<LaidOut, Failure> {
-    let mut sources = Sources::default();
-    let file = sources.add("-", stdin()?);
-    laid_out(&sources, file)
-}
-
-fn laid_out(sources: &Sources, file: FileId) -> Result<LaidOut, Failure> {
-    let before = &sources.file(file).text;
-    let text = format(before, file).map_err(|findings| Failure::of_spec(&findings, sources))?;
-    Ok(LaidOut { is_changed: text != *before, text })
 }

@@ -10,6 +10,7 @@ mod cost;
 mod cut;
 mod derive;
 mod deviation;
+mod document;
 mod explain;
 mod failure;
 mod fields;

@@ -4,10 +4,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use flank::{Buffers, Disk, Files, Project};
 use flank_chain_dsl::limits::FILE_BYTES;
-use flank_chain_dsl::{
-    Buffers, Compilation, Diagnostic, Disk, Job, Request, Sources, compile_request, read_other_file,
-};
+use flank_chain_dsl::{Compilation, Diagnostic, Job, Request, Sources, compile_request, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -31,11 +30,21 @@ pub(crate) fn jobs<'g>(graph: &'g Graph, which: &Which) -> Result<(Compilation<'
 /// # Errors
 /// If the standard input cannot be read.
 pub(crate) fn compiled<'g>(graph: &'g Graph, file: &Path, request: Request<'_>) -> Result<Compilation<'g>, Failure> {
-    let request = match is_stdin(file) {
-        true => Request { files: Arc::new(Buffers::over(Arc::new(Disk)).with(file, stdin()?)), ..request },
-        false => request,
-    };
-    Ok(compile_request(graph, file, &request))
+    Ok(compile_request(graph, file, &Request { files: files(file)?, ..request }))
+}
+
+/// A spec with the files that it uses.
+///
+/// # Errors
+/// If the standard input cannot be read.
+pub(crate) fn project(file: &Path) -> Result<Project, Failure> {
+    Ok(Project::open(file, files(file)?))
+}
+
+/// The disk, with the standard input in the place of a file that is called `-`.
+fn files(file: &Path) -> Result<Arc<dyn Files>, Failure> {
+    let disk = Arc::new(Disk);
+    Ok(if is_stdin(file) { Arc::new(Buffers::over(disk).with(file, stdin()?)) } else { disk })
 }
 
 pub(crate) fn is_stdin(file: &Path) -> bool {
@@ -46,7 +55,7 @@ pub(crate) fn is_stdin(file: &Path) -> bool {
 ///
 /// # Errors
 /// Why it cannot be read.
-pub(crate) fn stdin() -> Result<String, Failure> {
+fn stdin() -> Result<String, Failure> {
     let mut text = String::new();
     let read = std::io::stdin().take(FILE_BYTES.most as u64 + 1).read_to_string(&mut text);
     read.map_err(|error| format!("cannot read the standard input: {error}"))?;

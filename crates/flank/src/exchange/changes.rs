@@ -5,24 +5,26 @@ use std::ops::Range;
 use flank_chain_dsl::syntax::parse_expression;
 use flank_chain_dsl::{Diagnostic, FileId, Sources, Span};
 
-use crate::failure::Failure;
+use crate::exchange::templates::Words;
+use crate::project::failure::Failure;
+use crate::project::findings::Findings;
 
 /// Something that a user gives, as it was given.
 pub(super) struct Given {
-    /// `--set`, `--ask`, `--name`
-    origin: &'static str,
+    /// What findings call the place where it was given.
+    origin: String,
     text: String,
     /// Where in that text the words begin that go into the template.
     start: usize,
 }
 
 impl Given {
-    pub(super) fn name(name: &str) -> Given {
-        Given { origin: "--name", text: name.to_owned(), start: 0 }
+    pub(super) fn name(name: &Words) -> Given {
+        Given { origin: name.origin.clone(), text: name.text.clone(), start: 0 }
     }
 
-    pub(super) fn value(origin: &'static str, parameter: &str, value: &str) -> Given {
-        Given { origin, text: format!("{parameter}={value}"), start: parameter.len() + 1 }
+    pub(super) fn value(parameter: &str, value: &Words) -> Given {
+        Given { origin: value.origin.clone(), text: format!("{parameter}={}", value.text), start: parameter.len() + 1 }
     }
 
     fn words(&self) -> &str {
@@ -33,10 +35,10 @@ impl Given {
     /// If a value is no expression by itself.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let mut sources = Sources::default();
-        let file = sources.add(self.origin, self.text.as_str());
+        let file = sources.add(&self.origin, self.text.as_str());
         match parse_expression(&self.text, file, self.start as u32).1 {
             found if found.is_empty() => Ok(()),
-            found => Err(Failure::of_spec(&found, &sources)),
+            found => Err(Failure::Findings(Findings::new(&found, &sources))),
         }
     }
 }
@@ -73,7 +75,7 @@ impl Changes {
     /// Moves findings in what was given from the changed text to where it was given.
     pub(super) fn shown_as_given(&self, findings: &mut [Diagnostic], changed: FileId, sources: &mut Sources) {
         for (range, given) in self.places() {
-            let file = sources.add(given.origin, given.text.as_str());
+            let file = sources.add(&given.origin, given.text.as_str());
             let moved = |span: &mut Span| {
                 let (start, end) = (span.start as usize, span.end as usize);
                 if span.file == changed && range.start <= start && end <= range.end {

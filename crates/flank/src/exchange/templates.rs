@@ -1,45 +1,133 @@
-//! `flank new`: a job of the library becomes one of the user's, with the machines and tools that it uses.
-
-mod changes;
+//! A job of the library becomes one of the user's, with the machines and tools that it uses.
 
 use std::collections::BTreeMap;
-use std::io::BufRead;
 use std::path::{Component, Path, PathBuf};
 
 use flank_chain_dsl::syntax::ast::{Item, Job, JobStatement, Param};
 use flank_chain_dsl::syntax::parse;
 use flank_chain_dsl::{FileId, closest, compile_file};
-use flank_export::{FileSet, WriteError};
+use flank_export::{FileSet, WriteError, make_folder};
 use flank_expr::Graph;
 use include_dir::{Dir, include_dir};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use crate::arguments::New;
-use crate::failure::Failure;
-use crate::{Ending, eprint, files, print, spec};
-use changes::{Changes, Given};
+use crate::exchange::changes::{Changes, Given};
+use crate::project::failure::Failure;
+use crate::project::findings::Findings;
+use crate::project::shown_path;
 
 /// The library as it was when the program was built.
 static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 
-pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
-    let Some(template) = &arguments.template else {
-        print(&if arguments.json { list_as_json() } else { list() });
-        return Ok(Ending::Done);
+/// What the library has to start from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TemplateList {
+    /// The jobs that stand alone in their file, by name.
+    pub templates: Vec<Template>,
+    /// Files whose jobs belong together: none of them is made into a file of its own.
+    pub together: Vec<Together>,
+}
+
+/// A job to start from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Template {
+    /// Its name.
+    pub name: String,
+    /// The first sentence about it.
+    pub about: String,
+}
+
+/// A file of the library with several jobs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Together {
+    /// Its path in the repository.
+    pub file: String,
+    /// The names of its jobs.
+    pub jobs: Vec<String>,
+}
+
+/// Words that a user gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// The words.
+    pub text: String,
+    /// What findings call the place where they were given.
+    pub origin: String,
+}
+
+/// A job to be made of one of the library.
+#[derive(Clone, Debug)]
+pub struct NewJob {
+    /// The job to start from.
+    pub template: String,
+    /// What the new job is called; as the template without it.
+    pub name: Option<Words>,
+    /// Other values for parameters; of several for one the last one counts.
+    pub values: Vec<(String, Words)>,
+    /// The folder for the files; made if it is not there.
+    pub folder: PathBuf,
+}
+
+/// A parameter of a job to start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TemplateParameter {
+    /// Its name.
+    pub name: String,
+    /// The first line about it; may be empty.
+    pub about: String,
+    /// The value that the job gives it, as it is written.
+    pub default: String,
+}
+
+/// A job that was made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct JobFromTemplate {
+    /// Its name.
+    pub job: String,
+    /// Its file.
+    pub spec: String,
+    /// All files that were written, its own first.
+    pub files: Vec<String>,
+}
+
+/// What the library has to start from.
+pub fn templates() -> TemplateList {
+    let Offer { templates, together } = offer();
+    let templates = templates.into_iter().map(|(name, source)| Template { name, about: source.doc });
+    let together = together.into_iter().map(|(path, jobs)| Together { file: in_library(path), jobs });
+    TemplateList { templates: templates.collect(), together: together.collect() }
+}
+
+/// The parameters of a job to start from that have a value.
+///
+/// # Errors
+/// Why there is nothing to start from under that name.
+pub fn template_parameters(template: &str) -> Result<Vec<TemplateParameter>, Failure> {
+    let source = find(template)?;
+    let parameter = |parameter: &&Param| {
+        let span = parameter.default.as_ref()?.span;
+        Some(TemplateParameter {
+            name: parameter.name.node.clone(),
+            about: parameter.doc.first().map_or(String::new(), |line| line.trim().to_string()),
+            default: source.text[span.start as usize..span.end as usize].to_string(),
+        })
     };
-    let name = arguments.name.as_ref().unwrap_or(template);
-    let made = find(template)?.named(arguments)?;
-    let written = made.write(&arguments.out)?;
-    print(&if arguments.json {
-        format!("{:#}\n", json!({ "schema": "flank.new/2", "job": name, "spec": written[0], "files": written }))
-    } else {
-        format!("wrote {}\n\nnow: flank solve {}\n", written.join(", "), written[0])
-    });
-    Ok(Ending::Done)
+    Ok(source.parameters().iter().filter_map(parameter).collect())
+}
+
+/// Writes a job of the library under a new name, with other values, and all that it uses, as far as it compiles. Nothing that
+/// stands in the folder is changed.
+///
+/// # Errors
+/// Why there is nothing to start from under that name; what is wrong with what was given; what stands in the way.
+pub fn new_job(request: &NewJob) -> Result<JobFromTemplate, Failure> {
+    let name = request.name.as_ref().map_or(&request.template, |name| &name.text);
+    let files = find(&request.template)?.named(request)?.write(&request.folder)?;
+    Ok(JobFromTemplate { job: name.clone(), spec: files[0].clone(), files })
 }
 
 /// A job of the library.
-struct Template {
+struct Source {
     /// Its file within the library.
     path: &'static Path,
     text: &'static str,
@@ -47,10 +135,10 @@ struct Template {
     job: Job,
 }
 
-/// What the library has to start from.
+/// The same with its texts.
 struct Offer {
     /// The jobs that stand alone in their file, by name.
-    templates: BTreeMap<String, Template>,
+    templates: BTreeMap<String, Source>,
     /// Files whose jobs belong together, with their names: none of them is made into a file of its own.
     together: BTreeMap<&'static Path, Vec<String>>,
 }
@@ -65,7 +153,7 @@ fn offer() -> Offer {
             0 => {}
             1 => {
                 let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
-                offer.templates.insert(job.name.node.clone(), Template { path, text, doc, job });
+                offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job });
             }
             _ => {
                 offer.together.insert(path, jobs.into_iter().map(|job| job.name.node).collect());
@@ -92,36 +180,17 @@ fn first_sentence(lines: &[String]) -> String {
     lines[..end].iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
 }
 
-fn list() -> String {
-    let Offer { templates, together } = offer();
-    let width = templates.keys().map(String::len).max().unwrap_or(0);
-    let mut out = "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string();
-    templates.iter().for_each(|(name, template)| out += &format!("  {name:width$}  {}\n", template.doc));
-    out += "\nJobs that belong together in one file are not made into files of their own; to start from them copy theirs:\n";
-    together.iter().for_each(|(path, jobs)| out += &format!("  {}: {}\n", in_library(path), jobs.join(", ")));
-    out
-}
-
 fn in_library(path: &Path) -> String {
-    format!("specs/{}", spec::shown(path))
-}
-
-fn list_as_json() -> String {
-    let Offer { templates, together } = offer();
-    let all: Vec<Value> =
-        templates.iter().map(|(name, template)| json!({ "name": name, "about": template.doc })).collect();
-    let together: Vec<Value> =
-        together.iter().map(|(path, jobs)| json!({ "file": in_library(path), "jobs": jobs })).collect();
-    format!("{:#}\n", json!({ "schema": "flank.templates/2", "templates": all, "together": together }))
+    format!("specs/{}", shown_path(path))
 }
 
 /// # Errors
 /// Why there is nothing to start from under that name.
-fn find(name: &str) -> Result<Template, Failure> {
+fn find(name: &str) -> Result<Source, Failure> {
     let Offer { mut templates, together } = offer();
     templates.remove(name).ok_or_else(|| {
         let beside = together.iter().find(|(_, jobs)| jobs.iter().any(|job| job == name));
-        Failure::of_usage(match beside {
+        Failure::Request(match beside {
             Some((path, jobs)) => {
                 let others: Vec<&str> = jobs.iter().map(String::as_str).filter(|job| *job != name).collect();
                 format!(
@@ -143,62 +212,35 @@ fn find(name: &str) -> Result<Template, Failure> {
     })
 }
 
-impl Template {
+impl Source {
+    fn parameters(&self) -> Vec<&Param> {
+        let statements = self.job.statements.iter();
+        statements.filter_map(|one| if let JobStatement::Param(param) = one { Some(param) } else { None }).collect()
+    }
+
     /// The job with its new name and values, and what it uses.
-    fn named(self, arguments: &New) -> Result<Made, Failure> {
-        let name = arguments.name.as_deref().unwrap_or(&self.job.name.node);
-        let parameters: Vec<&Param> = self
-            .job
-            .statements
-            .iter()
-            .filter_map(|statement| if let JobStatement::Param(param) = statement { Some(param) } else { None })
-            .collect();
+    fn named(self, request: &NewJob) -> Result<Made, Failure> {
+        let own = Words { text: self.job.name.node.clone(), origin: String::new() };
+        let name = request.name.as_ref().unwrap_or(&own);
+        let parameters = self.parameters();
         let mut values = Vec::new();
-        for (known, value) in &arguments.set {
+        for (known, value) in &request.values {
             let parameter = parameters.iter().find(|parameter| parameter.name.node == *known).ok_or_else(|| {
                 let all: Vec<String> = parameters.iter().map(|known| format!("`{}`", known.name.node)).collect();
                 let all = if all.is_empty() { "none".to_owned() } else { all.join(", ") };
-                format!("`{}` has no parameter `{known}`; it has: {all}", self.job.name.node)
+                Failure::Input(format!("`{}` has no parameter `{known}`; it has: {all}", self.job.name.node))
             })?;
             // of several values for one parameter the last one counts
             values.retain(|(earlier, _): &(&&Param, Given)| earlier.name.node != *known);
-            values.push((parameter, Given::value("--set", known, value)));
-        }
-        if arguments.ask {
-            let open =
-                parameters.iter().filter(|known| !values.iter().any(|(set, _)| set.name.node == known.name.node));
-            values.extend(self.asked(&open.collect::<Vec<_>>()));
+            values.push((parameter, Given::value(known, value)));
         }
         values.iter().try_for_each(|(_, value)| value.check())?;
         let places =
             values.into_iter().filter_map(|(parameter, value)| Some((parameter.default.as_ref()?.span, value)));
         let changes = Changes::new(places.chain([(self.job.name.span, Given::name(name))]).collect());
-        let mut files = vec![(self.path.with_file_name(format!("{name}.chain")), changes.applied(self.text))];
-        used_by(self.path, self.text, &mut files)?;
+        let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), changes.applied(self.text))];
+        used_by(self.path, self.text, &mut files).map_err(Failure::Input)?;
         Ok(Made { files, changes })
-    }
-
-    /// The values that the user gives parameters when asked; the others stay as they are.
-    fn asked<'p, 'a>(&self, parameters: &[&'p &'a Param]) -> Vec<(&'p &'a Param, Given)> {
-        let mut values = Vec::new();
-        for (at, parameter) in parameters.iter().enumerate() {
-            let Some(default) = &parameter.default else { continue };
-            let (name, default) =
-                (&parameter.name.node, &self.text[default.span.start as usize..default.span.end as usize]);
-            let about = parameter.doc.first().map_or(String::new(), |line| format!(" ({})", line.trim()));
-            eprint(&format!("{name}{about} [{default}]: "));
-            let mut answer = String::new();
-            if !matches!(std::io::stdin().lock().read_line(&mut answer), Ok(1..)) {
-                let open: Vec<&str> = parameters[at..].iter().map(|open| open.name.node.as_str()).collect();
-                eprint(&format!("\nnote: nobody answers any more; {} keep their values\n", open.join(", ")));
-                break;
-            }
-            match answer.trim() {
-                "" => {}
-                answer => values.push((*parameter, Given::value("--ask", name, answer))),
-            }
-        }
-        values
     }
 }
 
@@ -212,7 +254,7 @@ fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<
             continue;
         }
         let text = LIBRARY.get_file(&path).and_then(|file| file.contents_utf8());
-        let text = text.ok_or_else(|| format!("the library lacks {}", spec::shown(&path)))?;
+        let text = text.ok_or_else(|| format!("the library lacks {}", shown_path(&path)))?;
         all.push((path.clone(), text.to_owned()));
         used_by(&path, text, all)?;
     }
@@ -249,13 +291,14 @@ impl Made {
             self.files.push((PathBuf::from(MARKER), MARK.to_owned()));
         }
         put(out, &self.files)?;
-        Ok(self.files.iter().map(|(path, _)| spec::shown(&out.join(path))).collect())
+        Ok(self.files.iter().map(|(path, _)| shown_path(&out.join(path))).collect())
     }
 
     /// # Errors
     /// What is wrong with what was given, shown there, or with the files as they would stand in `out`.
     fn compiled(&self, out: &Path) -> Result<(), Failure> {
-        let trial = tempfile::tempdir().map_err(|error| format!("no temporary folder: {}", WriteError::from(error)))?;
+        let no_folder = |error| Failure::Input(format!("no temporary folder: {}", WriteError::from(error)));
+        let trial = tempfile::tempdir().map_err(no_folder)?;
         put(trial.path(), &self.files)?;
         let file = trial.path().join(&self.files[0].0);
         let graph = Graph::new();
@@ -269,13 +312,13 @@ impl Made {
             self.changes.shown_as_given(findings, own, sources);
         }
         sources.show_below(trial.path(), out);
-        Err(Failure::of_spec(findings, sources))
+        Err(Failure::Findings(Findings::new(findings, sources)))
     }
 
-    fn check_that_nothing_stands_there(&self, out: &Path) -> Result<(), String> {
+    fn check_that_nothing_stands_there(&self, out: &Path) -> Result<(), Failure> {
         for (number, (path, text)) in self.files.iter().enumerate() {
             let path = out.join(path);
-            let shown = spec::shown(&path);
+            let shown = shown_path(&path);
             let why = match std::fs::read(&path) {
                 Ok(there) if there == text.as_bytes() => continue,
                 Ok(_) => "says something else",
@@ -283,10 +326,10 @@ impl Made {
                 Err(error) => &format!("cannot be read ({error})"),
             };
             let way = match number {
-                0 => "--out names another folder, --name another job",
-                _ => "the new job is made with the library's: take another folder with --out",
+                0 => "take another folder, or another name for the job",
+                _ => "the new job is made with the library's: take another folder",
             };
-            return Err(format!("{shown} is there already and {why}; {way}"));
+            return Err(Failure::Input(format!("{shown} is there already and {why}; {way}")));
         }
         Ok(())
     }
@@ -310,13 +353,12 @@ fn is_absent(error: &std::io::Error) -> bool {
     matches!(error.kind(), std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory)
 }
 
-fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), String> {
+fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Failure> {
     let mut set = FileSet::default();
     for (path, text) in files {
         let path = folder.join(path);
-        let folder = path.parent().unwrap_or(folder);
-        files::made(folder)?;
-        set.write(&path, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
+        make_folder(path.parent().unwrap_or(folder))?;
+        set.write(&path, |out| Ok(out.write_all(text.as_bytes())?))?;
     }
-    set.finish().map_err(|error| error.to_string())
+    Ok(set.finish()?)
 }

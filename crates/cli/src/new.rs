@@ -1,0 +1,62 @@
+//! `flank new`
+
+use std::io::BufRead;
+
+use flank::{NewJob, TemplateList, Words, new_job, template_parameters, templates};
+
+use crate::arguments::New;
+use crate::failure::Failure;
+use crate::{Ending, document, eprint, print};
+
+pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
+    let Some(template) = &arguments.template else {
+        let all = templates();
+        print(&if arguments.json { document::text("flank.templates/2", &all) } else { list(&all) });
+        return Ok(Ending::Done);
+    };
+    let words = |text: &String, origin: &str| Words { text: text.clone(), origin: origin.to_string() };
+    let mut values: Vec<(String, Words)> =
+        arguments.set.iter().map(|(name, value)| (name.clone(), words(value, "--set"))).collect();
+    if arguments.ask {
+        values.extend(asked(template, &values)?.iter().map(|(name, value)| (name.clone(), words(value, "--ask"))));
+    }
+    let name = arguments.name.as_ref().map(|name| words(name, "--name"));
+    let made = new_job(&NewJob { template: template.clone(), name, values, folder: arguments.out.clone() })?;
+    print(&if arguments.json {
+        document::text("flank.new/2", &made)
+    } else {
+        format!("wrote {}\n\nnow: flank solve {}\n", made.files.join(", "), made.spec)
+    });
+    Ok(Ending::Done)
+}
+
+fn list(TemplateList { templates, together }: &TemplateList) -> String {
+    let width = templates.iter().map(|template| template.name.len()).max().unwrap_or(0);
+    let mut out = "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string();
+    templates.iter().for_each(|template| out += &format!("  {:width$}  {}\n", template.name, template.about));
+    out += "\nJobs that belong together in one file are not made into files of their own; to start from them copy theirs:\n";
+    together.iter().for_each(|of| out += &format!("  {}: {}\n", of.file, of.jobs.join(", ")));
+    out
+}
+
+/// The values that the user gives parameters when asked; the others stay as they are.
+fn asked(template: &str, set: &[(String, Words)]) -> Result<Vec<(String, String)>, Failure> {
+    let open =
+        template_parameters(template)?.into_iter().filter(|known| !set.iter().any(|(set, _)| *set == known.name));
+    let open: Vec<_> = open.collect();
+    let mut values = Vec::new();
+    for (at, parameter) in open.iter().enumerate() {
+        let about = if parameter.about.is_empty() { String::new() } else { format!(" ({})", parameter.about) };
+        eprint(&format!("{}{about} [{}]: ", parameter.name, parameter.default));
+        let mut answer = String::new();
+        if !matches!(std::io::stdin().lock().read_line(&mut answer), Ok(1..)) {
+            let open: Vec<&str> = open[at..].iter().map(|open| open.name.as_str()).collect();
+            eprint(&format!("\nnote: nobody answers any more; {} keep their values\n", open.join(", ")));
+            break;
+        }
+        if !answer.trim().is_empty() {
+            values.push((parameter.name.clone(), answer.trim().to_string()));
+        }
+    }
+    Ok(values)
+}

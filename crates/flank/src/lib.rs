@@ -1,0 +1,35 @@
+//! Tooth surfaces of any machine: the library that the command line `flank` stands on.
+//!
+//! A [`Project`] is a spec with the files that it uses; each operation takes one, or a request of its own, and returns a typed result that
+//! serialises to the document which `flank … --json` prints. What is wrong with a spec comes as [`Findings`], data with a code and a place.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use flank::{Buffers, Disk, Project, check};
+//!
+//! let text = "machine lathe { axis C : rotary frame bed frame work in bed = rotate_z(B) }";
+//! let files = Buffers::over(Arc::new(Disk)).with("lathe.chain".as_ref(), text);
+//! let checked = check(&Project::open("lathe.chain", Arc::new(files)));
+//! assert!(!checked.ok);
+//! let first = &checked.findings.list()[0];
+//! assert_eq!((first.code, first.place.line, first.place.column), ("E0201", 1, 72));
+//! ```
+
+mod exchange;
+mod language;
+mod project;
+
+pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
+pub use exchange::templates::{
+    JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, Words, new_job, template_parameters,
+    templates,
+};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
+pub use language::check::{Checked, check};
+pub use language::errors::{ErrorCode, error_codes, error_page};
+pub use language::layout::{Layout, lay_out};
+pub use language::schemas::{Schema, schema, schemas};
+pub use project::failure::Failure;
+pub use project::findings::{Finding, Findings, Note, Place, Severity};
+pub use project::{Project, shown_path};

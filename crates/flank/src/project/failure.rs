@@ -1,0 +1,25 @@
+//! Why an operation did not do what it was asked for.
+
+use flank_export::{FileError, FolderError};
+
+use crate::project::findings::Findings;
+
+/// What ends an operation early.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A spec is wrong.
+    #[error("the spec is wrong")]
+    Findings(Findings),
+    /// What is asked for does not go together, or names something that there is not, whatever the files say.
+    #[error("{0}")]
+    Request(String),
+    /// A file is not what it should be, or has not what is asked of it.
+    #[error("{0}")]
+    Input(String),
+    /// A file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A folder cannot be made.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+}

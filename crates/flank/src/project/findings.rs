@@ -1,0 +1,124 @@
+//! What is found in the texts of a spec, as data.
+
+use flank_chain_dsl::{Diagnostic, Sources, Span, render};
+use serde::{Serialize, Serializer};
+
+use crate::project::shown_path;
+
+/// Findings with the texts that they are about.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    diagnostics: Vec<Diagnostic>,
+    sources: Sources,
+}
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Nothing can be derived from the text.
+    Error,
+    /// The text means something, but perhaps not what was meant.
+    Warning,
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// `E0301`; each code has a page ([`error_page`](crate::error_page)).
+    pub code: &'static str,
+    /// Error or warning.
+    pub severity: Severity,
+    /// The reason, in the words of the text.
+    pub message: String,
+    /// Where it is.
+    pub place: Place,
+    /// Other places that belong to it.
+    pub notes: Vec<Note>,
+    /// A way out.
+    pub help: Option<String>,
+}
+
+/// Another place that belongs to a finding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Note {
+    /// Where it is.
+    pub place: Place,
+    /// What is there.
+    pub text: String,
+}
+
+/// A place in a text.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The file, as it was named, with forward slashes.
+    pub file: String,
+    /// From 1.
+    pub line: usize,
+    /// From 1, in characters.
+    pub column: usize,
+    /// What stands there.
+    pub text: String,
+}
+
+impl Findings {
+    pub(crate) fn new(diagnostics: &[Diagnostic], sources: &Sources) -> Findings {
+        Findings { diagnostics: diagnostics.to_vec(), sources: sources.clone() }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.diagnostics.is_empty()
+    }
+
+    /// All of them, in the order of their places.
+    pub fn list(&self) -> Vec<Finding> {
+        self.diagnostics.iter().map(|diagnostic| self.finding(diagnostic)).collect()
+    }
+
+    /// Numbers of errors and of warnings.
+    pub fn counts(&self) -> [usize; 2] {
+        let count = |severity| self.diagnostics.iter().filter(|finding| finding.severity() == severity).count();
+        [flank_chain_dsl::Severity::Error, flank_chain_dsl::Severity::Warning].map(count)
+    }
+
+    /// As a person reads them: the source underlined, with ANSI colours or without.
+    pub fn rendered(&self, colours: bool) -> String {
+        render(&self.diagnostics, &self.sources, colours)
+    }
+
+    fn finding(&self, diagnostic: &Diagnostic) -> Finding {
+        Finding {
+            code: diagnostic.code.as_str(),
+            severity: diagnostic.severity().into(),
+            message: diagnostic.message.clone(),
+            place: self.place(diagnostic.span),
+            notes: diagnostic
+                .notes
+                .iter()
+                .map(|note| Note { place: self.place(note.span), text: note.text.clone() })
+                .collect(),
+            help: diagnostic.help.clone(),
+        }
+    }
+
+    fn place(&self, span: Span) -> Place {
+        let (path, line, column) = self.sources.place(span);
+        Place { file: shown_path(path), line, column, text: self.sources.text(span).to_string() }
+    }
+}
+
+impl From<flank_chain_dsl::Severity> for Severity {
+    fn from(severity: flank_chain_dsl::Severity) -> Severity {
+        match severity {
+            flank_chain_dsl::Severity::Error => Severity::Error,
+            flank_chain_dsl::Severity::Warning => Severity::Warning,
+        }
+    }
+}
+
+impl Serialize for Findings {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.list())
+    }
+}
