@@ -86,7 +86,8 @@ pub struct Picture {
 /// becomes a sheet that says so. Patches of each frame have a view of their own.
 ///
 /// ```
-/// use flank_export::{Dataset, Header, PictureOptions, picture};
+/// use flank_draw::{PictureOptions, picture};
+/// use flank_export::{Dataset, Header};
 ///
 /// let header = Header {
 ///     program: "flank 0.1.0".into(),
@@ -116,7 +117,8 @@ pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
 /// thick at zero. A point without a value has a red cross. What is not there, or has vectors, is left out.
 ///
 /// ```
-/// # use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, PictureOptions, Point, Values, field_maps};
+/// # use flank_draw::{PictureOptions, field_maps};
+/// # use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Values};
 /// # let header = Header {
 /// #     program: "flank 0.1.0".into(),
 /// #     spec: "gear.flank".into(),
@@ -192,7 +194,8 @@ pub fn topography(
 /// dots where they touch, and a detail of it.
 ///
 /// ```
-/// use flank_export::{Header, PictureOptions, Section, SectionLine, ToolPosition, section};
+/// use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
+/// use flank_export::Header;
 ///
 /// let header = Header {
 ///     program: "flank 0.1.0".into(),
