@@ -11,7 +11,7 @@ use crate::system::{Evaluation, System};
 /// Residuals of gears of 100 mm carry rounding errors of about 1e-13; this leaves two orders of room, and Newton goes on
 /// past it until nothing gets better. Residuals of very large things are allowed a share of their size.
 pub const TOLERANCE: f64 = 1e-11;
-/// Share of an equation's size (see [`Evaluation::size_of`]) that its rounding errors stay below.
+/// Share of an equation's size (see [`size_of`]) that its rounding errors stay below.
 pub(crate) const OF_SIZE: f64 = 1e-14;
 /// No tolerance is larger, however large the thing: points are good to 1e-9 mm or not solved.
 pub(crate) const LARGEST_TOLERANCE: f64 = 1e-10;
@@ -37,47 +37,174 @@ pub fn solve(system: &System, ranges: &[Range], parameters: &[f64], start: &[f64
 }
 
 pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], start: &[f64]) -> Solution {
-    let mut p: Vec<f64> = start.iter().zip(ranges).map(|(start, range)| range.widened(*start)).collect();
-    evaluation.at(&p);
-    let mut residual = evaluation.worst_residual();
-    let mut norm = squared_norm(evaluation);
-    let mut iterations = 1;
-    let mut singular = false;
-    let mut sizes = vec![0.0; ranges.len()];
-    for _ in 0..MOST_STEPS {
-        if !norm.is_finite() {
-            break;
-        }
-        let step = newton_step(evaluation, ranges, &mut sizes);
-        singular = step.singular;
-        let was_solved = evaluation.is_at_root();
-        // below the tolerance go on only while it pays: the floor is the rounding of the residuals
-        let halvings = if was_solved { 1 } else { MOST_HALVINGS };
-        let Some(trial) = descend(evaluation, ranges, Start { p: &p, norm }, &step.by, halvings, &mut iterations)
-        else {
-            break;
-        };
-        let gain = trial.residual < 0.5 * residual;
-        (p, residual, norm) = (trial.p, trial.residual, trial.norm);
-        if (was_solved && !gain) || residual == 0.0 {
-            break;
-        }
+    let mut descent = Descent::new(ranges, start);
+    while let Some(point) = descent.asks() {
+        evaluation.at(point);
+        descent.take(evaluation);
     }
-    evaluation.at(&p);
-    let is_root = evaluation.is_at_root();
-    if is_root {
-        singular = newton_step(evaluation, ranges, &mut sizes).singular;
-    }
-    let outcome = match verdict(&p, ranges, is_root, singular) {
-        Outcome::Solved => evaluation.side(),
-        Outcome::NotConverged { .. } => Outcome::NotConverged { iterations },
-        other => other,
-    };
-    Solution { outcome, unknowns: p, residual, iterations }
+    descent.ended(evaluation)
 }
 
-fn squared_norm(evaluation: &Evaluation<'_>) -> f64 {
-    evaluation.residuals().iter().map(|r| r * r).sum()
+/// Newton from one start, told residuals and Jacobian at each point that it asks for: several of them can be computed at once.
+pub(crate) struct Descent<'r> {
+    ranges: &'r [Range],
+    /// The best point so far, with its largest residual and the sum of their squares.
+    p: Vec<f64>,
+    residual: f64,
+    norm: f64,
+    iterations: u32,
+    steps: usize,
+    singular: bool,
+    sizes: Vec<f64>,
+    /// Where residuals and Jacobian are wanted.
+    asked: Vec<f64>,
+    stage: Stage,
+    is_root: bool,
+}
+
+/// What is asked for.
+enum Stage {
+    Start,
+    /// A share of the step from the best point.
+    Trial {
+        step: Vec<f64>,
+        /// The share of the first trial, which does not leave the branch.
+        first: f64,
+        halving: i32,
+        /// Trials until the step is given up.
+        halvings: i32,
+        was_solved: bool,
+    },
+    /// The best point once more, after trials that were worse.
+    Best,
+    Nothing,
+}
+
+impl<'r> Descent<'r> {
+    pub(crate) fn new(ranges: &'r [Range], start: &[f64]) -> Descent<'r> {
+        let p: Vec<f64> = start.iter().zip(ranges).map(|(start, range)| range.widened(*start)).collect();
+        Descent {
+            ranges,
+            asked: p.clone(),
+            p,
+            residual: f64::NAN,
+            norm: f64::NAN,
+            iterations: 1,
+            steps: 0,
+            singular: false,
+            sizes: vec![0.0; ranges.len()],
+            stage: Stage::Start,
+            is_root: false,
+        }
+    }
+
+    /// Where residuals and Jacobian are wanted next; `None` at the end.
+    pub(crate) fn asks(&self) -> Option<&[f64]> {
+        (!matches!(self.stage, Stage::Nothing)).then_some(&self.asked)
+    }
+
+    /// Goes on with residuals and Jacobian at the point that was asked for.
+    pub(crate) fn take(&mut self, at: &impl Linearized) {
+        match std::mem::replace(&mut self.stage, Stage::Nothing) {
+            Stage::Start => {
+                (self.residual, self.norm) = (worst_residual(at, self.p.len()), squared_norm(at, self.p.len()));
+                self.step(at);
+            }
+            Stage::Trial { step, first, halving, halvings, was_solved } => {
+                self.iterations += 1;
+                let share = first * 0.5f64.powi(halving);
+                let norm = squared_norm(at, self.p.len());
+                if norm < self.norm * (1.0 - 1e-4 * share) {
+                    self.accept((worst_residual(at, self.p.len()), norm), was_solved, at);
+                } else if halving + 1 < halvings {
+                    self.try_share(Stage::Trial { step, first, halving: halving + 1, halvings, was_solved });
+                } else {
+                    self.asked.clone_from(&self.p);
+                    self.stage = Stage::Best;
+                }
+            }
+            Stage::Best => self.end(at),
+            Stage::Nothing => {}
+        }
+    }
+
+    /// The trial is the best point now.
+    fn accept(&mut self, (residual, norm): (f64, f64), was_solved: bool, at: &impl Linearized) {
+        let gain = residual < 0.5 * self.residual;
+        self.p.clone_from(&self.asked);
+        (self.residual, self.norm) = (residual, norm);
+        if (was_solved && !gain) || residual == 0.0 { self.end(at) } else { self.step(at) }
+    }
+
+    /// Takes Newton's step from the best point, where residuals and Jacobian are known.
+    fn step(&mut self, at: &impl Linearized) {
+        if self.steps == MOST_STEPS || !self.norm.is_finite() {
+            return self.end(at);
+        }
+        self.steps += 1;
+        let Step { by: step, singular } = newton_step(at, self.ranges, &mut self.sizes);
+        self.singular = singular;
+        let was_solved = is_at_root(at, &self.p);
+        // below the tolerance go on only while it pays: the floor is the rounding of the residuals
+        let halvings = if was_solved { 1 } else { MOST_HALVINGS };
+        let longest = step.iter().zip(self.ranges).map(|(s, range)| s.abs() / range.width()).fold(0.0, f64::max);
+        let first = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
+        self.try_share(Stage::Trial { step, first, halving: 0, halvings, was_solved });
+    }
+
+    /// Asks for the trial of a stage: the longest of the step, its half, its quarter, … that makes the residuals smaller is taken.
+    fn try_share(&mut self, trial: Stage) {
+        if let Stage::Trial { step, first, halving, .. } = &trial {
+            let share = first * 0.5f64.powi(*halving);
+            let moved = self.p.iter().zip(step).zip(self.ranges);
+            self.asked.clear();
+            self.asked.extend(moved.map(|((p, s), range)| range.widened(p + share * s)));
+        }
+        self.stage = trial;
+    }
+
+    /// At the best point, where residuals and Jacobian are known.
+    fn end(&mut self, at: &impl Linearized) {
+        self.is_root = is_at_root(at, &self.p);
+        if self.is_root {
+            self.singular = newton_step(at, self.ranges, &mut self.sizes).singular;
+        }
+    }
+
+    /// Where it ended, and as what by the conditions of the system; the evaluation's parameters are those that it was told of.
+    pub(crate) fn ended(self, evaluation: &mut Evaluation<'_>) -> Solution {
+        let Descent { p, residual, iterations, .. } = self;
+        let outcome = match verdict(&p, self.ranges, self.is_root, self.singular) {
+            Outcome::Solved => evaluation.side(&p),
+            Outcome::NotConverged { .. } => Outcome::NotConverged { iterations },
+            other => other,
+        };
+        Solution { outcome, unknowns: p, residual, iterations }
+    }
+}
+
+fn squared_norm(at: &impl Linearized, size: usize) -> f64 {
+    (0..size).map(|row| at.residual(row)).map(|r| r * r).sum()
+}
+
+/// The largest residual; NaN if any is.
+pub(crate) fn worst_residual(at: &impl Linearized, size: usize) -> f64 {
+    let residuals = (0..size).map(|row| at.residual(row));
+    residuals.fold(0.0, |worst: f64, r| if r.is_nan() { r.abs() } else { worst.max(r.abs()) })
+}
+
+/// Whether no residual at a point is larger than its tolerance; never where one is NaN.
+fn is_at_root(at: &impl Linearized, p: &[f64]) -> bool {
+    (0..p.len()).all(|row| {
+        let tolerance = (OF_SIZE * size_of(at, p, row)).clamp(TOLERANCE, LARGEST_TOLERANCE);
+        at.residual(row).abs() <= tolerance
+    })
+}
+
+/// How large the terms are that cancel in a residual: what a change of each unknown by its own size, or by a radian or
+/// a millimetre, makes of it. For a rotation that is the radius at which it carries the point.
+fn size_of(at: &impl Linearized, p: &[f64], row: usize) -> f64 {
+    p.iter().enumerate().map(|(column, p)| at.jacobian(row, column).abs() * p.abs().max(1.0)).sum()
 }
 
 /// Residuals and Jacobian at a point.
@@ -150,21 +277,6 @@ fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
 }
 
 impl Evaluation<'_> {
-    /// Whether no residual at the point of the last evaluation is larger than its tolerance; never where one is NaN.
-    fn is_at_root(&self) -> bool {
-        self.residuals().iter().enumerate().all(|(i, residual)| {
-            let tolerance = (OF_SIZE * self.size_of(i)).clamp(TOLERANCE, LARGEST_TOLERANCE);
-            residual.abs() <= tolerance
-        })
-    }
-
-    /// How large the terms are that cancel in a residual: what a change of each unknown by its own size, or by a radian or
-    /// a millimetre, makes of it. For a rotation that is the radius at which it carries the point.
-    fn size_of(&self, row: usize) -> f64 {
-        let unknowns = self.unknowns().iter().enumerate();
-        unknowns.map(|(column, p)| self.jacobian(row, column).abs() * p.abs().max(1.0)).sum()
-    }
-
     /// The Jacobian's determinant at the point of the last evaluation, with unknowns scaled by their ranges: along a branch it vanishes
     /// only where the branch turns back or meets another one. Not finite where it is no number.
     pub(crate) fn determinant(&self, ranges: &[Range]) -> f64 {
@@ -186,42 +298,4 @@ impl Evaluation<'_> {
         let step = newton_step(self, ranges, &mut vec![0.0; ranges.len()]);
         self.unknowns().iter().zip(&step.by).map(|(p, by)| p + by).collect()
     }
-}
-
-struct Trial {
-    p: Vec<f64>,
-    residual: f64,
-    norm: f64,
-}
-
-/// Where a step begins.
-#[derive(Clone, Copy)]
-struct Start<'p> {
-    p: &'p [f64],
-    norm: f64,
-}
-
-/// The longest of the step, its half, its quarter, … that makes the residuals smaller; `None` if none does.
-fn descend(
-    evaluation: &mut Evaluation<'_>,
-    ranges: &[Range],
-    start: Start<'_>,
-    step: &[f64],
-    halvings: i32,
-    evaluations: &mut u32,
-) -> Option<Trial> {
-    let longest = step.iter().zip(ranges).map(|(s, range)| s.abs() / range.width()).fold(0.0, f64::max);
-    let first = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
-    for halving in 0..halvings {
-        let share = first * 0.5f64.powi(halving);
-        let moved = start.p.iter().zip(step).zip(ranges);
-        let trial: Vec<f64> = moved.map(|((p, s), range)| range.widened(p + share * s)).collect();
-        evaluation.at(&trial);
-        *evaluations += 1;
-        let new = squared_norm(evaluation);
-        if new < start.norm * (1.0 - 1e-4 * share) {
-            return Some(Trial { p: trial, residual: evaluation.worst_residual(), norm: new });
-        }
-    }
-    None
 }

@@ -1,6 +1,10 @@
 //! Start values: the ranges are scanned, no user supplies a guess.
 
-use crate::newton::solve_with;
+use std::ops::Range as Span;
+
+use flank_expr::{LANES, LaneEvaluator};
+
+use crate::newton::{Descent, Linearized, worst_residual};
 use crate::solution::{Range, Solution, distance};
 use crate::system::Evaluation;
 
@@ -52,20 +56,21 @@ pub(crate) fn scan(
     scan: Scan,
     is_sought: impl Fn(&Solution) -> bool,
 ) -> (Vec<Solution>, u64) {
+    let mut lanes = Lanes::of(evaluation);
     let mut candidates: Vec<(f64, u32)> = Vec::with_capacity(scan.probes as usize);
-    for k in 1..=scan.probes {
-        evaluation.at(&probe(ranges, k));
-        let worst = evaluation.worst_residual();
-        if worst.is_finite() {
-            candidates.push((worst, k));
-        }
+    let probes: Vec<u32> = (1..=scan.probes).collect();
+    for numbers in probes.chunks(LANES) {
+        lanes.compute(numbers.iter().map(|k| probe(ranges, *k)));
+        let worst = numbers.iter().enumerate().map(|(lane, k)| (worst_residual(&lanes.at(lane), ranges.len()), *k));
+        candidates.extend(worst.filter(|(worst, _)| worst.is_finite()));
     }
     candidates.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    candidates.truncate(scan.starts);
     let mut evaluations = u64::from(scan.probes);
     let mut found: Vec<Solution> = Vec::new();
     let mut failure = Solution::never_reached(ranges);
-    for &(_, k) in candidates.iter().take(scan.starts) {
-        let solution = solve_with(evaluation, ranges, &probe(ranges, k));
+    for descent in lanes.descend(ranges, candidates.iter().map(|(_, k)| probe(ranges, *k)).collect()) {
+        let solution = descent.ended(evaluation);
         evaluations += u64::from(solution.iterations);
         if !is_sought(&solution) {
             failure = solution.better(failure);
@@ -77,4 +82,69 @@ pub(crate) fn scan(
         found.push(failure);
     }
     (found, evaluations)
+}
+
+/// Residuals and Jacobian of a system at many points at once. The bits are those of an [`Evaluation`].
+struct Lanes<'s> {
+    evaluator: LaneEvaluator<'s>,
+    size: usize,
+}
+
+/// The same at one of the points.
+struct Lane<'l, 's>(&'l Lanes<'s>, usize);
+
+impl<'s> Lanes<'s> {
+    /// With the parameters of an evaluation.
+    fn of(evaluation: &Evaluation<'s>) -> Lanes<'s> {
+        let (system, parameters) = (evaluation.system(), evaluation.parameters());
+        let mut evaluator = system.in_lanes();
+        for (k, parameter) in parameters.iter().enumerate() {
+            evaluator.input(system.size() + k).fill(*parameter);
+        }
+        Lanes { evaluator, size: system.size() }
+    }
+
+    /// At the first points, as many as there are lanes at the most.
+    fn compute<P: AsRef<[f64]>>(&mut self, points: impl Iterator<Item = P>) {
+        let mut count = 0;
+        for point in points {
+            for (k, value) in point.as_ref().iter().enumerate() {
+                self.evaluator.input(k)[count] = *value;
+            }
+            count += 1;
+        }
+        self.evaluator.run_first(count);
+    }
+
+    fn at(&self, lane: usize) -> Lane<'_, 's> {
+        Lane(self, lane)
+    }
+
+    /// Newton from each of the starts, in their order.
+    fn descend<'r>(&mut self, ranges: &'r [Range], starts: Vec<Vec<f64>>) -> Vec<Descent<'r>> {
+        let mut descents: Vec<Descent<'r>> = starts.iter().map(|start| Descent::new(ranges, start)).collect();
+        let mut waiting: Span<usize> = 0..descents.len();
+        let mut open: Vec<usize> = waiting.by_ref().take(LANES).collect();
+        while !open.is_empty() {
+            self.compute(open.iter().filter_map(|number| descents[*number].asks()));
+            for (lane, number) in open.iter().enumerate() {
+                descents[*number].take(&self.at(lane));
+            }
+            open.retain(|number| descents[*number].asks().is_some());
+            open.extend(waiting.by_ref().take(LANES - open.len()));
+        }
+        descents
+    }
+}
+
+impl Linearized for Lane<'_, '_> {
+    fn residual(&self, row: usize) -> f64 {
+        let Lane(lanes, lane) = self;
+        lanes.evaluator.output(row)[*lane]
+    }
+
+    fn jacobian(&self, row: usize, column: usize) -> f64 {
+        let Lane(lanes, lane) = self;
+        lanes.evaluator.output(lanes.size * (1 + row) + column)[*lane]
+    }
 }

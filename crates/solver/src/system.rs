@@ -1,6 +1,8 @@
 //! Square systems with their exact Jacobian, as one tape.
 
-use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
+use std::sync::OnceLock;
+
+use flank_expr::{Expr, InstructionSet, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, TapeError};
 
 use crate::field;
 use crate::newton::Linearized;
@@ -16,6 +18,8 @@ pub struct System {
     /// What must be positive at a root for it to be one of the thing that is looked for.
     conditions: Tape,
     pub(crate) lanes: LaneTapes,
+    /// Residuals, then the Jacobian row by row, for many points at once: laid out when it is wanted first.
+    in_lanes: OnceLock<LaneTape>,
     extra_count: usize,
     instructions: InstructionSet,
 }
@@ -77,7 +81,8 @@ impl System {
         let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
         let lanes = LaneTapes { checked, linearized, is_written_out: false, expected: None, given: None };
         let instructions = InstructionSet::fastest();
-        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, extra_count: 0, instructions })
+        let in_lanes = OnceLock::new();
+        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, in_lanes, extra_count: 0, instructions })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
@@ -140,12 +145,18 @@ impl System {
         &self.residuals
     }
 
+    /// Something that computes residuals and Jacobian at many points at once.
+    pub(crate) fn in_lanes(&self) -> LaneEvaluator<'_> {
+        LaneEvaluator::new(self.in_lanes.get_or_init(|| LaneTape::new(&self.tape)), self.instructions)
+    }
+
     /// Something that evaluates it at one set of parameters.
     pub(crate) fn evaluation(&self, parameters: &[f64]) -> Evaluation<'_> {
         let mut inputs = vec![0.0; self.size];
         inputs.extend_from_slice(parameters);
         let outputs = vec![0.0; self.tape.output_count()];
         Evaluation {
+            system: self,
             evaluator: ScalarEvaluator::new(&self.tape),
             conditions: ScalarEvaluator::new(&self.conditions),
             met: vec![0.0; self.conditions.output_count()],
@@ -158,6 +169,7 @@ impl System {
 
 /// Residuals and Jacobian at a point.
 pub(crate) struct Evaluation<'s> {
+    system: &'s System,
     evaluator: ScalarEvaluator<'s>,
     conditions: ScalarEvaluator<'s>,
     met: Vec<f64>,
@@ -166,14 +178,23 @@ pub(crate) struct Evaluation<'s> {
     outputs: Vec<f64>,
 }
 
-impl Evaluation<'_> {
+impl<'s> Evaluation<'s> {
+    pub(crate) fn system(&self) -> &'s System {
+        self.system
+    }
+
+    pub(crate) fn parameters(&self) -> &[f64] {
+        &self.inputs[self.size..]
+    }
+
     pub(crate) fn at(&mut self, unknowns: &[f64]) {
         self.inputs[..self.size].copy_from_slice(unknowns);
         self.evaluator.run(&self.inputs, &mut self.outputs);
     }
 
-    /// What a root at the point of the last evaluation is by the conditions.
-    pub(crate) fn side(&mut self) -> Outcome {
+    /// What a root is by the conditions.
+    pub(crate) fn side(&mut self, root: &[f64]) -> Outcome {
+        self.inputs[..self.size].copy_from_slice(root);
         self.conditions.run(&self.inputs, &mut self.met);
         side_of(self.met.iter().copied())
     }
@@ -184,15 +205,6 @@ impl Evaluation<'_> {
 
     pub(crate) fn unknowns(&self) -> &[f64] {
         &self.inputs[..self.size]
-    }
-
-    pub(crate) fn residuals(&self) -> &[f64] {
-        &self.outputs[..self.size]
-    }
-
-    /// The largest residual; NaN if any is.
-    pub(crate) fn worst_residual(&self) -> f64 {
-        self.residuals().iter().fold(0.0, |worst: f64, r| if r.is_nan() { r.abs() } else { worst.max(r.abs()) })
     }
 }
 
