@@ -3,8 +3,12 @@
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, Sample};
 use flank_export::{Field, Values};
 use flank_solver::{Metric, Outcome, PointGeometry, Principal, SurfaceGeometry, SurfacePoint};
+use rayon::prelude::*;
 
 use crate::units;
+
+/// Points that threads share out at once: of no more all that is known is held.
+const TOGETHER: usize = 4096;
 
 type Vector = [f64; 3];
 
@@ -20,9 +24,10 @@ pub(crate) fn fields<'g>(
     let geometry = SurfaceGeometry::new(&surface.surface, motions, coordinates, &job.bindings())
         .expect("a job without errors leaves nothing unbound");
     let mut columns = columns(surface, sample);
-    for point in points {
-        let known = (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
-        columns.iter_mut().for_each(|column| column.take(known.as_ref()));
+    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
+    for points in points.chunks(TOGETHER) {
+        let found: Vec<Option<PointGeometry>> = points.par_iter().map(at).collect();
+        found.iter().for_each(|known| columns.iter_mut().for_each(|column| column.take(known.as_ref())));
     }
     columns.into_iter().map(Column::field).collect()
 }

@@ -7,10 +7,14 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
 use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Values};
 use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::table::{Solved, aligned};
 use crate::units;
+
+/// Points that threads share out at once: of no more all influences are held.
+const TOGETHER: usize = 4096;
 
 /// Maps on one picture.
 pub(crate) const MAPS: usize = 6;
@@ -54,11 +58,13 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
     // one number of each parameter and point is all that is kept of a point
     let mut moved: Vec<Vec<Option<f64>>> = vec![Vec::with_capacity(points.len()); continuous.len()];
     let mut known = 0;
-    for point in points {
-        let of_all = at(point);
-        known += usize::from(of_all.is_some());
-        for ((k, _), values) in continuous.iter().zip(&mut moved) {
-            values.push(of_all.as_ref().map(|of_all| of_all[*k]));
+    for points in points.chunks(TOGETHER) {
+        let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
+        for of_all in found {
+            known += usize::from(of_all.is_some());
+            for ((k, _), values) in continuous.iter().zip(&mut moved) {
+                values.push(of_all.as_ref().map(|of_all| of_all[*k]));
+            }
         }
     }
     let influences = continuous.iter().zip(moved);

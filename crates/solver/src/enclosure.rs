@@ -80,6 +80,13 @@ impl<'s> Enclosure<'s> {
         self.residuals.run(&self.inputs, &mut self.at_point);
     }
 
+    /// Whether a residual has no zero on a box: that takes no Jacobian.
+    fn is_empty(&mut self, boxed: &[Interval]) -> bool {
+        self.inputs[..self.size].copy_from_slice(boxed);
+        self.residuals.run(&self.inputs, &mut self.at_point);
+        self.at_point.iter().any(|value| !value.contains(0.0))
+    }
+
     fn jacobian(&self, row: usize, column: usize) -> Interval {
         self.outputs[self.size * (1 + row) + column]
     }
@@ -99,10 +106,10 @@ impl<'s> Enclosure<'s> {
     /// preconditioned one.
     pub(crate) fn contract(&mut self, boxed: &[Interval]) -> Contraction {
         let n = self.size;
-        self.evaluate(boxed);
-        if self.outputs[..n].iter().any(|value| !value.contains(0.0)) {
+        if self.is_empty(boxed) {
             return Contraction::Empty;
         }
+        self.evaluate(boxed);
         if !self.outputs.iter().all(|output| output.continuous) {
             return Contraction::Blind;
         }

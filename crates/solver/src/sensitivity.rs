@@ -56,8 +56,8 @@ pub struct NormalSensitivity {
     parameters: Vec<Interval>,
     /// The normal, then how a point moves with each parameter alone, from the unknowns and the parameters.
     tape: Tape,
-    /// How parameter i (row) follows parameter j (column), with its rounding: row by row.
-    following: Vec<Interval>,
+    /// For each parameter those that follow it and move points, itself among them, each with its total derivative and its rounding.
+    following: Vec<Vec<(usize, Interval)>>,
 }
 
 impl NormalSensitivity {
@@ -69,12 +69,14 @@ impl NormalSensitivity {
         // values stay inputs: folded into constants, what rounding leaves of terms that cancel would look exact
         let variables = parameters.iter().map(|parameter| parameter.variable);
         let inputs: Vec<Expr<'g>> = surface.unknowns.iter().copied().chain(variables).collect();
-        let slopes = parameters.iter().flat_map(|parameter| surface.position.derivative(parameter.variable).0);
-        let outputs: Vec<Expr<'g>> = surface.normal.0.into_iter().chain(slopes).collect();
+        let slopes: Vec<[Expr<'g>; 3]> =
+            parameters.iter().map(|parameter| surface.position.derivative(parameter.variable).0).collect();
+        let outputs: Vec<Expr<'g>> = surface.normal.0.into_iter().chain(slopes.iter().copied().flatten()).collect();
+        let moves = |i: usize| slopes[i].iter().any(|slope| slope.as_constant() != Some(0.0));
         Ok(NormalSensitivity {
             parameters: parameters.iter().map(|parameter| Interval::point(parameter.value)).collect(),
             tape: Tape::new(&outputs, &inputs)?,
-            following: following(parameters)?,
+            following: following(parameters, moves)?,
         })
     }
 
@@ -99,11 +101,9 @@ impl NormalSensitivity {
 
     /// Of a point with unchanged unknowns, per unit of a parameter, from what each parameter alone does.
     fn displacement(&self, slopes: &[Interval], parameter: usize) -> [Interval; 3] {
-        let (count, zero) = (self.parameters.len(), Interval::point(0.0));
         std::array::from_fn(|axis| {
-            let moved = (parameter..count).map(|i| (self.following[i * count + parameter], i));
-            let moved = moved.filter(|(follows, _)| *follows != zero);
-            moved.fold(zero, |sum, (follows, i)| sum + follows * slopes[3 * i + axis])
+            let moved = self.following[parameter].iter().map(|(i, follows)| *follows * slopes[3 * i + axis]);
+            moved.fold(Interval::point(0.0), |sum, moved| sum + moved)
         })
     }
 }
@@ -117,8 +117,11 @@ fn along_normal(normal: &[Interval], moved: &[Interval; 3]) -> f64 {
 }
 
 /// The total derivatives of all parameters with respect to each of them, which is changed itself while its definition is left
-/// aside: as when it is given another value by hand.
-fn following(parameters: &[Parameter<'_>]) -> Result<Vec<Interval>, TapeError> {
+/// aside: as when it is given another value by hand. Of each the parameters that follow it and for which `moves` says so.
+fn following(
+    parameters: &[Parameter<'_>],
+    moves: impl Fn(usize) -> bool,
+) -> Result<Vec<Vec<(usize, Interval)>>, TapeError> {
     let (count, zero) = (parameters.len(), Interval::point(0.0));
     let mut total = vec![zero; count * count];
     let variables: Vec<Expr<'_>> = parameters.iter().map(|parameter| parameter.variable).collect();
@@ -135,5 +138,9 @@ fn following(parameters: &[Parameter<'_>]) -> Result<Vec<Interval>, TapeError> {
             }
         }
     }
-    Ok(total)
+    let of = |j: usize| {
+        let following = (j..count).map(|i| (i, total[i * count + j]));
+        following.filter(|(i, follows)| *follows != zero && moves(*i)).collect()
+    };
+    Ok((0..count).map(of).collect())
 }

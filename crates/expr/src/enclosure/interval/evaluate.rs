@@ -92,6 +92,7 @@ impl Unary {
 
 impl Binary {
     /// All values on a pair of intervals. `Atan2` takes (y, x).
+    #[inline]
     pub fn apply_interval(self, a: Interval, b: Interval) -> Interval {
         match self {
             Binary::Add => a + b,
