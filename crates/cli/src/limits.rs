@@ -3,7 +3,8 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample, spaced};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
-use flank_solver::{SurfacePoint, SurfaceProblem};
+use flank_solver::{Effort, SurfacePoint, SurfaceProblem};
+use rayon::prelude::*;
 
 use crate::arguments::Means;
 use crate::progress::Working;
@@ -55,49 +56,82 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
     several.map(told).chain(partly).chain([open]).collect()
 }
 
-/// Both lines of a surface that points are asked of; none for a surface without an equation of meshing.
-pub(crate) fn lines<'j, 'g>(job: &Job<'g>, surface: &'j GeneratedSurface<'g>, means: Means) -> Vec<Line<'j, 'g>> {
-    let Some(sample) = &surface.sample else { return Vec::new() };
-    let _working = Working::on(format!("looking for the limits of {}", surface.name));
-    let singular = surface.surface.clearance_minors().pop();
-    [("singular line", singular), ("contact limit", surface.surface.contact_limit())]
-        .into_iter()
-        .filter_map(|(kind, quantity)| {
-            let quantity = quantity?;
-            // along the coordinate that follows the line farther: it may run across the other one
-            let along = |k: usize| line(job, surface, sample, (kind, quantity), k, means);
-            let first = along(0);
-            if first.summary.solved() == first.points.len() {
-                return Some(first);
-            }
-            let second = along(1);
-            Some(if second.found() > first.found() { second } else { first })
-        })
-        .collect()
+/// Both lines of each surface that points are asked of; none of a surface without an equation of meshing. All threads look for them,
+/// each for one line.
+pub(crate) fn lines<'j, 'g: 'j>(
+    job: &Job<'g>,
+    surfaces: impl IntoIterator<Item = &'j GeneratedSurface<'g>>,
+    means: Means,
+) -> Vec<Line<'j, 'g>> {
+    let sought: Vec<Sought<'j, 'g>> = surfaces.into_iter().flat_map(sought).collect();
+    let Some(one) = sought.first() else { return Vec::new() };
+    let others = sought.iter().any(|other| other.surface.name != one.surface.name);
+    let _working = Working::on(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
+    // along the coordinate that follows the line farther: it may run across the other one
+    let mut lines = look(job, &sought, 0, means);
+    let is_open = |line: &Line<'_, '_>| line.summary.solved() < line.points.len();
+    let open: Vec<usize> = (0..lines.len()).filter(|at| is_open(&lines[*at])).collect();
+    let again: Vec<Sought<'j, 'g>> = open.iter().map(|at| sought[*at]).collect();
+    for (at, second) in open.into_iter().zip(look(job, &again, 1, means)) {
+        if second.found() > lines[at].found() {
+            lines[at] = second;
+        }
+    }
+    lines
 }
 
-fn line<'j, 'g>(
-    job: &Job<'g>,
+/// A line that is looked for: where a quantity is zero.
+#[derive(Clone, Copy)]
+struct Sought<'j, 'g> {
     surface: &'j GeneratedSurface<'g>,
-    sample: &Sample<'g>,
-    (kind, quantity): (&'static str, Expr<'g>),
-    k: usize,
-    means: Means,
-) -> Line<'j, 'g> {
-    let ends = sample.each_target().map(|target| target[k]);
-    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let count = sample.counts.into_iter().max().unwrap_or(1).max(2);
-    let targets: Vec<[f64; 2]> = spaced((low, high), count).into_iter().map(|value| [0.0, value]).collect();
-    let along = &sample.coordinates[k];
-    let problem =
-        SurfaceProblem::line(&surface.surface, quantity, along.value, solve::ranges(surface), &job.bindings())
+    sample: &'j Sample<'g>,
+    kind: &'static str,
+    quantity: Expr<'g>,
+}
+
+fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
+    let Some(sample) = &surface.sample else { return Vec::new() };
+    let singular = surface.surface.clearance_minors().pop();
+    let kinds = [("singular line", singular), ("contact limit", surface.surface.contact_limit())];
+    let of = |(kind, quantity): (&'static str, Option<Expr<'g>>)| {
+        Some(Sought { surface, sample, kind, quantity: quantity? })
+    };
+    kinds.into_iter().filter_map(of).collect()
+}
+
+/// Lines at values of one of the coordinates of their surfaces' samples, in the order in which they are sought.
+fn look<'j, 'g>(job: &Job<'g>, sought: &[Sought<'j, 'g>], k: usize, means: Means) -> Vec<Line<'j, 'g>> {
+    let problems: Vec<(SurfaceProblem, Vec<[f64; 2]>)> =
+        sought.iter().map(|sought| (sought.problem(job, k, means), sought.targets(k))).collect();
+    let found: Vec<(Vec<SurfacePoint>, Effort)> =
+        problems.par_iter().map(|(problem, targets)| problem.solve(targets, [1, targets.len()])).collect();
+    sought.iter().zip(found).map(|(sought, found)| sought.line(k, found)).collect()
+}
+
+impl<'j, 'g> Sought<'j, 'g> {
+    fn targets(&self, k: usize) -> Vec<[f64; 2]> {
+        let ends = self.sample.each_target().map(|target| target[k]);
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let count = self.sample.counts.into_iter().max().unwrap_or(1).max(2);
+        spaced((low, high), count).into_iter().map(|value| [0.0, value]).collect()
+    }
+
+    fn problem(&self, job: &Job<'g>, k: usize, means: Means) -> SurfaceProblem {
+        let (surface, along) = (self.surface, &self.sample.coordinates[k]);
+        let ranges = solve::ranges(surface);
+        let problem = SurfaceProblem::line(&surface.surface, self.quantity, along.value, ranges, &job.bindings())
             .expect("a job without errors leaves nothing unbound");
-    let problem = problem.reaching(reach::followed(surface)).on(means.instructions());
-    let (points, effort) = problem.solve(&targets, [1, targets.len()]);
-    let name = format!("{}.{}", surface.name, kind.replace(' ', "_"));
-    let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
-    let is_open = summary.solved() == 0 && (effort.is_given_up || !effort.undecided.is_empty());
-    Line { surface, name, kind, along: along.name.clone(), summary, points, several: effort.branches.len(), is_open }
+        problem.reaching(reach::followed(surface)).on(means.instructions())
+    }
+
+    fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, Effort)) -> Line<'j, 'g> {
+        let surface = self.surface;
+        let name = format!("{}.{}", surface.name, self.kind.replace(' ', "_"));
+        let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
+        let is_open = summary.solved() == 0 && (effort.is_given_up || !effort.undecided.is_empty());
+        let along = self.sample.coordinates[k].name.clone();
+        Line { surface, name, kind: self.kind, along, summary, points, several: effort.branches.len(), is_open }
+    }
 }
 
 impl Line<'_, '_> {

@@ -43,8 +43,7 @@ pub(crate) fn run(arguments: &Solve) -> Result<Ending, Failure> {
         let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let limited = job.surfaces.iter().filter(|_| arguments.limits);
-        let limits = limited.flat_map(|surface| limits::lines(job, surface, arguments.means));
-        let limits: Vec<Line<'_, '_>> = limits.collect();
+        let limits: Vec<Line<'_, '_>> = limits::lines(job, limited, arguments.means);
         // a trim that takes nothing has no line
         let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
         let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();

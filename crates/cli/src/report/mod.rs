@@ -83,11 +83,11 @@ impl<'j, 'g> Findings<'j, 'g> {
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
-        let mut lines = Vec::new();
-        for solved in &mut solved {
-            lines.extend(limits::lines(job, solved.surface, wanted.means));
-            lines.extend(solved.trims.drain(..).filter(|line| !line.points.is_empty()));
-        }
+        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.means);
+        lines.extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
+        // those of a surface one after the other
+        let place = |line: &Line<'_, '_>| job.surfaces.iter().position(|surface| surface.name == line.surface.name);
+        lines.sort_by_key(place);
         let bare = Wanted { geometry: false, sensitivity: false, certificates: false, ..wanted };
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
         let faces = arguments.faces.step.into_iter().flat_map(smooth).collect();
