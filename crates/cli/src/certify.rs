@@ -23,7 +23,7 @@ pub(crate) fn field(radii: &[Option<f64>]) -> Field {
         name: "certified_radius".into(),
         unit: "mm".into(),
         meaning: "exactly one point of the surface with these coordinates is proven to lie this near".into(),
-        values: Values::Scalars(radii.into()),
+        values: Values::Scalars(radii.iter().copied().collect()),
     }
 }
 

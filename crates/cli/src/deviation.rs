@@ -450,7 +450,7 @@ impl Measured<'_, '_> {
             name: format!("deviation of {}", self.held.name()),
             unit: "um".to_string(),
             meaning: NOTE.to_string(),
-            values: Values::Scalars(self.deviations.as_slice().into()),
+            values: Values::Scalars(self.deviations.iter().copied().collect()),
         };
         let held = match &self.held {
             Held::Surface(of) => Some(of.job),

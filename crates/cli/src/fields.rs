@@ -4,6 +4,7 @@ use flank_export::{Values, fixed};
 use flank_solver::Outcome;
 use serde_json::{Value, json};
 
+use crate::stream::Streamed;
 use crate::table::{Solved, aligned};
 
 /// The values of one field of numbers over the solved points of a surface.
@@ -20,19 +21,22 @@ struct FieldRange<'a> {
 
 /// Vectors have no range.
 fn ranges<'a>(solved: &'a Solved<'_, '_>) -> impl Iterator<Item = FieldRange<'a>> {
-    solved.fields.iter().filter_map(|field| {
+    let of_all = solved.streamed.as_ref().map(Streamed::fields).filter(|fields| !fields.is_empty());
+    of_all.unwrap_or(&solved.fields).iter().filter_map(move |field| {
         let Values::Scalars(values) = &field.values else { return None };
         let mut range = FieldRange { name: &field.name, unit: &field.unit, ends: None, is_whole: true, undefined: 0 };
-        let of_solved = solved.points.iter().zip(values.iter()).filter(|(point, _)| point.outcome == Outcome::Solved);
-        for (_, value) in of_solved {
-            match value {
-                Some(x) => {
-                    range.ends = Some(range.ends.map_or((*x, *x), |(low, high)| (low.min(*x), high.max(*x))));
-                    range.is_whole &= x.fract() == 0.0;
-                }
-                None => range.undefined += 1,
-            }
+        // a point that is not solved is not described
+        let is_meant = |at: &usize| of_all.is_some() || solved.points[*at].outcome == Outcome::Solved;
+        let mut known = 0;
+        for x in (0..values.len()).filter(is_meant).filter_map(|at| values.at(at)) {
+            known += 1;
+            range.ends = Some(range.ends.map_or((x, x), |(low, high)| (low.min(x), high.max(x))));
+            range.is_whole &= x.fract() == 0.0;
         }
+        range.undefined = match of_all {
+            Some(_) => solved.summary.solved() - known,
+            None => solved.points.iter().filter(|point| point.outcome == Outcome::Solved).count() - known,
+        };
         Some(range)
     })
 }

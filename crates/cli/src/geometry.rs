@@ -1,14 +1,14 @@
 //! `flank solve --geometry`: what a surface is like at its points.
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, Sample};
-use flank_export::{Field, Values};
+use flank_export::{Field, Known, Values};
 use flank_solver::{Metric, Outcome, PointGeometry, Principal, SurfaceGeometry, SurfacePoint};
 use rayon::prelude::*;
 
 use crate::units;
 
 /// Points that threads share out at once: of no more all that is known is held.
-const TOGETHER: usize = 4096;
+pub(crate) const TOGETHER: usize = 4096;
 
 type Vector = [f64; 3];
 
@@ -19,22 +19,48 @@ pub(crate) fn fields<'g>(
     sample: &Sample<'g>,
     points: &[SurfacePoint],
 ) -> Vec<Field> {
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-    let motions = &surface.generation.motions;
-    let geometry = SurfaceGeometry::new(&surface.surface, motions, coordinates, &job.bindings())
-        .expect("a job without errors leaves nothing unbound");
-    let mut columns = columns(surface, sample);
-    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
-    for points in points.chunks(TOGETHER) {
-        let found: Vec<Option<PointGeometry>> = points.par_iter().map(at).collect();
-        found.iter().for_each(|known| columns.iter_mut().for_each(|column| column.take(known.as_ref())));
+    let mut described = Described::new(job, surface, sample, points.len());
+    points.chunks(TOGETHER).for_each(|points| described.add(points));
+    described.fields()
+}
+
+/// The same, of points that are handed over in order.
+pub(crate) struct Described<'s> {
+    geometry: SurfaceGeometry,
+    columns: Vec<Column<'s>>,
+}
+
+impl<'s> Described<'s> {
+    /// Of so many points.
+    pub(crate) fn new<'g>(
+        job: &Job<'g>,
+        surface: &'s GeneratedSurface<'g>,
+        sample: &'s Sample<'g>,
+        points: usize,
+    ) -> Described<'s> {
+        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let motions = &surface.generation.motions;
+        let geometry = SurfaceGeometry::new(&surface.surface, motions, coordinates, &job.bindings())
+            .expect("a job without errors leaves nothing unbound");
+        Described { geometry, columns: columns(surface, sample, points) }
     }
-    columns.into_iter().map(Column::field).collect()
+
+    /// The next points, on all threads at once: a few thousand are enough.
+    pub(crate) fn add(&mut self, points: &[SurfacePoint]) {
+        let geometry = &self.geometry;
+        let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| geometry.at(&point.unknowns));
+        let found: Vec<Option<PointGeometry>> = points.par_iter().map(at).collect();
+        found.iter().for_each(|known| self.columns.iter_mut().for_each(|column| column.take(known.as_ref())));
+    }
+
+    pub(crate) fn fields(self) -> Vec<Field> {
+        self.columns.into_iter().map(Column::field).collect()
+    }
 }
 
 /// How many numbers a point has in these fields.
 pub(crate) fn numbers(surface: &GeneratedSurface<'_>, sample: &Sample<'_>) -> usize {
-    columns(surface, sample).iter().map(|column| if matches!(column.taken, Taken::Scalars(..)) { 1 } else { 3 }).sum()
+    columns(surface, sample, 0).iter().map(|column| if matches!(column.taken, Taken::Scalars(..)) { 1 } else { 3 }).sum()
 }
 
 /// A field that is being filled, point by point.
@@ -49,18 +75,27 @@ type Of<'s, T> = Box<dyn Fn(&PointGeometry) -> Option<T> + 's>;
 
 /// What it takes from a point that is solved, and its values so far.
 enum Taken<'s> {
-    Scalars(Of<'s, f64>, Vec<Option<f64>>),
-    Vectors(Of<'s, Vector>, Vec<Option<Vector>>),
+    Scalars(Of<'s, f64>, Known<f64>),
+    Vectors(Of<'s, Vector>, Known<Vector>),
+}
+
+impl Taken<'_> {
+    fn reserve(&mut self, points: usize) {
+        match self {
+            Taken::Scalars(_, values) => *values = Known::with_capacity(points),
+            Taken::Vectors(_, values) => *values = Known::with_capacity(points),
+        }
+    }
 }
 
 impl<'s> Column<'s> {
     fn scalar(name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<f64> + 's) -> Column<'s> {
-        let taken = Taken::Scalars(Box::new(of), Vec::new());
+        let taken = Taken::Scalars(Box::new(of), Known::with_capacity(0));
         Column { name: name.into(), unit: unit.into(), meaning: meaning.into(), taken }
     }
 
     fn vector(name: &str, unit: &str, meaning: &str, of: impl Fn(&PointGeometry) -> Option<Vector> + 's) -> Column<'s> {
-        let taken = Taken::Vectors(Box::new(of), Vec::new());
+        let taken = Taken::Vectors(Box::new(of), Known::with_capacity(0));
         Column { name: name.into(), unit: unit.into(), meaning: meaning.into(), taken }
     }
 
@@ -73,17 +108,19 @@ impl<'s> Column<'s> {
 
     fn field(self) -> Field {
         let values = match self.taken {
-            Taken::Scalars(_, values) => Values::Scalars(values.into()),
-            Taken::Vectors(_, values) => Values::Vectors(values.into()),
+            Taken::Scalars(_, values) => Values::Scalars(values),
+            Taken::Vectors(_, values) => Values::Vectors(values),
         };
         Field { name: self.name, unit: self.unit, meaning: self.meaning, values }
     }
 }
 
-fn columns<'s>(surface: &'s GeneratedSurface<'_>, sample: &'s Sample<'_>) -> Vec<Column<'s>> {
+/// With room for so many points.
+fn columns<'s>(surface: &'s GeneratedSurface<'_>, sample: &'s Sample<'_>, points: usize) -> Vec<Column<'s>> {
     let mut columns = bending();
     columns.extend(contact(surface));
     columns.extend(metric(sample));
+    columns.iter_mut().for_each(|column| column.taken.reserve(points));
     columns
 }
 

@@ -97,6 +97,9 @@ fn main() -> ExitCode {
             return ended(Ending::Done);
         }
     };
+    if command.is_json() {
+        memory::tell_as_document();
+    }
     if let Some(means) = command.means() {
         threads::start(means.threads());
     }

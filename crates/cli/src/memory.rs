@@ -5,7 +5,9 @@
 #![allow(unsafe_code)] // an allocator is unsafe to write; this one hands everything to the system's
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::fmt::Arguments;
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::Ending;
 
@@ -50,18 +52,52 @@ fn granted(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
+/// Whether what ends the program is told as a document on stdout, too.
+static AS_DOCUMENT: AtomicBool = AtomicBool::new(false);
+
+/// Has it told so.
+pub(crate) fn tell_as_document() {
+    AS_DOCUMENT.store(true, Ordering::Relaxed);
+}
+
 /// Says so without any memory, and ends. Files that are not whole have no names yet.
 #[cold]
 fn refused(bytes: usize) -> ! {
-    let mut text = [0; 160];
-    let room = text.len();
-    let mut left = &mut text[..];
-    // what does not fit is left out
-    let _ = writeln!(
-        left,
-        "error: out of memory: the system gave none of {bytes} bytes more; ask for fewer points, or give the program more"
+    let code = Ending::OutOfMemory.code();
+    let reason = format_args!(
+        "out of memory: the system gave none of {bytes} bytes more; ask for fewer points, or give the program more"
     );
-    let written = room - left.len();
-    let _ = std::io::stderr().write_all(&text[..written]);
-    std::process::exit(Ending::OutOfMemory.code().into())
+    let _ = written(format_args!("error: {reason}\n"), |text| std::io::stderr().write_all(text));
+    // of several threads one tells it
+    if AS_DOCUMENT.swap(false, Ordering::Relaxed) {
+        let document = format_args!(
+            "{{\"schema\": \"flank.failure/1\", \"exit_code\": {code}, \"message\": \"{reason}\", \"findings\": []}}\n"
+        );
+        let _ = written(document, to_stdout);
+    }
+    std::process::exit(code.into())
+}
+
+/// Writes a text that is put together in memory which is there; what does not fit is left out.
+fn written(text: Arguments<'_>, write: impl FnOnce(&[u8]) -> std::io::Result<()>) -> std::io::Result<()> {
+    let mut room = [0; 320];
+    let size = room.len();
+    let mut left = &mut room[..];
+    let _ = left.write_fmt(text);
+    let used = size - left.len();
+    write(&room[..used])
+}
+
+/// Past the standard library's stdout, which takes memory when it is used first and may be in use.
+#[cfg(target_os = "linux")]
+fn to_stdout(mut text: &[u8]) -> std::io::Result<()> {
+    while !text.is_empty() {
+        text = &text[rustix::io::write(rustix::stdio::stdout(), text)?..];
+    }
+    Ok(())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn to_stdout(text: &[u8]) -> std::io::Result<()> {
+    std::io::stdout().write_all(text)
 }

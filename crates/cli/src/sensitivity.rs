@@ -1,11 +1,10 @@
 //! `flank solve --sensitivity`: how far each parameter moves the surfaces.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
 use flank_draw::{Picture, PictureOptions, field_maps};
-use flank_export::{Dataset, Field, Values};
+use flank_export::{Dataset, Field, Known, Values};
 use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -40,7 +39,7 @@ struct Influence {
     dimension: Dimension,
     /// The change that parameters are ranked by, in the same unit.
     usual_change: f64,
-    values: Arc<[Option<f64>]>,
+    values: Known<f64>,
     /// Root of the mean square, and the largest, over all points with a value.
     rms: f64,
     largest: f64,
@@ -56,7 +55,7 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
     let (counts, continuous): (Vec<_>, Vec<_>) =
         job.parameters.iter().enumerate().partition(|(_, parameter)| parameter.is_count);
     // one number of each parameter and point is all that is kept of a point
-    let mut moved: Vec<Vec<Option<f64>>> = vec![Vec::with_capacity(points.len()); continuous.len()];
+    let mut moved: Vec<Known<f64>> = continuous.iter().map(|_| Known::with_capacity(points.len())).collect();
     let mut known = 0;
     for points in points.chunks(TOGETHER) {
         let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
@@ -68,15 +67,15 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
         }
     }
     let influences = continuous.iter().zip(moved);
-    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, moved)).collect();
+    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, &moved)).collect();
     let counts = counts.into_iter().map(|(_, parameter)| parameter.name.clone()).collect();
     Sensitivity { influences, counts, points: known }
 }
 
 impl Influence {
-    fn new(parameter: &Parameter<'_>, moved: Vec<Option<f64>>) -> Influence {
+    fn new(parameter: &Parameter<'_>, moved: &Known<f64>) -> Influence {
         let (size, step) = small_step(parameter.dimension);
-        let values: Arc<[Option<f64>]> = moved.into_iter().map(|mm| Some(1e3 * size * mm?)).collect();
+        let values: Known<f64> = moved.iter().map(|mm| Some(1e3 * size * mm?)).collect();
         let known = || values.iter().flatten();
         let squares: f64 = known().map(|um| um * um).sum();
         Influence {
@@ -99,7 +98,7 @@ impl Influence {
                 "normal displacement of the surface for a change of `{}`; plus is more material",
                 self.parameter
             ),
-            values: Values::Scalars(Arc::clone(&self.values)),
+            values: Values::Scalars(self.values.clone()),
         }
     }
 

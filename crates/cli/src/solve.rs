@@ -165,8 +165,9 @@ fn in_bands<'j, 'g>(
     sample: &'j Sample<'g>,
     wanted: Wanted,
 ) -> Solved<'j, 'g> {
-    let streamed = Streamed::new(job, surface, sample, wanted.means);
-    let Kept { summary, effort, drawn } = streamed.look();
+    let mut streamed = Streamed::new(job, surface, sample, wanted.means);
+    let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown);
+    let is_of_drawn = wanted.geometry && wanted.of_shown;
     Solved {
         surface,
         sample,
@@ -180,7 +181,7 @@ fn in_bands<'j, 'g>(
         streamed: Some(streamed),
         effort,
         radii: None,
-        fields: if wanted.geometry { geometry::fields(job, surface, sample, &drawn) } else { Vec::new() },
+        fields: if is_of_drawn { geometry::fields(job, surface, sample, &drawn) } else { Vec::new() },
         sensitivity: wanted.sensitivity.then(|| sensitivity::of(job, surface, &drawn)),
         points: drawn,
         trims: Vec::new(),

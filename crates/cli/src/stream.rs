@@ -3,11 +3,11 @@
 //! What needs all points of a surface together is told what it would take before anything is solved.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_export::{Axis, Banded, Patch, Point, Taker, WriteError};
+use flank_export::{Axis, Banded, Field, Patch, Point, Taker, WriteError};
 use flank_solver::{Band, Effort, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
 use crate::arguments::Means;
-use crate::geometry;
+use crate::geometry::{self, Described, TOGETHER};
 use crate::progress::Working;
 use crate::solve::{Wanted, patch, point, problem};
 use crate::summary::Summary;
@@ -17,10 +17,10 @@ const KEPT: usize = 1 << 16;
 /// Bytes that the points of a job may take together where they are kept: what machines of today can spare.
 const MOST_BYTES: usize = 1 << 30;
 /// Bytes of a point that is kept: verdict, place, normal and residual, as the solver gives them and as they are written, with what the
-/// system's memory takes for two lists of unknowns; and of each unknown, and each number of a field, which may be missing.
+/// system's memory takes for two lists of unknowns; and of each unknown, and each number of a field.
 const OF_POINT: usize = size_of::<SurfacePoint>() + size_of::<Point>() + 2 * 16;
 const OF_UNKNOWN: usize = 2 * size_of::<f64>();
-const OF_NUMBER: usize = size_of::<Option<f64>>();
+const OF_NUMBER: usize = size_of::<f64>();
 /// Points that are handed over at once, if rows are not longer than that.
 const HANDED_OVER: usize = 8192;
 /// Rows, and columns, of a picture.
@@ -55,22 +55,36 @@ pub(crate) fn check_kept<'s, 'g: 's>(
     let (mut points, mut bytes, mut needed) = (0_usize, 0_usize, None);
     for (surface, sample) in surfaces.into_iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?))) {
         let count = sample.counts[0] * sample.counts[1];
-        if let Some(what) = needs_all(job, surface, sample, wanted).filter(|_| count > KEPT) {
-            points += count;
-            bytes += count * bytes_of_point(job, surface, sample, wanted);
-            needed.get_or_insert(what);
-        }
+        let all_needed = needs_all(job, surface, sample, wanted);
+        let of_point = bytes_of_point(job, surface, sample, wanted);
+        points += count;
+        bytes += if count <= KEPT || all_needed.is_some() {
+            count * of_point
+        } else {
+            count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_point
+        };
+        let flag = || (wanted.geometry && !wanted.of_shown).then(|| "--geometry".to_string());
+        needed = needed.or(all_needed.or_else(flag).filter(|_| count > KEPT));
     }
-    match needed {
-        Some(what) if bytes > MOST_BYTES => Err(format!(
-            "job {} asks for {points} points that {what} needs all together: they would take about {:.1} GB, and {:.1} GB is \
-             the most; ask for fewer points, for one surface at a time, or do without it",
-            job.name,
-            bytes as f64 / 1e9,
-            MOST_BYTES as f64 / 1e9
-        )),
-        _ => Ok(()),
+    if bytes <= MOST_BYTES {
+        return Ok(());
     }
+    let (asked, without) = match needed {
+        Some(what) => (format!("{points} points, and {what} needs something of all of them at once"), ", or do without it"),
+        None => (format!("{points} points in many surfaces"), ""),
+    };
+    Err(format!(
+        "job {} asks for {asked}: that would take about {:.1} GB, and {:.1} GB is the most; ask for fewer points, or for fewer \
+         surfaces at a time{without}",
+        job.name,
+        bytes as f64 / 1e9,
+        MOST_BYTES as f64 / 1e9
+    ))
+}
+
+/// Numbers that are kept of each point of a surface whose points are not.
+fn numbers_of_all(surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> usize {
+    if wanted.geometry && !wanted.of_shown { geometry::numbers(surface, sample) } else { 0 }
 }
 
 fn bytes_of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> usize {
@@ -110,11 +124,7 @@ fn needs_all(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>,
     let between = between.map(|(word, by)| format!("`{word} {} by {}`", surface.name, job.surfaces[by].name));
     let required = sample.limits.first().map(|limit| format!("what its sample requires of `{}`", limit.of.name));
     let of_each = |is_given: bool| is_given && !wanted.of_shown;
-    let flags = [
-        (of_each(wanted.geometry), "--geometry"),
-        (of_each(wanted.sensitivity), "--sensitivity"),
-        (wanted.certificates, "--certify"),
-    ];
+    let flags = [(of_each(wanted.sensitivity), "--sensitivity"), (wanted.certificates, "--certify")];
     let flag = flags.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
     between.or(required).or(wanted.together.or(flag).map(str::to_string))
 }
@@ -142,24 +152,37 @@ impl<'j, 'g> Streamed<'j, 'g> {
         self.sample.counts.map(|count| (0..count).step_by(count.div_ceil(DRAWN).max(1)).collect())
     }
 
-    /// Looks at all points.
-    pub(crate) fn look(&self) -> Kept {
+    /// Looks at all points; where they are `described`, files show what each is like.
+    pub(crate) fn look(&mut self, described: bool) -> Kept {
         let counts = self.sample.counts;
         let step = counts.map(|count| count.div_ceil(DRAWN).max(1));
         let mut summary = Summary::new(self.surface.unknowns.len(), counts);
         let mut drawn = Vec::new();
+        let all = counts[0] * counts[1];
+        let mut described = described.then(|| Described::new(self.job, self.surface, self.sample, all));
         let looked = self.solve(|band| {
-            for (number, point) in band.points().enumerate() {
-                let place = [band.rows().start + number / counts[1], number % counts[1]];
-                summary.add(&point);
-                if place[0].is_multiple_of(step[0]) && place[1].is_multiple_of(step[1]) {
-                    drawn.push(point);
+            for first in (0..band.len()).step_by(TOGETHER) {
+                let numbers = first..band.len().min(first + TOGETHER);
+                let points: Vec<SurfacePoint> = numbers.clone().map(|number| band.point(number)).collect();
+                described.iter_mut().for_each(|described| described.add(&points));
+                for (number, point) in numbers.zip(points) {
+                    let place = [band.rows().start + number / counts[1], number % counts[1]];
+                    summary.add(&point);
+                    if place[0].is_multiple_of(step[0]) && place[1].is_multiple_of(step[1]) {
+                        drawn.push(point);
+                    }
                 }
             }
             Ok::<_, std::convert::Infallible>(())
         });
         let Ok(effort) = looked;
+        self.outline.fields = described.map_or(Vec::new(), Described::fields);
         Kept { summary, effort, drawn }
+    }
+
+    /// What is known of each of its points.
+    pub(crate) fn fields(&self) -> &[Field] {
+        &self.outline.fields
     }
 
     pub(crate) fn problem(&self) -> &SurfaceProblem {

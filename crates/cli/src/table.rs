@@ -49,7 +49,7 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) kept_out: Vec<SurfacePoint>,
     /// How near exactly one root is proven to each point, mm, if that was asked for.
     pub(crate) radii: Option<Vec<Option<f64>>>,
-    /// What more is known of the points; files show it after the status.
+    /// What more is known of these points; files show it after the status. What is known of each point of a streamed surface it has itself.
     pub(crate) fields: Vec<Field>,
     pub(crate) sensitivity: Option<Sensitivity>,
     /// What the single edges leave, if the job says which.

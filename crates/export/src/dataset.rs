@@ -1,9 +1,8 @@
 //! What the solver's results look like to a writer of files.
 
-use std::sync::Arc;
-
 use crate::conventions::one_line;
 use crate::error::Malformed;
+use crate::known::Known;
 use crate::tally::Tally;
 
 /// Everything one job produced, ready to be written.
@@ -62,13 +61,13 @@ pub struct Field {
     pub values: Values,
 }
 
-/// The values of a field, shared by its clones. `None` where it is not defined; what a point that is not solved has is not written.
+/// The values of a field: none where it is not defined; what a point that is not solved has is not written.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     /// A number for each point.
-    Scalars(Arc<[Option<f64>]>),
+    Scalars(Known<f64>),
     /// A vector in the patch's frame for each point.
-    Vectors(Arc<[Option<[f64; 3]>]>),
+    Vectors(Known<[f64; 3]>),
 }
 
 /// One direction of a grid.
@@ -179,8 +178,8 @@ impl Values {
     /// The numbers of one point: one or three, none where there is no value.
     pub(crate) fn at(&self, point: usize) -> &[f64] {
         match self {
-            Values::Scalars(values) => values[point].as_slice(),
-            Values::Vectors(values) => values[point].as_ref().map_or(&[], <[f64; 3]>::as_slice),
+            Values::Scalars(values) => values.numbers(point),
+            Values::Vectors(values) => values.numbers(point),
         }
     }
 }

@@ -161,8 +161,8 @@ fn field(field: &Field) -> FieldOut<'_> {
 
 fn value_out(values: &Values, point: usize) -> ValueOut {
     match values {
-        Values::Scalars(values) => ValueOut::Scalar(values[point].map(plain)),
-        Values::Vectors(values) => ValueOut::Vector(values[point].map(|vector| vector.map(plain))),
+        Values::Scalars(values) => ValueOut::Scalar(values.at(point).map(plain)),
+        Values::Vectors(values) => ValueOut::Vector(values.at(point).map(|vector| vector.map(plain))),
     }
 }
 

@@ -67,6 +67,7 @@ mod error;
 mod facets;
 mod json_file;
 mod json_layout;
+mod known;
 mod lock;
 mod measuring;
 mod motion;
@@ -92,6 +93,7 @@ pub use csv_file::write_csv;
 pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use error::{FileError, FolderError, Malformed, WriteError};
 pub use json_file::{SCHEMA, write_json};
+pub use known::{Kept, Known};
 pub use measuring::{
     FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,
     Part, read_measured, write_grid_csv, write_grid_json,

@@ -168,9 +168,9 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     let mut partial = with_fields(sound());
     partial.fields[1].values = Values::Vectors([None; 5].into());
     assert_eq!(refusal(partial).to_string(), "surface `flank`, field `d1`: 5 values for 6 points");
-    let mut undefined = with_fields(sound());
-    undefined.fields[0].values = Values::Scalars([Some(f64::NAN); 6].into());
-    assert_eq!(refusal(undefined), Malformed::NotANumber { surface: "flank".into(), i: 0, j: 0 });
+    let mut infinite = with_fields(sound());
+    infinite.fields[0].values = Values::Scalars([Some(f64::INFINITY); 6].into());
+    assert_eq!(refusal(infinite), Malformed::NotANumber { surface: "flank".into(), i: 0, j: 0 });
     let mut huge = sound();
     huge.rows.count = usize::MAX;
     assert!(matches!(refusal(huge), Malformed::PointCount { .. }));

@@ -51,7 +51,7 @@ impl Shown {
     /// Whether some point has a value.
     fn has_values(&self) -> bool {
         let values = |(patch, field): &(usize, usize)| match &self.dataset.patches[*patch].fields[*field].values {
-            Values::Scalars(values) => values.iter().any(Option::is_some),
+            Values::Scalars(values) => values.iter().any(|value| value.is_some()),
             Values::Vectors(_) => false,
         };
         self.fields.iter().any(values)
@@ -76,7 +76,7 @@ pub(super) fn curvature(subject: &Subject<'_, '_>, options: &PictureOptions) -> 
         let Some(((k1, larger), (k2, smaller))) = values("k1").zip(values("k2")) else { return Vec::new() };
         let both = |of: fn(f64, f64) -> f64| {
             let pairs = larger.iter().zip(smaller.iter());
-            Values::Scalars(pairs.map(|(a, b)| Some(of((*a)?, (*b)?))).collect())
+            Values::Scalars(pairs.map(|(a, b)| Some(of(a?, b?))).collect())
         };
         let field = |name: &str, unit: &str, meaning: &str, values: Values| Field {
             name: name.to_string(),

@@ -31,7 +31,7 @@ fn bends(solved: &Solved<'_, '_>) -> Vec<Bend> {
     let of = |name: &'static str, sign: f64| {
         let field = solved.fields.iter().find(|field| field.name == name)?;
         let Values::Scalars(values) = &field.values else { return None };
-        let known = values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
+        let known = values.iter().enumerate().filter_map(|(at, value)| Some((at, value?)));
         let (at, value) = known.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))?;
         Some(Bend { field: name, value, at })
     };

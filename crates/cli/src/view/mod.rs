@@ -91,7 +91,7 @@ fn tally(solved: &[Solved<'_, '_>], patches: &mut [Patch]) -> Tally {
 /// Whether a field is not zero everywhere, as is that of a parameter without influence.
 fn is_something(field: &Field) -> bool {
     match &field.values {
-        Values::Scalars(values) => values.iter().flatten().any(|value| *value != 0.0),
+        Values::Scalars(values) => values.iter().flatten().any(|value| value != 0.0),
         Values::Vectors(_) => true,
     }
 }

@@ -27,8 +27,8 @@ pub(super) fn thinned(patch: &Patch, step: usize) -> Patch {
     thin.points = kept.iter().map(|&at| patch.points[at].clone()).collect();
     for field in &mut thin.fields {
         field.values = match &field.values {
-            Values::Scalars(values) => Values::Scalars(kept.iter().map(|&at| values[at]).collect()),
-            Values::Vectors(values) => Values::Vectors(kept.iter().map(|&at| values[at]).collect()),
+            Values::Scalars(values) => Values::Scalars(kept.iter().map(|&at| values.at(at)).collect()),
+            Values::Vectors(values) => Values::Vectors(kept.iter().map(|&at| values.at(at)).collect()),
         };
     }
     thin

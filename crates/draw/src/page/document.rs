@@ -158,8 +158,8 @@ fn number_of(word: &'static str, words: &mut Vec<&'static str>) -> usize {
 
 fn field(field: &Field) -> FieldOut<'_> {
     let values = match &field.values {
-        Values::Scalars(values) => encoded(values.iter().map(|value| value.unwrap_or(f64::NAN))),
-        Values::Vectors(values) => encoded(values.iter().flat_map(|value| value.unwrap_or([f64::NAN; 3]))),
+        Values::Scalars(values) => encoded(values.all_numbers()),
+        Values::Vectors(values) => encoded(values.all_numbers()),
     };
     let components = field.columns().len();
     FieldOut { name: &field.name, unit: &field.unit, components, meaning: &field.meaning, values }

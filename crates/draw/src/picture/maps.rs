@@ -98,13 +98,13 @@ impl<'a> Panel<'a> {
         if !sound {
             return None;
         }
-        let known = || values.iter().zip(&patch.points).filter(|(_, point)| point.is_solved()).filter_map(|(v, _)| *v);
+        let known = || values.iter().zip(&patch.points).filter(|(_, point)| point.is_solved()).filter_map(|(v, _)| v);
         let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain(patch, field));
         let taken = |value: f64| if is_rounding { 0.0 } else { value };
         let mesh = Mesh::of(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
         let projection = Projection::of(patch, &mesh);
         let known_at =
-            |at: usize| values[at].filter(|value| value.is_finite() && patch.points[at].is_solved()).map(taken);
+            |at: usize| values.at(at).filter(|value| value.is_finite() && patch.points[at].is_solved()).map(taken);
         let picked = mesh.picked(patch).map(known_at).collect();
         Some(Panel {
             patch,
