@@ -60,7 +60,10 @@ impl<'s> Described<'s> {
 
 /// How many numbers a point has in these fields.
 pub(crate) fn numbers(surface: &GeneratedSurface<'_>, sample: &Sample<'_>) -> usize {
-    columns(surface, sample, 0).iter().map(|column| if matches!(column.taken, Taken::Scalars(..)) { 1 } else { 3 }).sum()
+    columns(surface, sample, 0)
+        .iter()
+        .map(|column| if matches!(column.taken, Taken::Scalars(..)) { 1 } else { 3 })
+        .sum()
 }
 
 /// A field that is being filled, point by point.

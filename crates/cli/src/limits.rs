@@ -66,7 +66,8 @@ pub(crate) fn lines<'j, 'g: 'j>(
     let sought: Vec<Sought<'j, 'g>> = surfaces.into_iter().flat_map(sought).collect();
     let Some(one) = sought.first() else { return Vec::new() };
     let others = sought.iter().any(|other| other.surface.name != one.surface.name);
-    let _working = Working::on(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
+    let _working =
+        Working::on(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
     // along the coordinate that follows the line farther: it may run across the other one
     let mut lines = look(job, &sought, 0, means);
     let is_open = |line: &Line<'_, '_>| line.summary.solved() < line.points.len();

@@ -56,12 +56,13 @@ pub(crate) fn check_kept<'s, 'g: 's>(
     for (surface, sample) in surfaces.into_iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?))) {
         let count = sample.counts[0] * sample.counts[1];
         let all_needed = needs_all(job, surface, sample, wanted);
-        let of_point = bytes_of_point(job, surface, sample, wanted);
         points += count;
         bytes += if count <= KEPT || all_needed.is_some() {
-            count * of_point
+            count * bytes_of_point(job, surface, sample, wanted)
         } else {
-            count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_point
+            let shown = Wanted { geometry: wanted.geometry && wanted.of_shown, ..wanted };
+            let of_shown = bytes_of_point(job, surface, sample, shown);
+            count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_shown
         };
         let flag = || (wanted.geometry && !wanted.of_shown).then(|| "--geometry".to_string());
         needed = needed.or(all_needed.or_else(flag).filter(|_| count > KEPT));
@@ -70,7 +71,9 @@ pub(crate) fn check_kept<'s, 'g: 's>(
         return Ok(());
     }
     let (asked, without) = match needed {
-        Some(what) => (format!("{points} points, and {what} needs something of all of them at once"), ", or do without it"),
+        Some(what) => {
+            (format!("{points} points, and {what} needs something of all of them at once"), ", or do without it")
+        }
         None => (format!("{points} points in many surfaces"), ""),
     };
     Err(format!(

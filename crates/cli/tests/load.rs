@@ -74,13 +74,15 @@ fn a_section_of_many_surfaces_has_no_more_positions_of_the_tool() {
 #[test]
 fn what_the_points_of_a_job_would_take_is_told_before_they_are_solved() {
     let out = folder("many_points");
-    let spec = written(&out, "many.chain", &many(5, 1000));
+    let spec = written(&out, "many.chain", &many(5, 1100));
     let run = flank(&["solve", &spec, "--geometry", "--out", plain(&out), "--no-picture"]);
     let told = text(&run.stderr);
     assert_eq!(run.status.code(), Some(1), "{told}");
-    for part in
-        ["5000000 points that --geometry needs all together", "about 3.4 GB, and 1.1 GB is the most", "ask for fewer"]
-    {
+    for part in [
+        "6050000 points, and --geometry needs something of all of them at once",
+        "about 1.2 GB, and 1.1 GB is the most",
+        "ask for fewer",
+    ] {
         assert!(told.contains(part), "{part} in {told}");
     }
 }
@@ -100,6 +102,28 @@ fn pages_and_reports_of_large_surfaces_say_what_they_show() {
     assert!(report.contains("16900 of 67600 of s0 points"), "{report}");
 }
 
+/// Of each point that is described its numbers are kept, eight bytes each, and little else: 184 bytes a point, 640 before.
+#[test]
+#[cfg(target_os = "linux")]
+fn geometry_takes_little_memory() {
+    let out = folder("geometry_memory");
+    let spec = written(&out, "many.chain", &many(1, 600));
+    let arguments = ["solve", &spec, "--geometry", "--format", "stl", "--out", plain(&out), "--no-picture"];
+    let run = within(220 * 1024, &arguments);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+}
+
+/// Surfaces of a few points each are counted together.
+#[test]
+fn many_surfaces_that_are_kept_are_estimated_together() {
+    let out = folder("kept_together");
+    let spec = written(&out, "many.chain", &many(150, 250));
+    let run = flank(&["solve", &spec, "--out", plain(&out), "--no-picture"]);
+    assert_eq!(run.status.code(), Some(1));
+    let told = text(&run.stderr);
+    assert!(told.contains("9375000 points in many surfaces: that would take about "), "{told}");
+}
+
 /// Where the system gives no more memory, words and a code of its own, and no file.
 #[test]
 #[cfg(target_os = "linux")]
@@ -112,6 +136,16 @@ fn no_more_memory_is_told() {
     assert_eq!(run.status.code(), Some(4), "{told}");
     assert!(told.contains("error: out of memory: the system gave none of "), "{told}");
     assert!(!files.join("many.csv").exists());
+    let run = within(120 * 1024, &["solve", &spec, "--out", plain(&files), "--no-picture", "--json"]);
+    let failure: Value = serde_json::from_slice(&run.stdout).expect("a document");
+    assert_eq!(
+        [&failure["schema"], &failure["exit_code"]],
+        [&serde_json::json!("flank.failure/1"), &serde_json::json!(4)]
+    );
+    assert!(failure["message"].as_str().is_some_and(|told| told.starts_with("out of memory: ")), "{failure}");
+    let schema = text(&flank(&["schema", "flank.failure/1"]).stdout);
+    let schema = serde_json::from_str(&schema).expect("a schema");
+    assert!(jsonschema::is_valid(&schema, &failure), "{failure}");
 }
 
 /// A name that is wrong is told before anything is solved, here before it is told that there are too many points.

@@ -15,7 +15,7 @@ fn solve(job: &str, sides: [usize; 2], out: &Path, flags: &[&str]) -> std::proce
     flank(&[&start, flags].concat())
 }
 
-/// Kept for what it further computes, a grid has the same points, bit for bit.
+/// Kept for what it further computes, a grid has the same points, bit for bit, and is as curved.
 #[test]
 fn points_are_the_same_whether_they_are_kept_or_not() {
     let csv = |flags: &[&str]| {
@@ -24,24 +24,41 @@ fn points_are_the_same_whether_they_are_kept_or_not() {
         assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
         text(&std::fs::read(out.join("flank.csv")).unwrap())
     };
-    let points = |csv: &str| {
+    let rows = |csv: &str, columns: usize| {
         let points = csv.lines().filter(|line| !line.starts_with('#')).skip(1);
-        points.map(|line| line.split(',').take(14).collect::<Vec<_>>().join(",")).collect::<Vec<String>>()
+        points.map(|line| line.split(',').take(columns).collect::<Vec<_>>().join(",")).collect::<Vec<String>>()
     };
-    let [streamed, kept] = [csv(&[]), csv(&["--geometry"])].map(|csv| points(&csv));
-    assert_eq!(streamed.len(), 257 * 256);
-    assert!(streamed == kept);
+    let bare = csv(&[]);
+    // what moves a surface needs all its points together
+    let [streamed, kept] = [&["--geometry"][..], &["--geometry", "--sensitivity"]].map(csv);
+    assert_eq!(rows(&bare, 14).len(), 257 * 256);
+    assert!(rows(&bare, 14) == rows(&streamed, 14) && rows(&bare, 14) == rows(&kept, 14));
+    let described = streamed.lines().find(|line| !line.starts_with('#')).expect("a head").split(',').count();
+    assert!(described > 14 + 20, "{described} columns");
+    assert!(rows(&streamed, described) == rows(&kept, described));
 }
 
 #[test]
 fn what_needs_all_points_together_is_told() {
     let out = folder("together");
-    for (flag, told) in [("--geometry", "--geometry needs all"), ("--certify", "--certify needs all")] {
+    for (flag, told) in [("--sensitivity", "--sensitivity needs all"), ("--certify", "--certify needs all")] {
         let run = solve("flank", [1025, 1024], &out, &[flag]);
         assert_eq!(run.status.code(), Some(1));
         assert!(text(&run.stderr).contains(told), "{}", text(&run.stderr));
         assert!(text(&run.stderr).contains("ask for 1048576 points or fewer"), "{}", text(&run.stderr));
     }
+    assert_eq!(std::fs::read_dir(out).unwrap().count(), 0);
+}
+
+/// Of each point that geometry is asked of, its numbers are kept: too many of them are refused before anything is solved.
+#[test]
+fn too_much_geometry_is_told() {
+    let out = folder("much-geometry");
+    let run = solve("flank", [3000, 3000], &out, &["--geometry"]);
+    assert_eq!(run.status.code(), Some(1));
+    let told = text(&run.stderr);
+    assert!(told.contains("9000000 points, and --geometry needs something of all of them at once"), "{told}");
+    assert!(told.contains("ask for fewer points, or for fewer surfaces at a time, or do without it"), "{told}");
     assert_eq!(std::fs::read_dir(out).unwrap().count(), 0);
 }
 

@@ -148,3 +148,31 @@ impl Linearized for Lane<'_, '_> {
         lanes.evaluator.output(lanes.size * (1 + row) + column)[*lane]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use flank_expr::Graph;
+
+    use super::*;
+    use crate::newton::solve_with;
+    use crate::system::System;
+
+    /// More starts than lanes, some of which lead nowhere: a line that misses the circle for one, no start is held up by another.
+    #[test]
+    fn many_starts_at_once_end_where_each_ends_alone() {
+        let graph = Graph::new();
+        let [x, y, level] = ["x", "y", "level"].map(|name| graph.variable(name));
+        let residuals = [x * x + y * y - 4.0, (3.0 * x).sin() * y.cos() - level];
+        let system = System::new(&residuals, &[x, y], &[level]).expect("nothing else is unknown");
+        let ranges = [Range { low: -3.0, high: 3.0 }, Range { low: -2.5, high: 3.5 }];
+        let starts: Vec<Vec<f64>> = (1..=5 * LANES as u32 + 3).map(|k| probe(&ranges, k)).collect();
+        for level in [0.1, 0.9, 7.0] {
+            let mut evaluation = system.evaluation(&[level]);
+            let together = Lanes::of(&evaluation).descend(&ranges, starts.clone());
+            let together: Vec<Solution> = together.into_iter().map(|one| one.ended(&mut evaluation)).collect();
+            for (start, together) in starts.iter().zip(together) {
+                assert_eq!(together, solve_with(&mut evaluation, &ranges, start), "from {start:?}");
+            }
+        }
+    }
+}

@@ -84,7 +84,8 @@ impl<'j, 'g> Findings<'j, 'g> {
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
         let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.means);
-        lines.extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
+        lines
+            .extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
         // those of a surface one after the other
         let place = |line: &Line<'_, '_>| job.surfaces.iter().position(|surface| surface.name == line.surface.name);
         lines.sort_by_key(place);
