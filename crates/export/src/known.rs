@@ -84,7 +84,7 @@ impl<T: Kept> Known<T> {
     }
 
     /// The numbers of all points, NaN where there is no value.
-    pub(crate) fn all_numbers(&self) -> impl Iterator<Item = f64> {
+    pub fn all_numbers(&self) -> impl Iterator<Item = f64> {
         self.0.iter().flat_map(|kept| kept.numbers().iter().copied())
     }
 }
