@@ -242,14 +242,6 @@ impl std::ops::Mul for Interval {
             return Interval::EMPTY;
         }
         let (a, b) = (self, other);
-        let products = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
-        let lower = products.into_iter().fold(f64::INFINITY, |least, x| if x < least { x } else { least });
-        let upper = products.into_iter().fold(f64::NEG_INFINITY, |most, x| if x > most { x } else { most });
-        // without branches where no end is zero or infinite, and no product so small that it looks like zero or so large that it is
-        // infinite: what follows gives the same bits
-        if products.into_iter().all(|x| x != 0.0 && x.abs() < f64::MAX) {
-            return Interval { lo: down(lower), hi: up(upper), continuous: a.continuous && b.continuous };
-        }
         // which ends make the smallest and the largest product
         let ((la, lb), (ha, hb)) = match (a.lo >= 0.0, a.hi <= 0.0, b.lo >= 0.0, b.hi <= 0.0) {
             (true, _, true, _) => ((a.lo, b.lo), (a.hi, b.hi)),
