@@ -190,7 +190,7 @@ impl<'s> Enclosure<'s> {
         for k in 0..n {
             self.inverse[k * n + k] = 1.0;
         }
-        invert(&mut matrix, &mut self.inverse, n)
+        eliminate(&mut matrix, &mut self.inverse, n)
     }
 }
 
@@ -227,9 +227,10 @@ fn narrow(left: &mut [Interval], middle: &[f64], value: Interval, slopes: &[Inte
     true
 }
 
-/// Gauss and Jordan with the largest pivot of the column; whether all pivots were numbers other than zero. Its rounding
-/// errors do no harm: any matrix may precondition.
-pub(crate) fn invert(matrix: &mut [f64], inverse: &mut [f64], n: usize) -> bool {
+/// Solves a system of `n` equations for some right sides, the columns of `right`, by Gauss and Jordan with the largest pivot of the
+/// column; whether all pivots were numbers other than zero. Its rounding errors do no harm: any matrix may precondition.
+pub(crate) fn eliminate(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
+    let columns = right.len() / n;
     for column in 0..n {
         let size = |row: usize| matrix[row * n + column].abs();
         let Some(pivot) = (column..n).max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return false };
@@ -239,19 +240,21 @@ pub(crate) fn invert(matrix: &mut [f64], inverse: &mut [f64], n: usize) -> bool 
         }
         for k in 0..n {
             matrix.swap(pivot * n + k, column * n + k);
-            inverse.swap(pivot * n + k, column * n + k);
         }
-        for k in 0..n {
-            matrix[column * n + k] /= scale;
-            inverse[column * n + k] /= scale;
+        for k in 0..columns {
+            right.swap(pivot * columns + k, column * columns + k);
         }
+        matrix[column * n..][..n].iter_mut().for_each(|entry| *entry /= scale);
+        right[column * columns..][..columns].iter_mut().for_each(|entry| *entry /= scale);
         for row in (0..n).filter(|&row| row != column) {
             let factor = matrix[row * n + column];
-            for k in 0..n {
+            for k in column..n {
                 matrix[row * n + k] -= factor * matrix[column * n + k];
-                inverse[row * n + k] -= factor * inverse[column * n + k];
+            }
+            for k in 0..columns {
+                right[row * columns + k] -= factor * right[column * columns + k];
             }
         }
     }
-    inverse.iter().all(|entry| entry.is_finite())
+    right.iter().all(|entry| entry.is_finite())
 }

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
 use crate::anchor::{Choice, Several, solve_settled};
 use crate::angles::SearchSystem;
@@ -37,8 +37,8 @@ pub struct SurfaceProblem {
     point: Tape,
     /// The unknowns that the coordinates are, where they are unknowns.
     asked: [Option<usize>; 2],
-    /// The derivatives of the position by each unknown.
-    slopes: Tape,
+    /// The Jacobian of the equations row by row, then the derivatives of the position by each unknown.
+    slopes: LaneTape,
     ranges: Vec<Range>,
     several: Several,
     /// Functions of the unknowns, and between which values they lie on the branch that is meant.
@@ -170,8 +170,9 @@ impl SurfaceProblem {
         let asked = coordinates.map(|coordinate| bound.unknowns.iter().position(|unknown| *unknown == coordinate));
         let system = System::new(&residuals, &bound.unknowns, &targets)?;
         let point = Tape::new(&point, &bound.unknowns)?;
-        let slopes = bound.unknowns.iter().flat_map(|unknown| bound.position.derivative(*unknown).0);
-        let slopes = Tape::new(&slopes.collect::<Vec<Expr<'g>>>(), &bound.unknowns)?;
+        let jacobian = residuals.iter().flat_map(|f| bound.unknowns.iter().map(|unknown| f.derivative(*unknown)));
+        let moved = bound.unknowns.iter().flat_map(|unknown| bound.position.derivative(*unknown).0);
+        let slopes = Tape::new(&jacobian.chain(moved).collect::<Vec<Expr<'g>>>(), &inputs)?;
         let decisive = Tape::new(conditions, &inputs)?;
         Ok(SurfaceProblem {
             periodic: periodic_in(&[system.residual_tape(), &point, &decisive], &ranges),
@@ -180,7 +181,7 @@ impl SurfaceProblem {
             system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
             point,
             asked,
-            slopes,
+            slopes: LaneTape::new(&slopes),
             kept_ranges: vec![Range::EVERYTHING; ranges.len()],
             ranges,
             several,
@@ -371,7 +372,7 @@ impl SurfaceProblem {
     fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
         let (tape, between) = &self.keep;
         let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
-        let planes = TangentPlanes { system: &self.system, slopes: &self.slopes, ranges: &self.ranges };
+        let planes = TangentPlanes { slopes: &self.slopes, ranges: &self.ranges };
         let keep = Keep { tape, between, ranges: &self.kept_ranges };
         solve(&Choice {
             roots: &roots,

@@ -2,7 +2,7 @@
 
 use flank_expr::{Interval, IntervalEvaluator, Tape, TaylorEvaluator};
 
-use crate::enclosure::invert;
+use crate::enclosure::eliminate;
 use crate::poses::{PoseProblem, Posture};
 use crate::solution::Range;
 
@@ -271,7 +271,7 @@ impl<'p, 'g> Prover<'p, 'g> {
         let outputs = self.linearized(&points(unknowns), Interval::point(motion))?;
         let mut matrix: Vec<f64> = outputs[n..].iter().map(|entry| entry.middle()).collect();
         let mut inverse: Vec<f64> = (0..n * n).map(|k| if k % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
-        invert(&mut matrix, &mut inverse, n).then_some(inverse)
+        eliminate(&mut matrix, &mut inverse, n).then_some(inverse)
     }
 
     /// Residuals, then the Jacobian row by row, on a box; `None` where they are not continuous.

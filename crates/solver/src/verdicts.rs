@@ -3,13 +3,11 @@
 use std::f64::consts::TAU;
 use std::ops;
 
-use flank_expr::{ScalarEvaluator, Tape};
+use flank_expr::{InstructionSet, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape};
 
-use crate::enclosure::invert;
+use crate::enclosure::eliminate;
 use crate::field::Field;
-use crate::newton::Linearized;
 use crate::solution::{Outcome, Range};
-use crate::system::System;
 
 /// Where the second direction of a tangent plane moves the point less than this share of what the unknowns move it, all of them through
 /// the whole of their ranges, the surface is a line there: of a flank of 100 mm the tenth part of a micrometre. Rounding leaves less than
@@ -69,75 +67,117 @@ impl Keep<'_> {
 /// Sees where a surface has no tangent plane.
 #[derive(Clone, Copy)]
 pub(crate) struct TangentPlanes<'c> {
-    pub(crate) system: &'c System,
-    /// The derivatives of the position by each unknown.
-    pub(crate) slopes: &'c Tape,
+    /// Of the unknowns and the targets: the Jacobian of the equations row by row, then the derivatives of the position by each unknown.
+    pub(crate) slopes: &'c LaneTape,
     pub(crate) ranges: &'c [Range],
 }
 
 impl TangentPlanes<'_> {
-    /// Whether there is none at a root: with T a basis of the directions in which the constraints do not change, ∂r/∂p·T has a rank
-    /// below 2.
+    /// Whether there is none at a root.
     pub(crate) fn is_collapsed(&self, unknowns: &[f64]) -> bool {
-        let n = self.ranges.len();
-        let mut evaluation = self.system.evaluation(&[0.0; 2]);
-        evaluation.at(unknowns);
-        let width = |k: usize| self.ranges[k].width();
-        let mut jacobian: Vec<f64> = (0..n * n).map(|k| evaluation.jacobian(k / n, k % n) * width(k % n)).collect();
-        let mut inverse: Vec<f64> = (0..n * n).map(|k| f64::from(u8::from(k / n == k % n))).collect();
-        // the last two equations are the coordinates: along each of them the other equations do not change
-        if !invert(&mut jacobian, &mut inverse, n) {
-            return true;
-        }
-        let column = |j: usize| (0..n).map(|k| inverse[k * n + j]).collect::<Vec<f64>>();
-        let (a, mut b) = (unit(column(n - 2)), column(n - 1));
-        let along: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
-        b.iter_mut().zip(&a).for_each(|(b, a)| *b -= along * a);
-        let b = unit(b);
-        let mut slopes = vec![0.0; 3 * n];
-        ScalarEvaluator::new(self.slopes).run(unknowns, &mut slopes);
-        let moved = |t: &[f64]| -> [f64; 3] {
-            std::array::from_fn(|i| (0..n).map(|k| slopes[3 * k + i] * width(k) * t[k]).sum())
-        };
-        let (a, b) = (moved(&a), moved(&b));
-        let area = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        let scale = length(&(0..3 * n).map(|k| slopes[k] * width(k / 3)).collect::<Vec<f64>>());
-        // what is not a number stays to the other verdicts
-        length(&area) <= COLLAPSED * scale * length(&a).max(length(&b))
+        let mut slopes = Slopes::new(self);
+        unknowns.iter().enumerate().for_each(|(k, value)| slopes.evaluator.input(k)[0] = *value);
+        slopes.evaluator.run_first(1);
+        slopes.is_collapsed(0)
     }
 
     /// The verdicts on some points of a field: of those that the careful path has solved one by one, and of all if it is so at some of
     /// them.
     pub(crate) fn judge(&self, field: &mut Field, points: ops::Range<usize>) {
-        let has_gaps = points.len() <= MOST_LOOKED_AT && !points.clone().all(|point| field.is_root(point));
+        let has_gaps = points.len() <= MOST_LOOKED_AT && !field.are_roots(points.clone());
         if has_gaps || self.are_missing(field, points.clone()) {
-            for point in points {
-                if self.is_missing(field, point) {
-                    field.judge(point, Outcome::Singular);
+            let judged: Vec<usize> = points.filter(|point| is_judged(field, *point)).collect();
+            let mut slopes = Slopes::new(self);
+            for points in judged.chunks(LANES) {
+                slopes.look_at(field, points);
+                for (lane, point) in points.iter().enumerate() {
+                    if slopes.is_collapsed(lane) {
+                        field.judge(*point, Outcome::Singular);
+                    }
                 }
             }
         }
     }
 
     /// Whether there is none at some of the points that are looked at first.
-    pub(crate) fn are_missing(&self, field: &Field, mut points: ops::Range<usize>) -> bool {
-        let (first, step) = (points.start, points.len().div_ceil(SAMPLED).max(1));
-        points.any(|point| {
-            ((point - first).is_multiple_of(step) || field.determinant(point).is_nan()) && self.is_missing(field, point)
+    pub(crate) fn are_missing(&self, field: &Field, points: ops::Range<usize>) -> bool {
+        let step = points.len().div_ceil(SAMPLED).max(1);
+        let spread = points.clone().step_by(step);
+        let mut first: Vec<usize> = spread.chain(field.without_determinant(points)).collect();
+        first.retain(|point| is_judged(field, *point));
+        let mut slopes = Slopes::new(self);
+        first.chunks(LANES).any(|points| {
+            slopes.look_at(field, points);
+            (0..points.len()).any(|lane| slopes.is_collapsed(lane))
         })
     }
+}
 
-    fn is_missing(&self, field: &Field, point: usize) -> bool {
-        let is_judged = field.is_root(point) && !field.is_outside(point);
-        is_judged && self.is_collapsed(&field.unknowns(point).collect::<Vec<f64>>())
+fn is_judged(field: &Field, point: usize) -> bool {
+    field.is_root(point) && !field.is_outside(point)
+}
+
+/// How equations and position change at many roots at once.
+struct Slopes<'c> {
+    evaluator: LaneEvaluator<'c>,
+    ranges: &'c [Range],
+    /// Room for a Jacobian and for two directions.
+    jacobian: Vec<f64>,
+    directions: Vec<f64>,
+}
+
+impl<'c> Slopes<'c> {
+    fn new(planes: &TangentPlanes<'c>) -> Slopes<'c> {
+        // few runs do not pay for machine code
+        let evaluator = LaneEvaluator::new(planes.slopes, InstructionSet::widest());
+        Slopes { evaluator, ranges: planes.ranges, jacobian: Vec::new(), directions: Vec::new() }
+    }
+
+    fn look_at(&mut self, field: &Field, points: &[usize]) {
+        for (lane, point) in points.iter().enumerate() {
+            field.unknowns(*point).enumerate().for_each(|(k, value)| self.evaluator.input(k)[lane] = value);
+        }
+        self.evaluator.run_first(points.len());
+    }
+
+    /// Whether there is no tangent plane: with T a basis of the directions in which the constraints do not change, ∂r/∂p·T has a rank
+    /// below 2.
+    fn is_collapsed(&mut self, lane: usize) -> bool {
+        let Slopes { evaluator, ranges, jacobian, directions } = self;
+        let n = ranges.len();
+        jacobian.clear();
+        jacobian.extend((0..n * n).map(|k| evaluator.output(k)[lane] * ranges[k % n].width()));
+        directions.clear();
+        directions.resize(2 * n, 0.0);
+        // the last two equations are the coordinates: along each of them the other equations do not change
+        (directions[2 * (n - 2)], directions[2 * (n - 1) + 1]) = (1.0, 1.0);
+        if !eliminate(jacobian, directions, n) {
+            return true;
+        }
+        let rows = || directions.as_chunks::<2>().0.iter();
+        let sum = |of: fn(&[f64; 2]) -> f64| rows().map(of).sum::<f64>();
+        let (size, along) = (sum(|[a, _]| a * a).sqrt(), sum(|[a, b]| a * b));
+        let along = along / size;
+        let apart = rows().map(|[a, b]| (b - along * (a / size)).powi(2)).sum::<f64>().sqrt();
+        // what each of two perpendicular units along them moves the point, and the whole of all ranges
+        let (mut moved, mut scale) = ([[0.0; 3]; 2], 0.0);
+        for ((k, [a, b]), range) in rows().enumerate().zip(ranges.iter()) {
+            let a = a / size;
+            let b = (b - along * a) / apart;
+            for i in 0..3 {
+                let slope = evaluator.output(n * n + 3 * k + i)[lane] * range.width();
+                moved[0][i] += slope * a;
+                moved[1][i] += slope * b;
+                scale += slope * slope;
+            }
+        }
+        let [a, b] = moved;
+        let area = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        // what is not a number stays to the other verdicts
+        length(area) <= COLLAPSED * scale.sqrt() * length(a).max(length(b))
     }
 }
 
-fn length(v: &[f64]) -> f64 {
+fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-fn unit(v: Vec<f64>) -> Vec<f64> {
-    let size = length(&v);
-    v.into_iter().map(|x| x / size).collect()
 }

@@ -13,6 +13,8 @@ mod on_line;
 mod plain;
 mod strip;
 
+use std::ops;
+
 use flank_expr::LANES;
 
 use crate::lanes::{LaneNewton, Lanes, VITAL};
@@ -294,6 +296,27 @@ impl Field {
     /// Whether nothing is left to look for.
     pub(crate) fn is_complete(&self) -> bool {
         self.count(Mark::is_root) == self.len()
+    }
+
+    /// Whether all of some points are roots.
+    pub(crate) fn are_roots(&self, mut points: ops::Range<usize>) -> bool {
+        if points == (0..self.len()) { self.is_complete() } else { points.all(|point| self.is_root(point)) }
+    }
+
+    /// Those of some points at which no determinant is known; points of which nothing is known may be among them.
+    pub(crate) fn without_determinant(&self, points: ops::Range<usize>) -> Vec<usize> {
+        let Shape { count, length, size, planes, .. } = self.shape;
+        let mut found = Vec::new();
+        for (block, values) in self.values.as_chunks::<LANES>().0.chunks(planes).enumerate() {
+            let determinants = &values[size];
+            if !determinants.iter().fold(false, |any, determinant| any | determinant.is_nan()) {
+                continue;
+            }
+            let (line, first) = (block % count, block / count * LANES);
+            let lanes = (0..LANES.min(length - first)).filter(|lane| determinants[*lane].is_nan());
+            found.extend(lanes.map(|lane| self.shape.point(line, first + lane)).filter(|point| points.contains(point)));
+        }
+        found
     }
 
     fn count(&self, is_meant: impl Fn(Mark) -> bool) -> usize {
