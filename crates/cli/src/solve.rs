@@ -345,11 +345,11 @@ pub(crate) fn unit(dimension: Dimension) -> Unit {
 pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
     let reason = reasons::of_point(job, surface, solved.outcome);
     // a point that is cut away may be one where the surface has no normal
-    let has_numbers = solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
+    let has_numbers = || solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
     let outcome = match solved.outcome {
         flank_solver::Outcome::Solved => Outcome::Solved,
-        flank_solver::Outcome::CutAway(_) if has_numbers => Outcome::CutAway,
-        flank_solver::Outcome::Undecided if has_numbers => Outcome::Undecided,
+        flank_solver::Outcome::CutAway(_) if has_numbers() => Outcome::CutAway,
+        flank_solver::Outcome::Undecided if has_numbers() => Outcome::Undecided,
         other => return Point::unsolved(other.word(), solved.residual, reason),
     };
     let SurfacePoint { position, normal, unknowns, residual, .. } = solved;

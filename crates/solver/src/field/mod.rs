@@ -320,10 +320,9 @@ impl Field {
     }
 
     fn count(&self, is_meant: impl Fn(Mark) -> bool) -> usize {
+        // as many as fit into a byte, which takes a few vectors to see
         let of = |marks: &[Mark; LANES]| {
-            // mostly all of a block are, which takes a few vectors to see
-            let others = marks.iter().fold(0, |others, mark| others | u8::from(!is_meant(*mark)));
-            if others == 0 { LANES } else { marks.iter().filter(|mark| is_meant(**mark)).count() }
+            usize::from(marks.iter().fold(0u8, |count, mark| count.wrapping_add(u8::from(is_meant(*mark)))))
         };
         self.marks.iter().map(of).sum()
     }
