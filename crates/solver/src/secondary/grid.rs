@@ -189,18 +189,24 @@ impl Spread<'_, '_> {
         let solved: Vec<Verdict> = known.iter().flatten().copied().collect();
         let number = |verdict: &Verdict| verdict.map(|cut| cut.by);
         let is_one = solved.len() == 4 && solved.iter().all(|verdict| number(verdict) == number(&solved[0]));
-        let is_local = |at: &usize| self.points[*at].outcome == Outcome::CutAway(CutBy::ItsTool);
-        let within = || (rows[0]..=rows[1]).flat_map(|i| (columns[0]..=columns[1]).map(move |j| (i, j)));
-        let inside: Vec<usize> = within().map(|(i, j)| i * self.counts[1] + j).collect();
-        if is_one && !inside.iter().any(is_local) {
-            for at in inside {
-                if self.points[at].outcome == Outcome::Solved && self.verdicts[at].is_none() {
-                    self.verdicts[at] = Some(solved[0]);
+        let mut has_local = false;
+        let mut inside = Vec::new();
+        for i in rows[0]..=rows[1] {
+            let first = i * self.counts[1];
+            for at in first + columns[0]..=first + columns[1] {
+                match self.points[at].outcome {
+                    Outcome::Solved => inside.push(at),
+                    outcome => has_local |= outcome == Outcome::CutAway(CutBy::ItsTool),
                 }
+            }
+        }
+        if is_one && !has_local {
+            for at in inside {
+                self.verdicts[at].get_or_insert(solved[0]);
             }
             return;
         }
-        if !inside.iter().any(|at| self.points[*at].outcome == Outcome::Solved) {
+        if inside.is_empty() {
             return;
         }
         if high >= wide {

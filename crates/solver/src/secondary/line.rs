@@ -1,10 +1,10 @@
 //! The way of one point of the work through the tool's frame while one motion runs, and where it enters the steel.
 
-use flank_expr::ScalarEvaluator;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::secondary::SecondaryCutting;
 use crate::secondary::net::{Foot, Found, Near, Seen, Side};
+use crate::secondary::tape::Runner;
 
 /// A point less deep in the steel than this, mm, is only touched: points are good to this.
 const TOUCH: f64 = 1e-9;
@@ -59,14 +59,14 @@ impl Cut {
 /// The position of the work in the tool, for one motion after the other.
 pub(super) struct Poses<'c> {
     cutting: &'c SecondaryCutting,
-    evaluator: ScalarEvaluator<'c>,
+    evaluator: Runner<'c>,
     out: Vec<f64>,
 }
 
 impl<'c> Poses<'c> {
     pub(super) fn new(cutting: &'c SecondaryCutting) -> Poses<'c> {
         let out = vec![0.0; cutting.pose.output_count()];
-        Poses { cutting, evaluator: ScalarEvaluator::new(&cutting.pose), out }
+        Poses { cutting, evaluator: cutting.pose.runner(), out }
     }
 
     /// At values of the motions, with the derivative by the one of a number.

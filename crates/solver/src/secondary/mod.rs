@@ -7,11 +7,13 @@
 mod grid;
 mod line;
 mod net;
+mod tape;
 
 use flank_expr::geometry::{Chain, Surface};
-use flank_expr::{Expr, Tape, TapeError};
+use flank_expr::{Expr, TapeError};
 
 use crate::secondary::net::Piece;
+use crate::secondary::tape::PlaceTape;
 use crate::solution::Range;
 pub use grid::{Judged, Unseen};
 
@@ -20,7 +22,7 @@ pub use grid::{Judged, Unseen};
 pub struct SecondaryCutting {
     pieces: Vec<Piece>,
     /// Of the motions: the work's pose in the tool, then its derivative by each motion; rotation row by row, then translation.
-    pose: Tape,
+    pose: PlaceTape,
     ranges: Vec<Range>,
 }
 
@@ -51,7 +53,7 @@ impl SecondaryCutting {
         };
         Ok(SecondaryCutting {
             pieces: pieces.iter().map(piece).collect::<Result<_, _>>()?,
-            pose: Tape::new(&outputs, motions)?,
+            pose: PlaceTape::new(&outputs, motions)?,
             ranges,
         })
     }

@@ -1,9 +1,10 @@
 //! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, TapeError};
 use nalgebra::Vector3;
 
+use crate::secondary::tape::{PlaceTape, Runner};
 use crate::solution::{ROUNDING, Range};
 
 /// Normal and tangents turn by no more than this (rad) over a cell: Newton from anywhere in it finds the foot.
@@ -28,7 +29,7 @@ const OUTPUTS: usize = 18;
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) number: usize,
-    tape: Tape,
+    tape: PlaceTape,
     ranges: [Range; 2],
     steps: [f64; 2],
     cells: Vec<Cell>,
@@ -95,7 +96,7 @@ pub(super) type Side = [i8; 2];
 /// Something that evaluates a piece.
 pub(super) struct Seen<'p> {
     pub(super) piece: &'p Piece,
-    evaluator: ScalarEvaluator<'p>,
+    evaluator: Runner<'p>,
     out: [f64; OUTPUTS],
 }
 
@@ -110,7 +111,7 @@ impl Piece {
         let parts = [bound.position, bound.normal];
         let slopes = parts.iter().flat_map(|part| bound.unknowns.iter().map(|&p| part.derivative(p)));
         let outputs: Vec<Expr<'_>> = parts.iter().copied().chain(slopes).flat_map(|vector| vector.0).collect();
-        let tape = Tape::new(&outputs, &bound.unknowns)?;
+        let tape = PlaceTape::new(&outputs, &bound.unknowns)?;
         let mut piece = Piece {
             number,
             tape,
@@ -131,7 +132,7 @@ impl Piece {
     }
 
     pub(super) fn seen(&self) -> Seen<'_> {
-        Seen { piece: self, evaluator: ScalarEvaluator::new(&self.tape), out: [0.0; OUTPUTS] }
+        Seen { piece: self, evaluator: self.tape.runner(), out: [0.0; OUTPUTS] }
     }
 
     /// No part of the piece is nearer to a point than this, mm.

@@ -96,6 +96,11 @@ impl<'t> LaneEvaluator<'t> {
         }
     }
 
+    /// Whether the tape runs as machine code.
+    pub fn has_machine_code(&self) -> bool {
+        self.native.is_some()
+    }
+
     /// The values of an input, one for each lane; they stay from run to run.
     ///
     /// # Panics
