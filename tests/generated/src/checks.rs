@@ -6,7 +6,7 @@ use crate::case::{Asked, Case, Coordinate, JobText};
 use crate::judge::{Counts, Judged};
 use crate::machine::{AXES, Kind, Machine, Motion, Range, Step};
 use crate::oracle::Touched;
-use crate::run::{Outcome, Point};
+use crate::told::{Outcome, Point};
 use crate::tool::{Blade, Shape};
 
 /// A disc of eleven lobes by a pin that is too thick for them: between crank angles of 66 and 96 degrees the pin takes away what it

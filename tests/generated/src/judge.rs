@@ -7,7 +7,7 @@ use crate::case::{Asked, Case, Coordinate, JobText};
 use crate::families::tells_apart;
 use crate::oracle::{Oracle, Touched};
 use crate::pose::{Vector, distance};
-use crate::run::{Outcome, Point};
+use crate::told::{Outcome, Point};
 
 /// Heights that count as none, mm: a thousand times what rounding makes of them.
 const TOUCH: f64 = 1e-6;

@@ -13,6 +13,10 @@ const MOST_LOW: usize = 8;
 const STARTS: usize = 60;
 /// How far a motion goes to both sides for a rate, as a share of its range.
 const STEP: f64 = 5e-5;
+/// How far a parameter goes to both sides for a tangent, as shares of its range, the first that stays on one branch.
+const SHARES: [f64; 2] = [1e-3, 1e-4];
+/// How far two steps along one branch, to either side, are off each other's opposite, as a share of them.
+const BENT: f64 = 0.02;
 
 #[derive(Clone, Debug)]
 pub struct Oracle<'a> {
@@ -124,21 +128,28 @@ impl<'a> Oracle<'a> {
     }
 
     /// The area that the surface spans at a point it touches, mm², for parameters of the tool that run through their ranges; nothing
-    /// where the motions do not follow these.
+    /// where the motions do not follow these, or it is not clear along which of two branches.
     pub fn area(&self, unknowns: &[f64]) -> Option<f64> {
-        const SHARE: f64 = 1e-3;
-        let along = |k: usize| {
-            let to = |share: f64| {
-                let mut fixed = vec![(0, unknowns[0]), (1, unknowns[1])];
-                fixed[k].1 += share * self.ranges[k].width();
-                self.beside(&fixed, unknowns)
-            };
-            let [ahead, behind] = [to(SHARE)?, to(-SHARE)?];
-            Some(minus(ahead.position, behind.position).map(|x| x / (2.0 * SHARE)))
-        };
-        let [a, b] = [along(0)?, along(1)?];
+        let [a, b] = [self.tangent(0, unknowns)?, self.tangent(1, unknowns)?];
         let square = dot(a, a) * dot(b, b) - dot(a, b).powi(2);
         Some(square.max(0.0).sqrt())
+    }
+
+    /// How the point moves while one parameter of the tool runs through its range, mm.
+    fn tangent(&self, parameter: usize, unknowns: &[f64]) -> Option<Vector> {
+        SHARES.into_iter().find_map(|share| {
+            let to = |share: f64| {
+                let mut fixed = vec![(0, unknowns[0]), (1, unknowns[1])];
+                fixed[parameter].1 += share * self.ranges[parameter].width();
+                self.beside(&fixed, unknowns)
+            };
+            let [ahead, behind] = [to(share)?, to(-share)?];
+            // from another branch, the place between the two is off the point
+            let all = ahead.unknowns.iter().zip(&behind.unknowns).zip(unknowns).zip(&self.ranges);
+            let bent = all.map(|(((a, b), at), range)| (0.5 * (a + b) - at).abs() / range.width());
+            let is_one_branch = bent.fold(0.0, f64::max) < BENT * share;
+            is_one_branch.then(|| minus(ahead.position, behind.position).map(|x| x / (2.0 * share)))
+        })
     }
 
     pub fn position(&self, unknowns: &[f64]) -> Vector {
