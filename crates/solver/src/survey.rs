@@ -28,6 +28,9 @@ const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Points that are missing at which branches are looked for.
 const MISSING: usize = 16;
+/// Where a branch folds back, its unknowns change with the root of the distance from the fold. From the last solved point the other
+/// sheet is so many times as far as the point before, for a fold at a tenth, at a half and at the whole of the step to the next point.
+const ACROSS_FOLDS: [f64; 3] = [0.86, 2.7, 4.8];
 /// Points of the largest grid on which several further branches are followed; of larger ones the first is told.
 const MOST_FOLLOWED: usize = 4096;
 /// Branches that are told of, at the most.
@@ -187,25 +190,29 @@ impl Others<'_> {
     }
 }
 
-/// Points that are missing beside two that are solved, with starts straight on from these: where branches cross, the way that no step
-/// takes.
+/// Places beside the ends of a branch with starts for what may lie there: at points that are missing straight on from two that are
+/// solved, where branches cross the way that no step takes; at the last that are solved the other sheet, where the branch folds back.
 fn beyond(grid: &Grid<'_>, field: &Field) -> Vec<(usize, Vec<f64>)> {
     let [rows, columns] = [grid.rows, grid.columns];
-    let start = |point: usize| {
+    let beside = |point: usize| {
         let (i, j) = (point / columns, point % columns);
         let at = |di: isize, dj: isize| {
             let (i, j) = (i.checked_add_signed(di)?, j.checked_add_signed(dj)?);
             Some(i * columns + j).filter(|at| i < rows && j < columns && field.is_solved(*at))
         };
         let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
-        let (near, far) = ways.into_iter().find_map(|(di, dj)| Some((at(di, dj)?, at(2 * di, 2 * dj)?)))?;
-        let near: Vec<f64> = field.unknowns(near).collect();
-        Some((point, extrapolated(&near, field.unknowns(far), 1.0)))
+        ways.into_iter().find_map(|(di, dj)| Some([point, at(di, dj)?, at(2 * di, 2 * dj)?]))
     };
-    let edge: Vec<(usize, Vec<f64>)> =
-        (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(start).collect();
+    let edge: Vec<[usize; 3]> =
+        (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(beside).collect();
     let step = edge.len().div_ceil(MISSING).max(1);
-    edge.into_iter().step_by(step).collect()
+    let starts = |[missing, near, far]: [usize; 3]| {
+        let from: Vec<f64> = field.unknowns(near).collect();
+        let on = |ratio: f64| extrapolated(&from, field.unknowns(far), ratio);
+        let folded = ACROSS_FOLDS.map(|ratio| (near, on(ratio)));
+        [(missing, on(1.0))].into_iter().chain(folded).collect::<Vec<_>>()
+    };
+    edge.into_iter().step_by(step).flat_map(starts).collect()
 }
 
 /// The unknowns of a branch at points spread over a grid.

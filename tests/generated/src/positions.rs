@@ -66,7 +66,7 @@ impl Lattice {
     pub fn descent(&self, height: &impl Fn(&[f64]) -> f64, from: usize) -> Vec<f64> {
         let mut at = self.at(from);
         let mut least = height(&at);
-        let mut step = 0.5 / (self.side - 1) as f64;
+        let mut step = 0.5 / (self.side - 1).max(1) as f64;
         while step > 1e-8 {
             let ways = directions(self.ranges.len(), 8)
                 .into_iter()
