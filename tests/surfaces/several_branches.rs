@@ -94,3 +94,17 @@ fn which_branch_is_taken_does_not_depend_on_the_counts() {
         assert!(!is_solved(point) || difference(&point.position, &same.position) < 1e-9);
     }
 }
+
+/// Both sides of a lobe meet in a fold, between the places at which branches are looked for; the `keep` takes the second one only beside
+/// the fold. It is looked for across the fold, and told.
+#[test]
+fn the_other_sheet_of_a_fold_is_told() {
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &repository("tests/surfaces/specs/folded.chain"), &[]);
+    let (points, effort) = solved(&compilation.jobs[0], "f");
+    assert_eq!(points.iter().filter(|point| is_solved(point)).count(), 24);
+    let [other] = &effort.elsewhere[..] else { panic!("{:?}", effort.elsewhere) };
+    let own = other.beside.as_ref().expect("the sheet that was followed has a point there");
+    let [one, two] = [&other.root, own].map(|root| root.unknowns[2]);
+    assert!(two > 0.0 && (one + two).abs() < 1e-9, "{one} {two}");
+}

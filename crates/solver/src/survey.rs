@@ -203,8 +203,7 @@ fn beyond(grid: &Grid<'_>, field: &Field) -> Vec<(usize, Vec<f64>)> {
         let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
         ways.into_iter().find_map(|(di, dj)| Some([point, at(di, dj)?, at(2 * di, 2 * dj)?]))
     };
-    let edge: Vec<[usize; 3]> =
-        (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(beside).collect();
+    let edge: Vec<[usize; 3]> = (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(beside).collect();
     let step = edge.len().div_ceil(MISSING).max(1);
     let starts = |[missing, near, far]: [usize; 3]| {
         let from: Vec<f64> = field.unknowns(near).collect();

@@ -8,8 +8,8 @@ use crate::secondary::net::Seen;
 use crate::solution::{CutBy, Outcome};
 use crate::surface::SurfacePoint;
 
-/// Of a grid with no more points than this, each is judged.
-const FEW: usize = 64;
+/// Of a grid with no more points than this, each is judged: between lines that are far apart a whole piece may be cut away.
+const FEW: usize = 1024;
 /// Parts into which rows and columns are divided first.
 const PARTS: usize = 8;
 /// Feet that are looked for before the rest is given up, and for each line of a grid.
