@@ -54,9 +54,9 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
         return followed;
     }
     if followed.field.is_complete() {
-        if !followed.is_beyond {
-            grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, &followed.field, choice);
-        }
+        let field = &followed.field;
+        let points = if followed.is_beyond { places_beyond(grid, field, choice) } else { places(grid) };
+        grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, (field, points), choice);
         return followed;
     }
     if grid.are_rows_apart {
@@ -226,20 +226,39 @@ fn qualifies(root: &Solution, choice: &Choice<'_>) -> bool {
     root.is_solved() && choice.keeps(&root.unknowns) && choice.has_tangent_plane(&root.unknowns)
 }
 
+/// Places spread over a grid; in the middle all roots are known.
+fn places(grid: &Grid<'_>) -> Vec<usize> {
+    let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> =
+        shares.filter(|shares| *shares != [0.5; 2]).map(|shares| grid.nearest(shares)).collect();
+    points.dedup();
+    points
+}
+
+/// The same of a grid whose branch leaves the ranges, with points at which it is beyond them: there another one may be within.
+fn places_beyond(grid: &Grid<'_>, field: &Field, choice: &Choice<'_>) -> Vec<usize> {
+    let is_beyond = |point: &usize| {
+        let own: Vec<f64> = field.unknowns(*point).collect();
+        !is_within(&back_into(grid.ranges, choice.periodic, &own), grid.ranges)
+    };
+    let beyond: Vec<usize> = (0..field.len()).filter(is_beyond).collect();
+    let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
+    points.extend(beyond.iter().step_by(beyond.len().div_ceil(MISSING).max(1)));
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
 /// Of a grid that is complete: roots beside its own at a few places, from starts spread over the ranges, many at once.
 fn beside_complete(
     grid: &mut Grid<'_>,
     newton: &mut LaneNewton<'_>,
-    field: &Field,
+    (field, points): (&Field, Vec<usize>),
     choice: &Choice<'_>,
 ) -> Vec<Elsewhere> {
     let mut others: Vec<Elsewhere> = Vec::new();
     let kept = choice.kept(grid.ranges);
-    let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
-    // in the middle all roots are known
-    let around = shares.filter(|shares| *shares != [0.5; 2]);
-    let mut points: Vec<usize> = around.map(|shares| grid.nearest(shares)).collect();
-    points.dedup();
     for (number, point) in points.into_iter().enumerate() {
         let own: Vec<f64> = field.unknowns(point).collect();
         let target = grid.targets[point];
@@ -257,7 +276,10 @@ fn beside_complete(
             let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
             let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
             if !is_own && qualifies(&root, choice) {
-                others.push(Elsewhere { place: target, root, beside: field.solution(point) });
+                let beside = field
+                    .solution(point)
+                    .filter(|_| is_within(&back_into(grid.ranges, choice.periodic, &own), grid.ranges));
+                others.push(Elsewhere { place: target, root, beside });
                 return others;
             }
         }
