@@ -26,6 +26,8 @@ const MOST_REFINED: usize = 1024;
 const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 /// The same where points are missing.
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// How often starts are drawn at each place of a grid whose branch leaves the ranges.
+const OFTEN: usize = 3;
 /// Points that are missing at which branches are looked for.
 const MISSING: usize = 16;
 /// Where a branch folds back, its unknowns change with the root of the distance from the fold. From the last solved point the other
@@ -247,7 +249,7 @@ fn places_beyond(grid: &Grid<'_>, field: &Field, choice: &Choice<'_>) -> Vec<usi
     points.extend(beyond.iter().step_by(beyond.len().div_ceil(MISSING).max(1)));
     points.sort_unstable();
     points.dedup();
-    points
+    points.repeat(OFTEN)
 }
 
 /// Of a grid that is complete: roots beside its own at a few places, from starts spread over the ranges, many at once.
