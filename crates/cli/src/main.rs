@@ -1,57 +1,21 @@
 //! `flank`: tooth surfaces of any machine, from the command line.
 
 mod arguments;
-mod branches;
-mod certify;
-mod check;
+mod commands;
 mod console;
-mod convert;
-mod cost;
-mod cut;
-mod derive;
-mod deviation;
 mod document;
-mod explain;
 mod failure;
-mod fields;
-mod files;
-mod fmt;
-mod geometry;
-mod import;
-mod inspect;
-mod keep;
-mod limits;
-mod measure;
 mod memory;
-mod new;
-mod plot;
 mod progress;
-mod reach;
-mod reasons;
-mod report;
-mod required;
-mod schema;
-mod secondary;
-mod sensitivity;
-mod shell;
-mod solve;
 mod spec;
-mod starts;
-mod step;
-mod stream;
-mod summary;
-mod table;
 mod threads;
-mod travel;
-mod trims;
-mod units;
-mod view;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use arguments::{Arguments, Command};
+use commands::{check, explain, fmt, import, new, operations, schema, shell};
 use console::{eprint, print};
 use failure::Failure;
 
@@ -114,18 +78,18 @@ fn ended(ending: Ending) -> ExitCode {
 
 fn run(command: &Command) -> Result<Ending, Failure> {
     match command {
-        Command::Solve(arguments) => solve::run(arguments),
+        Command::Solve(arguments) => operations::solve(arguments),
         Command::Check(arguments) => check::run(arguments),
-        Command::Convert(arguments) => convert::run(arguments),
-        Command::Derive(arguments) => derive::run(arguments),
-        Command::Report(arguments) => report::run(arguments),
-        Command::Deviation(arguments) => deviation::run(arguments),
-        Command::Measure(arguments) => measure::run(arguments),
-        Command::Plot(arguments) => plot::run(arguments),
+        Command::Convert(arguments) => operations::convert(arguments),
+        Command::Derive(arguments) => operations::derive(arguments),
+        Command::Report(arguments) => operations::report(arguments),
+        Command::Deviation(arguments) => operations::deviation(arguments),
+        Command::Measure(arguments) => operations::measure(arguments),
+        Command::Plot(arguments) => operations::plot(arguments),
         Command::Explain(arguments) => Ok(explain::run(arguments)),
         Command::Import(arguments) => import::run(arguments),
         Command::Fmt(arguments) => Ok(fmt::run(arguments)),
-        Command::View(arguments) => view::run(arguments),
+        Command::View(arguments) => operations::view(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => Ok(shell::completions(arguments)),

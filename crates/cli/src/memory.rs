@@ -1,6 +1,6 @@
 //! What happens where the system gives no more memory: the program ends with words and an exit code of its own.
 //!
-//! What jobs ask for is estimated before ([`check_kept`](crate::stream::check_kept)); this is for what that does not see, and for systems
+//! What jobs ask for is estimated before ([`flank::solve`]); this is for what that does not see, and for systems
 //! that have less. A system that promises memory which it has not (as Linux does by default) ends a program by itself instead.
 #![allow(unsafe_code)] // an allocator is unsafe to write; this one hands everything to the system's
 

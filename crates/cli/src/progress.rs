@@ -5,6 +5,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use flank::{Findings, Monitor, Work};
+
+use crate::eprint;
+use crate::failure::findings_in_full;
+
 /// What takes no longer says nothing.
 const QUIET: Duration = Duration::from_secs(1);
 /// After that it says something as often as this.
@@ -13,7 +18,7 @@ const EVERY: Duration = Duration::from_millis(250);
 const WIDTH: usize = 78;
 
 /// Work that is being done. Its line is taken away when it ends.
-pub(crate) struct Working(Option<Ticker>);
+struct Working(Option<Ticker>);
 
 struct Ticker {
     state: Arc<(Mutex<State>, Condvar)>,
@@ -28,16 +33,34 @@ struct State {
 
 impl Working {
     /// `what` in a few words, such as `solving concave`.
-    pub(crate) fn on(what: String) -> Working {
+    fn on(what: String) -> Working {
         let is_seen = std::io::stderr().is_terminal();
         Working(is_seen.then(|| Ticker::start(what, Box::new(std::io::stderr()), [QUIET, EVERY])))
     }
+}
 
-    /// How far it is, such as `20 of 80 rows`.
-    pub(crate) fn reached(&self, reached: impl FnOnce() -> String) {
+impl Work for Working {
+    fn reached(&self, how_far: &dyn Fn() -> String) {
         if let Some(ticker) = &self.0 {
-            ticker.state().reached = reached();
+            ticker.state().reached = how_far();
         }
+    }
+}
+
+/// Who looks at a terminal follows an operation.
+pub(crate) struct Terminal;
+
+impl Monitor for Terminal {
+    fn begin(&self, what: String) -> Box<dyn Work> {
+        Box::new(Working::on(what))
+    }
+
+    fn note(&self, lines: &str) {
+        eprint(lines);
+    }
+
+    fn warn(&self, findings: &Findings) {
+        eprint(&findings_in_full(findings));
     }
 }
 
@@ -136,7 +159,7 @@ mod tests {
             Box::new(paper.clone()),
             [Duration::ZERO, Duration::from_millis(1)],
         )));
-        working.reached(|| "20 of 80 rows".to_string());
+        working.reached(&|| "20 of 80 rows".to_string());
         let start = Instant::now();
         while !paper.text().contains("solving: 20 of 80 rows, 0 s") && start.elapsed() < Duration::from_secs(60) {
             std::thread::yield_now();

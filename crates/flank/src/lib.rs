@@ -16,20 +16,46 @@
 //! assert_eq!((first.code, first.place.line, first.place.column), ("E0201", 1, 72));
 //! ```
 
+mod compare;
+mod convert;
+mod derive;
+mod draw;
 mod exchange;
 mod language;
+mod page;
 mod project;
+mod report;
+mod solve;
 
+pub use compare::deviation::deviation;
+pub use compare::measure::measure;
+pub use convert::convert;
+pub use derive::derive;
+pub use draw::plot;
 pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
 pub use exchange::templates::{
     JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, Words, new_job, template_parameters,
     templates,
 };
+pub use flank_chain_dsl::syntax::is_reserved;
 pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
 pub use language::check::{Checked, check};
 pub use language::errors::{ErrorCode, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema, schemas};
+pub use page::view;
+pub use project::answer::Answer;
+pub use project::choices::{
+    EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
+};
 pub use project::failure::Failure;
+pub use project::files::write_texts;
 pub use project::findings::{Finding, Findings, Note, Place, Severity};
+pub use project::monitor::{Monitor, Unwatched, Work};
+pub use project::requests::{
+    ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, JobSelection, MeasureRequest, Onto, PlotRequest,
+    ReportRequest, SolveRequest, ViewRequest,
+};
 pub use project::{Project, shown_path};
+pub use report::report;
+pub use solve::solve;

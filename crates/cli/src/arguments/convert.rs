@@ -1,10 +1,8 @@
 //! The arguments of `flank convert`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use flank_export::Dialect;
-use flank_expr::Language;
 
 use super::{Means, Which, count, folder, length};
 
@@ -37,16 +35,16 @@ pub(crate) struct Convert {
     pub(crate) positions: u32,
     /// The order of the polynomials; 6 otherwise
     #[arg(long, value_name = "ORDER", value_parser = count(0..=30), allow_hyphen_values = true, conflicts_with = "tolerance")]
-    order: Option<u32>,
+    pub(crate) order: Option<u32>,
     /// Take the smallest order that keeps the flank this near, for example 0.1um or 0.002mm
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// Folder for the files, made if it is not there; build otherwise
     #[arg(long, value_name = "DIR", value_parser = folder())]
-    out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Files with positions and polynomials: csv, json, or both with a comma; csv otherwise
     #[arg(long, value_enum, value_delimiter = ',')]
-    format: Vec<TableFormat>,
+    pub(crate) format: Vec<TableFormat>,
     /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
     #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
@@ -62,37 +60,6 @@ pub(crate) struct Convert {
     /// Print everything as JSON
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-impl Convert {
-    /// The order of the polynomials where no tolerance chooses it.
-    pub(crate) fn order(&self) -> usize {
-        self.order.unwrap_or(6) as usize
-    }
-
-    /// The folder for the files.
-    pub(crate) fn out(&self) -> &Path {
-        self.out.as_deref().unwrap_or(Path::new("build"))
-    }
-
-    /// What files with positions and polynomials there are to be.
-    pub(crate) fn formats(&self) -> &[TableFormat] {
-        if self.format.is_empty() { &[TableFormat::Csv] } else { &self.format }
-    }
-
-    /// What is asked for that there is only of a motion, not of settings.
-    pub(crate) fn of_a_motion(&self) -> Vec<&'static str> {
-        let asked = [
-            (self.order.is_some(), "--order"),
-            (self.tolerance.is_some(), "--tolerance"),
-            (self.out.is_some(), "--out"),
-            (!self.format.is_empty(), "--format"),
-            (!self.nc.is_empty(), "--nc"),
-            (self.time.is_some(), "--time"),
-            (!self.emit.is_empty(), "--emit"),
-        ];
-        asked.into_iter().filter_map(|(is_asked, name)| is_asked.then_some(name)).collect()
-    }
 }
 
 /// What is carried over, and which frames of the target stand for the job's.
@@ -137,36 +104,6 @@ pub(crate) enum EmitLanguage {
 pub(crate) enum EmitForm {
     Polynomials,
     Exact,
-}
-
-impl From<NcDialect> for Dialect {
-    fn from(dialect: NcDialect) -> Dialect {
-        match dialect {
-            NcDialect::Fanuc => Dialect::Fanuc,
-            NcDialect::Siemens => Dialect::Siemens840D,
-            NcDialect::LinuxCnc => Dialect::LinuxCnc,
-        }
-    }
-}
-
-impl From<EmitLanguage> for Language {
-    fn from(language: EmitLanguage) -> Language {
-        match language {
-            EmitLanguage::C => Language::C,
-            EmitLanguage::Rust => Language::Rust,
-            EmitLanguage::JavaScript => Language::JavaScript,
-        }
-    }
-}
-
-impl EmitLanguage {
-    pub(crate) fn extension(self) -> &'static str {
-        match self {
-            EmitLanguage::C => "c",
-            EmitLanguage::Rust => "rs",
-            EmitLanguage::JavaScript => "mjs",
-        }
-    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

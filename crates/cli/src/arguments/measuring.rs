@@ -52,18 +52,7 @@ pub(crate) struct Margin {
     /// What a measuring grid leaves out at each end of the sampled area, as a share of it: from root to tip and along the tooth
     /// if there are two numbers; 0.05 otherwise
     #[arg(long, value_name = "SHARE[,SHARE]", value_parser = margins, allow_hyphen_values = true)]
-    margin: Option<[f64; 2]>,
-}
-
-impl Margin {
-    /// From root to tip, along the tooth.
-    pub(crate) fn shares(&self) -> [f64; 2] {
-        self.margin.unwrap_or([0.05; 2])
-    }
-
-    pub(crate) fn is_given(&self) -> bool {
-        self.margin.is_some()
-    }
+    pub(crate) margin: Option<[f64; 2]>,
 }
 
 fn margins(text: &str) -> Result<[f64; 2], String> {

@@ -3,6 +3,7 @@
 mod convert;
 mod measuring;
 mod report;
+mod requests;
 
 use std::num::NonZero;
 use std::ops::RangeInclusive;
@@ -10,13 +11,12 @@ use std::path::{Path, PathBuf, is_separator};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use flank_chain_dsl::{Code, Job, Request};
-use flank_expr::InstructionSet;
-use flank_solver::MOST_BOXES;
+use flank::{Code, EvaluatorOptions, JobSelection};
 
 use crate::failure::Failure;
+use crate::spec;
 
-pub(crate) use convert::{Convert, EmitForm, Onto, TableFormat};
+pub(crate) use convert::{Convert, Onto, TableFormat};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use report::{Report, ReportFormat};
 
@@ -144,32 +144,10 @@ pub(crate) struct Which {
 }
 
 impl Which {
-    pub(crate) fn request(&self) -> Request<'_> {
-        Request { job: self.job.as_deref(), set: &self.set, ..Request::default() }
-    }
-
     /// # Errors
-    /// If one name is set twice, whatever the file says.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        let twice =
-            self.set.iter().enumerate().find(|(k, (name, _))| self.set[..*k].iter().any(|(known, _)| known == name));
-        match twice {
-            Some((_, (name, _))) => {
-                Err(Failure::of_usage(format!("`--set {name}=…` is given twice: leave one of them out")))
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// The values that were set by hand, of parameters and settings of these jobs.
-    pub(crate) fn set_in(&self, jobs: &[&Job<'_>]) -> Vec<&(String, String)> {
-        self.set.iter().filter(|(name, _)| jobs.iter().any(|job| self.changes(name, job))).collect()
-    }
-
-    /// Whether a value that was set by hand changes a job; one with the job's name before it goes before one for all jobs.
-    pub(crate) fn changes(&self, name: &str, job: &Job<'_>) -> bool {
-        let own = format!("{}.{name}", job.name);
-        job.has_parameter(name) && !self.set.iter().any(|(other, _)| *other == own)
+    /// If the standard input cannot be read.
+    pub(crate) fn jobs(&self) -> Result<JobSelection, Failure> {
+        Ok(JobSelection { project: spec::project(&self.file)?, job: self.job.clone(), set: self.set.clone() })
     }
 }
 
@@ -186,7 +164,7 @@ pub(crate) struct Means {
     threads: Option<NonZero<usize>>,
 
     /// Boxes that a search for all branches looks at before it leaves the rest of the ranges undecided
-    #[arg(long, value_name = "N", default_value_t = MOST_BOXES, value_parser = clap::value_parser!(u64).range(1..=MOST_ASKED_FOR))]
+    #[arg(long, value_name = "N", default_value_t = EvaluatorOptions::default().boxes, value_parser = clap::value_parser!(u64).range(1..=MOST_ASKED_FOR))]
     boxes: u64,
 }
 
@@ -198,12 +176,8 @@ impl Means {
         self.threads
     }
 
-    pub(crate) fn boxes(self) -> u64 {
-        self.boxes
-    }
-
-    pub(crate) fn instructions(self) -> InstructionSet {
-        if self.no_machine_code { InstructionSet::widest() } else { InstructionSet::fastest() }
+    pub(crate) fn evaluator(self) -> EvaluatorOptions {
+        EvaluatorOptions { machine_code: !self.no_machine_code, boxes: self.boxes }
     }
 }
 
@@ -661,7 +635,7 @@ fn job_name(text: &str) -> Result<String, String> {
     if !is_name {
         return Err("a name has letters, digits and _, a letter first".to_owned());
     }
-    if flank_chain_dsl::syntax::is_reserved(text) {
+    if flank::is_reserved(text) {
         return Err("this is a word of the language and cannot be a name".to_owned());
     }
     Ok(text.to_owned())

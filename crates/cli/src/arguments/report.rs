@@ -1,6 +1,6 @@
 //! The arguments of `flank report`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -49,18 +49,7 @@ pub(crate) enum ReportFormat {
     Md,
 }
 
-impl ReportFormat {
-    /// What a path says it is; nothing for a folder.
-    pub(crate) fn of(path: &Path) -> Option<ReportFormat> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        match &*extension {
-            "html" | "htm" => Some(ReportFormat::Html),
-            "md" => Some(ReportFormat::Md),
-            _ => None,
-        }
-    }
-}
-
 fn page_or_folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| if ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
+    PathBufValueParser::new()
+        .try_map(|path| if flank::ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
 }

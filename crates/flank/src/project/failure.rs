@@ -1,6 +1,7 @@
 //! Why an operation did not do what it was asked for.
 
 use flank_export::{FileError, FolderError};
+use serde_json::{Value, json};
 
 use crate::project::findings::Findings;
 
@@ -16,10 +17,52 @@ pub enum Failure {
     /// A file is not what it should be, or has not what is asked of it.
     #[error("{0}")]
     Input(String),
+    /// What was asked for cannot be solved.
+    #[error("{0}")]
+    Unsolved(String),
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
     /// A folder cannot be made.
     #[error(transparent)]
     Folder(#[from] FolderError),
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Failure {
+        Failure::Input(reason)
+    }
+}
+
+impl Failure {
+    /// The same for something that cannot be solved.
+    pub(crate) fn unsolved(self) -> Failure {
+        match self {
+            Failure::Input(reason) => Failure::Unsolved(reason),
+            other => other,
+        }
+    }
+}
+
+/// What was asked for and not done as messages: one for each line that is not indented.
+pub(crate) fn not_done(told: &str) -> Value {
+    let mut messages: Vec<String> = Vec::new();
+    for line in told.lines() {
+        match messages.last_mut() {
+            Some(last) if line.starts_with(' ') => *last += &format!("\n{line}"),
+            _ => messages.push(line.to_string()),
+        }
+    }
+    json!(messages)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indented_lines_belong_to_their_message() {
+        assert_eq!(not_done("a: 1\n  of b\n  of c\nd\n"), json!(["a: 1\n  of b\n  of c", "d"]));
+        assert_eq!(not_done(""), json!([]));
+    }
 }

@@ -1,0 +1,175 @@
+//! From arguments to what is asked of the library.
+
+use flank::{
+    ConvertRequest, DeriveRequest, DeviationRequest, MeasureRequest, PlotRequest, ReportRequest, SolveRequest,
+    ViewRequest,
+};
+
+use super::convert::{EmitForm, EmitLanguage, NcDialect};
+use super::{
+    Convert, Derive, Deviation, Format, Measure, Onto, PictureFormat, Plot, Report, ReportFormat, Solve, TableFormat,
+    View, What,
+};
+use crate::failure::Failure;
+
+/// The library's kinds, which say the same.
+macro_rules! same {
+    ($($own:ident => $theirs:ident { $($kind:ident),* })*) => {
+        $(impl From<$own> for flank::$theirs {
+            fn from(kind: $own) -> flank::$theirs {
+                match kind {
+                    $($own::$kind => flank::$theirs::$kind),*
+                }
+            }
+        })*
+    };
+}
+
+same! {
+    Format => PointFormat { Csv, Json, Parquet, Stl, Obj, ThreeMf, Vtp }
+    PictureFormat => PictureFormat { Png, Svg }
+    TableFormat => TableFormat { Csv, Json }
+    ReportFormat => ReportFormat { Html, Md }
+    What => PlotKind {
+        Surface, Topography, Curvature, Sensitivity, Deviation, Left, Residual, ContactLines, Section, Machine, Motion
+    }
+    NcDialect => NcDialect { Fanuc, Siemens, LinuxCnc }
+    EmitLanguage => FunctionLanguage { C, Rust, JavaScript }
+    EmitForm => EmitForm { Polynomials, Exact }
+}
+
+fn all<A: Copy + Into<B>, B>(kinds: &[A]) -> Vec<B> {
+    kinds.iter().map(|kind| (*kind).into()).collect()
+}
+
+impl Solve {
+    pub(crate) fn request(&self) -> Result<SolveRequest, Failure> {
+        Ok(SolveRequest {
+            jobs: self.which.jobs()?,
+            out: self.out.clone(),
+            format: all(&self.format),
+            step: self.faces.step,
+            limits: self.limits,
+            no_picture: self.no_picture,
+            geometry: self.geometry,
+            sensitivity: self.sensitivity,
+            certify: self.certify,
+            evaluator: self.means.evaluator(),
+        })
+    }
+}
+
+impl Plot {
+    pub(crate) fn request(&self) -> Result<PlotRequest, Failure> {
+        Ok(PlotRequest {
+            jobs: self.which.jobs()?,
+            what: all(&self.what),
+            surface: self.surface.clone(),
+            from: self.from.clone(),
+            of: self.of.clone(),
+            out: self.out.clone(),
+            format: all(&self.format),
+            size: self.size,
+            no_origin: self.no_origin,
+            evaluator: self.means.evaluator(),
+        })
+    }
+}
+
+impl Report {
+    pub(crate) fn request(&self) -> Result<ReportRequest, Failure> {
+        Ok(ReportRequest {
+            jobs: self.which.jobs()?,
+            out: self.out.clone(),
+            format: all(&self.format),
+            certify: self.certify,
+            step: self.faces.step,
+            date: self.date.clone(),
+            evaluator: self.means.evaluator(),
+        })
+    }
+}
+
+impl View {
+    pub(crate) fn request(&self) -> Result<ViewRequest, Failure> {
+        Ok(ViewRequest { jobs: self.which.jobs()?, out: self.out.clone(), evaluator: self.means.evaluator() })
+    }
+}
+
+impl Deviation {
+    pub(crate) fn request(&self) -> Result<DeviationRequest, Failure> {
+        Ok(DeviationRequest {
+            jobs: self.which.jobs()?,
+            surface: self.surface.clone(),
+            from: self.from.clone(),
+            measured: self.measured.clone(),
+            rows: self.rows,
+            columns: self.columns,
+            margin: self.margin.margin,
+            as_it_lies: self.as_it_lies,
+            out: self.out.clone(),
+            format: all(&self.format),
+            no_picture: self.no_picture,
+            evaluator: self.means.evaluator(),
+        })
+    }
+}
+
+impl Measure {
+    pub(crate) fn request(&self) -> Result<MeasureRequest, Failure> {
+        Ok(MeasureRequest {
+            jobs: self.which.jobs()?,
+            surface: self.surface.clone(),
+            rows: self.rows,
+            columns: self.columns,
+            margin: self.margin.margin,
+            lines: self.lines,
+            out: self.out.clone(),
+            format: all(&self.format),
+            evaluator: self.means.evaluator(),
+        })
+    }
+}
+
+impl Onto {
+    fn request(&self) -> flank::Onto {
+        flank::Onto {
+            surface: self.surface.clone(),
+            tool_frame: self.tool_frame.clone(),
+            work_frame: self.work_frame.clone(),
+            evaluator: self.means.evaluator(),
+        }
+    }
+}
+
+impl Convert {
+    pub(crate) fn request(&self) -> Result<ConvertRequest, Failure> {
+        Ok(ConvertRequest {
+            jobs: self.which.jobs()?,
+            to: self.to.clone(),
+            onto: self.onto.request(),
+            fit: self.fit.clone(),
+            positions: self.positions,
+            order: self.order,
+            tolerance: self.tolerance,
+            out: self.out.clone(),
+            format: all(&self.format),
+            nc: all(&self.nc),
+            time: self.time,
+            emit: all(&self.emit),
+            emit_form: all(&self.emit_form),
+        })
+    }
+}
+
+impl Derive {
+    pub(crate) fn request(&self) -> Result<DeriveRequest, Failure> {
+        Ok(DeriveRequest {
+            jobs: self.which.jobs()?,
+            latex: self.latex,
+            to: self.to.clone(),
+            onto: self.onto.request(),
+            cost: self.cost,
+        })
+    }
+}

@@ -1,0 +1,64 @@
+//! Commands that ask one thing of a spec, and print what the library answers.
+
+use flank::{Answer, Failure as Refused, Monitor};
+
+use crate::arguments::{Convert, Derive, Deviation, Measure, Plot, Report, Solve, View};
+use crate::failure::Failure;
+use crate::progress::Terminal;
+use crate::{Ending, document, eprint, print};
+
+type Operation<'o> = dyn Fn(&dyn Monitor, &mut dyn FnMut(Answer)) -> Result<(), Refused> + 'o;
+
+/// Prints each answer as it comes.
+fn told(as_document: bool, operation: &Operation<'_>) -> Result<Ending, Failure> {
+    let mut ending = Ending::Done;
+    operation(&Terminal, &mut |answer| {
+        print(&if as_document { document::printed(&answer.document) } else { answer.text });
+        eprint(&answer.notes);
+        if !answer.not_done.is_empty() {
+            eprint(&answer.not_done);
+            ending = Ending::Unsolved;
+        }
+    })?;
+    Ok(ending)
+}
+
+pub(crate) fn solve(arguments: &Solve) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::solve(&request, monitor, each))
+}
+
+pub(crate) fn plot(arguments: &Plot) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::plot(&request, monitor, each))
+}
+
+pub(crate) fn report(arguments: &Report) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::report(&request, monitor, each))
+}
+
+pub(crate) fn view(arguments: &View) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::view(&request, monitor, each))
+}
+
+pub(crate) fn measure(arguments: &Measure) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::measure(&request, monitor, each))
+}
+
+pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::deviation(&request, monitor).map(each))
+}
+
+pub(crate) fn convert(arguments: &Convert) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::convert(&request, monitor).map(each))
+}
+
+pub(crate) fn derive(arguments: &Derive) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, &|monitor, each| flank::derive(&request, monitor).map(each))
+}

@@ -1,0 +1,280 @@
+//! `flank measure`: nominal points and normals for gear measuring machines.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample, SampleGrid, spaced};
+use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, Part, Patch, Point};
+use flank_expr::Graph;
+use flank_solver::SurfacePoint;
+use serde_json::{Value, json};
+
+use crate::compare::deviation;
+use crate::project::answer::Answer;
+use crate::project::failure::{Failure, not_done};
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::requests::{Means, MeasureRequest};
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::project::units;
+use crate::solve;
+use crate::solve::Wanted;
+use crate::solve::table::aligned;
+
+/// Rows and columns of the grid that tells how a flank lies.
+const TRIAL: usize = 13;
+
+/// Writes nominal points and normals of surfaces for measuring machines. `each` is given what is to be said of each job.
+///
+/// # Errors
+/// What is wrong with the spec; that a surface has no grid, or several branches; that a file cannot be written.
+pub fn measure(request: &MeasureRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of(&compilation);
+    let named = request.surface.iter().map(|name| deviation::find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
+    let means = Means::new(request.evaluator, monitor);
+    for job in solve::asked(&jobs, monitor)? {
+        let is_meant = |surface: &&GeneratedSurface<'_>| match named.is_empty() {
+            true => surface.sample.is_some(),
+            false => named.iter().any(|of| of.job.name == job.name && of.surface.name == surface.name),
+        };
+        let meant: Vec<&GeneratedSurface<'_>> = job.surfaces.iter().filter(is_meant).collect();
+        if meant.is_empty() {
+            continue;
+        }
+        let flanks =
+            meant.iter().map(|surface| flank(job, surface, (request, means))).collect::<Result<_, Failure>>()?;
+        let header = solve::header(&[job], &request.jobs, &origin);
+        let grid = MeasuringGrid { header, margins: request.margins(), flanks };
+        let mut folder = Folder::at(&request.out, &origin, monitor)?;
+        for format in &request.format {
+            folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
+        }
+        let (not_done, written) = (unsolved(&grid), folder.finish()?);
+        let (text, document) = (as_text(&grid, &written), as_json(&grid, &written, &not_done));
+        each(Answer { text, document, notes: String::new(), not_done });
+    }
+    Ok(())
+}
+
+/// How the measuring grid of a surface lies in its sample.
+pub(crate) struct Placed<'j, 'g> {
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &'j Sample<'g>,
+    ends: FlankEnds,
+    margins: [f64; 2],
+    means: Means<'j>,
+}
+
+impl<'j, 'g> Placed<'j, 'g> {
+    /// # Errors
+    /// If the surface is not sampled, several of its branches qualify, or its sample does not tell root and tip from the length of the
+    /// tooth.
+    pub(crate) fn new(
+        job: &'j Job<'g>,
+        surface: &'j GeneratedSurface<'g>,
+        margins: [f64; 2],
+        means: Means<'j>,
+    ) -> Result<Placed<'j, 'g>, Failure> {
+        let name = &surface.name;
+        let sample = surface.sample.as_ref().ok_or(format!(
+            "`{name}` is not sampled: its sample says where it is measured; add `sample {name} {{ … }}`"
+        ))?;
+        if let Some(k) = sample.counts.iter().position(|count| *count < 2) {
+            return Err(Failure::from(format!(
+                "`{name}` is sampled at one value of `{}` only: a grid needs an area between two",
+                sample.labels[k]
+            )));
+        }
+        let shares = spaced((0.0, 1.0), TRIAL);
+        let trial = lattice(sample, false, [&shares, &shares]);
+        let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
+        let found = solve::points(job, surface, &trial, wanted(means));
+        if let Some(branches) = found.ambiguous(surface, &trial) {
+            return Err(Failure::from(branches).unsolved());
+        }
+        let patch = solve::patch(job, name, surface, axes, &found.points);
+        let ends = FlankEnds::of(&patch).ok_or(format!(
+            "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
+             does: `toe_root: [z, rho]`, …"
+        ))?;
+        Ok(Placed { job, surface, sample, ends, margins, means })
+    }
+
+    /// Points at shares from root to tip and along the tooth.
+    pub(crate) fn sample(&self, profile: &[f64], length: &[f64]) -> Sample<'g> {
+        let FlankEnds { rows_are_profile, reversed, .. } = self.ends;
+        let labels = [&self.ends.profile, &self.ends.length].map(|[from, to]| format!("{from} -> {to}"));
+        let along = |shares: &[f64], back: bool| -> Vec<f64> {
+            shares.iter().map(|share| if back { 1.0 - share } else { *share }).collect()
+        };
+        let [v, u] = [along(profile, reversed[0]), along(length, reversed[1])];
+        let placed = lattice(self.sample, !rows_are_profile, [&v, &u]);
+        Sample { labels, ..placed }
+    }
+
+    /// The shares of so many rows and columns within the margins.
+    pub(crate) fn shares(&self, counts: [usize; 2]) -> [Vec<f64>; 2] {
+        [0, 1].map(|k| within(self.margins[k], counts[k]))
+    }
+
+    pub(crate) fn solved(&self, sample: &Sample<'g>) -> Vec<SurfacePoint> {
+        let _working = self.means.begin(format!("solving {}", self.surface.name));
+        solve::points(self.job, self.surface, sample, wanted(self.means)).points
+    }
+
+    fn part(&self, counts: [usize; 2]) -> Patch {
+        let [profile, length] = self.shares(counts);
+        let sample = self.sample(&profile, &length);
+        let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: sample.counts[k] });
+        let points = self.solved(&sample);
+        solve::patch(self.job, &self.surface.name, self.surface, axes, &points)
+    }
+}
+
+/// Points alone.
+fn wanted(means: Means<'_>) -> Wanted<'_> {
+    Wanted { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, means }
+}
+
+/// So many shares from end to end, without the margins.
+fn within(margin: f64, count: usize) -> Vec<f64> {
+    spaced((0.0, 1.0), count).into_iter().map(|share| margin + (1.0 - 2.0 * margin) * share).collect()
+}
+
+/// Points of a sample's area at shares of the way along its rows and its columns; `across`: along its columns and its rows.
+fn lattice<'g>(sample: &Sample<'g>, across: bool, shares: [&[f64]; 2]) -> Sample<'g> {
+    let [a, b] = sample.coordinates.clone();
+    let (coordinates, grid) = match (&sample.grid, across) {
+        (SampleGrid::Values([rows, columns]), false) => ([a, b], SampleGrid::Values(between([rows, columns], shares))),
+        (SampleGrid::Values([rows, columns]), true) => ([b, a], SampleGrid::Values(between([columns, rows], shares))),
+        (SampleGrid::Shares { shares: [rows, columns], corners }, false) => {
+            ([a, b], SampleGrid::Shares { shares: between([rows, columns], shares), corners: *corners })
+        }
+        (SampleGrid::Shares { shares: [rows, columns], corners: [toe_root, heel_root, toe_tip, heel_tip] }, true) => {
+            let corners = [*toe_root, *toe_tip, *heel_root, *heel_tip];
+            ([a, b], SampleGrid::Shares { shares: between([columns, rows], shares), corners })
+        }
+    };
+    Sample { coordinates, counts: shares.map(<[f64]>::len), grid, ..sample.clone() }
+}
+
+/// From the first value to the last.
+fn between(values: [&Vec<f64>; 2], shares: [&[f64]; 2]) -> [Vec<f64>; 2] {
+    [0, 1].map(|k| {
+        let (Some(first), Some(last)) = (values[k].first(), values[k].last()) else { return Vec::new() };
+        shares[k].iter().map(|share| (1.0 - share) * first + share * last).collect()
+    })
+}
+
+fn flank<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    (request, means): (&MeasureRequest, Means<'_>),
+) -> Result<NominalFlank, Failure> {
+    let placed = Placed::new(job, surface, request.margins(), means)?;
+    let grid = placed.part([request.rows as usize, request.columns as usize]);
+    let hand = Hand::of(&grid);
+    let mut parts = vec![(Part::Grid, grid)];
+    if let Some(count) = request.lines {
+        let count = count as usize;
+        parts.extend([(Part::Profile, placed.part([count, 1])), (Part::Lead, placed.part([1, count]))]);
+    }
+    parts.push((Part::Middle, placed.part([1, 1])));
+    Ok(NominalFlank { hand, ends: placed.ends, parts })
+}
+
+fn solved(patch: &Patch) -> usize {
+    patch.points.iter().filter(|point| is_solved(point)).count()
+}
+
+fn is_solved(point: &Point) -> bool {
+    point.outcome == flank_export::Outcome::Solved
+}
+
+/// Distance from z, z, and angle about z in degrees of the point in the middle.
+fn middle(flank: &NominalFlank) -> Option<[f64; 3]> {
+    let (_, patch) = flank.parts.iter().find(|(part, _)| *part == Part::Middle)?;
+    let [x, y, z] = patch.points.first().filter(|point| is_solved(point))?.position;
+    Some([x.hypot(y), z, y.atan2(x).to_degrees()])
+}
+
+fn as_text(grid: &MeasuringGrid, written: &[String]) -> String {
+    let mut out = format!("job {} ({})\n\n", grid.header.job, grid.header.spec);
+    let mut rows = vec![
+        ["surface", "flank", "rows", "columns", "solved", "in the middle: rho mm, z mm, angle deg"].map(String::from),
+    ];
+    for flank in &grid.flanks {
+        let Some((_, patch)) = flank.parts.first() else { continue };
+        let side = |count: usize, [from, to]: &[String; 2]| format!("{count}, {from} to {to}");
+        let middle =
+            middle(flank).map(|place| place.map(|number| units::text(Dimension::NUMBER, number, 6)).join("  "));
+        rows.push([
+            patch.name.clone(),
+            flank.hand.map_or("-", Hand::word).to_string(),
+            side(patch.rows.count, &flank.ends.profile),
+            side(patch.columns.count, &flank.ends.length),
+            format!("{} of {}", solved(patch), patch.points.len()),
+            middle.unwrap_or("-".to_string()),
+        ]);
+    }
+    let _ = write!(out, "{}\nwrote {}\n", aligned(&rows, ""), written.join(", "));
+    out
+}
+
+fn as_json(grid: &MeasuringGrid, written: &[String], told: &str) -> Value {
+    let flank_json = |flank: &NominalFlank| {
+        let parts = flank.parts.iter().map(|(part, patch)| {
+            json!({ "part": part.word(), "rows": patch.rows.count, "columns": patch.columns.count,
+                "asked": patch.points.len(), "solved": solved(patch) })
+        });
+        let first = flank.parts.first().map(|(_, patch)| patch);
+        json!({
+            "surface": first.map(|patch| &patch.name), "frame": first.map(|patch| &patch.frame),
+            "flank": flank.hand.map(Hand::word), "rows": flank.ends.profile, "columns": flank.ends.length,
+            "parts": parts.collect::<Vec<Value>>(),
+            "middle": middle(flank).map(|[rho, z, angle]| json!({ "rho_mm": rho, "z_mm": z, "angle_deg": angle })),
+        })
+    };
+    json!({
+        "schema": "flank.measure/1", "job": grid.header.job, "spec": grid.header.spec, "margins": grid.margins,
+        "flanks": grid.flanks.iter().map(flank_json).collect::<Vec<Value>>(),
+        "files": written, "not_done": not_done(told),
+    })
+}
+
+/// Which points are not there, and why; empty if all are.
+fn unsolved(grid: &MeasuringGrid) -> String {
+    let mut out = String::new();
+    for (part, patch) in grid.flanks.iter().flat_map(|flank| &flank.parts) {
+        let mut reasons: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (at, point) in patch.points.iter().enumerate().filter(|(_, point)| !is_solved(point)) {
+            let reason = format!("{} {}", point.outcome.word(), point.reason).trim_end().to_string();
+            let place = format!("({}, {})", at / patch.columns.count + 1, at % patch.columns.count + 1);
+            reasons.entry(reason).or_default().push(place);
+        }
+        if !reasons.is_empty() {
+            let missing = patch.points.len() - solved(patch);
+            let (name, part, all) = (&patch.name, part.word(), patch.points.len());
+            let _ = writeln!(out, "not solved: {missing} of {all} points of {name}, {part} (row, column)");
+        }
+        for (reason, places) in reasons {
+            let _ = writeln!(out, "  {reason}: {}", places.join(" "));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_an_odd_grid_is_the_middle() {
+        assert_eq!(within(0.1, 5), [0.1, 0.30000000000000004, 0.5, 0.7000000000000001, 0.9]);
+        assert_eq!(within(0.1, 1), [0.5]);
+    }
+}

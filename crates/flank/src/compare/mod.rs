@@ -1,0 +1,5 @@
+//! One surface held against another, against measured points, and nominal points for measuring machines.
+
+pub(crate) mod deviation;
+pub(crate) mod inspect;
+pub(crate) mod measure;

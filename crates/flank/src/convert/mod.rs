@@ -1,0 +1,470 @@
+//! `flank convert`: a job carried over to another machine.
+
+mod blocks;
+mod failures;
+mod files;
+mod rates;
+mod series;
+mod settings;
+mod source;
+mod table;
+
+use std::path::Path;
+
+use flank_chain_dsl::{Axis, Bounded, Job, Machine, Request, compile_request};
+use flank_expr::geometry::{Chain, Step};
+use flank_expr::{Expr, Graph};
+use flank_solver::{
+    Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis, unseen_motion,
+};
+
+use crate::project::answer::Answer;
+use crate::project::failure::Failure;
+use crate::project::monitor::Monitor;
+use crate::project::requests::{ConvertRequest, JobSelection, Means, Onto};
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::project::units;
+use blocks::Blocks;
+use rates::Rates;
+use series::Series;
+use source::{Chosen, Source};
+use table::Table;
+
+/// No linear axis without travel goes farther, mm.
+const REACH: f64 = 10_000.0;
+
+/// Carries a job over to another machine: the positions of its axes, or the settings with which it does the same.
+///
+/// # Errors
+/// What is wrong with the specs; what does not go together; that the machine has not what it takes; that a file cannot be written.
+pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+    check_positions(request)?;
+    check_fit_alone(request)?;
+    let graph = Graph::new();
+    let (origin, job, target) = compiled(&graph, &request.jobs, &request.to, monitor)?;
+    let plan = Plan::of(&graph, &job, &target, &request.onto, &request.fit)?;
+    check_settings_alone(&plan, request)?;
+    let means = Means::new(request.onto.evaluator, monitor);
+    let target = plan.solved(means)?;
+    let (text, document, not_done) = if target.settings.is_empty() {
+        let (table, told) = carry(&job, target, &origin, (request, means))?;
+        (table.text(), table.json(&told), told)
+    } else {
+        settings::find(&job, &target, (request, means))?
+    };
+    Ok(Answer { text, document, notes: String::new(), not_done })
+}
+
+/// # Errors
+/// If a program is asked for that would go nowhere: told before any file is written.
+fn check_positions(request: &ConvertRequest) -> Result<(), Failure> {
+    if request.nc.is_empty() || request.positions > 1 {
+        return Ok(());
+    }
+    let message = "an NC program moves from position to position: --nc needs --positions 2 or more";
+    Err(Failure::Request(message.to_string()))
+}
+
+/// # Errors
+/// If something is asked for that there is only of a motion, beside settings that are to be looked for.
+fn check_fit_alone(request: &ConvertRequest) -> Result<(), Failure> {
+    let dropped = request.of_a_motion();
+    if request.fit.is_empty() || dropped.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Request(format!(
+        "--fit looks for settings, and of them there are no files: leave out {}, and ask for it when the settings have their values",
+        dropped.join(", ")
+    )))
+}
+
+/// # Errors
+/// If something is asked for that there is only of a motion, while settings are looked for that have no values.
+fn check_settings_alone(plan: &Plan<'_, '_>, request: &ConvertRequest) -> Result<(), Failure> {
+    let [first, ..] = plan.settings[..] else { return Ok(()) };
+    let dropped = request.of_a_motion();
+    if dropped.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::from(format!(
+        "settings of {} are looked for, because {} has no value, and of them there are no files: leave out {}, and ask for it when \
+         the settings have their values: --set {}=…",
+        plan.machine.name,
+        first.name,
+        dropped.join(", "),
+        first.name
+    )))
+}
+
+/// What was read, the one job and the machine as a job without tool.
+///
+/// # Errors
+/// What is wrong with the texts, or that it is not clear which job is meant.
+pub(crate) fn compiled<'g>(
+    graph: &'g Graph,
+    which: &JobSelection,
+    to: &Path,
+    monitor: &dyn Monitor,
+) -> Result<(Origin, Job<'g>, Job<'g>), Failure> {
+    which.check()?;
+    let request = Request { machine: Some(to), ..which.request() };
+    let mut compilation = spec::sound(compile_request(graph, which.file(), &request), monitor)?;
+    let mut jobs = spec::asked_for(&mut compilation, which, monitor)?;
+    let target = compilation.machine.take().expect("a compilation without errors has the machine");
+    let origin = Origin::of(&compilation);
+    match jobs.len() {
+        1 => Ok((origin, jobs.remove(0), target)),
+        _ => {
+            let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
+            let names = names.join(" or ");
+            Err(format!("the file holds several jobs, and one is carried over at a time: --job {names}").into())
+        }
+    }
+}
+
+/// The axes over the motion, their series, what is written, and in words what the target cannot do.
+fn carry<'g>(
+    job: &Job<'g>,
+    target: Target<'_, 'g>,
+    origin: &Origin,
+    (request, means): (&ConvertRequest, Means<'_>),
+) -> Result<(Table, String), String> {
+    let jobs = [job, target.job];
+    let carried = Carried::on(target, request.positions, means)?;
+    let mut told = carried.failures();
+    let is_followed = carried.source.motions.len() == 1 && told.is_empty();
+    let working = means.begin(format!("polynomials and their proof on {}", carried.machine.name));
+    let series = is_followed.then(|| Series::of(&carried, request)).flatten();
+    drop(working);
+    match &series {
+        Some(series) => told.extend(series.unmet(request.tolerance, &carried.source)),
+        None if told.is_empty() => told.extend(without_series(&carried, request)),
+        None => {}
+    }
+    let is_series = is_followed && told.is_empty();
+    let rates = request.time.filter(|_| is_series).map(|seconds| Rates::of(&carried, seconds)).transpose()?.flatten();
+    let mut table = Table::new(job, &carried, (series, rates), request);
+    let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
+    table.blocks = (is_series && !request.nc.is_empty()).then(|| Blocks::of(&carried, tube));
+    // a table of one motion; what the target cannot do is no program
+    if is_series {
+        let header = crate::solve::header(&jobs, &request.jobs, origin);
+        table.written = files::write(&table, &carried, header, (request, origin, means))?;
+    }
+    Ok((table, carried.source.unsolved.clone() + &told))
+}
+
+/// In words, which of the things that are asked for there are not without power series of the axes; nothing if none is.
+fn without_series(carried: &Carried<'_, '_>, request: &ConvertRequest) -> Option<String> {
+    let motions: Vec<&str> = carried.source.motions.iter().map(|motion| motion.name.as_str()).collect();
+    let (asked, why) = match motions[..] {
+        [one] => (
+            request.tolerance.iter().map(|_| "--tolerance").collect(),
+            format!("the axes have no power series in the middle of {one}, where they are singular"),
+        ),
+        _ => (
+            request.of_a_motion(),
+            format!(
+                "the job runs over {}, each by itself, and files, polynomials, programs and rates go along one motion; without these \
+                 options the axes are printed, and with --json all positions",
+                motions.join(" and ")
+            ),
+        ),
+    };
+    (!asked.is_empty()).then(|| format!("not reached: nothing is done for {}: {why}\n", asked.join(", ")))
+}
+
+/// The machine that a job is carried over to.
+struct Target<'t, 'g> {
+    job: &'t Job<'g>,
+    machine: &'t Machine<'g>,
+    source: Source<'t, 'g>,
+    /// From work to tool, in free axes and parameters.
+    chain: Chain<'g>,
+    /// The axes that move the tool against the work.
+    free: Vec<&'t Axis<'g>>,
+    axes: Vec<TargetAxis<'g>>,
+    /// Settings that are looked for: those without a value, and those asked for.
+    settings: Vec<&'t Bounded<'g>>,
+    /// Numbers for the parameters of both machines.
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+/// What is to be carried over to which machine: all names are known, nothing is solved yet.
+struct Plan<'t, 'g> {
+    job: &'t Job<'g>,
+    machine: &'t Machine<'g>,
+    chosen: Chosen<'t, 'g>,
+    chain: Chain<'g>,
+    free: Vec<&'t Axis<'g>>,
+    settings: Vec<&'t Bounded<'g>>,
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+}
+
+impl<'t, 'g> Plan<'t, 'g> {
+    /// # Errors
+    /// In words, if a name is not known, it is not clear what is meant, or the machine has not the axes for it.
+    fn of(
+        graph: &'g Graph,
+        job: &'t Job<'g>,
+        target: &'t Job<'g>,
+        onto: &Onto,
+        fit: &[String],
+    ) -> Result<Plan<'t, 'g>, String> {
+        let chosen = Chosen::of(job, onto.surface.as_deref())?;
+        let machine = &target.machines[0];
+        let [work, tool] = [
+            frame(machine, &chosen.work, onto.work_frame.as_deref(), "--work-frame")?,
+            frame(machine, &chosen.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
+        ];
+        let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
+        let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
+        let laws: Vec<(Expr<'g>, Expr<'g>)> = followers.map(|axis| (axis.variable, axis.law)).collect();
+        let chain = chain.substituted(&laws);
+        let settings = settings::wanted(target, &chain, fit)?;
+        let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
+        let bindings = job.bindings().into_iter().chain(target.bindings_beside(&open)).collect::<Vec<_>>();
+        let settled = chain.substituted(&bindings);
+        let moves = |axis: &&Axis<'g>| axis.law == axis.variable && !settled.twist(axis.variable).is_zero();
+        let free: Vec<&Axis<'g>> = machine.axes.iter().filter(moves).collect();
+        failures::check_count(machine, &chosen.motions, &free)?;
+        Ok(Plan { job: target, machine, chosen, chain, free, settings, bindings })
+    }
+
+    /// With the points that the tool makes.
+    ///
+    /// # Errors
+    /// In words, if there are too many of them.
+    fn solved(self, means: Means<'_>) -> Result<Target<'t, 'g>, String> {
+        let Plan { job, machine, chosen, chain, free, settings, bindings } = self;
+        let source = Source::of(chosen, means)?;
+        let axes = free.iter().map(|axis| target_axis(axis)).collect();
+        Ok(Target { job, machine, source, chain, free, axes, settings, bindings })
+    }
+}
+
+impl<'t, 'g> Target<'t, 'g> {
+    fn motions(&self) -> Vec<Expr<'g>> {
+        self.source.motions.iter().map(|motion| motion.variable).collect()
+    }
+
+    fn problem(
+        &self,
+        (chain, axes): (&Chain<'g>, &[TargetAxis<'g>]),
+        unseen: &[Screw],
+    ) -> Result<PoseProblem<'g>, String> {
+        PoseProblem::new(chain, axes, self.source.driven, &self.motions(), unseen, REACH, &self.bindings)
+            .map_err(|error| refused(&error, self.machine, &self.free))
+    }
+
+    /// Postures at all positions. Where an axis that the tool does not see would go beyond its travel, the tool is turned about itself
+    /// so that it need not.
+    fn postures(&mut self, positions: &[Vec<f64>]) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
+        let found = self.postures_of(&self.chain, &self.axes, positions)?;
+        if !found.1.iter().all(is_met) || found.1.iter().all(is_good) {
+            return Ok(found);
+        }
+        let unseen = self.unseen_motions();
+        if unseen.iter().all(Option::is_none) {
+            return Ok(found);
+        }
+        let endless = self.axes.iter().zip(&unseen);
+        let endless: Vec<TargetAxis<'g>> = endless
+            .map(|(axis, unseen)| TargetAxis { travel: axis.travel.filter(|_| unseen.is_none()), ..*axis })
+            .collect();
+        let (_, line) = self.postures_of(&self.chain, &endless, positions)?;
+        let turned = self.turned(&unseen, &line);
+        let other = self.postures_of(&turned, &self.axes, positions)?;
+        if other.1.iter().all(is_met) {
+            self.chain = turned;
+            return Ok(other);
+        }
+        Ok(found)
+    }
+
+    /// Of each axis that ends what it does to the tool, if the tool does not see it, and how much of it per mm or radian.
+    fn unseen_motions(&self) -> Vec<Option<(Screw, f64)>> {
+        let settled = self.chain.substituted(&self.bindings);
+        let axes: Vec<Expr<'g>> = self.axes.iter().map(|axis| axis.variable).collect();
+        let of = |axis: &TargetAxis<'g>| {
+            axis.travel.and_then(|_| unseen_motion(&settled, axis.variable, &axes, &self.source.symmetries).ok()?)
+        };
+        self.axes.iter().map(of).collect()
+    }
+
+    /// The chain with the tool moved along itself by as much as brings axes that it does not see to the middle of their travels.
+    fn turned(&self, unseen: &[Option<(Screw, f64)>], line: &[Posture]) -> Chain<'g> {
+        let graph = self.free[0].variable.graph();
+        let steps = self.axes.iter().zip(unseen).enumerate().flat_map(|(k, (axis, unseen))| {
+            let (Some((screw, pace)), Some(travel)) = (unseen, axis.travel) else { return Vec::new() };
+            let values = line.iter().map(|posture| posture.axes[k]);
+            let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+            let by = 0.5 * (low + high - travel.low - travel.high);
+            screw.steps(graph, graph.constant(by * pace))
+        });
+        self.chain.then(&Chain::new(graph, steps.collect::<Vec<Step<'g>>>()))
+    }
+
+    fn postures_of(
+        &self,
+        chain: &Chain<'g>,
+        axes: &[TargetAxis<'g>],
+        positions: &[Vec<f64>],
+    ) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
+        let unseen = &self.source.symmetries;
+        let problem = self.problem((chain, axes), unseen)?;
+        let ranges = &self.source.ranges;
+        let line = follow(&problem, positions, ranges);
+        if line.iter().all(is_met) {
+            return Ok((problem, line));
+        }
+        // an axis that only happens to move the tool along itself there does not know how far: as far as on the source
+        let exact = if unseen.is_empty() { None } else { Some(self.problem((chain, axes), &[])?) };
+        let mixed = [Some(&problem), exact.as_ref()].map(|problem| problem.and_then(PoseProblem::mixed));
+        for other in [exact].into_iter().chain(mixed).flatten() {
+            let line = follow(&other, positions, ranges);
+            if line.iter().all(is_met) {
+                return Ok((other, line));
+            }
+        }
+        Ok((problem, line))
+    }
+}
+
+/// Whether the tool stands as it should and the axes can.
+fn is_good(posture: &Posture) -> bool {
+    posture.outcome == Outcome::Solved && is_met(posture)
+}
+
+/// Whether the tool stands as it should, within the travels or beyond.
+fn is_met(posture: &Posture) -> bool {
+    matches!(posture.outcome, Outcome::Solved | Outcome::Outside { .. }) && posture.missing.is_none()
+}
+
+/// A job on another machine.
+pub(crate) struct Carried<'j, 'g> {
+    pub(crate) source: Source<'j, 'g>,
+    pub(crate) machine: &'j Machine<'g>,
+    /// The axes that move the tool against the work.
+    pub(crate) free: Vec<&'j Axis<'g>>,
+    /// From work to tool on the machine, with its parameters as symbols.
+    chain: Chain<'g>,
+    bindings: Vec<(Expr<'g>, Expr<'g>)>,
+    pub(crate) problem: PoseProblem<'g>,
+    pub(crate) positions: Vec<Vec<f64>>,
+    pub(crate) line: Vec<Posture>,
+}
+
+impl<'j, 'g> Carried<'j, 'g> {
+    /// # Errors
+    /// In words, if it is not clear what is meant, or the machine has not the axes or the settings for it.
+    pub(crate) fn new(
+        graph: &'g Graph,
+        job: &'j Job<'g>,
+        target: &'j Job<'g>,
+        (onto, means): (&Onto, Means<'j>),
+        positions: u32,
+    ) -> Result<Carried<'j, 'g>, String> {
+        let plan = Plan::of(graph, job, target, onto, &[])?;
+        match plan.settings.first() {
+            Some(open) => Err(format!("{} has no value: --set {}=…", open.name, open.name)),
+            None => Carried::on(plan.solved(means)?, positions, means),
+        }
+    }
+
+    fn on(mut target: Target<'j, 'g>, positions: u32, means: Means<'_>) -> Result<Carried<'j, 'g>, String> {
+        let _working = means.begin(format!("following the tool on {}", target.machine.name));
+        let positions = target.source.positions(positions as usize);
+        let (problem, line) = target.postures(&positions)?;
+        let Target { source, machine, free, chain, bindings, .. } = target;
+        Ok(Carried { source, machine, free, chain, bindings, problem, positions, line })
+    }
+
+    /// The axes in closed form; with the parameters as symbols, or as numbers.
+    ///
+    /// # Errors
+    /// In words, if there is no closed form.
+    pub(crate) fn explicit(&self, symbolic: bool) -> Result<Explicit<'g>, String> {
+        let motions: Vec<Expr<'g>> = self.source.motions.iter().map(|motion| motion.variable).collect();
+        let source = self.source.driven;
+        let [target, source] = if symbolic {
+            [self.problem.slipped(&self.chain), source.clone()]
+        } else {
+            [self.problem.chain().clone(), source.substituted(&self.bindings)]
+        };
+        let problem = ExplicitProblem {
+            target: &target,
+            unknowns: self.problem.unknowns(),
+            source: &source,
+            motions: &motions,
+            bindings: &self.bindings,
+            line: (&self.positions, &self.line),
+        };
+        problem
+            .solve()
+            .map_err(|reason| format!("no explicit form; {} is solved numerically: {reason}", self.machine.name))
+    }
+
+    /// What the target cannot do, each kind once with its first place; empty if nothing.
+    pub(crate) fn failures(&self) -> String {
+        failures::told(self)
+    }
+}
+
+fn target_axis<'g>(axis: &Axis<'g>) -> TargetAxis<'g> {
+    TargetAxis {
+        variable: axis.variable,
+        is_rotary: units::is_angle(axis.dimension),
+        travel: axis.travel.map(|(low, high)| Range { low, high }),
+    }
+}
+
+fn refused(error: &PoseError, machine: &Machine<'_>, free: &[&Axis<'_>]) -> String {
+    match error {
+        PoseError::Redundant(more) => format!(
+            "{} has {more} free axes more than the pose of a tool needs, so it does not tell where they stand: `fix` or \
+             `couple` {more} of {} in a variant of the machine",
+            machine.name,
+            free.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>().join(", ")
+        ),
+        PoseError::Unbound(error) => error.to_string(),
+    }
+}
+
+/// The frame of the target that stands for one of the source: by the same name, or as asked for.
+fn frame(machine: &Machine<'_>, source: &str, asked: Option<&str>, option: &str) -> Result<String, String> {
+    let wanted = asked.unwrap_or_else(|| source.rsplit('.').next().unwrap_or(source));
+    if machine.frames.iter().any(|frame| frame.name == wanted) {
+        return Ok(wanted.to_string());
+    }
+    let names: Vec<&str> = machine.frames.iter().map(|frame| frame.name.as_str()).collect();
+    Err(format!(
+        "{} has no frame `{wanted}` that stands for {source}: say which one does, {option} {}",
+        machine.name,
+        names.join(" or ")
+    ))
+}
+
+/// Postures at all positions: of one motion from the middle to both ends, or from a quarter, if the middle has none; else row by row.
+fn follow(problem: &PoseProblem<'_>, positions: &[Vec<f64>], ranges: &[Range]) -> Vec<Posture> {
+    let [range] = ranges else {
+        return problem.walks(&positions[0], &[positions.to_vec()]).pop().unwrap_or_default();
+    };
+    let has_posture = |at: &f64| problem.postures(&[*at]).first().is_some_and(is_good);
+    let [middle, others @ ..] = [0.5, 0.25, 0.75, 0.0, 1.0].map(|share| at(*range, share));
+    let start = [middle].into_iter().chain(others).find(has_posture).unwrap_or(middle);
+    let from_start = |walk: Vec<Vec<f64>>| [vec![start]].into_iter().chain(walk).collect();
+    let (below, above): (Vec<Vec<f64>>, Vec<Vec<f64>>) = positions.iter().cloned().partition(|at| at[0] < start);
+    let walks = [below.into_iter().rev().collect(), above].map(from_start);
+    let mut lines = problem.walks(&[start], &walks).into_iter();
+    // each walk begins at the start, which need not be a position
+    let mut line = || lines.next().into_iter().flat_map(|line| line.into_iter().skip(1));
+    let below: Vec<Posture> = line().collect();
+    below.into_iter().rev().chain(line()).collect()
+}
+
+/// The value at a share of the way through a motion.
+pub(super) fn at(range: Range, share: f64) -> f64 {
+    range.low + share * (range.high - range.low)
+}

@@ -1,0 +1,255 @@
+//! Settings of the target that are looked for: with which constants it makes the source's poses.
+
+use std::fmt::Write;
+
+use flank_chain_dsl::{Bounded, Dimension, Job};
+use flank_expr::geometry::Chain;
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Adjustable, Range, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
+use serde_json::{Value, json};
+
+use super::Target;
+use super::source::{Flank, Source};
+use crate::project::failure::not_done;
+use crate::project::requests::{ConvertRequest, Means};
+use crate::project::shown_path;
+use crate::project::units;
+use crate::solve::table::aligned;
+
+/// Positions that the settings are found from; all others follow.
+const FITTED: usize = 21;
+/// A setting is outside its range if it is so by more than this share of 1 mm or 1 rad and of itself: found from the exact Jacobian, it
+/// is known to some thousand roundings, so that a default on the end of its range comes back inside.
+const ROUNDING: f64 = 1e-9;
+
+/// The settings that move the tool against the work and have no value, and those that are asked for.
+///
+/// # Errors
+/// In words, if one is asked for that is not there or makes no difference, or one without a value counts something.
+pub(super) fn wanted<'t, 'g>(
+    target: &'t Job<'g>,
+    chain: &Chain<'g>,
+    asked: &[String],
+) -> Result<Vec<&'t Bounded<'g>>, String> {
+    let machine = &target.machines[0].name;
+    let matter = that_matter(target, chain);
+    let matters = |setting: &Bounded<'g>| matter.iter().any(|known| known.variable == setting.variable);
+    for name in asked {
+        let known = target.settings.iter().find(|setting| short(setting) == *name || setting.name == *name);
+        let reason = match known {
+            None => "there is no such setting",
+            Some(setting) if setting.is_count => "it counts something and takes whole numbers only",
+            Some(setting) if !matters(setting) => "it does not move the tool against the work",
+            Some(_) => continue,
+        };
+        let can: Vec<String> =
+            matter.iter().filter(|setting| !setting.is_count).map(|setting| short(setting)).collect();
+        return Err(match &can[..] {
+            [] => format!("--fit {name}: {reason}; {machine} has no setting that can be looked for"),
+            can => format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")),
+        });
+    }
+    let has_value = |setting: &Bounded<'g>| target.parameters.iter().any(|p| p.variable == setting.variable);
+    let is_asked = |setting: &Bounded<'g>| asked.iter().any(|name| short(setting) == *name || setting.name == *name);
+    let wanted: Vec<&Bounded<'g>> =
+        target.settings.iter().filter(|s| is_asked(s) || (!has_value(s) && matters(s))).collect();
+    match wanted.iter().find(|setting| setting.is_count) {
+        Some(count) => Err(format!("{} has no value: --set {}=…", count.name, count.name)),
+        None => Ok(wanted),
+    }
+}
+
+/// The settings that move the tool against the work.
+fn that_matter<'t, 'g>(target: &'t Job<'g>, chain: &Chain<'g>) -> Vec<&'t Bounded<'g>> {
+    let reached = chain.substituted(&target.bindings_beside(&variables(&target.settings)));
+    target.settings.iter().filter(|setting| !reached.twist(setting.variable).is_zero()).collect()
+}
+
+fn variables<'g>(settings: &[Bounded<'g>]) -> Vec<Expr<'g>> {
+    settings.iter().map(|setting| setting.variable).collect()
+}
+
+/// The settings as text and as a document, and in words what they leave to be wished.
+pub(super) fn find(
+    job: &Job<'_>,
+    target: &Target<'_, '_>,
+    (request, means): (&ConvertRequest, Means<'_>),
+) -> Result<(String, Value, String), String> {
+    let Target { source, settings, .. } = target;
+    let positions = source.positions(request.positions as usize);
+    let unknown: Vec<UnknownSetting<'_>> = settings.iter().map(|setting| unknown(target.job, setting)).collect();
+    let machine = Adjustable { chain: &target.chain, settings: &unknown, axes: &target.axes };
+    let reach = reach(target, &positions);
+    let motions = target.motions();
+    let problem = SettingsProblem::new(&machine, source.driven, &motions, &source.symmetries, &target.bindings, reach)
+        .map_err(|error| error.to_string())?;
+    let some: Vec<Vec<f64>> = match positions.len().checked_sub(1) {
+        Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),
+        _ => positions.clone(),
+    };
+    let _working = means.begin(format!("looking for settings of {}", target.machine.name));
+    let fit = problem.fit(&some);
+    let deviation = source.flanks.iter().filter_map(|flank| deviation(&problem, source, flank, &fit, &some));
+    let deviation = deviation.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))));
+    let [file, to] = [request.jobs.file(), &request.to].map(shown_path);
+    let title =
+        format!("job {} ({file}) on {} ({to}): {} against {}", job.name, target.machine.name, source.tool, source.work);
+    let unsolved = source.unsolved.clone();
+    let found = Found { title, job: &job.name, target, positions: some, fit, deviation, unsolved };
+    Ok((found.text(), found.json(), found.told()))
+}
+
+fn unknown<'g>(target: &Job<'g>, setting: &Bounded<'g>) -> UnknownSetting<'g> {
+    let usual = target.parameters.iter().find(|p| p.variable == setting.variable).map(|p| p.value);
+    let kind = match setting.dimension {
+        Dimension::LENGTH => SettingKind::Length,
+        Dimension::ANGLE => SettingKind::Angle,
+        _ => SettingKind::Number,
+    };
+    let range = Range { low: setting.low, high: setting.high };
+    UnknownSetting { variable: setting.variable, sought: Sought { kind, range, usual } }
+}
+
+/// How far tool and work are apart at the most, either one seen from the other, mm.
+fn reach(target: &Target<'_, '_>, positions: &[Vec<f64>]) -> f64 {
+    let pose = target.source.driven.substituted(&target.bindings).pose();
+    let tape = Tape::new(&pose.translation.0, &target.motions()).expect("a job without errors leaves nothing unbound");
+    let mut evaluator = ScalarEvaluator::new(&tape);
+    let mut out = [0.0; 3];
+    let distances = positions.iter().map(|at| {
+        evaluator.run(at, &mut out);
+        out.iter().map(|x| x * x).sum::<f64>().sqrt()
+    });
+    1.0 + 1.5 * distances.fold(0.0, f64::max)
+}
+
+/// The largest normal distance between the flank and what the machine leaves with these settings where points are sampled.
+fn deviation(
+    problem: &SettingsProblem<'_>,
+    source: &Source<'_, '_>,
+    flank: &Flank<'_, '_>,
+    fit: &SettingsFit,
+    positions: &[Vec<f64>],
+) -> Option<f64> {
+    let unknowns = &flank.surface.unknowns;
+    let place = |k: usize| unknowns.iter().position(|unknown| unknown.variable == source.motions[k].variable);
+    let motions: Vec<usize> = (0..source.motions.len()).map(place).collect::<Option<_>>()?;
+    let tool = flank.tool.unknowns.len();
+    let inputs = flank.tool.unknowns.iter().chain(problem.settings()).chain(problem.moving()).copied();
+    let moved = problem.chain().point(flank.tool.position);
+    let tape = Tape::new(&moved.0, &inputs.collect::<Vec<_>>()).expect("a job without errors leaves nothing unbound");
+    let mut evaluator = ScalarEvaluator::new(&tape);
+    let mut out = [0.0; 3];
+    let off = flank.solved().map(|point| {
+        let at: Vec<f64> = motions.iter().map(|&k| point.unknowns[k]).collect();
+        let apart = |k: &usize| positions[*k].iter().zip(&at).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let near = (0..positions.len()).min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("there are positions");
+        let moving = problem.stand(&fit.settings, &at, &fit.moving[near]);
+        evaluator.run(&[&point.unknowns[..tool], &fit.settings, &moving].concat(), &mut out);
+        (0..3).map(|k| point.normal[k] * (out[k] - point.position[k])).sum::<f64>().abs()
+    });
+    off.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))))
+}
+
+/// What was found.
+struct Found<'f, 't, 'g> {
+    title: String,
+    job: &'f str,
+    target: &'f Target<'t, 'g>,
+    positions: Vec<Vec<f64>>,
+    fit: SettingsFit,
+    /// mm; none where no points are solved.
+    deviation: Option<f64>,
+    /// Which points are not, as `flank solve` tells.
+    unsolved: String,
+}
+
+impl Found<'_, '_, '_> {
+    fn text(&self) -> String {
+        let Found { target, fit, .. } = self;
+        let mut out = format!("{}\n\nsettings from {} positions\n\n", self.title, self.positions.len());
+        let mut rows = vec![["setting", "value", ""].map(String::from)];
+        for (k, (setting, value)) in target.settings.iter().zip(&fit.settings).enumerate() {
+            let told = if fit.undetermined.contains(&k) { "the poses do not tell" } else { "" };
+            rows.push([short(setting), units::text(setting.dimension, *value, 9), told.to_string()]);
+        }
+        out.push_str(&aligned(&rows, "<><"));
+        let mut rows = vec![["axis", "from", "to"].map(String::from)];
+        for (k, axis) in target.free.iter().enumerate() {
+            let values = fit.moving.iter().map(|moving| moving[k]);
+            let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+            rows.push([axis.name.clone(), units::text(axis.dimension, low, 6), units::text(axis.dimension, high, 6)]);
+        }
+        let _ = write!(out, "\n{}", aligned(&rows, "<>>"));
+        let _ =
+            writeln!(out, "\nof the poses {:.1e} mm and {:.1e} deg are left", fit.displacement, fit.turn.to_degrees());
+        if let Some(deviation) = self.deviation {
+            let _ = writeln!(out, "the flank is then off by up to {:.6} um", deviation * 1e3);
+        }
+        out
+    }
+
+    fn told(&self) -> String {
+        let Found { target, fit, .. } = self;
+        let name = &target.machine.name;
+        let mut told = self.unsolved.clone();
+        if !fit.is_exact {
+            let more = that_matter(target.job, &target.chain).into_iter();
+            let more = more.filter(|s| !s.is_count && target.settings.iter().all(|wanted| wanted.name != s.name));
+            let more: Vec<String> = more.map(short).collect();
+            let others = match more.is_empty() {
+                true => format!("{name} has no others"),
+                false => format!("perhaps with others: --fit {}", more.join(" or ")),
+            };
+            let _ = writeln!(
+                told,
+                "not reached: no values of these settings were found that make all poses on {name}; {others}"
+            );
+        }
+        for (setting, value) in target.settings.iter().zip(&fit.settings) {
+            let margin = ROUNDING * (1.0 + value.abs());
+            if *value < setting.low - margin || *value > setting.high + margin {
+                let [value, low, high] =
+                    [*value, setting.low, setting.high].map(|x| units::text(setting.dimension, x, 6));
+                let _ = writeln!(
+                    told,
+                    "not reached: {} would have to be {value}, outside its range {low} .. {high}",
+                    setting.name
+                );
+            }
+        }
+        told
+    }
+
+    fn json(&self) -> Value {
+        let Found { target, fit, .. } = self;
+        let setting = |(k, (setting, value)): (usize, (&&Bounded<'_>, &f64))| {
+            json!({
+                "name": short(setting), "unit": units::symbol(setting.dimension),
+                "value": units::shown(setting.dimension, *value), "determined": !fit.undetermined.contains(&k),
+            })
+        };
+        let position = |(at, moving): (&Vec<f64>, &Vec<f64>)| {
+            let motions = target.source.motions.iter().zip(at).map(|(motion, x)| units::shown(motion.dimension, *x));
+            let axes = target.free.iter().zip(moving).map(|(axis, x)| units::shown(axis.dimension, *x));
+            json!({ "motions": motions.collect::<Vec<f64>>(), "axes": axes.collect::<Vec<f64>>() })
+        };
+        let settings: Vec<Value> = target.settings.iter().zip(&fit.settings).enumerate().map(setting).collect();
+        json!({
+            "schema": "flank.settings/1",
+            "job": self.job,
+            "machine": target.machine.name,
+            "settings": settings,
+            "positions": self.positions.iter().zip(&fit.moving).map(position).collect::<Vec<Value>>(),
+            "displacement_mm": fit.displacement,
+            "turn_deg": fit.turn.to_degrees(),
+            "deviation_um": self.deviation.map(|mm| mm * 1e3),
+            "not_done": not_done(&self.told()),
+        })
+    }
+}
+
+/// The setting's own name, without its machine's.
+fn short(setting: &Bounded<'_>) -> String {
+    setting.name.rsplit('.').next().unwrap_or(&setting.name).to_string()
+}

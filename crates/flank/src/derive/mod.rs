@@ -1,0 +1,117 @@
+//! `flank derive`
+
+pub(crate) mod cost;
+
+use std::path::Path;
+
+use flank_chain_dsl::{Job, derivation, equations};
+use flank_expr::geometry::Vector3;
+use flank_expr::{Graph, Style};
+use flank_solver::Explicit;
+use serde_json::{Value, json};
+
+use crate::convert::{self, Carried};
+use crate::derive::cost::SurfaceCost;
+use crate::project::answer::Answer;
+use crate::project::failure::{self, Failure};
+use crate::project::monitor::Monitor;
+use crate::project::requests::{DeriveRequest, Means};
+use crate::project::spec;
+
+/// What the compiler built, stage by stage; or the axes of another machine in closed form; or how many operations a point takes.
+///
+/// # Errors
+/// What is wrong with the specs, or why there is no closed form.
+pub fn derive(request: &DeriveRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+    let graph = Graph::new();
+    if let Some(to) = &request.to {
+        return carried(&graph, to, (request, monitor));
+    }
+    let (_, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    if request.cost {
+        return cost(&jobs);
+    }
+    let pages = jobs.iter().map(|job| (job.name.as_str(), derivation(job, style(request))));
+    Ok(shown(&pages.collect::<Vec<_>>(), String::new(), request))
+}
+
+fn style(request: &DeriveRequest) -> Style {
+    if request.latex { Style::Latex } else { Style::Text }
+}
+
+/// The page of each job, with what was not solved on the way.
+fn shown(pages: &[(&str, String)], not_done: String, request: &DeriveRequest) -> Answer {
+    let style = if request.latex { "latex" } else { "text" };
+    let jobs: Vec<Value> = pages.iter().map(|(job, page)| json!({ "job": job, "page": page })).collect();
+    let document = json!({ "schema": "flank.derivation/2", "style": style, "jobs": jobs, "not_done": failure::not_done(&not_done) });
+    let text = pages.iter().map(|(_, page)| page.as_str()).collect();
+    Answer { text, document, notes: String::new(), not_done }
+}
+
+/// Postures from which the elbow of a closed form is taken.
+const POSITIONS: u32 = 101;
+
+/// The axes of another machine in closed form.
+fn carried(graph: &Graph, to: &Path, (request, monitor): (&DeriveRequest, &dyn Monitor)) -> Result<Answer, Failure> {
+    let means = Means::new(request.onto.evaluator, monitor);
+    let carry = |job: &Job<'_>, target: &Job<'_>| {
+        let carried = Carried::new(graph, job, target, (&request.onto, means), POSITIONS)?;
+        // the postures that tell which elbow is meant lie as far as points are solved
+        let unsolved = carried.source.unsolved.clone();
+        let axes = match carried.failures() {
+            told if told.is_empty() => carried.explicit(true),
+            told => Err(told.trim_end().to_string()),
+        };
+        let axes = axes.map_err(|reason| format!("{unsolved}{reason}"))?;
+        Ok((explicit_page(job, &carried, &axes, style(request)), unsolved))
+    };
+    let (_, job, target) = convert::compiled(graph, &request.jobs, to, monitor)?;
+    let (page, unsolved) = carry(&job, &target).map_err(|reason: String| Failure::from(reason).unsolved())?;
+    Ok(shown(&[(&job.name, page)], unsolved, request))
+}
+
+/// The given vectors, then the axes from them.
+fn explicit_page<'g>(job: &Job<'g>, carried: &Carried<'_, 'g>, explicit: &Explicit<'g>, style: Style) -> String {
+    let (work, tool) = (&carried.source.work, &carried.source.tool);
+    let name = |unknown: usize| match carried.free.get(unknown) {
+        Some(axis) => axis.name.clone(),
+        None => carried.problem.unknowns()[unknown].to_string(),
+    };
+    let [first, second, third] = explicit.turns.map(name);
+    let vector = |[names, values]: [Vector3<'g>; 2]| names.0.into_iter().zip(values.0).collect::<Vec<_>>();
+    let given = explicit.given;
+    let groups = [
+        (
+            format!("f: the line about which {third} turns {tool}, seen from {work}, as it is on the job's machine"),
+            vector(given.f),
+        ),
+        (format!("g: a line square to it that turns with {tool}"), vector(given.g)),
+        (format!("o: the origin of {tool}, mm"), vector(given.o)),
+        (
+            format!(
+                "{first} and {second} bring that line where {third} has it, {third} turns the tool about it, and the slides \
+                 bring it into place; angles continued without jumps"
+            ),
+            carried.problem.unknowns().iter().copied().zip(explicit.formulas.iter().copied()).collect(),
+        ),
+    ];
+    equations(&format!("job {} on {}", job.name, carried.machine.name), &groups, style)
+}
+
+/// How many operations the points of each sampled surface take.
+fn cost(jobs: &[Job<'_>]) -> Result<Answer, Failure> {
+    let (mut all, mut text): (Vec<Value>, String) = (Vec::new(), String::new());
+    for job in jobs {
+        let costs: Vec<SurfaceCost<'_>> =
+            job.surfaces.iter().filter_map(|surface| SurfaceCost::of(job, surface)).collect();
+        if costs.is_empty() {
+            return Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into());
+        }
+        let surfaces: Vec<Value> = costs.iter().map(SurfaceCost::json).collect();
+        all.push(json!({ "job": job.name, "surfaces": surfaces }));
+        text += &format!("job {}\n", job.name);
+        costs.iter().for_each(|cost| text += &format!("\n{}", cost.text()));
+    }
+    let document = json!({ "schema": "flank.cost/2", "jobs": all });
+    Ok(Answer { text, document, notes: String::new(), not_done: String::new() })
+}

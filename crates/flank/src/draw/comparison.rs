@@ -1,0 +1,67 @@
+//! One surface held against another one, as a map and as a topography.
+
+use flank_chain_dsl::Job;
+use flank_draw::{PictureOptions, field_maps, topography};
+use flank_export::Dataset;
+
+use super::{Drawing, options, told, with_origin, write};
+use crate::compare::deviation::{self, Measured};
+use crate::project::answer::Answer;
+use crate::project::choices::PlotKind;
+use crate::project::failure::Failure;
+use crate::project::requests::{Means, PlotRequest};
+use crate::project::spec::Origin;
+
+/// What there is to draw of a comparison.
+const KINDS: [PlotKind; 2] = [PlotKind::Deviation, PlotKind::Topography];
+
+/// # Errors
+/// In words, if the request do not compare two surfaces.
+pub(super) fn check(request: &PlotRequest) -> Result<(), Failure> {
+    if request.surface.len() != 1 {
+        let message = "--from holds one surface against another one: name one with --surface";
+        return Err(Failure::Request(message.to_string()));
+    }
+    match request.what.iter().find(|what| !KINDS.contains(what)) {
+        Some(other) => {
+            let (other, kinds) = (other.name(), KINDS.map(PlotKind::name).join(", "));
+            let message = format!("--what {other} does not compare surfaces\nwhat fits with --from: {kinds}");
+            Err(Failure::Request(message))
+        }
+        None => Ok(()),
+    }
+}
+
+/// # Errors
+/// In words: what is missing, or does not fit.
+pub(super) fn plot(
+    jobs: &[Job<'_>],
+    from: &str,
+    (request, means): (&PlotRequest, Means<'_>),
+    origin: &Origin,
+) -> Result<Answer, String> {
+    let surface = deviation::find(jobs, &request.surface[0])?;
+    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, means)?;
+    let asked = if request.what.is_empty() { &KINDS[..] } else { &request.what };
+    let drawings: Vec<(PlotKind, Drawing)> =
+        asked.iter().map(|&what| (what, draw(&measured, what, request, origin, &options(request)))).collect();
+    let written = write(&drawings, &surface.whole_name(), (request, means), origin)?;
+    Ok(told(&surface.job.name, &written, measured.missing(), request))
+}
+
+fn draw(
+    measured: &Measured<'_, '_>,
+    what: PlotKind,
+    request: &PlotRequest,
+    origin: &Origin,
+    options: &PictureOptions,
+) -> Drawing {
+    let dataset = measured.dataset(&request.jobs, origin);
+    let dataset = Dataset { header: with_origin(dataset.header, request), ..dataset };
+    let title = measured.title();
+    let picture = match what {
+        PlotKind::Topography => topography(&dataset, &title, &[(0, 0)], &measured.note(), options),
+        _ => field_maps(&dataset, &title, &[(0, 0)], &measured.note(), options),
+    };
+    Drawing { picture, shows: format!("deviation of {title}") }
+}

@@ -1,0 +1,230 @@
+//! `flank plot`
+
+mod comparison;
+mod machine;
+mod maps;
+mod motion;
+mod section;
+mod subject;
+mod tool;
+
+use flank_chain_dsl::Job;
+use flank_draw::{Picture, PictureOptions};
+use flank_export::{Dataset, Header};
+use flank_expr::Graph;
+use serde_json::json;
+
+use crate::compare::deviation;
+use crate::project::answer::Answer;
+use crate::project::choices::PlotKind;
+use crate::project::failure::{self, Failure};
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::requests::{Means, PlotRequest};
+use crate::project::shown_path;
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::solve;
+use crate::solve::cut;
+use crate::solve::table::{self, aligned};
+use crate::solve::travel;
+pub(crate) use subject::Subject;
+
+/// Without `--what` the first of these that fit are drawn, and no more than so many.
+const DEFAULTS: [PlotKind; 6] = [
+    PlotKind::Left,
+    PlotKind::Surface,
+    PlotKind::Section,
+    PlotKind::ContactLines,
+    PlotKind::Machine,
+    PlotKind::Curvature,
+];
+const MOST_DEFAULTS: usize = 3;
+
+/// What a deviation is of.
+const SECOND: &str = "takes a second surface: --surface NAME --from OTHER";
+
+/// A picture, and what it shows in a few words.
+pub(crate) struct Drawing {
+    pub(crate) picture: Picture,
+    pub(crate) shows: String,
+}
+
+/// A picture with its files.
+struct Written {
+    what: PlotKind,
+    shows: String,
+    files: Vec<String>,
+}
+
+/// Why a kind of picture cannot be drawn.
+pub(crate) type Unfit = String;
+
+/// Draws pictures of jobs. `each` is given what is to be said of each job, when all are drawn.
+///
+/// # Errors
+/// What is wrong with the spec; what does not go together, or does not fit the job; that a file cannot be written.
+pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+    if !request.of.is_empty() && !request.what.contains(&PlotKind::Sensitivity) {
+        return Err(Failure::Request("--of names what `sensitivity` shows, and that is not among --what".to_string()));
+    }
+    match &request.from {
+        Some(_) => comparison::check(request)?,
+        None if request.what.contains(&PlotKind::Deviation) => {
+            let message = format!("--what deviation {SECOND}");
+            return Err(Failure::Request(message));
+        }
+        None => {}
+    }
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of(&compilation);
+    let means = Means::new(request.evaluator, monitor);
+    let done = match &request.from {
+        Some(from) => vec![comparison::plot(&jobs, from, (request, means), &origin)?],
+        None => plot_jobs(&jobs, (request, means), &origin)?,
+    };
+    done.into_iter().for_each(each);
+    Ok(())
+}
+
+fn plot_jobs(
+    jobs: &[Job<'_>],
+    (request, means): (&PlotRequest, Means<'_>),
+    origin: &Origin,
+) -> Result<Vec<Answer>, String> {
+    let named = request.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
+    if let [first, rest @ ..] = &named[..]
+        && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
+    {
+        let [first, other] = [first, other].map(deviation::Named::whole_name);
+        return Err(format!("`{first}` and `{other}` belong to different jobs; draw them one after the other"));
+    }
+    let is_meant = |job: &&Job<'_>| match named.first() {
+        Some(of) => of.job.name == job.name,
+        None => job.surfaces.iter().any(|surface| surface.sample.is_some()),
+    };
+    let meant: Vec<&Job<'_>> = jobs.iter().filter(is_meant).collect();
+    if meant.is_empty() {
+        return Err("no job asks for points: add a `sample` for one of its surfaces".to_string());
+    }
+    let plot = |job: &&Job<'_>| {
+        let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
+        let header = with_origin(solve::header(&[job], &request.jobs, origin), request);
+        let solved = |kinds: &[PlotKind]| Subject::new(job, &names, header.clone(), kinds, means);
+        let subject = solved(&request.what)?;
+        // what fits is known of what is solved with all that pictures show
+        let drawings = drawings(&subject, request)
+            .map_err(|(what, why)| solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request)))?;
+        let written = write(&drawings, &job.name, (request, means), origin)?;
+        let not_done = table::failures(job, &subject.solved)
+            + &cut::unknown(&subject.solved)
+            + &travel::beyond(job, &subject.solved);
+        Ok(told(&job.name, &written, not_done, request))
+    };
+    meant.iter().map(plot).collect()
+}
+
+/// What is asked for.
+///
+/// # Errors
+/// The first kind that does not fit, and why.
+fn drawings(subject: &Subject<'_, '_>, request: &PlotRequest) -> Result<Vec<(PlotKind, Drawing)>, (PlotKind, Unfit)> {
+    let options = options(request);
+    if request.what.is_empty() {
+        return Ok(defaults(subject, options));
+    }
+    let asked = request.what.iter().map(|&what| {
+        draw(subject, what, &request.of, options).map(|drawing| (what, drawing)).map_err(|why| (what, why))
+    });
+    asked.collect()
+}
+
+/// Those that matter for a job.
+pub(crate) fn defaults(subject: &Subject<'_, '_>, options: PictureOptions) -> Vec<(PlotKind, Drawing)> {
+    let fitting = DEFAULTS.into_iter().filter_map(|what| Some((what, draw(subject, what, &[], options).ok()?)));
+    fitting.take(MOST_DEFAULTS).collect()
+}
+
+/// One picture; `of` names the parameters that sensitivities are to.
+pub(crate) fn draw(
+    subject: &Subject<'_, '_>,
+    what: PlotKind,
+    of: &[String],
+    options: PictureOptions,
+) -> Result<Drawing, Unfit> {
+    match what {
+        PlotKind::Surface => {
+            let patches = subject.in_space.iter().map(|at| subject.dataset.patches[*at].clone()).collect();
+            let shown = Dataset { header: subject.dataset.header.clone(), patches };
+            let picture = flank_draw::picture(&shown, &options);
+            Ok(Drawing { picture, shows: format!("{} in space", counted(shown.patches.len(), "surface")) })
+        }
+        PlotKind::Topography => maps::topography(subject, &options),
+        PlotKind::Curvature => maps::curvature(subject, &options),
+        PlotKind::Sensitivity => maps::sensitivity(subject, of, &options),
+        PlotKind::Deviation => Err(SECOND.to_string()),
+        PlotKind::Left => maps::left(subject, &options),
+        PlotKind::Residual => maps::residual(subject, &options),
+        PlotKind::ContactLines => maps::contact_lines(subject, &options),
+        PlotKind::Section => section::draw(subject, &options),
+        PlotKind::Machine => machine::draw(subject, &options),
+        PlotKind::Motion => motion::draw(subject, &options),
+    }
+}
+
+fn unfit(subject: &Subject<'_, '_>, what: PlotKind, why: &str, request: &PlotRequest) -> String {
+    let others = PlotKind::ALL.iter().filter(|other| draw(subject, **other, &request.of, options(request)).is_ok());
+    let others: Vec<String> = others.map(|other| other.name().to_string()).collect();
+    format!("--what {} does not fit job {}: {why}\nwhat fits: {}", what.name(), subject.job.name, others.join(", "))
+}
+
+fn counted(count: usize, of: &str) -> String {
+    let plural = if of == "axis" { "axes".to_string() } else { format!("{of}s") };
+    if count == 1 { format!("1 {of}") } else { format!("{count} {plural}") }
+}
+
+/// Where pictures come from, unless they are not to say so.
+fn with_origin(header: Header, request: &PlotRequest) -> Header {
+    if request.no_origin { Header { spec: String::new(), ..header } } else { header }
+}
+
+fn options(request: &PlotRequest) -> PictureOptions {
+    PictureOptions { width: request.size.0, height: request.size.1 }
+}
+
+fn write(
+    drawings: &[(PlotKind, Drawing)],
+    stem: &str,
+    (request, means): (&PlotRequest, Means<'_>),
+    origin: &Origin,
+) -> Result<Vec<Written>, String> {
+    let mut folder = Folder::at(&request.out, origin, means.monitor())?;
+    let mut written = Vec::new();
+    for (what, drawing) in drawings {
+        let before = folder.written.len();
+        for format in &request.format {
+            folder.picture_as(&format!("{stem}.{}", what.name()), &drawing.picture, *format)?;
+        }
+        let files = folder.written[before..].to_vec();
+        written.push(Written { what: *what, shows: drawing.shows.clone(), files });
+    }
+    folder.finish()?;
+    Ok(written)
+}
+
+/// What was written, with what was not done.
+fn told(job: &str, written: &[Written], not_done: String, request: &PlotRequest) -> Answer {
+    let spec = shown_path(request.jobs.file());
+    let pictures: Vec<serde_json::Value> =
+        written.iter().map(|one| json!({ "what": one.what.name(), "shows": one.shows, "files": one.files })).collect();
+    let (width, height) = request.size;
+    let document = json!({
+        "schema": "flank.plot/2", "job": job, "spec": spec, "width": width, "height": height, "pictures": pictures,
+        "not_done": failure::not_done(&not_done),
+    });
+    let rows: Vec<[String; 3]> =
+        written.iter().map(|one| [one.what.name().to_string(), one.shows.clone(), one.files.join(", ")]).collect();
+    let text = format!("job {job} ({spec})\n\n{}", aligned(&rows, ""));
+    Answer { text, document, notes: String::new(), not_done }
+}

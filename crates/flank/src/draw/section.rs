@@ -1,0 +1,352 @@
+//! A section through the tooth space, square to the tooth, with the tool at some moments.
+
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
+use flank_export::shape::rows_follow_profile;
+use flank_export::{Patch, fixed};
+use flank_expr::geometry::Vector3;
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, Range, System, solve};
+
+use super::maps::{cross, dot, unit};
+use super::subject::Subject;
+use super::tool::{Plane, Tool};
+use super::{Drawing, Unfit, counted};
+use crate::project::units;
+use crate::solve::ranges;
+use crate::solve::table::Solved;
+
+/// Positions of the tool in all, and of each surface at least.
+const POSITIONS: usize = 14;
+const LEAST_POSITIONS: usize = 3;
+/// Surfaces at most at which the tool is drawn: in each position all tools are cut, which for each surface would grow with their square.
+const MOST_TOUCHED: usize = 14;
+/// Points of a surface in the section.
+const POINTS: usize = 61;
+
+/// The plane of the section with the directions that go across and up on paper.
+struct Cut {
+    plane: Plane,
+    across: [f64; 3],
+    up: [f64; 3],
+}
+
+/// A point of a generated surface in the section.
+struct InSection {
+    unknowns: Vec<f64>,
+    position: [f64; 3],
+    normal: [f64; 3],
+}
+
+pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
+    let drawn = of(subject)?;
+    let shows = format!(
+        "{} across the tooth, {} of the tool",
+        counted(drawn.surfaces.len(), "surface"),
+        counted(drawn.tools.len(), "position")
+    );
+    Ok(Drawing { picture: section(&drawn, options), shows })
+}
+
+fn of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
+    let cut = Cut::of(subject)?;
+    let mates = subject.mates();
+    let mut tools = Vec::new();
+    for &at in &mates {
+        tools.push(Tool::of(subject.job, subject.solved[at].surface)?);
+    }
+    let lines: Vec<Vec<InSection>> = mates.iter().map(|&at| cut.surface(subject.job, &subject.solved[at])).collect();
+    if lines.iter().all(Vec::is_empty) {
+        return Err("the plane of the section meets no solved point".to_string());
+    }
+    Ok(Section {
+        header: subject.dataset.header.clone(),
+        note: cut.note(subject),
+        surfaces: mates.iter().zip(&lines).map(|(&at, line)| cut.line(subject.solved[at].surface, line)).collect(),
+        tools: cut.positions(subject, &mates, &lines, &tools),
+    })
+}
+
+impl Cut {
+    /// The plane through the middle of the first surface, square to the tooth there.
+    fn of(subject: &Subject<'_, '_>) -> Result<Cut, Unfit> {
+        let (at, point) = subject.middle()?;
+        let patch = &subject.dataset.patches[subject.chosen[0]];
+        let no_direction =
+            || format!("the grid of `{}` does not tell root and tip from the length of the tooth", patch.name);
+        let along_rows = rows_follow_profile(patch).ok_or_else(no_direction)?;
+        let profile = neighbours(patch, at, along_rows).ok_or_else(no_direction)?;
+        let length = neighbours(patch, at, !along_rows).and_then(unit).ok_or_else(no_direction)?;
+        // away from the axis in the middle of all that the tool leaves
+        let solved = subject.mates().into_iter().flat_map(|mate| &subject.solved[mate].points);
+        let solved = solved.filter(|point| point.outcome == Outcome::Solved);
+        let near =
+            solved.filter(|other| dot(length, [0, 1, 2].map(|k| other.position[k] - point.position[k])).abs() < 1.0);
+        let sum = near.fold([0.0; 2], |sum, other| [sum[0] + other.position[0], sum[1] + other.position[1]]);
+        let outward = unit([sum[0], sum[1], 0.0]).unwrap_or([1.0, 0.0, 0.0]);
+        // in the axial plane from root to tip: the side to which the flank leans
+        let rise = [0, 1, 2].map(|k| dot(profile, outward) * outward[k] + [0.0, 0.0, profile[2]][k]);
+        let in_plane = [0, 1, 2].map(|k| rise[k] - dot(rise, length) * length[k]);
+        let up = unit(in_plane).ok_or_else(no_direction)?;
+        let up = if dot(up, point.normal) < 0.0 { up.map(|x| -x) } else { up };
+        Ok(Cut { plane: Plane { point: point.position, normal: length }, across: cross(up, length), up })
+    }
+
+    fn note(&self, subject: &Subject<'_, '_>) -> String {
+        let [x, y, z] = self.plane.point;
+        let is_counted = subject.motions().iter().any(|motion| motion.is_count);
+        let counts = if is_counted { "; what counts is taken without gaps" } else { "" };
+        let mates = subject.mates();
+        let others = (0..subject.solved.len()).filter(|at| !mates.contains(at));
+        let touched = match mates.len() {
+            count if count > MOST_TOUCHED => {
+                format!(" The tool is drawn where it makes {MOST_TOUCHED} of {count} surfaces.")
+            }
+            _ => String::new(),
+        };
+        let others: Vec<&str> = others.map(|at| subject.solved[at].surface.name.as_str()).collect();
+        let others = match others[..] {
+            [] => String::new(),
+            _ => format!(" Not drawn, being of another tool, other motions or another frame: {}.", others.join(", ")),
+        };
+        format!(
+            "Plane square to the tooth through the middle of {}, at radius {} mm and z {} mm; exact points, strokes on the \
+             side of the steel, dots where the tool touches at that moment{counts}.{touched}{others}",
+            subject.first().surface.name,
+            fixed(x.hypot(y), 3),
+            fixed(z, 3)
+        )
+    }
+
+    fn on_paper(&self, position: [f64; 3]) -> [f64; 2] {
+        let off = [0, 1, 2].map(|k| position[k] - self.plane.point[k]);
+        [dot(self.across, off), dot(self.up, off)]
+    }
+
+    /// Points in which the surface meets the plane, solved to rounding from those that its grid is cut in.
+    fn surface<'g>(&self, job: &Job<'g>, solved: &Solved<'_, 'g>) -> Vec<InSection> {
+        let starts = self.starts(solved);
+        let places: Vec<[f64; 2]> = starts.iter().map(|(place, _)| *place).collect();
+        let Some((low, high)) = places.first().zip(places.last()) else { return Vec::new() };
+        // asked for by what changes most along the line
+        let k = if (high[0] - low[0]).abs() > (high[1] - low[1]).abs() { 0 } else { 1 };
+        let solver = Solver::new(self, job, solved.surface, k);
+        let mut points = Vec::new();
+        for step in 0..POINTS {
+            let share = step as f64 / (POINTS - 1) as f64;
+            let target = low[k] + share * (high[k] - low[k]);
+            let near = starts.iter().min_by(|a, b| (a.0[k] - target).abs().total_cmp(&(b.0[k] - target).abs()));
+            points.extend(near.and_then(|(_, start)| solver.point(target, start)));
+        }
+        points
+    }
+
+    /// Where the lines of the grid that run along the tooth cross the plane: on paper, and the unknowns there.
+    fn starts(&self, solved: &Solved<'_, '_>) -> Vec<([f64; 2], Vec<f64>)> {
+        let [rows, columns] = solved.counts();
+        let mut best: Vec<([f64; 2], Vec<f64>)> = Vec::new();
+        for along_rows in [true, false] {
+            let (lines, steps) = if along_rows { (columns, rows) } else { (rows, columns) };
+            let crossing = |line: usize| {
+                let at = |step: usize| if along_rows { step * columns + line } else { line * columns + step };
+                (1..steps).find_map(|step| self.between(solved, at(step - 1), at(step)))
+            };
+            let found: Vec<([f64; 2], Vec<f64>)> = (0..lines).filter_map(crossing).collect();
+            if found.len() > best.len() {
+                best = found;
+            }
+        }
+        best
+    }
+
+    fn between(&self, solved: &Solved<'_, '_>, from: usize, to: usize) -> Option<([f64; 2], Vec<f64>)> {
+        let [from, to] = [from, to].map(|at| &solved.points[at]);
+        let both =
+            [from, to].map(|point| (point.outcome == Outcome::Solved).then(|| self.plane.height(point.position)));
+        let (low, high) = (both[0]?, both[1]?);
+        let crosses = (low <= 0.0) != (high <= 0.0);
+        let share = low / (low - high);
+        crosses.then(|| {
+            let mix = |a: f64, b: f64| a + share * (b - a);
+            let position = [0, 1, 2].map(|k| mix(from.position[k], to.position[k]));
+            let unknowns = from.unknowns.iter().zip(&to.unknowns).map(|(a, b)| mix(*a, *b)).collect();
+            (self.on_paper(position), unknowns)
+        })
+    }
+
+    fn line(&self, surface: &GeneratedSurface<'_>, points: &[InSection]) -> SectionLine {
+        let normal = |point: &InSection| [dot(self.across, point.normal), dot(self.up, point.normal)];
+        SectionLine {
+            name: surface.name.clone(),
+            points: points.iter().map(|point| self.on_paper(point.position)).collect(),
+            normals: points.iter().map(normal).collect(),
+        }
+    }
+
+    /// The tool where it touches at points spread evenly over each line, in the order of the first motion.
+    fn positions(
+        &self,
+        subject: &Subject<'_, '_>,
+        mates: &[usize],
+        lines: &[Vec<InSection>],
+        tools: &[Tool],
+    ) -> Vec<ToolPosition> {
+        let each = (POSITIONS / mates.len()).max(LEAST_POSITIONS);
+        let mut positions: Vec<(f64, ToolPosition)> = Vec::new();
+        let touched: Vec<(&usize, &Vec<InSection>)> =
+            mates.iter().zip(lines).filter(|(_, line)| !line.is_empty()).collect();
+        let drawn = touched.len().min(MOST_TOUCHED);
+        for (&at, line) in (0..drawn).map(|k| touched[k * touched.len() / drawn]) {
+            let surface = subject.solved[at].surface;
+            for k in 0..each {
+                let touching = &line[(2 * k + 1) * line.len() / (2 * each)];
+                let rest = &touching.unknowns[2..];
+                let pieces = tools.iter().flat_map(|tool| tool.cut(rest, &self.plane));
+                let values = surface.unknowns[2..].iter().zip(rest);
+                let label: Vec<String> =
+                    values.map(|(of, x)| format!("{} {}", of.name, units::text(of.dimension, *x, 2))).collect();
+                let position = ToolPosition {
+                    label: label.join(", "),
+                    lines: pieces.map(|ends| ends.map(|end| self.on_paper(end)).to_vec()).collect(),
+                    contacts: vec![self.on_paper(touching.position)],
+                };
+                positions.push((rest[0], position));
+            }
+        }
+        positions.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        positions.into_iter().map(|(_, position)| position).collect()
+    }
+}
+
+/// From the grid's point before one to the one behind it, as far as they are solved.
+fn neighbours(patch: &Patch, at: usize, along_rows: bool) -> Option<[f64; 3]> {
+    let columns = patch.columns.count;
+    let (i, j) = (at / columns, at % columns);
+    let near = |step: isize| {
+        let (di, dj) = if along_rows { (step, 0) } else { (0, step) };
+        let point = patch.point(i.checked_add_signed(di)?, j.checked_add_signed(dj)?)?;
+        point.is_solved().then_some(point.position)
+    };
+    let here = patch.points[at].position;
+    let (before, after) = (near(-1).unwrap_or(here), near(1).unwrap_or(here));
+    let way = [0, 1, 2].map(|k| after[k] - before[k]);
+    (dot(way, way) > 0.0).then_some(way)
+}
+
+/// Points of a generated surface in the plane at given places across or up.
+struct Solver {
+    system: System,
+    point: Tape,
+    ranges: Vec<Range>,
+}
+
+impl Solver {
+    fn new<'g>(cut: &Cut, job: &Job<'g>, surface: &GeneratedSurface<'g>, k: usize) -> Solver {
+        let bound = surface.surface.bound(&job.bindings());
+        let graph = bound.position.0[0].graph();
+        let height = |direction: [f64; 3]| -> Expr<'g> {
+            let direction = Vector3::constant(graph, direction);
+            (bound.position - Vector3::constant(graph, cut.plane.point)).dot(direction)
+        };
+        let target = graph.variable("target");
+        let place = height([cut.across, cut.up][k]) - target;
+        let residuals: Vec<Expr<'g>> =
+            bound.constraints.iter().copied().chain([height(cut.plane.normal), place]).collect();
+        let outputs: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
+        let whole = "a job without errors leaves nothing unbound";
+        Solver {
+            system: System::new(&residuals, &bound.unknowns, &[target]).expect(whole),
+            point: Tape::new(&outputs, &bound.unknowns).expect(whole),
+            ranges: ranges(surface),
+        }
+    }
+
+    fn point(&self, target: f64, start: &[f64]) -> Option<InSection> {
+        let solution = solve(&self.system, &self.ranges, &[target], start);
+        if solution.outcome != Outcome::Solved {
+            return None;
+        }
+        let mut out = [0.0; 6];
+        ScalarEvaluator::new(&self.point).run(&solution.unknowns, &mut out);
+        let [x, y, z, nx, ny, nz] = out;
+        Some(InSection { unknowns: solution.unknowns, position: [x, y, z], normal: [nx, ny, nz] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use flank_expr::Graph;
+
+    use super::*;
+    use std::sync::Arc;
+
+    use crate::project::Project;
+    use crate::project::choices::PlotKind;
+    use crate::project::monitor::Unwatched;
+    use crate::project::requests::{EvaluatorOptions, JobSelection, Means};
+    use crate::project::spec;
+    use crate::solve;
+
+    type Place = [f64; 2];
+
+    fn section_of(spec: &str) -> Section {
+        let file = format!("{}/../../specs/{spec}.chain", env!("CARGO_MANIFEST_DIR"));
+        let which = JobSelection::all(Project::open(file, Arc::new(flank_chain_dsl::Disk)));
+        let graph = Graph::new();
+        let (_, jobs) = spec::jobs(&graph, &which, &Unwatched).expect("it is shipped");
+        let header = solve::header(&[&jobs[0]], &which, &spec::Origin::default());
+        let means = Means::new(EvaluatorOptions::default(), &Unwatched);
+        let subject = Subject::new(&jobs[0], &[], header, &[PlotKind::Section], means).expect("it is sampled");
+        of(&subject).expect("it has a section")
+    }
+
+    /// How far a place is off the nearest point of a piece, and on which side of it: the sine of the way there against `out`.
+    fn from_piece(place: Place, from: Place, to: Place, out: Place) -> (f64, f64) {
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let off = [place[0] - from[0], place[1] - from[1]];
+        let length = way[0].hypot(way[1]).max(1e-12);
+        let along = ((off[0] * way[0] + off[1] * way[1]) / (length * length)).clamp(0.0, 1.0);
+        let rest = [off[0] - along * way[0], off[1] - along * way[1]];
+        (rest[0].hypot(rest[1]), (rest[0] * out[0] + rest[1] * out[1]) / out[0].hypot(out[1]))
+    }
+
+    /// What the section leaves out is named in its caption.
+    #[test]
+    fn surfaces_of_other_tools_are_named() {
+        let note = section_of("bevel/hypoid_pinion").note;
+        let left_out =
+            "Not drawn, being of another tool, other motions or another frame: convex, convex_fillet, convex_root.";
+        assert!(note.ends_with(left_out), "{note}");
+        assert!(!section_of("hobbing/spur_gear").note.contains("Not drawn"));
+    }
+
+    /// The tool passes through the points in which it touches, and nowhere deeper into the steel than the chords of both lines
+    /// are off their arcs: sixty to a flank, and pieces of 1.4 deg on a cutter of 96 mm.
+    #[test]
+    fn the_tool_touches_and_does_not_cut_in() {
+        for spec in ["hobbing/spur_gear", "hobbing/helical_gear", "bevel/pinion_19x62"] {
+            let section = section_of(spec);
+            assert!(section.tools.len() >= 12 && section.surfaces.iter().all(|line| line.points.len() > 50), "{spec}");
+            for tool in &section.tools {
+                let pieces = || tool.lines.iter().map(|line| (line[0], line[1]));
+                for contact in &tool.contacts {
+                    let near = pieces().map(|(from, to)| from_piece(*contact, from, to, [0.0, 1.0]).0);
+                    let near = near.fold(f64::INFINITY, f64::min);
+                    assert!(near < 2e-3, "{spec}, {}: the tool is {near} mm from where it touches", tool.label);
+                }
+                let ends = pieces().flat_map(|(from, to)| [from, to]);
+                for end in ends {
+                    let sides = section.surfaces.iter().flat_map(|line| {
+                        let pairs = line.points.windows(2).zip(line.normals.windows(2));
+                        pairs.map(move |(pair, normals)| from_piece(end, pair[0], pair[1], normals[0]))
+                    });
+                    let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are surfaces");
+                    // beyond the ends of the lines nothing is known
+                    if nearest.0 < 0.5 && nearest.1.abs() > 0.99 * nearest.0 {
+                        assert!(nearest.1 > -2e-3, "{spec}, {}: {} mm deep at {end:?}", tool.label, nearest.1);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! `flank view`
+
+mod functions;
+mod machines;
+mod parameters;
+mod surfaces;
+mod thin;
+mod tools;
+
+use flank_chain_dsl::{Bounded, Job};
+use flank_draw::{PageMotion, Scene};
+use flank_export::{Dataset, Field, Patch, Tally, Values};
+use flank_expr::Graph;
+use serde_json::{Value, json};
+
+use crate::project::answer::Answer;
+use crate::project::failure::{Failure, not_done};
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::requests::Means;
+use crate::project::requests::ViewRequest;
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::solve::limits::Line;
+use crate::solve::stream;
+use crate::solve::table::{self, Solved};
+use crate::solve::{self, Wanted};
+use functions::Functions;
+
+/// What a surface can be coloured by and what a click tells of a point.
+fn wanted(means: Means<'_>) -> Wanted<'_> {
+    Wanted { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, means }
+}
+
+/// Share of what a motion passes over that its slider goes beyond.
+const BEYOND: f64 = 0.15;
+
+/// Writes a page in 3-D of each job. `each` is given what is to be said of each job.
+///
+/// # Errors
+/// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
+pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of(&compilation);
+    for job in solve::asked(&jobs, monitor)? {
+        let wanted = wanted(Means::new(request.evaluator, monitor));
+        stream::check_kept(job, &job.surfaces, wanted)?;
+        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
+        let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
+        let trims = solved.iter().flat_map(|solved| &solved.trims);
+        let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
+        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &request.jobs, &origin));
+        dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
+        let tally = tally(&solved, &mut dataset.patches);
+        let mut not_done = table::failures(job, &solved);
+        let written = if tally.solved == 0 {
+            not_done += &format!("no page: job `{}` has no point to show\n", job.name);
+            None
+        } else {
+            Some(write(&graph, job, &solved, &dataset, (request, &origin, monitor))?)
+        };
+        let text = written.as_ref().map_or_else(String::new, |written| written.text(job, &tally));
+        let document = as_json(job, &tally, written.as_ref(), &not_done);
+        each(Answer { text, document, notes: String::new(), not_done });
+    }
+    Ok(())
+}
+
+fn as_json(job: &Job<'_>, tally: &Tally, written: Option<&Written>, told: &str) -> Value {
+    json!({
+        "schema": "flank.view/2", "job": job.name, "asked": tally.asked, "solved": tally.solved,
+        "files": written.iter().map(|page| &page.file).collect::<Vec<_>>(), "bytes": written.map(|page| page.bytes), "not_done": not_done(told),
+    })
+}
+
+/// Of all points of the surfaces, however few of them the page shows, and of the lines on them; the patches of surfaces come first and
+/// get their plain names.
+fn tally(solved: &[Solved<'_, '_>], patches: &mut [Patch]) -> Tally {
+    let (surfaces, lines) = patches.split_at_mut(solved.len());
+    let mut tally = Tally::of(&*lines);
+    for (solved, patch) in solved.iter().zip(surfaces) {
+        patch.name.clone_from(&solved.surface.name);
+        tally.asked += solved.summary.asked;
+        tally.solved += solved.summary.solved();
+    }
+    tally
+}
+
+/// Whether a field is not zero everywhere, as is that of a parameter without influence.
+fn is_something(field: &Field) -> bool {
+    match &field.values {
+        Values::Scalars(values) => values.iter().flatten().any(|value| value != 0.0),
+        Values::Vectors(_) => true,
+    }
+}
+
+/// A page that stands in its folder.
+struct Written {
+    file: String,
+    bytes: u64,
+}
+
+fn write<'g>(
+    graph: &'g Graph,
+    job: &Job<'g>,
+    solved: &[Solved<'_, 'g>],
+    dataset: &Dataset,
+    (request, origin, monitor): (&ViewRequest, &Origin, &dyn Monitor),
+) -> Result<Written, String> {
+    let (surfaces, lines) = dataset.patches.split_at(solved.len());
+    let step = thin::step(surfaces);
+    let mut scene = scene(graph, job, solved);
+    let is_part = solved.iter().any(|solved| solved.streamed.is_some());
+    if is_part {
+        let asked: usize = solved.iter().map(|solved| solved.summary.asked).sum();
+        let shown: usize = surfaces.iter().map(|patch| thin::kept(patch, step).len()).sum();
+        let note = format!(
+            "the page shows {shown} of the {asked} points that the job samples, in some of their rows and columns; what moves \
+             surfaces, and by how much, is told of some of them"
+        );
+        scene.notes.push(note);
+    } else if step > 1 {
+        let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
+        scene.notes.push(note);
+    }
+    scene.notes.iter().for_each(|note| monitor.note(&format!("note: {note}\n")));
+    if step > 1 {
+        for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
+            surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();
+            for shares in &mut surface.shares {
+                *shares = thin::taken(shares.len(), step).into_iter().map(|at| shares[at]).collect();
+            }
+        }
+    }
+    let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
+    let mut folder = Folder::at(&request.out, origin, monitor)?;
+    folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
+    let file = folder.finish()?.remove(0);
+    let path = request.out.join(format!("{}.html", job.name));
+    let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
+    Ok(Written { file, bytes })
+}
+
+/// What the page shows beside the points.
+fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scene {
+    let mut functions = Functions::of(job);
+    let surfaces: Vec<_> = solved.iter().map(|solved| surfaces::of(graph, job, solved, &mut functions)).collect();
+    Scene {
+        doc: job.doc.clone(),
+        motions: job.motions.iter().map(|motion| page_motion(motion, solved)).collect(),
+        parameters: parameters::of(job, solved),
+        machines: job
+            .machines
+            .iter()
+            .enumerate()
+            .map(|(k, m)| machines::of(graph, job, (k, m), &mut functions))
+            .collect(),
+        tools: tools::of(job, solved, &mut functions),
+        surfaces,
+        definitions: parameters::definitions(job, &mut functions),
+        notes: Vec::new(),
+        functions: functions.text,
+        function_names: functions.names,
+    }
+}
+
+/// Over what the solved points pass, and a little beyond; it starts where the middle of the first surface is generated.
+fn page_motion(motion: &Bounded<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
+    let values = |solved: &Solved<'_, '_>| -> Vec<f64> {
+        let place = solved.surface.unknowns.iter().position(|unknown| unknown.variable == motion.variable);
+        let of_points = solved.points.iter().filter(|point| point.outcome == flank_solver::Outcome::Solved);
+        place.map_or(Vec::new(), |k| of_points.map(|point| point.unknowns[k]).collect())
+    };
+    let all: Vec<Vec<f64>> = solved.iter().map(values).collect();
+    let passed = all.iter().flatten();
+    let low = passed.clone().copied().reduce(f64::min).unwrap_or(motion.low);
+    let high = passed.copied().reduce(f64::max).unwrap_or(motion.high);
+    let margin = BEYOND * (high - low);
+    let (low, high) = if low < high { (low - margin, high + margin) } else { (motion.low, motion.high) };
+    let start = all.iter().find(|values| !values.is_empty()).map(|values| values[values.len() / 2]);
+    PageMotion {
+        name: motion.name.clone(),
+        unit: solve::unit(motion.dimension),
+        low: low.max(motion.low),
+        high: high.min(motion.high),
+        limits: [motion.low, motion.high],
+        start: start.unwrap_or(0.5 * (motion.low + motion.high)),
+        is_count: motion.is_count,
+    }
+}
+
+impl Written {
+    fn text(&self, job: &Job<'_>, tally: &Tally) -> String {
+        let kilobytes = self.bytes.div_ceil(1000);
+        format!("job {}: {} of {} points\nwrote {}, {kilobytes} kB\n", job.name, tally.solved, tally.asked, self.file)
+    }
+}

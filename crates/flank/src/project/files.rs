@@ -1,0 +1,210 @@
+//! The files that a command leaves in its folder.
+
+use std::path::Path;
+
+use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
+use flank_export::{
+    Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Surfaces, Target, WriteError, make_folder,
+    write_3mf, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv, write_motion_json, write_nc,
+    write_obj, write_parquet, write_step, write_stl, write_vtp,
+};
+
+use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
+use crate::project::failure::Failure;
+use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::shown_path;
+use crate::project::spec::Origin;
+
+/// A folder that is written to. Its files get their names together when it is finished; until then it is as it was.
+#[must_use = "files have no names before it is finished"]
+pub(crate) struct Folder<'a> {
+    path: &'a Path,
+    /// What is not written over.
+    origin: &'a Origin,
+    files: FileSet,
+    monitor: &'a dyn Monitor,
+    pub(crate) written: Vec<String>,
+}
+
+impl<'a> Folder<'a> {
+    /// The folder, made if it is not there.
+    pub(crate) fn at(path: &'a Path, origin: &'a Origin, monitor: &'a dyn Monitor) -> Result<Folder<'a>, String> {
+        made(path)?;
+        Ok(Folder { path, origin, files: FileSet::default(), monitor, written: Vec::new() })
+    }
+
+    /// Gives all files their names, and tells them.
+    pub(crate) fn finish(self) -> Result<Vec<String>, String> {
+        self.files.finish().map_err(|error| error.to_string())?;
+        Ok(self.written)
+    }
+
+    /// The points in the formats that are asked for. A mesh has one origin: of surfaces in several frames there is one for each.
+    pub(crate) fn data(&mut self, name: &str, surfaces: &Surfaces<'_>, formats: &[PointFormat]) -> Result<(), String> {
+        let meshes = by_frame(name, surfaces.list.iter().map(|surface| (surface.outline().frame.as_str(), *surface)));
+        let meshes: Vec<(String, Surfaces<'_>)> =
+            meshes.into_iter().map(|(name, list)| (name, Surfaces { header: surfaces.header, list })).collect();
+        for format in formats {
+            match format {
+                PointFormat::Csv => self.write(&format!("{name}.csv"), |out| write_csv(surfaces, out))?,
+                PointFormat::Json => self.write(&format!("{name}.json"), |out| write_json(surfaces, out))?,
+                PointFormat::Parquet => self.write(&format!("{name}.parquet"), |out| write_parquet(surfaces, out))?,
+                PointFormat::Stl | PointFormat::Obj | PointFormat::ThreeMf | PointFormat::Vtp => {
+                    meshes.iter().try_for_each(|(name, mesh)| self.mesh(name, mesh, *format))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn mesh(&mut self, name: &str, surfaces: &Surfaces<'_>, format: PointFormat) -> Result<(), String> {
+        // a file of triangles says nothing where there are none
+        let is_line =
+            surfaces.list.iter().map(|surface| surface.outline()).all(|of| of.rows.count.min(of.columns.count) < 2);
+        if is_line && matches!(format, PointFormat::Stl | PointFormat::ThreeMf) {
+            self.monitor.note(&format!(
+                "note: the mesh of {name} has no triangle: samples of two rows and two columns at least have some\n"
+            ));
+        }
+        match format {
+            PointFormat::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out)),
+            PointFormat::Obj => self.write(&format!("{name}.obj"), |out| write_obj(surfaces, out)),
+            PointFormat::ThreeMf => self.write(&format!("{name}.3mf"), |out| write_3mf(surfaces, out)),
+            PointFormat::Vtp => self.write(&format!("{name}.vtp"), |out| write_vtp(surfaces, out)),
+            PointFormat::Csv | PointFormat::Json | PointFormat::Parquet => Ok(()),
+        }
+    }
+
+    /// Smooth faces, a file for each frame as of meshes.
+    pub(crate) fn step(&mut self, name: &str, header: &Header, faces: &[&Face]) -> Result<(), String> {
+        let files = by_frame(name, faces.iter().map(|face| (face.frame(), *face)));
+        files
+            .iter()
+            .try_for_each(|(name, faces)| self.write(&format!("{name}.step"), |out| write_step(header, faces, out)))
+    }
+
+    /// A picture as PNG and SVG.
+    pub(crate) fn picture(&mut self, name: &str, drawn: &Picture) -> Result<(), String> {
+        self.picture_as(name, drawn, PictureFormat::Png)?;
+        self.picture_as(name, drawn, PictureFormat::Svg)
+    }
+
+    /// The same after what `meanwhile` writes: the picture is painted beside it, on another thread.
+    pub(crate) fn picture_after(
+        &mut self,
+        name: &str,
+        drawn: Option<&Picture>,
+        meanwhile: impl FnOnce(&mut Self) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let Some(drawn) = drawn else { return meanwhile(self) };
+        let mut png = None;
+        let svg = rayon::in_place_scope(|scope| {
+            scope.spawn(|_| png = Some(drawn.png()));
+            meanwhile(self).map(|()| drawn.svg())
+        });
+        let png = png.expect("the scope has waited for it").map_err(|error| error.to_string())?;
+        let svg = svg?;
+        self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))?;
+        self.text(&format!("{name}.svg"), &svg)
+    }
+
+    /// A picture in one format.
+    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), String> {
+        match format {
+            PictureFormat::Png => {
+                let png = drawn.png().map_err(|error| error.to_string())?;
+                self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))
+            }
+            PictureFormat::Svg => self.text(&format!("{name}.svg"), &drawn.svg()),
+        }
+    }
+
+    /// Axis positions over a motion.
+    pub(crate) fn motion(&mut self, name: &str, motion: &MotionTable, format: TableFormat) -> Result<(), String> {
+        match format {
+            TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_motion_csv(motion, out)),
+            TableFormat::Json => self.write(&format!("{name}.json"), |out| write_motion_json(motion, out)),
+        }
+    }
+
+    /// Nominal points for a measuring machine.
+    pub(crate) fn grid(&mut self, name: &str, grid: &MeasuringGrid, format: TableFormat) -> Result<(), String> {
+        match format {
+            TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_grid_csv(grid, out)),
+            TableFormat::Json => self.write(&format!("{name}.json"), |out| write_grid_json(grid, out)),
+        }
+    }
+
+    /// A program that runs the motion in a number of seconds.
+    pub(crate) fn nc(&mut self, name: &str, motion: &MotionTable, to: Dialect, seconds: f64) -> Result<(), String> {
+        let extension = match to {
+            Dialect::Fanuc => "nc",
+            Dialect::Siemens840D => "mpf",
+            Dialect::LinuxCnc => "ngc",
+        };
+        self.write(&format!("{name}.{extension}"), |out| write_nc(motion, to, seconds, out))
+    }
+
+    /// A page to look at.
+    pub(crate) fn page(&mut self, name: &str, dataset: &Dataset, scene: &Scene) -> Result<(), String> {
+        self.write(&format!("{name}.html"), |out| write_page(dataset, scene, out))
+    }
+
+    /// A document to read.
+    pub(crate) fn report(&mut self, name: &str, report: &Report, format: ReportFormat) -> Result<(), String> {
+        match format {
+            ReportFormat::Html => self.write(name, |out| write_report_html(report, out)),
+            ReportFormat::Md => self.write(name, |out| write_report_markdown(report, out)),
+        }
+    }
+
+    /// Any text.
+    pub(crate) fn text(&mut self, name: &str, text: &str) -> Result<(), String> {
+        self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
+    }
+
+    fn write(&mut self, name: &str, content: impl Fn(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), String> {
+        let path = self.path.join(name);
+        if self.origin.holds(&path) {
+            let path = shown_path(&path);
+            return Err(format!(
+                "`{path}` is what this command reads and would be written over: name another folder with --out"
+            ));
+        }
+        self.files.write(&path, content).map_err(|error| error.to_string())?;
+        self.written.push(shown_path(&path));
+        Ok(())
+    }
+}
+
+/// Writes texts into a folder, which is made if it is not there: all of them, or none. Gives back their paths.
+///
+/// # Errors
+/// What stands in the way.
+pub fn write_texts(folder: &Path, texts: &[(String, String)]) -> Result<Vec<String>, Failure> {
+    let origin = Origin::default();
+    let mut folder = Folder::at(folder, &origin, &Unwatched)?;
+    texts.iter().try_for_each(|(name, text)| folder.text(name, text))?;
+    Ok(folder.finish()?)
+}
+
+/// Makes the folder that is asked for, or one in it.
+pub(crate) fn made(folder: &Path) -> Result<(), String> {
+    make_folder(folder).map_err(|error| format!("{error}; name another folder with --out"))
+}
+
+/// What lies in each frame, with the name of its file: the frame is part of it where there are several.
+fn by_frame<'f, T>(name: &str, all: impl Iterator<Item = (&'f str, T)>) -> Vec<(String, Vec<T>)> {
+    let mut frames: Vec<(&str, Vec<T>)> = Vec::new();
+    for (frame, one) in all {
+        match frames.iter_mut().find(|(known, _)| *known == frame) {
+            Some((_, list)) => list.push(one),
+            None => frames.push((frame, vec![one])),
+        }
+    }
+    let is_one = frames.len() == 1;
+    frames
+        .into_iter()
+        .map(|(frame, list)| (if is_one { name.to_string() } else { format!("{name}.{frame}") }, list))
+        .collect()
+}

@@ -1,0 +1,42 @@
+//! Who follows an operation.
+
+use crate::project::findings::Findings;
+
+/// Follows an operation: hears how far long work is, what is to be known beside its result, and what is doubtful in a spec.
+///
+/// Operations call it from one thread.
+pub trait Monitor: Sync {
+    /// Long work begins, `solving concave`; it is over when what comes back is dropped.
+    fn begin(&self, what: String) -> Box<dyn Work> {
+        let _ = what;
+        Box::new(Unseen)
+    }
+
+    /// Something to know that is neither a result nor a failure, in whole lines.
+    fn note(&self, lines: &str) {
+        let _ = lines;
+    }
+
+    /// Warnings of a spec that is right.
+    fn warn(&self, findings: &Findings) {
+        let _ = findings;
+    }
+}
+
+/// Work that goes on.
+pub trait Work {
+    /// How far it is, `20 of 80 rows`; asked for only if somebody looks.
+    fn reached(&self, how_far: &dyn Fn() -> String) {
+        let _ = how_far;
+    }
+}
+
+/// Nobody follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unwatched;
+
+impl Monitor for Unwatched {}
+
+struct Unseen;
+
+impl Work for Unseen {}

@@ -1,0 +1,366 @@
+//! What can be asked of a spec. Lengths are mm, times seconds.
+
+use std::path::{Path, PathBuf};
+
+use flank_chain_dsl::{Job, Request};
+use flank_expr::InstructionSet;
+use flank_solver::MOST_BOXES;
+
+use crate::project::Project;
+use crate::project::choices::{
+    EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
+};
+use crate::project::failure::Failure;
+use crate::project::monitor::{Monitor, Work};
+
+/// Which jobs of a spec, with which values.
+#[derive(Clone, Debug)]
+pub struct JobSelection {
+    /// The spec.
+    pub project: Project,
+    /// The job, where the spec holds several; all of them otherwise.
+    pub job: Option<String>,
+    /// Other values for job parameters and settings, each with its unit: `teeth` and `25`, `pinion.m.swivel` and `-3 deg`.
+    pub set: Vec<(String, String)>,
+}
+
+impl JobSelection {
+    /// All jobs of a spec, as they are written.
+    pub fn all(project: Project) -> JobSelection {
+        JobSelection { project, job: None, set: Vec::new() }
+    }
+
+    /// The file of the spec.
+    pub fn file(&self) -> &Path {
+        self.project.file()
+    }
+
+    pub(crate) fn request(&self) -> Request<'_> {
+        let files = self.project.shared_files();
+        Request { files, job: self.job.as_deref(), set: &self.set, ..Request::default() }
+    }
+
+    /// # Errors
+    /// If one name is set twice, whatever the file says.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let twice =
+            self.set.iter().enumerate().find(|(k, (name, _))| self.set[..*k].iter().any(|(known, _)| known == name));
+        match twice {
+            Some((_, (name, _))) => {
+                Err(Failure::Request(format!("`--set {name}=…` is given twice: leave one of them out")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The values that were set by hand, of parameters and settings of these jobs.
+    pub(crate) fn set_in(&self, jobs: &[&Job<'_>]) -> Vec<&(String, String)> {
+        self.set.iter().filter(|(name, _)| jobs.iter().any(|job| self.changes(name, job))).collect()
+    }
+
+    /// Whether a value that was set by hand changes a job; one with the job's name before it goes before one for all jobs.
+    pub(crate) fn changes(&self, name: &str, job: &Job<'_>) -> bool {
+        let own = format!("{}.{name}", job.name);
+        job.has_parameter(name) && !self.set.iter().any(|(other, _)| *other == own)
+    }
+}
+
+/// How the numbers are worked out; it changes no bit of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EvaluatorOptions {
+    /// Whether equations become machine code; otherwise they are gone through instruction by instruction.
+    pub machine_code: bool,
+    /// Boxes that a search for all branches looks at before it leaves the rest of the ranges undecided.
+    pub boxes: u64,
+}
+
+impl Default for EvaluatorOptions {
+    fn default() -> EvaluatorOptions {
+        EvaluatorOptions { machine_code: true, boxes: MOST_BOXES }
+    }
+}
+
+/// The same with who follows the work.
+#[derive(Clone, Copy)]
+pub(crate) struct Means<'m> {
+    options: EvaluatorOptions,
+    monitor: &'m dyn Monitor,
+}
+
+impl<'m> Means<'m> {
+    pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Means<'m> {
+        Means { options, monitor }
+    }
+
+    pub(crate) fn boxes(self) -> u64 {
+        self.options.boxes
+    }
+
+    pub(crate) fn instructions(self) -> InstructionSet {
+        if self.options.machine_code { InstructionSet::fastest() } else { InstructionSet::widest() }
+    }
+
+    pub(crate) fn monitor(self) -> &'m dyn Monitor {
+        self.monitor
+    }
+
+    /// Long work begins.
+    pub(crate) fn begin(self, what: String) -> Box<dyn Work> {
+        self.monitor.begin(what)
+    }
+}
+
+/// Points of surfaces.
+#[derive(Clone, Debug)]
+pub struct SolveRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with the points.
+    pub format: Vec<PointFormat>,
+    /// Also smooth faces in a STEP file, this near to the exact surface, mm.
+    pub step: Option<f64>,
+    /// Also where each surface turns back, and where the tool's contact ends.
+    pub limits: bool,
+    /// No picture.
+    pub no_picture: bool,
+    /// Also curvatures, sliding velocities, contact lines and the metric at each point.
+    pub geometry: bool,
+    /// Also how far each point moves with each parameter.
+    pub sensitivity: bool,
+    /// Also a proof for each point that exactly one root lies near it.
+    pub certify: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl SolveRequest {
+    /// Points as CSV and a picture, in the folder `build`.
+    pub fn of(jobs: JobSelection) -> SolveRequest {
+        SolveRequest {
+            jobs,
+            out: "build".into(),
+            format: vec![PointFormat::Csv],
+            step: None,
+            limits: false,
+            no_picture: false,
+            geometry: false,
+            sensitivity: false,
+            certify: false,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+}
+
+/// Pictures of jobs.
+#[derive(Clone, Debug)]
+pub struct PlotRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// What is drawn; the first three that fit if nothing is named.
+    pub what: Vec<PlotKind>,
+    /// The surfaces that pictures show; otherwise maps show the first that is sampled.
+    pub surface: Vec<String>,
+    /// The surface that the one surface is held against.
+    pub from: Option<String>,
+    /// The parameters whose influence is shown; those that do most otherwise.
+    pub of: Vec<String>,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files of each picture.
+    pub format: Vec<PictureFormat>,
+    /// Pixels across and down.
+    pub size: (u32, u32),
+    /// Without the line with spec, hash and program.
+    pub no_origin: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// Reports on jobs.
+#[derive(Clone, Debug)]
+pub struct ReportRequest {
+    /// On which jobs.
+    pub jobs: JobSelection,
+    /// Folder for the files, or the one file.
+    pub out: PathBuf,
+    /// HTML, or what the one file is, if nothing is named.
+    pub format: Vec<ReportFormat>,
+    /// Also a proof for each point.
+    pub certify: bool,
+    /// Also smooth faces in a STEP file, this near to the exact surface, mm.
+    pub step: Option<f64>,
+    /// A mark to stand on the page.
+    pub date: Option<String>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// Pages in 3-D.
+#[derive(Clone, Debug)]
+pub struct ViewRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// Folder for the pages; made if it is not there.
+    pub out: PathBuf,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// One surface held against another, or measured points against a surface.
+#[derive(Clone, Debug)]
+pub struct DeviationRequest {
+    /// The jobs that the surfaces are looked for in.
+    pub jobs: JobSelection,
+    /// The surface.
+    pub surface: String,
+    /// The surface that it is held against.
+    pub from: Option<String>,
+    /// Measured points that are held against the surface.
+    pub measured: Option<PathBuf>,
+    /// Rows of the grid that was measured; the largest that the file names otherwise.
+    pub rows: Option<u32>,
+    /// Columns of that grid, the same way.
+    pub columns: Option<u32>,
+    /// What a measuring grid leaves out at each end, as shares from root to tip and along the tooth.
+    pub margin: Option<[f64; 2]>,
+    /// Whether it is not turned.
+    pub as_it_lies: bool,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with the points.
+    pub format: Vec<PointFormat>,
+    /// No picture.
+    pub no_picture: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// What a measuring grid leaves out at each end of the sampled area, if nothing else is asked for.
+const MARGIN: f64 = 0.05;
+
+impl DeviationRequest {
+    pub(crate) fn margins(&self) -> [f64; 2] {
+        self.margin.unwrap_or([MARGIN; 2])
+    }
+}
+
+/// Nominal points for measuring machines.
+#[derive(Clone, Debug)]
+pub struct MeasureRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// The surfaces; all that are sampled if none is named.
+    pub surface: Vec<String>,
+    /// Rows of the grid.
+    pub rows: u32,
+    /// Columns of the grid.
+    pub columns: u32,
+    /// What the grid leaves out at each end, as shares from root to tip and along the tooth.
+    pub margin: Option<[f64; 2]>,
+    /// Also the profile line and the lead line through the middle, with so many points each.
+    pub lines: Option<u32>,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with the grid.
+    pub format: Vec<TableFormat>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl MeasureRequest {
+    pub(crate) fn margins(&self) -> [f64; 2] {
+        self.margin.unwrap_or([MARGIN; 2])
+    }
+}
+
+/// What is carried over to another machine, and which of its frames stand for the job's.
+#[derive(Clone, Debug, Default)]
+pub struct Onto {
+    /// The surface whose tool is carried over, where the job has several tools.
+    pub surface: Option<String>,
+    /// The machine's frame that the tool stands in, if it has another name there.
+    pub tool_frame: Option<String>,
+    /// The machine's frame that the work stands in, if it has another name there.
+    pub work_frame: Option<String>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// A job on another machine.
+#[derive(Clone, Debug)]
+pub struct ConvertRequest {
+    /// Which job; it is one.
+    pub jobs: JobSelection,
+    /// The file of the other machine; of several in it the last one.
+    pub to: PathBuf,
+    /// What is carried over.
+    pub onto: Onto,
+    /// Settings of the machine that are looked for beside those without a value.
+    pub fit: Vec<String>,
+    /// Positions over the motion.
+    pub positions: u32,
+    /// The order of the polynomials; 6 otherwise.
+    pub order: Option<u32>,
+    /// The smallest order that keeps the flank this near is taken, mm.
+    pub tolerance: Option<f64>,
+    /// Folder for the files; `build` otherwise.
+    pub out: Option<PathBuf>,
+    /// Files with positions and polynomials; CSV if nothing is named.
+    pub format: Vec<TableFormat>,
+    /// NC programs.
+    pub nc: Vec<NcDialect>,
+    /// Seconds that the motion takes.
+    pub time: Option<f64>,
+    /// Functions of the motion.
+    pub emit: Vec<FunctionLanguage>,
+    /// What these compute.
+    pub emit_form: Vec<EmitForm>,
+}
+
+impl ConvertRequest {
+    /// The order of the polynomials where no tolerance chooses it.
+    pub(crate) fn order(&self) -> usize {
+        self.order.unwrap_or(6) as usize
+    }
+
+    /// The folder for the files.
+    pub(crate) fn out(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("build"))
+    }
+
+    /// What files with positions and polynomials there are to be.
+    pub(crate) fn formats(&self) -> &[TableFormat] {
+        if self.format.is_empty() { &[TableFormat::Csv] } else { &self.format }
+    }
+
+    /// What is asked for that there is only of a motion, not of settings.
+    pub(crate) fn of_a_motion(&self) -> Vec<&'static str> {
+        let asked = [
+            (self.order.is_some(), "--order"),
+            (self.tolerance.is_some(), "--tolerance"),
+            (self.out.is_some(), "--out"),
+            (!self.format.is_empty(), "--format"),
+            (!self.nc.is_empty(), "--nc"),
+            (self.time.is_some(), "--time"),
+            (!self.emit.is_empty(), "--emit"),
+        ];
+        asked.into_iter().filter_map(|(is_asked, name)| is_asked.then_some(name)).collect()
+    }
+}
+
+/// What was built.
+#[derive(Clone, Debug)]
+pub struct DeriveRequest {
+    /// Of which jobs; with a machine to carry over to, one.
+    pub jobs: JobSelection,
+    /// LaTeX instead of text.
+    pub latex: bool,
+    /// The axes of the machine in this file in closed form.
+    pub to: Option<PathBuf>,
+    /// What is carried over to it.
+    pub onto: Onto,
+    /// How many operations the equations of a point take.
+    pub cost: bool,
+}

@@ -1,0 +1,123 @@
+//! From a spec to jobs, with the findings told on the way.
+
+use std::path::{Path, PathBuf};
+
+use flank_chain_dsl::{Compilation, Files, Job, Sources, compile_request, read_other_file};
+use flank_expr::Graph;
+use sha2::{Digest, Sha256};
+
+use crate::project::failure::Failure;
+use crate::project::findings::Findings;
+use crate::project::monitor::Monitor;
+use crate::project::requests::JobSelection;
+
+/// The jobs that are asked for. Warnings are told.
+///
+/// # Errors
+/// What is wrong with the spec.
+pub(crate) fn jobs<'g>(
+    graph: &'g Graph,
+    which: &JobSelection,
+    monitor: &dyn Monitor,
+) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
+    which.check()?;
+    let mut compilation = sound(compile_request(graph, which.file(), &which.request()), monitor)?;
+    let jobs = asked_for(&mut compilation, which, monitor)?;
+    Ok((compilation, jobs))
+}
+
+/// A compilation without errors, whose warnings are told.
+///
+/// # Errors
+/// All findings, if one is an error.
+pub(crate) fn sound<'g>(compilation: Compilation<'g>, monitor: &dyn Monitor) -> Result<Compilation<'g>, Failure> {
+    let findings = Findings::new(&compilation.diagnostics, &compilation.sources);
+    if compilation.has_errors() {
+        return Err(Failure::Findings(findings));
+    }
+    if !findings.is_empty() {
+        monitor.warn(&findings);
+    }
+    Ok(compilation)
+}
+
+/// The jobs of a compilation that are asked for.
+///
+/// # Errors
+/// Which there are, if there is none of that name, or none at all.
+pub(crate) fn asked_for<'g>(
+    compilation: &mut Compilation<'g>,
+    which: &JobSelection,
+    monitor: &dyn Monitor,
+) -> Result<Vec<Job<'g>>, Failure> {
+    let jobs = compilation.take_jobs(which.job.as_deref());
+    let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
+    note(monitor, &set_in_several(which, &jobs));
+    Ok(jobs)
+}
+
+/// The values that were set by hand and change several jobs; empty if none does.
+fn set_in_several(which: &JobSelection, jobs: &[Job<'_>]) -> String {
+    let mut out = String::new();
+    for (name, _) in &which.set {
+        let changed = jobs.iter().filter(|job| which.changes(name, job));
+        let changed: Vec<&str> = changed.map(|job| job.name.as_str()).collect();
+        if let [first, _, ..] = changed[..] {
+            out += &format!(
+                "note: `--set {name}` changes {} jobs: {}; `--set {first}.{name}=…` changes one\n",
+                changed.len(),
+                changed.join(", ")
+            );
+        }
+    }
+    out
+}
+
+/// Tells whoever follows, if there is something to tell.
+pub(crate) fn note(monitor: &dyn Monitor, lines: &str) {
+    if !lines.is_empty() {
+        monitor.note(lines);
+    }
+}
+
+/// What a command read: where all that it writes comes from, and what it must not write over.
+#[derive(Debug, Default)]
+pub(crate) struct Origin {
+    /// SHA-256 of all texts of the compilation, in its order.
+    pub(crate) hash: String,
+    /// All files, without links.
+    files: Vec<PathBuf>,
+}
+
+impl Origin {
+    pub(crate) fn of(compilation: &Compilation<'_>) -> Origin {
+        let mut hash = Sha256::new();
+        for (_, source) in compilation.sources.files() {
+            hash.update((source.text.len() as u64).to_le_bytes());
+            hash.update(source.text.as_bytes());
+        }
+        let hash = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Origin { hash, files: compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect() }
+    }
+
+    /// Reads a file that is no spec, of at most so many bytes.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in the words that are said of specs.
+    pub(crate) fn other_text(&mut self, files: &dyn Files, path: &Path, most: usize) -> Result<String, Failure> {
+        let mut sources = Sources::default();
+        match read_other_file(files, &mut sources, path, most) {
+            Ok(id) => {
+                let source = sources.file(id);
+                self.files.extend(source.file.clone());
+                Ok(source.text.clone())
+            }
+            Err(finding) => Err(Failure::Findings(Findings::new(&[finding], &sources))),
+        }
+    }
+
+    /// Whether a path leads to something that was read.
+    pub(crate) fn holds(&self, path: &Path) -> bool {
+        std::fs::canonicalize(path).is_ok_and(|there| self.files.contains(&there))
+    }
+}

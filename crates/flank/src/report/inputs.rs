@@ -1,0 +1,198 @@
+//! What a job was given: parameters, settings and motions.
+
+use flank_chain_dsl::{Bounded, Dimension, Giver, Parameter};
+use flank_draw::{Block, Column, ReportSection};
+use flank_export::fixed;
+use serde_json::{Value, json};
+
+use super::Findings;
+use crate::project::units;
+use crate::solve::travel;
+
+pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
+    let mut blocks: Vec<Block> = groups(findings).iter().flat_map(|group| blocks(findings, group)).collect();
+    if blocks.is_empty() {
+        blocks.push(Block::Paragraph("The job has no parameters: all its numbers stand in its text.".to_string()));
+    }
+    if !findings.job.motions.is_empty() {
+        blocks.push(motions(findings));
+    }
+    ReportSection { title: "Inputs".to_string(), blocks }
+}
+
+/// Who owns a parameter: a machine or tool; nobody if the job does.
+fn owner<'a>(parameter: &'a Parameter<'_>) -> Option<&'a str> {
+    parameter.name.split_once('.').map(|(owner, _)| owner)
+}
+
+/// The parameters of the job, then those of its machines and tools in their order.
+fn groups<'j, 'g>(findings: &Findings<'j, 'g>) -> Vec<Vec<&'j Parameter<'g>>> {
+    let all = &findings.job.parameters;
+    let mut owners: Vec<Option<&str>> = Vec::new();
+    for parameter in all {
+        if !owners.contains(&owner(parameter)) {
+            owners.push(owner(parameter));
+        }
+    }
+    owners.sort_by_key(Option::is_some);
+    owners.into_iter().map(|of| all.iter().filter(|parameter| owner(parameter) == of).collect()).collect()
+}
+
+/// A table, and the names of those that are zero by default and of which there is nothing to say.
+fn blocks(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Vec<Block> {
+    let is_idle = |parameter: &&&Parameter<'_>| {
+        let is_default = matches!(parameter.given_by, Giver::Definition(_));
+        is_default && parameter.value == 0.0 && parameter.doc.is_empty()
+    };
+    let (idle, told): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = parameters.iter().partition(is_idle);
+    let table = (!told.is_empty()).then(|| table(findings, owner_text(findings, parameters), &told));
+    let zero = (!idle.is_empty()).then(|| Block::Facts(by_unit(&idle)));
+    table.into_iter().chain(zero).collect()
+}
+
+/// The names of parameters that are zero by default, by their unit.
+fn by_unit(parameters: &[&Parameter<'_>]) -> Vec<(String, String)> {
+    let mut units: Vec<String> = Vec::new();
+    for parameter in parameters {
+        let unit = unit(parameter.dimension);
+        if !units.contains(&unit) {
+            units.push(unit);
+        }
+    }
+    let of_unit = |of: String| {
+        let names = parameters.iter().filter(|parameter| unit(parameter.dimension) == of);
+        let names: Vec<&str> = names.map(|parameter| parameter.name.as_str()).collect();
+        (format!("0 {of} by default").replace("  ", " "), names.join(", "))
+    };
+    units.into_iter().map(of_unit).collect()
+}
+
+fn owner_text(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> String {
+    let Some(owner) = parameters.first().and_then(|parameter| owner(parameter)) else {
+        return "Job".to_string();
+    };
+    if let Some(machine) = findings.job.machines.iter().find(|machine| machine.name == owner) {
+        return format!("Machine {owner} = {}", machine.definition);
+    }
+    let definition = parameters.iter().find_map(|parameter| match &parameter.given_by {
+        Giver::Definition(name) => Some(format!(" = {name}")),
+        Giver::Job | Giver::Caller => None,
+    });
+    format!("Tool {owner}{}", definition.unwrap_or_default())
+}
+
+fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<'_>]) -> Block {
+    let has_ranges = parameters.iter().any(|parameter| parameter.range.is_some());
+    let has_docs = parameters.iter().any(|parameter| !parameter.doc.is_empty());
+    let mut columns =
+        vec![Column::code("name"), Column::code("as written"), Column::numbers("value"), Column::words("unit")];
+    columns.extend(has_ranges.then(|| Column::numbers("allowed")));
+    columns.push(Column::words("given by"));
+    columns.extend(has_docs.then(|| Column::sentences("meaning")));
+    let row = |parameter: &&Parameter<'_>| {
+        let range = parameter.range.map_or(String::new(), |(low, high)| {
+            format!("{} .. {}", number(parameter.dimension, low), number(parameter.dimension, high))
+        });
+        let mut cells = vec![
+            parameter.name.clone(),
+            written(findings, parameter),
+            number(parameter.dimension, parameter.value),
+            unit(parameter.dimension),
+        ];
+        cells.extend(has_ranges.then_some(range));
+        let giver = match parameter.given_by {
+            Giver::Definition(_) => "default",
+            Giver::Job => "job",
+            Giver::Caller => "--set",
+        };
+        cells.push(giver.to_string());
+        cells.extend(has_docs.then(|| joined(&parameter.doc)));
+        cells
+    };
+    Block::Table(caption, columns, parameters.iter().map(row).collect())
+}
+
+fn motions(findings: &Findings<'_, '_>) -> Block {
+    let reached = travel::reached(findings.job, findings.solved());
+    let row = |motion: &Bounded<'_>| {
+        let found = reached.iter().find(|(variable, _)| *variable == motion.variable).map(|(_, range)| range);
+        let show = |x: f64| number(motion.dimension, x);
+        let needed = found.map_or("\u{2013}".to_string(), |range| {
+            let [low, high] = [range.low, range.high].map(|end| units::digits(motion.dimension, end, 4));
+            format!("{low} .. {high}")
+        });
+        let unit = if motion.is_count { "whole numbers".to_string() } else { unit(motion.dimension) };
+        vec![motion.name.clone(), format!("{} .. {}", show(motion.low), show(motion.high)), needed, unit]
+    };
+    let columns = vec![
+        Column::code("motion"),
+        Column::numbers("range"),
+        Column::numbers("passed over by the solved points"),
+        Column::words("unit"),
+    ];
+    Block::Table("Motions".to_string(), columns, findings.job.motions.iter().map(row).collect())
+}
+
+/// A value's text in the spec, on one line.
+fn written(findings: &Findings<'_, '_>, parameter: &Parameter<'_>) -> String {
+    let text = findings.sources.text(parameter.written);
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn joined(doc: &[String]) -> String {
+    doc.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
+}
+
+/// The unit that values are shown in; nothing for a number.
+fn unit(dimension: Dimension) -> String {
+    match units::inside(dimension) {
+        unit if unit == "1" => String::new(),
+        unit if units::symbol(dimension).is_empty() => unit,
+        _ => units::symbol(dimension).to_string(),
+    }
+}
+
+/// Six digits behind the point, without zeros at the end; what is small has a power of ten.
+fn number(dimension: Dimension, value: f64) -> String {
+    let shown = units::shown(dimension, value);
+    let (digits, power) = if shown != 0.0 && shown.abs() < 1e-3 {
+        let text = format!("{shown:.5e}");
+        text.split_once('e')
+            .map_or((text.clone(), String::new()), |(digits, power)| (digits.to_string(), format!("e{power}")))
+    } else {
+        (fixed(shown, 6), String::new())
+    };
+    format!("{}{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
+
+pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
+    let entry = |parameter: &Parameter<'_>| {
+        let (low, high) = parameter.range.unzip();
+        let shown = |value: f64| units::shown(parameter.dimension, value);
+        let (by, definition) = match &parameter.given_by {
+            Giver::Definition(name) => ("definition", Some(name)),
+            Giver::Job => ("job", None),
+            Giver::Caller => ("caller", None),
+        };
+        json!({
+            "name": parameter.name, "written": written(findings, parameter), "value": shown(parameter.value),
+            "unit": unit(parameter.dimension), "low": low.map(shown), "high": high.map(shown), "is_count": parameter.is_count,
+            "given_by": by, "definition": definition, "meaning": joined(&parameter.doc),
+        })
+    };
+    findings.job.parameters.iter().map(entry).collect()
+}
+
+pub(super) fn motions_json(findings: &Findings<'_, '_>) -> Value {
+    let reached = travel::reached(findings.job, findings.solved());
+    let entry = |motion: &Bounded<'_>| {
+        let found = reached.iter().find(|(variable, _)| *variable == motion.variable).map(|(_, range)| range);
+        let shown = |value: f64| units::shown(motion.dimension, value);
+        json!({
+            "name": motion.name, "unit": units::symbol(motion.dimension), "is_count": motion.is_count,
+            "low": shown(motion.low), "high": shown(motion.high),
+            "passed_low": found.map(|range| shown(range.low)), "passed_high": found.map(|range| shown(range.high)),
+        })
+    };
+    findings.job.motions.iter().map(entry).collect()
+}

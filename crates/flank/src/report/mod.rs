@@ -1,0 +1,233 @@
+//! `flank report`
+
+mod conventions;
+mod ends;
+mod extremes;
+mod influences;
+mod inputs;
+mod machines;
+mod pictures;
+mod results;
+mod target;
+mod unchecked;
+
+use flank_chain_dsl::{Job, Sources};
+use flank_draw::{Block, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_export::Header;
+use flank_expr::Graph;
+use flank_solver::TOLERANCE;
+use serde_json::{Value, json};
+
+use crate::draw::{self, Drawing, Subject};
+use crate::project::answer::Answer;
+use crate::project::choices::PlotKind;
+use crate::project::failure::{Failure, not_done};
+use crate::project::monitor::Monitor;
+use crate::project::requests::{Means, ReportRequest};
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::solve::certify;
+use crate::solve::cut;
+use crate::solve::limits::{self, Line};
+use crate::solve::required;
+use crate::solve::step::{self, Smooth};
+use crate::solve::stream;
+use crate::solve::table::{self, Solved};
+use crate::solve::travel::{self, Run};
+use crate::solve::{self, Wanted};
+use target::Target;
+
+/// Writes all that is known of jobs, a page each. `each` is given what is to be said of each job.
+///
+/// # Errors
+/// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
+pub fn report(request: &ReportRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+    Target::check(request)?;
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let jobs = solve::asked(&jobs, monitor)?;
+    let origin = Origin::of(&compilation);
+    let target = Target::of(request, &jobs)?;
+    for job in jobs {
+        let findings = Findings::of(job, &compilation.sources, &origin, (request, monitor))?;
+        let document = findings.document();
+        let written = target.write(&findings, &document, monitor)?;
+        let (text, document) = (findings.told(&written), findings.json(&document, &written));
+        each(Answer { text, document, notes: String::new(), not_done: findings.failures() });
+    }
+    Ok(())
+}
+
+/// All that was found out about a job.
+struct Findings<'j, 'g> {
+    job: &'j Job<'g>,
+    sources: &'j Sources,
+    origin: &'j Origin,
+    request: &'j ReportRequest,
+    header: Header,
+    subject: Subject<'j, 'g>,
+    /// Where surfaces and contact end.
+    lines: Vec<Line<'j, 'g>>,
+    runs: Vec<Run<'j, 'g>>,
+    /// The pictures that matter for the job.
+    drawings: Vec<(PlotKind, Drawing)>,
+    /// Of a STEP file, if one is asked for.
+    faces: Vec<Smooth>,
+    is_certified: bool,
+}
+
+impl<'j, 'g> Findings<'j, 'g> {
+    fn of(
+        job: &'j Job<'g>,
+        sources: &'j Sources,
+        origin: &'j Origin,
+        (request, monitor): (&'j ReportRequest, &'j dyn Monitor),
+    ) -> Result<Self, String> {
+        let wanted = Wanted {
+            geometry: true,
+            sensitivity: true,
+            certificates: request.certify,
+            together: None,
+            of_shown: true,
+            means: Means::new(request.evaluator, monitor),
+        };
+        stream::check_kept(job, &job.surfaces, wanted)?;
+        let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
+        let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
+        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.means);
+        lines
+            .extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
+        // those of a surface one after the other
+        let place = |line: &Line<'_, '_>| job.surfaces.iter().position(|surface| surface.name == line.surface.name);
+        lines.sort_by_key(place);
+        let bare = Wanted { geometry: false, sensitivity: false, certificates: false, ..wanted };
+        let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
+        let faces = request.step.into_iter().flat_map(smooth).collect();
+        let runs = travel::runs(job, &solved);
+        let header = solve::header(&[job], &request.jobs, origin);
+        // the page says once where all its pictures come from
+        let unsigned = Header { spec: String::new(), ..header.clone() };
+        let subject = Subject::of(job, solved, &[], unsigned)?;
+        let drawings = draw::defaults(&subject, PictureOptions::default());
+        Ok(Findings {
+            job,
+            sources,
+            origin,
+            request,
+            header,
+            subject,
+            lines,
+            runs,
+            drawings,
+            faces,
+            is_certified: request.certify,
+        })
+    }
+
+    fn solved(&self) -> &[Solved<'j, 'g>] {
+        &self.subject.solved
+    }
+
+    /// What was asked for and not found; empty if nothing.
+    fn failures(&self) -> String {
+        let solved = self.solved();
+        table::failures(self.job, solved)
+            + &cut::unknown(solved)
+            + &certify::failed(solved)
+            + &travel::beyond(self.job, solved)
+            + &step::missed(&self.faces, self.request.step.unwrap_or_default())
+    }
+
+    /// Points that were asked for, and of them those that were solved.
+    fn counts(&self) -> [usize; 2] {
+        let all = self.solved().iter().map(|solved| [solved.summary.asked, solved.summary.solved()]);
+        all.fold([0; 2], |[asked, found], [a, f]| [asked + a, found + f])
+    }
+
+    fn document(&self) -> Document {
+        let mut sections = vec![inputs::section(self), machines::section(self), results::section(self)];
+        sections.extend([extremes::section(self), ends::section(self)]);
+        sections.extend(influences::section(self));
+        sections.extend(pictures::section(self));
+        let unchecked = unchecked::of(self);
+        let blocks = vec![
+            Block::Heading("In this job".to_string()),
+            Block::List(unchecked.of_job),
+            Block::Heading("In any report".to_string()),
+            Block::List(unchecked.always),
+        ];
+        sections.push(ReportSection { title: "What was not checked".to_string(), blocks });
+        sections.push(conventions::section(self));
+        let header = &self.header;
+        Document {
+            kind: "Report on generated surfaces".to_string(),
+            title: self.job.name.clone(),
+            opening: self.opening(),
+            sections,
+            closing: format!("{} \u{b7} {} \u{b7} {}", header.program, header.spec, header.spec_hash),
+        }
+    }
+
+    fn opening(&self) -> Vec<Block> {
+        let mut blocks = Vec::new();
+        let doc: Vec<&str> = self.job.doc.iter().map(|line| line.trim()).collect();
+        if !doc.is_empty() {
+            blocks.push(Block::Paragraph(doc.join(" ")));
+        }
+        let header = &self.header;
+        let mut facts = vec![("spec".to_string(), header.spec.clone())];
+        let set = self.request.jobs.set_in(&[self.job]).into_iter();
+        facts.extend(set.map(|(name, value)| ("set by hand".to_string(), format!("{name} = {value}"))));
+        facts.extend(self.request.date.iter().map(|date| ("date".to_string(), date.clone())));
+        facts.push(("made by".to_string(), header.program.clone()));
+        blocks.push(Block::Facts(facts));
+        blocks.push(self.verdict());
+        blocks.extend(pictures::first(self));
+        blocks
+    }
+
+    fn verdict(&self) -> Block {
+        let [asked, found] = self.counts();
+        let worst = self.solved().iter().filter_map(|solved| solved.summary.worst_residual).reduce(f64::max);
+        let worst = worst
+            .map_or(String::new(), |worst| format!("; worst residual {worst:.1e} mm, tolerance {TOLERANCE:.0e} mm"));
+        let counts = if found == asked {
+            format!("All {asked} points are solved")
+        } else {
+            format!("{found} of {asked} points are solved")
+        };
+        let text = format!("{counts}{worst}");
+        let is_good = self.failures().is_empty();
+        let mut more = Vec::new();
+        let undercut = ends::undercut_count(self);
+        if undercut > 0 {
+            more.push(format!("{undercut} points are cut away by the tool that generates them (undercut)"));
+        }
+        more.extend(travel::beyond(self.job, self.solved()).lines().map(str::to_string));
+        more.extend(required::text(self.solved()).lines().filter(|line| !line.starts_with(' ')).map(str::to_string));
+        Block::Notice(if is_good { Tone::Good } else { Tone::Bad }, text, more)
+    }
+
+    fn json(&self, document: &Document, written: &[String]) -> Value {
+        let header = &self.header;
+        let unchecked = unchecked::of(self);
+        let [asked, found] = self.counts();
+        let pictures: Vec<Value> =
+            document.figures().map(|figure| json!({ "name": figure.name, "shows": figure.caption })).collect();
+        json!({
+            "schema": "flank.report/2", "job": self.job.name, "doc": self.job.doc, "spec": header.spec,
+            "spec_hash": header.spec_hash, "program": header.program, "command": conventions::command(self),
+            "date": self.request.date, "tolerance": TOLERANCE, "asked": asked, "solved": found,
+            "undercut": ends::undercut_count(self),
+            "inputs": inputs::json(self), "motions": inputs::motions_json(self), "machines": machines::json(self),
+            "surfaces": results::json(self), "lines": ends::json(self), "faces": step::json(&self.faces), "pictures": pictures,
+            "not_checked": { "of_this_job": unchecked.of_job, "by_no_report": unchecked.always },
+            "conventions": conventions::sentences(self), "files": written, "not_done": not_done(&self.failures()),
+        })
+    }
+
+    fn told(&self, written: &[String]) -> String {
+        let [asked, found] = self.counts();
+        format!("job {}: {found} of {asked} points\nwrote {}\n", self.job.name, written.join(", "))
+    }
+}

@@ -1,0 +1,135 @@
+//! `cut flank by edges`: what the single edges leave over a surface.
+
+use std::fmt::Write;
+
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_draw::{Picture, PictureOptions, field_maps};
+use flank_export::{Dataset, Field, Values};
+use flank_solver::{CuttingEdges, Left, SurfacePoint};
+use serde_json::{Value, json};
+
+use crate::project::requests::Means;
+use crate::solve::ranges;
+use crate::solve::table::Solved;
+
+/// What the numbers are, for pictures.
+pub(crate) const NOTE: &str = "What the single edges leave over the surface that edges without end would generate, along its normal; plus \
+    is material.";
+
+/// What is left at each point of a surface.
+pub(crate) struct Cut {
+    /// The surface of the edges, and their counts.
+    by: String,
+    counts: Vec<String>,
+    left: Vec<Option<Left>>,
+}
+
+/// Nothing if the job does not ask for it.
+pub(crate) fn of<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    points: &[SurfacePoint],
+    means: Means,
+) -> Option<Cut> {
+    let by = &job.surfaces[surface.cut_by?];
+    let edges = CuttingEdges::new(&surface.surface, &by.surface, &ranges(by), &job.bindings())
+        .expect("a job without errors leaves nothing unbound")
+        .on(means.instructions());
+    let counts = by.unknowns[2..].iter().map(|count| count.name.clone()).collect();
+    Some(Cut { by: by.name.clone(), counts, left: edges.left(points) })
+}
+
+impl Cut {
+    /// The height of what is left, then the counts of the edge that leaves it.
+    pub(crate) fn fields(&self) -> Vec<Field> {
+        let scalars = |value: &dyn Fn(f64, &[f64]) -> f64| {
+            let known = self.left.iter().map(|left| match left {
+                Some(Left::Cut { height, edge }) => Some(value(*height, edge)),
+                _ => None,
+            });
+            Values::Scalars(known.collect())
+        };
+        let height = Field {
+            name: "left".to_string(),
+            unit: "um".to_string(),
+            meaning: format!(
+                "height of what the edges of `{}` leave over the surface, along its normal; plus is material",
+                self.by
+            ),
+            values: scalars(&|height, _| 1e3 * height),
+        };
+        let counts = self.counts.iter().enumerate().map(|(k, count)| Field {
+            name: format!("left_by_{count}"),
+            unit: "1".to_string(),
+            meaning: format!("`{count}` of the edge that leaves it"),
+            values: scalars(&|_, edge| edge[k + 2]),
+        });
+        std::iter::once(height).chain(counts).collect()
+    }
+}
+
+/// How many of the solved points there are, and of them where no edge passes, and where it is not certain which is the
+/// lowest.
+struct Tally {
+    asked: usize,
+    unreached: usize,
+    undecided: usize,
+}
+
+impl Cut {
+    fn tally(&self) -> Tally {
+        let count = |what: Left| self.left.iter().flatten().filter(|left| **left == what).count();
+        Tally {
+            asked: self.left.iter().flatten().count(),
+            unreached: count(Left::Unreached),
+            undecided: count(Left::Undecided),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let Tally { asked, unreached, undecided } = self.tally();
+        json!({ "by": self.by, "known": asked - unreached - undecided, "unreached": unreached, "undecided": undecided })
+    }
+}
+
+/// The same for a summary in JSON; `null` if the job does not ask for it.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    solved.cut.as_ref().map_or(Value::Null, Cut::json)
+}
+
+/// At how many points it is not known what is left, and why; empty if there are none.
+pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved {
+        let Some(cut) = &solved.cut else { continue };
+        let Tally { asked, unreached, undecided } = cut.tally();
+        let (missing, name) = (unreached + undecided, &solved.surface.name);
+        if missing == 0 {
+            continue;
+        }
+        let _ = writeln!(out, "not known what is left: {missing} of {asked} points of {name}");
+        if unreached > 0 {
+            let _ = writeln!(out, "  {unreached}: no edge of {} passes there within its ranges", cut.by);
+        }
+        if undecided > 0 {
+            let _ = writeln!(
+                out,
+                "  {undecided}: undecided, an edge that may be the lowest could not be followed, or too many would have to be tried"
+            );
+        }
+    }
+    out
+}
+
+/// A map of what is left on each surface that is cut, named by the surface.
+pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
+    let mut pictures = Vec::new();
+    for (patch, solved) in solved.iter().enumerate().filter(|(_, solved)| solved.cut.is_some()) {
+        let left = solved.fields.iter().position(|field| field.name == "left");
+        let shown: Vec<(usize, usize)> = left.map(|field| (patch, field)).into_iter().collect();
+        let title = format!("{}: what is left on {}", dataset.header.job, solved.surface.name);
+        let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
+        pictures.push((solved.surface.name.clone(), picture));
+    }
+    pictures
+}

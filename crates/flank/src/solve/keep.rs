@@ -1,0 +1,133 @@
+//! Which `keep` in a sample would select one of several branches.
+
+use flank_chain_dsl::{Bounded, Dimension};
+use flank_solver::SurfacePoint;
+use serde_json::{Value, json};
+
+use crate::project::units;
+
+/// Of values in messages.
+const DECIMALS: usize = 4;
+/// Branches are told apart by what differs by this share of its range at the least: the decimals can tell that.
+const APART: f64 = 1e-3;
+
+/// A condition that one branch meets and the others do not.
+pub(crate) struct Keep {
+    /// As it stands in a spec before the ends: `spindle`, `apart = spindle + tau`.
+    of: String,
+    dimension: Dimension,
+    low: f64,
+    high: f64,
+}
+
+/// Something that may tell branches apart: one unknown, or the sum or the difference of two.
+struct Function {
+    of: String,
+    dimension: Dimension,
+    weights: Vec<f64>,
+    /// What it may be in the ranges of the unknowns.
+    low: f64,
+    high: f64,
+}
+
+impl Keep {
+    /// `keep spindle: 0.0000 deg .. 180.0000 deg`
+    pub(crate) fn text(&self) -> String {
+        let value = |x: f64| units::text(self.dimension, x, DECIMALS);
+        format!("keep {}: {} .. {}", self.of, value(self.low), value(self.high))
+    }
+
+    pub(crate) fn json(&self) -> Value {
+        let [low, high] = [self.low, self.high].map(|x| units::shown(self.dimension, x));
+        json!({ "name": self.of, "unit": units::symbol(self.dimension), "low": low, "high": high })
+    }
+}
+
+impl Function {
+    fn at(&self, unknowns: &[f64]) -> f64 {
+        self.weights.iter().zip(unknowns).map(|(weight, x)| weight * x).sum()
+    }
+
+    /// Between which values it lies at some points.
+    fn span(&self, points: &[Vec<f64>]) -> (f64, f64) {
+        let values = points.iter().map(|point| self.at(point));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    }
+
+    /// The least gap between the spans of some branches, as a share of what it may be.
+    fn gap(&self, branches: &[Vec<Vec<f64>>]) -> f64 {
+        let mut spans: Vec<(f64, f64)> = branches.iter().map(|points| self.span(points)).collect();
+        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let least = spans.windows(2).map(|pair| pair[1].0 - pair[0].1).fold(f64::INFINITY, f64::min);
+        least / (self.high - self.low)
+    }
+
+    /// From halfway to the branch below to halfway to the one above.
+    fn around(&self, branches: &[Vec<Vec<f64>>], number: usize) -> Keep {
+        let (own_low, own_high) = self.span(&branches[number]);
+        let others = branches.iter().enumerate().filter(|(k, _)| *k != number).map(|(_, points)| self.span(points));
+        let below = others.clone().map(|span| span.1).filter(|x| *x < own_low).reduce(f64::max);
+        let above = others.map(|span| span.0).filter(|x| *x > own_high).reduce(f64::min);
+        let low = below.map_or(self.low, |x| 0.5 * (x + own_low));
+        let high = above.map_or(self.high, |x| 0.5 * (x + own_high));
+        Keep { of: self.of.clone(), dimension: self.dimension, low, high }
+    }
+}
+
+/// What may tell branches apart: unknowns, then sums and differences of two angles, as of a spindle and the thread that it turns.
+fn functions(unknowns: &[Bounded<'_>]) -> Vec<Function> {
+    let single = |k: usize| {
+        let of = &unknowns[k];
+        let weights = (0..unknowns.len()).map(|other| f64::from(u8::from(other == k))).collect();
+        Function { of: of.name.clone(), dimension: of.dimension, weights, low: of.low, high: of.high }
+    };
+    let both = |a: usize, b: usize, sign: f64| {
+        let (one, other) = (single(a), single(b));
+        let operator = if sign > 0.0 { "+" } else { "-" };
+        let ends = if sign > 0.0 { [other.low, other.high] } else { [-other.high, -other.low] };
+        Function {
+            of: format!("apart = {} {operator} {}", one.of, other.of),
+            dimension: one.dimension,
+            weights: one.weights.iter().zip(&other.weights).map(|(a, b)| a + sign * b).collect(),
+            low: one.low + ends[0],
+            high: one.high + ends[1],
+        }
+    };
+    let angles: Vec<usize> = (0..unknowns.len()).filter(|k| units::is_angle(unknowns[*k].dimension)).collect();
+    let pairs = angles.iter().flat_map(|a| angles.iter().filter(move |b| *b > a).map(move |b| (*a, *b)));
+    let pairs = pairs.flat_map(|(a, b)| [both(a, b, 1.0), both(a, b, -1.0)]);
+    (0..unknowns.len()).map(single).chain(pairs).collect()
+}
+
+/// What tells some branches apart, each known at some points: wholly if that can be, by the first point of each otherwise.
+fn chosen(unknowns: &[Bounded<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
+    let functions = functions(unknowns);
+    let firsts: Vec<Vec<Vec<f64>>> = branches.iter().map(|points| points[..1].to_vec()).collect();
+    let best = |branches: &[Vec<Vec<f64>>], functions: &[Function]| {
+        let gaps = functions.iter().map(|function| function.gap(branches)).enumerate();
+        gaps.filter(|(_, gap)| *gap > APART).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(k, _)| k)
+    };
+    let (single, of_two) = functions.split_at(unknowns.len());
+    let ways = [(branches, single), (branches, of_two), (&firsts, single)];
+    let found = ways.into_iter().find_map(|(points, among)| best(points, among).map(|k| (points, &among[k])));
+    found.map_or_else(Vec::new, |(points, function)| {
+        (0..branches.len()).map(|number| function.around(points, number)).collect()
+    })
+}
+
+/// For each of some branches; none if there are not several, or nothing tells them apart. `courses` are the unknowns of each at
+/// further points, as far as they are known.
+pub(crate) fn proposed(unknowns: &[Bounded<'_>], branches: &[SurfacePoint], courses: &[Vec<Vec<f64>>]) -> Vec<Keep> {
+    let points = |(number, branch): (usize, &SurfacePoint)| {
+        let followed = courses.get(number).into_iter().flatten().cloned();
+        std::iter::once(branch.unknowns.clone()).chain(followed).collect()
+    };
+    let branches: Vec<Vec<Vec<f64>>> = branches.iter().enumerate().map(points).collect();
+    if branches.len() > 1 { chosen(unknowns, &branches) } else { Vec::new() }
+}
+
+/// For a branch against the one that was followed, which is known at one point.
+pub(crate) fn against(unknowns: &[Bounded<'_>], own: &SurfacePoint, other: &SurfacePoint) -> Option<Keep> {
+    let branches = [own, other].map(|point| vec![point.unknowns.clone()]);
+    chosen(unknowns, &branches).pop()
+}

@@ -1,0 +1,150 @@
+//! `flank solve --limits`: the lines at which a surface, or the tool's contact with it, ends.
+
+use flank_chain_dsl::{GeneratedSurface, Job, Sample, spaced};
+use flank_export::{Axis, Patch};
+use flank_expr::Expr;
+use flank_solver::{Effort, SurfacePoint, SurfaceProblem};
+use rayon::prelude::*;
+
+use crate::project::requests::Means;
+use crate::solve;
+use crate::solve::reach;
+use crate::solve::reasons;
+use crate::solve::summary::Summary;
+
+/// A line on a surface.
+pub(crate) struct Line<'j, 'g> {
+    pub(crate) surface: &'j GeneratedSurface<'g>,
+    /// `flank.singular_line`, `flank.contact_limit`, `flank.trimmed_by_fillet`.
+    pub(crate) name: String,
+    pub(crate) kind: &'static str,
+    /// What changes along it.
+    pub(crate) along: String,
+    pub(crate) summary: Summary,
+    pub(crate) points: Vec<SurfacePoint>,
+    /// Lines of this kind that cross the place at which they were looked for; `points` are those of the longest.
+    pub(crate) several: usize,
+    /// No point of it was found within the ranges, but it is not excluded there either: the search was given up, or left a part of
+    /// them undecided.
+    pub(crate) is_open: bool,
+}
+
+/// What is not shown of the lines; empty if everything is.
+pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
+    let several = lines.iter().filter(|line| line.several > 1);
+    let told = |line: &&Line<'_, '_>| {
+        format!(
+            "note: {} has {} of its kind beside each other within the ranges; the longest is shown, narrower ranges show the others\n",
+            line.name, line.several
+        )
+    };
+    // of a line without any point within the ranges the table tells as much
+    let partly = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| {
+        let [_, outside] = line.found();
+        let by = reasons::outside(line.surface, &line.summary)?;
+        Some(format!("note: {} of {} points of {} are outside, {by}\n", outside, line.summary.asked, line.name))
+    });
+    let open: Vec<&str> = lines.iter().filter(|line| line.is_open).map(|line| line.name.as_str()).collect();
+    let open = match open[..] {
+        [] => String::new(),
+        _ => format!(
+            "note: not found within the ranges, and not excluded, since not all of them could be looked at: {}; narrower ranges tell \
+             more\n",
+            open.join(", ")
+        ),
+    };
+    several.map(told).chain(partly).chain([open]).collect()
+}
+
+/// Both lines of each surface that points are asked of; none of a surface without an equation of meshing. All threads look for them,
+/// each for one line.
+pub(crate) fn lines<'j, 'g: 'j>(
+    job: &Job<'g>,
+    surfaces: impl IntoIterator<Item = &'j GeneratedSurface<'g>>,
+    means: Means,
+) -> Vec<Line<'j, 'g>> {
+    let sought: Vec<Sought<'j, 'g>> = surfaces.into_iter().flat_map(sought).collect();
+    let Some(one) = sought.first() else { return Vec::new() };
+    let others = sought.iter().any(|other| other.surface.name != one.surface.name);
+    let _working =
+        means.begin(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
+    // along the coordinate that follows the line farther: it may run across the other one
+    let mut lines = look(job, &sought, 0, means);
+    let is_open = |line: &Line<'_, '_>| line.summary.solved() < line.points.len();
+    let open: Vec<usize> = (0..lines.len()).filter(|at| is_open(&lines[*at])).collect();
+    let again: Vec<Sought<'j, 'g>> = open.iter().map(|at| sought[*at]).collect();
+    for (at, second) in open.into_iter().zip(look(job, &again, 1, means)) {
+        if second.found() > lines[at].found() {
+            lines[at] = second;
+        }
+    }
+    lines
+}
+
+/// A line that is looked for: where a quantity is zero.
+#[derive(Clone, Copy)]
+struct Sought<'j, 'g> {
+    surface: &'j GeneratedSurface<'g>,
+    sample: &'j Sample<'g>,
+    kind: &'static str,
+    quantity: Expr<'g>,
+}
+
+fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
+    let Some(sample) = &surface.sample else { return Vec::new() };
+    let singular = surface.surface.clearance_minors().pop();
+    let kinds = [("singular line", singular), ("contact limit", surface.surface.contact_limit())];
+    let of = |(kind, quantity): (&'static str, Option<Expr<'g>>)| {
+        Some(Sought { surface, sample, kind, quantity: quantity? })
+    };
+    kinds.into_iter().filter_map(of).collect()
+}
+
+/// Lines at values of one of the coordinates of their surfaces' samples, in the order in which they are sought.
+fn look<'j, 'g>(job: &Job<'g>, sought: &[Sought<'j, 'g>], k: usize, means: Means) -> Vec<Line<'j, 'g>> {
+    let problems: Vec<(SurfaceProblem, Vec<[f64; 2]>)> =
+        sought.iter().map(|sought| (sought.problem(job, k, means), sought.targets(k))).collect();
+    let found: Vec<(Vec<SurfacePoint>, Effort)> =
+        problems.par_iter().map(|(problem, targets)| problem.solve(targets, [1, targets.len()])).collect();
+    sought.iter().zip(found).map(|(sought, found)| sought.line(k, found)).collect()
+}
+
+impl<'j, 'g> Sought<'j, 'g> {
+    fn targets(&self, k: usize) -> Vec<[f64; 2]> {
+        let ends = self.sample.each_target().map(|target| target[k]);
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let count = self.sample.counts.into_iter().max().unwrap_or(1).max(2);
+        spaced((low, high), count).into_iter().map(|value| [0.0, value]).collect()
+    }
+
+    fn problem(&self, job: &Job<'g>, k: usize, means: Means) -> SurfaceProblem {
+        let (surface, along) = (self.surface, &self.sample.coordinates[k]);
+        let ranges = solve::ranges(surface);
+        let problem = SurfaceProblem::line(&surface.surface, self.quantity, along.value, ranges, &job.bindings())
+            .expect("a job without errors leaves nothing unbound");
+        problem.reaching(reach::followed(surface)).on(means.instructions())
+    }
+
+    fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, Effort)) -> Line<'j, 'g> {
+        let surface = self.surface;
+        let name = format!("{}.{}", surface.name, self.kind.replace(' ', "_"));
+        let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
+        let is_open = summary.solved() == 0 && (effort.is_given_up || !effort.undecided.is_empty());
+        let along = self.sample.coordinates[k].name.clone();
+        Line { surface, name, kind: self.kind, along, summary, points, several: effort.branches.len(), is_open }
+    }
+}
+
+impl Line<'_, '_> {
+    /// How many points there are, and how many outside the ranges.
+    fn found(&self) -> [usize; 2] {
+        [self.summary.solved(), self.summary.outside.iter().map(|outside| outside.places.count).sum()]
+    }
+
+    /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
+    pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
+        let rows = Axis { label: self.kind.to_string(), count: 1 };
+        let columns = Axis { label: self.along.clone(), count: self.points.len() };
+        (self.summary.solved() > 0).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
+    }
+}

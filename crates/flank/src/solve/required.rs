@@ -1,0 +1,82 @@
+//! What samples require of their points.
+
+use flank_chain_dsl::Limit;
+use flank_expr::{ScalarEvaluator, Tape};
+use flank_solver::Outcome;
+use serde_json::{Value, json};
+
+use crate::project::units;
+use crate::solve::reasons;
+use crate::solve::summary::Places;
+use crate::solve::table::Solved;
+
+/// The solved points of a surface at which a requirement of its sample does not hold.
+pub(crate) struct Broken<'j, 'g> {
+    limit: &'j Limit<'g>,
+    places: Places,
+    /// The smallest and the largest value at them.
+    ends: [f64; 2],
+}
+
+/// One entry for each requirement that does not hold everywhere.
+fn broken<'j, 'g>(solved: &Solved<'j, 'g>) -> Vec<Broken<'j, 'g>> {
+    solved.sample.limits.iter().filter_map(|limit| broken_by(solved, limit)).collect()
+}
+
+fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j Limit<'g>) -> Option<Broken<'j, 'g>> {
+    let value = limit.of.value;
+    let value = value.graph().substitute(&[value], &solved.bindings);
+    let tape =
+        Tape::new(&value, &solved.surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
+    let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
+    let (low, high) = limit.ends;
+    let mut found =
+        Broken { limit, places: Places::new(solved.sample.counts), ends: [f64::INFINITY, f64::NEG_INFINITY] };
+    for (at, point) in solved.points.iter().enumerate().filter(|(_, point)| point.outcome == Outcome::Solved) {
+        evaluator.run(&point.unknowns, &mut out);
+        // written so that what is no number does not hold either
+        if !(low <= out[0] && out[0] <= high) {
+            found.places.add(at);
+            found.ends = [found.ends[0].min(out[0]), found.ends[1].max(out[0])];
+        }
+    }
+    (found.places.count > 0).then_some(found)
+}
+
+/// The messages of all that does not hold; empty if everything does.
+pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
+    let of_surface = |solved: &Solved<'_, '_>| {
+        let line = |broken: &Broken<'_, '_>| {
+            let of = &broken.limit.of;
+            let (low, high) = broken.limit.ends;
+            let [low, high, least, most] =
+                [low, high, broken.ends[0], broken.ends[1]].map(|x| units::digits(of.dimension, x, 4));
+            let unit = units::symbol(of.dimension);
+            format!(
+                "not as required: {} of {} points of {}: {}\n  {}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
+                broken.places.count,
+                solved.points.len(),
+                solved.surface.name,
+                broken.limit.message,
+                of.name,
+                reasons::whereabouts(solved, &broken.places),
+            )
+            .trim_end()
+            .to_string()
+                + "\n"
+        };
+        broken(solved).iter().map(line).collect::<String>()
+    };
+    all.iter().map(of_surface).collect()
+}
+
+/// The same as data.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    let entry = |broken: Broken<'_, '_>| {
+        let of = &broken.limit.of;
+        let [least, most] = broken.ends.map(|x| units::digits(of.dimension, x, 4));
+        json!({ "message": broken.limit.message, "name": of.name, "unit": units::symbol(of.dimension),
+            "points": broken.places.count, "low": least, "high": most })
+    };
+    broken(solved).into_iter().map(entry).collect()
+}

@@ -1,0 +1,267 @@
+//! `flank solve --sensitivity`: how far each parameter moves the surfaces.
+
+use std::f64::consts::PI;
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
+use flank_draw::{Picture, PictureOptions, field_maps};
+use flank_export::{Dataset, Field, Known, Values};
+use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use crate::project::units;
+use crate::solve::table::{Solved, aligned};
+
+/// Points that threads share out at once: of no more all influences are held.
+const TOGETHER: usize = 4096;
+
+/// Maps on one picture.
+pub(crate) const MAPS: usize = 6;
+
+/// What the numbers are, for pictures.
+pub(crate) const NOTE: &str = "Normal displacement of the surface per unit of a parameter, exact derivative; plus is more \
+    material. Parameters whose definition contains it follow; to first order it does not matter whether the points that are \
+    asked for move with it.";
+
+/// How the points of a surface move with each parameter of the job that is no count.
+pub(crate) struct Sensitivity {
+    influences: Vec<Influence>,
+    counts: Vec<String>,
+    /// Points at which all influences are known.
+    points: usize,
+}
+
+struct Influence {
+    parameter: String,
+    /// The change that values are told for: mm, radians or 1.
+    step: f64,
+    unit: String,
+    dimension: Dimension,
+    /// The change that parameters are ranked by, in the same unit.
+    usual_change: f64,
+    values: Known<f64>,
+    /// Root of the mean square, and the largest, over all points with a value.
+    rms: f64,
+    largest: f64,
+}
+
+pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
+    let changing =
+        |p: &Parameter<'g>| flank_solver::Parameter { variable: p.variable, definition: p.definition, value: p.value };
+    let parameters: Vec<_> = job.parameters.iter().map(changing).collect();
+    let exact =
+        NormalSensitivity::new(&surface.surface, &parameters).expect("a job without errors leaves nothing unbound");
+    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| exact.at(&point.unknowns)).flatten();
+    let (counts, continuous): (Vec<_>, Vec<_>) =
+        job.parameters.iter().enumerate().partition(|(_, parameter)| parameter.is_count);
+    // one number of each parameter and point is all that is kept of a point
+    let mut moved: Vec<Known<f64>> = continuous.iter().map(|_| Known::with_capacity(points.len())).collect();
+    let mut known = 0;
+    for points in points.chunks(TOGETHER) {
+        let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
+        for of_all in found {
+            known += usize::from(of_all.is_some());
+            for ((k, _), values) in continuous.iter().zip(&mut moved) {
+                values.push(of_all.as_ref().map(|of_all| of_all[*k]));
+            }
+        }
+    }
+    let influences = continuous.iter().zip(moved);
+    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, &moved)).collect();
+    let counts = counts.into_iter().map(|(_, parameter)| parameter.name.clone()).collect();
+    Sensitivity { influences, counts, points: known }
+}
+
+impl Influence {
+    fn new(parameter: &Parameter<'_>, moved: &Known<f64>) -> Influence {
+        let (size, step) = small_step(parameter.dimension);
+        let values: Known<f64> = moved.iter().map(|mm| Some(1e3 * size * mm?)).collect();
+        let known = || values.iter().flatten();
+        let squares: f64 = known().map(|um| um * um).sum();
+        Influence {
+            parameter: parameter.name.clone(),
+            step: size,
+            unit: format!("um/{step}"),
+            dimension: parameter.dimension,
+            usual_change: usual_change(parameter),
+            rms: (squares / known().count().max(1) as f64).sqrt(),
+            largest: known().fold(0.0, |largest: f64, um| largest.max(um.abs())),
+            values,
+        }
+    }
+
+    fn field(&self) -> Field {
+        Field {
+            name: format!("d_normal/d_{}", self.parameter),
+            unit: self.unit.clone(),
+            meaning: format!(
+                "normal displacement of the surface for a change of `{}`; plus is more material",
+                self.parameter
+            ),
+            values: Values::Scalars(self.values.clone()),
+        }
+    }
+
+    fn moves(&self) -> bool {
+        self.largest > 0.0
+    }
+
+    /// A number that is told for the step, for the usual change instead: um.
+    fn by_usual_change(&self, um: f64) -> f64 {
+        um * self.usual_change / self.step
+    }
+
+    /// The usual change and its unit, to three digits.
+    fn shown_usual_change(&self) -> (f64, String) {
+        let (size, unit) = match self.dimension {
+            Dimension::LENGTH => (self.usual_change, "mm".to_string()),
+            Dimension::ANGLE => (self.usual_change / ARCMIN, "arcmin".to_string()),
+            Dimension::NUMBER => (self.usual_change, String::new()),
+            other => (self.usual_change, units::inside(other)),
+        };
+        (format!("{size:.2e}").parse().unwrap_or(size), unit)
+    }
+
+    fn usual_change_text(&self) -> String {
+        let (size, unit) = self.shown_usual_change();
+        format!("{size} {unit}").trim_end().to_string()
+    }
+
+    fn json(&self) -> Value {
+        let (size, unit) = self.shown_usual_change();
+        let [rms, largest] = [self.rms, self.largest].map(|um| self.by_usual_change(um));
+        json!({
+            "name": self.parameter, "unit": self.unit, "rms": self.rms, "largest": self.largest,
+            "usual_change": { "size": size, "unit": unit, "rms_um": rms, "largest_um": largest },
+        })
+    }
+}
+
+const ARCMIN: f64 = PI / 10_800.0;
+
+/// The change of a parameter that is usual when a machine is set, so that parameters of all dimensions can be ranked: 0.01 mm of a length
+/// and one arcminute of an angle; of all others a thousandth of the value, where that is zero of the width of the range, and where
+/// there is none of one, in mm and radians.
+fn usual_change(parameter: &Parameter<'_>) -> f64 {
+    const SHARE: f64 = 1e-3;
+    match parameter.dimension {
+        Dimension::LENGTH => 0.01,
+        Dimension::ANGLE => ARCMIN,
+        _ if parameter.value != 0.0 => SHARE * parameter.value.abs(),
+        _ => SHARE * parameter.range.map_or(1.0, |(low, high)| high - low),
+    }
+}
+
+/// The change of a parameter that displacements are told for: its size in mm and radians, and how it is written.
+fn small_step(dimension: Dimension) -> (f64, String) {
+    match dimension {
+        Dimension::LENGTH => (1.0, "mm".to_string()),
+        Dimension::ANGLE => (ARCMIN, "arcmin".to_string()),
+        Dimension::NUMBER => (1e-3, "0.001".to_string()),
+        other => (1.0, format!("({})", crate::project::units::inside(other))),
+    }
+}
+
+impl Sensitivity {
+    /// A field for each parameter, in the order of the job.
+    pub(crate) fn fields(&self) -> impl Iterator<Item = Field> {
+        self.influences.iter().map(Influence::field)
+    }
+
+    /// The parameters that move the surface, the one whose usual change does most first, each by its place in the job.
+    fn ranked(&self) -> Vec<(usize, &Influence)> {
+        let mut ranked: Vec<(usize, &Influence)> =
+            self.influences.iter().enumerate().filter(|(_, one)| one.moves()).collect();
+        ranked.sort_by(|(_, a), (_, b)| b.by_usual_change(b.rms).total_cmp(&a.by_usual_change(a.rms)));
+        ranked
+    }
+
+    /// Of each of them: its name, root of the mean square and largest normal displacement, the unit of these; its usual change, and
+    /// how far that moves the surface, in um: root of the mean square, and largest.
+    pub(crate) fn rows(&self) -> Vec<[String; 7]> {
+        let row = |one: &Influence| {
+            let [rms, largest] = [one.rms, one.largest].map(micrometres);
+            let [by_rms, by_largest] = [one.rms, one.largest].map(|um| micrometres(one.by_usual_change(um)));
+            [one.parameter.clone(), rms, largest, one.unit.clone(), one.usual_change_text(), by_rms, by_largest]
+        };
+        self.ranked().into_iter().map(|(_, one)| row(one)).collect()
+    }
+
+    /// The largest normal displacement by a parameter, mm per mm, radian or 1 of it; `None` for counts.
+    pub(crate) fn most(&self, parameter: &str) -> Option<f64> {
+        let of = self.influences.iter().find(|one| one.parameter == parameter)?;
+        Some(1e-3 * of.largest / of.step)
+    }
+
+    /// The names of all parameters, in the order of [`Sensitivity::fields`].
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = &str> {
+        self.influences.iter().map(|one| one.parameter.as_str())
+    }
+
+    /// The places, in that order, of those that move the surface most.
+    pub(crate) fn most_moving(&self, count: usize) -> Vec<usize> {
+        self.ranked().into_iter().take(count).map(|(k, _)| k).collect()
+    }
+
+    /// The parameters that move no point; of none can be said so where no point is known.
+    fn idle(&self) -> Vec<&str> {
+        self.influences.iter().filter(|one| self.points > 0 && !one.moves()).map(|one| one.parameter.as_str()).collect()
+    }
+
+    fn json(&self) -> Value {
+        let ranked: Vec<Value> = self.ranked().iter().map(|(_, one)| one.json()).collect();
+        let (points, idle) = (self.points, self.idle());
+        json!({ "points": points, "parameters": ranked, "no_influence": idle, "counts": self.counts })
+    }
+}
+
+/// Tables of all surfaces, ranked; empty if nobody has asked for them.
+pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for solved in solved {
+        let Some(sensitivity) = &solved.sensitivity else { continue };
+        let name = &solved.surface.name;
+        if sensitivity.points == 0 {
+            out += &format!("\n{name}: no point is solved, so it cannot be said what moves it\n");
+            continue;
+        }
+        let head = ["parameter", "rms", "largest", "normal displacement in", "usual change", "rms um", "largest um"];
+        let mut rows = vec![head.map(String::from)];
+        rows.extend(sensitivity.rows());
+        out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>><<>>"));
+        let idle = sensitivity.idle();
+        if !idle.is_empty() {
+            let of = sensitivity.influences.len();
+            out += &format!("  no influence, {} of {of}: {}\n", idle.len(), idle.join(", "));
+        }
+        if !sensitivity.counts.is_empty() {
+            out += &format!("  counts, which do not change by little: {}\n", sensitivity.counts.join(", "));
+        }
+    }
+    out
+}
+
+/// Four digits behind the point, fewer where there would be only zeros.
+fn micrometres(um: f64) -> String {
+    if um < 1e-3 { format!("{um:.1e}") } else { format!("{um:.4}") }
+}
+
+/// The same for a summary in JSON; `null` if nobody has asked for it.
+pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+    solved.sensitivity.as_ref().map_or(Value::Null, Sensitivity::json)
+}
+
+/// A picture of each surface: maps of the parameters that move it most. Named by the surface.
+pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
+    let mut pictures = Vec::new();
+    // the surfaces come first among the patches
+    for (patch, solved) in solved.iter().enumerate() {
+        let Some(sensitivity) = &solved.sensitivity else { continue };
+        let most = sensitivity.most_moving(MAPS).into_iter();
+        let shown: Vec<(usize, usize)> = most.map(|k| (patch, solved.fields.len() + k)).collect();
+        let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);
+        let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
+        pictures.push((solved.surface.name.clone(), picture));
+    }
+    pictures
+}

@@ -1,0 +1,81 @@
+//! How far axes go while the surfaces are made, and which leave their travel.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use flank_chain_dsl::{Axis, Job};
+use flank_expr::{Expr, VariableId};
+use flank_solver::{Range, extent};
+
+use crate::project::units;
+use crate::solve::table::Solved;
+
+/// An axis is beyond its travel if it is so by more than this share of it: laws of some hundred operations on numbers of the size of the
+/// travel round by far less, and no scale of a machine shows it.
+const SLACK: f64 = 1e-9;
+
+/// How far an axis goes over the motions that the solved points need.
+pub(crate) struct Run<'j, 'g> {
+    pub(crate) axis: &'j Axis<'g>,
+    machine: &'j str,
+    /// mm or radians; `None` if no solved point has its motion.
+    pub(crate) over: Option<Range>,
+}
+
+/// All axes of a job, in the order of its machines.
+pub(crate) fn runs<'j, 'g>(job: &'j Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<Run<'j, 'g>> {
+    let over = reached(job, solved);
+    let bindings = job.bindings();
+    let axes = job.machines.iter().flat_map(|machine| machine.axes.iter().map(|axis| (machine.name.as_str(), axis)));
+    axes.map(|(machine, axis)| Run { axis, machine, over: extent(axis.law, &over, &bindings).ok().flatten() }).collect()
+}
+
+impl<'j> Run<'j, '_> {
+    /// As the job calls it: `m.X`.
+    pub(crate) fn name(&self) -> String {
+        format!("{}.{}", self.machine, self.axis.name)
+    }
+
+    /// The machine that it is an axis of.
+    pub(crate) fn machine(&self) -> &'j str {
+        self.machine
+    }
+
+    /// Whether it leaves its travel; `None` if it has none, or no place that could be told.
+    pub(crate) fn is_beyond(&self) -> Option<bool> {
+        let (found, (low, high)) = self.over.zip(self.axis.travel)?;
+        let slack = SLACK * (high - low);
+        Some(found.low < low - slack || found.high > high + slack)
+    }
+}
+
+/// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
+pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
+    let mut out = String::new();
+    for run in runs(job, solved).iter().filter(|run| run.is_beyond() == Some(true)) {
+        let (Some(found), Some((low, high))) = (run.over, run.axis.travel) else { continue };
+        let unit = units::symbol(run.axis.dimension);
+        let [from, to, low, high] =
+            [found.low, found.high, low, high].map(|value| units::digits(run.axis.dimension, value, 4));
+        let _ = writeln!(
+            out,
+            "beyond its travel: axis {} runs from {from} to {to} {unit}, its travel is {low} to {high} {unit}",
+            run.name()
+        );
+    }
+    out
+}
+
+/// The motions with the ranges that the solved points of all surfaces need.
+pub(crate) fn reached<'g>(job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<(Expr<'g>, Range)> {
+    let mut ends: HashMap<Option<VariableId>, Range> = HashMap::new();
+    for surface in solved {
+        for (k, unknown) in surface.surface.unknowns.iter().enumerate() {
+            let Some((low, high)) = surface.summary.unknowns[k].0 else { continue };
+            let range = ends.entry(unknown.variable.as_variable()).or_insert(Range { low, high });
+            *range = Range { low: range.low.min(low), high: range.high.max(high) };
+        }
+    }
+    let range = |variable: Expr<'g>| ends.get(&variable.as_variable()).map(|range| (variable, *range));
+    job.motions.iter().filter_map(|motion| range(motion.variable)).collect()
+}

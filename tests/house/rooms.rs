@@ -1,0 +1,78 @@
+//! What the crates must not contain, as ARCHITECTURE.md states it.
+
+use std::path::{Path, PathBuf};
+
+use flank_tests::repository;
+
+/// All that the library `flank` stands on, and itself.
+const BELOW: [&str; 6] = ["expr", "chain-dsl", "solver", "export", "draw", "flank"];
+
+/// Lines of the command line at the most.
+const MOST_LINES: usize = 4000;
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder of sources");
+    let inner = entries.map(|entry| entry.expect("an entry").path()).flat_map(|path| {
+        if path.is_dir() {
+            sources(&path)
+        } else {
+            let is_rust = path.extension().is_some_and(|extension| extension == "rs");
+            Vec::from_iter(is_rust.then_some(path))
+        }
+    });
+    let mut all: Vec<PathBuf> = inner.collect();
+    all.sort();
+    all
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).expect("UTF-8")
+}
+
+/// A source without its comments.
+fn code(path: &Path) -> String {
+    let text = text(path);
+    let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn libraries_know_no_terminal() {
+    for folder in BELOW {
+        let manifest = text(&repository(&format!("crates/{folder}/Cargo.toml")));
+        assert!(!manifest.contains("clap"), "{folder} depends on the argument parser");
+        for path in sources(&repository(&format!("crates/{folder}/src"))) {
+            let code = code(&path);
+            for word in ["println!", "eprintln!", "std::process::exit", "clap::"] {
+                assert!(!code.contains(word), "{}: {word}", path.display());
+            }
+        }
+    }
+}
+
+/// An error is a type with its reasons. Functions of a crate's own may still hand words to each other.
+#[test]
+fn no_public_function_returns_words_as_an_error() {
+    for folder in BELOW {
+        for path in sources(&repository(&format!("crates/{folder}/src"))) {
+            let code = code(&path);
+            for signature in code.split("pub fn ").skip(1) {
+                let signature = signature.split(['{', ';']).next().unwrap_or_default();
+                let result = signature.rsplit("-> ").next().unwrap_or_default();
+                let is_of_words = result.starts_with("Result<") && result.contains(", String>");
+                assert!(!is_of_words, "{}: {signature}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_command_line_is_thin() {
+    let manifest = text(&repository("crates/cli/Cargo.toml"));
+    let dependencies = manifest.split("[dev-dependencies]").next().expect("a part at least");
+    for package in ["flank-expr", "flank-solver", "flank-chain-dsl", "flank-draw"] {
+        assert!(!dependencies.contains(package), "the command line depends on {package}");
+    }
+    let lines: usize = sources(&repository("crates/cli/src")).iter().map(|path| text(path).lines().count()).sum();
+    assert!(lines <= MOST_LINES, "{lines} lines");
+}
