@@ -1,7 +1,9 @@
 //! Tooth surfaces of any machine: the library that the command line `flank` stands on.
 //!
-//! A [`Project`] is a spec with the files that it uses; each operation takes one, or a request of its own, and returns a typed result that
-//! serialises to the document which `flank … --json` prints. What is wrong with a spec comes as [`Findings`], data with a code and a place.
+//! A [`Project`] is a spec with the files that it uses. What works on the text alone takes one: [`check`], [`lay_out`]. What works on jobs
+//! takes a request of its own and a [`Monitor`], which hears how far it is, and gives an [`Answer`] for each job: [`solve`],
+//! [`deviation`], [`measure`], [`convert`], [`derive`], [`plot`], [`view`], [`report`]. What is wrong with a spec comes as [`Findings`],
+//! data with a code and a place.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -14,6 +16,20 @@
 //! assert!(!checked.ok);
 //! let first = &checked.findings.list()[0];
 //! assert_eq!((first.code, first.place.line, first.place.column), ("E0201", 1, 72));
+//! ```
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//!
+//! use flank::{Disk, JobSelection, Project, SolveRequest, Unwatched, solve};
+//!
+//! let spec = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
+//! let request = SolveRequest { no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
+//! solve(&request, &Unwatched, &mut |answer| {
+//!     let surfaces = answer.document["surfaces"].as_array().map_or(0, Vec::len);
+//!     println!("{surfaces} surfaces, complete: {}", answer.is_complete());
+//! })?;
+//! # Ok::<(), flank::Failure>(())
 //! ```
 
 mod compare;

@@ -160,18 +160,18 @@ impl<'c> Slopes<'c> {
         let along = along / size;
         let apart = rows().map(|[a, b]| (b - along * (a / size)).powi(2)).sum::<f64>().sqrt();
         // what each of two perpendicular units along them moves the point, and the whole of all ranges
-        let (mut moved, mut scale) = ([[0.0; 3]; 2], 0.0);
+        let (mut along_first, mut along_second, mut scale) = ([0.0; 3], [0.0; 3], 0.0);
         for ((k, [a, b]), range) in rows().enumerate().zip(ranges.iter()) {
             let a = a / size;
             let b = (b - along * a) / apart;
-            for i in 0..3 {
+            for (i, (first, second)) in along_first.iter_mut().zip(&mut along_second).enumerate() {
                 let slope = evaluator.output(n * n + 3 * k + i)[lane] * range.width();
-                moved[0][i] += slope * a;
-                moved[1][i] += slope * b;
+                *first += slope * a;
+                *second += slope * b;
                 scale += slope * slope;
             }
         }
-        let [a, b] = moved;
+        let (a, b) = (along_first, along_second);
         let area = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         // what is not a number stays to the other verdicts
         length(area) <= COLLAPSED * scale.sqrt() * length(a).max(length(b))

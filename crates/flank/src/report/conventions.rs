@@ -43,7 +43,7 @@ pub(super) fn sentences(findings: &Findings<'_, '_>) -> Vec<String> {
 /// The command that makes this page again, without where to.
 pub(super) fn command(findings: &Findings<'_, '_>) -> String {
     let which = &findings.request.jobs;
-    let mut words = vec!["flank".to_string(), "report".to_string(), shown_path(&which.file())];
+    let mut words = vec!["flank".to_string(), "report".to_string(), shown_path(which.file())];
     words.extend(["--job".to_string(), findings.job.name.clone()]);
     for (name, value) in which.set_in(&[findings.job]) {
         words.extend(["--set".to_string(), format!("{name}={value}")]);

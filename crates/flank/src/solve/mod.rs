@@ -332,7 +332,7 @@ pub(crate) fn header(jobs: &[&Job<'_>], which: &JobSelection, origin: &Origin) -
     let settings = which.set_in(jobs).into_iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Header {
         program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
-        spec: shown_path(&which.file()),
+        spec: shown_path(which.file()),
         spec_hash: format!("sha256:{}", origin.hash),
         job: jobs.first().map_or(String::new(), |job| job.name.clone()),
         conventions: settings.collect(),
