@@ -2,7 +2,7 @@
 //!
 //! A [`Project`] is a spec with the files that it uses. What works on the text alone takes one: [`check`], [`lay_out`]. What works on jobs
 //! takes a request of its own and a [`Monitor`], which hears how far it is, and gives an [`Answer`] for each job: [`solve`],
-//! [`deviation`], [`measure`], [`convert`], [`derive`], [`plot`], [`view`], [`report`]. What is wrong with a spec comes as [`Findings`],
+//! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. What is wrong with a spec comes as [`Findings`],
 //! data with a code and a place.
 //!
 //! ```
