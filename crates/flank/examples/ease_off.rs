@@ -1,0 +1,28 @@
+//! One flank held against another: ease-off with slopes, crownings and bias.
+
+use std::sync::Arc;
+
+use flank::{
+    DeviationRequest, Disk, EvaluatorOptions, Failure, JobSelection, PointFormat, Project, Unwatched, deviation,
+};
+
+fn main() -> Result<(), Failure> {
+    let request = DeviationRequest {
+        jobs: JobSelection::all(Project::open("specs/bevel/ease_off_19x62.chain", Arc::new(Disk))),
+        surface: "pinion.concave".to_string(),
+        from: Some("conjugate.concave".to_string()),
+        measured: None,
+        rows: None,
+        columns: None,
+        margin: None,
+        as_it_lies: false,
+        out: "build".into(),
+        format: vec![PointFormat::Csv],
+        no_picture: true,
+        evaluator: EvaluatorOptions::default(),
+    };
+    let answer = deviation(&request, &Unwatched)?;
+    print!("{}", answer.text);
+    println!("bias {} um", answer.document["bias_um"]);
+    Ok(())
+}

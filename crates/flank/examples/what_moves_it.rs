@@ -1,0 +1,18 @@
+//! The machine settings that move a flank most, by what a usual change of each does.
+
+use std::sync::Arc;
+
+use flank::{Disk, Failure, JobSelection, Project, SolveRequest, Unwatched, solve};
+
+fn main() -> Result<(), Failure> {
+    let spec = Project::open("specs/bevel/pinion_19x62.chain", Arc::new(Disk));
+    let request = SolveRequest { sensitivity: true, no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
+    solve(&request, &Unwatched, &mut |answer| {
+        let surface = &answer.document["surfaces"][0];
+        println!("{} moves by", surface["name"]);
+        for setting in surface["sensitivity"]["parameters"].as_array().into_iter().flatten().take(5) {
+            let change = &setting["usual_change"];
+            println!("  {} um for {} {} of {}", change["rms_um"], change["size"], change["unit"], setting["name"]);
+        }
+    })
+}
