@@ -75,3 +75,26 @@ pub use project::requests::{
 pub use project::{Project, shown_path};
 pub use report::report;
 pub use solve::solve;
+
+/// What is asked and what is answered goes from thread to thread.
+const _: () = {
+    const fn is_shared<T: Send + Sync + 'static>() {}
+    is_shared::<Project>();
+    is_shared::<JobSelection>();
+    is_shared::<SolveRequest>();
+    is_shared::<PlotRequest>();
+    is_shared::<ReportRequest>();
+    is_shared::<ViewRequest>();
+    is_shared::<DeviationRequest>();
+    is_shared::<MeasureRequest>();
+    is_shared::<ConvertRequest>();
+    is_shared::<DeriveRequest>();
+    is_shared::<Answer>();
+    is_shared::<Checked>();
+    is_shared::<Findings>();
+    is_shared::<Layout>();
+    is_shared::<Imported>();
+    is_shared::<TemplateList>();
+    is_shared::<JobFromTemplate>();
+    is_shared::<Failure>();
+};
