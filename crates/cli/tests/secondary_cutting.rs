@@ -160,6 +160,24 @@ fn a_pin_cuts_what_it_has_made() {
     assert!(told[0] > 100 && told[1] > 100, "{told:?}");
 }
 
+/// What lies between two lines of a grid may be cut away where the points on both lines stay: here one row of eleven, with as many on
+/// either side of it.
+#[test]
+fn a_row_between_rows_that_stay_is_cut() {
+    let cycloid =
+        Cycloid { pins: 13, eccentricity: 3.5606, circle_radius: 38.349, pin_radius: 7.6315, crank: [-146.75, 212.53] };
+    let at = folder("secondary_row");
+    let sample = "crank: -144.53 deg .. 142.17 deg by 11, v: 1.8 mm .. 11.2 mm by 11";
+    let spec = written(&at, "cycloid.chain", &cycloid.spec(sample));
+    // where the pin lies deepest over that row, by trying its positions
+    let there = Cycloid { crank: [154.0, 154.6], ..cycloid };
+    let is_of_row = |row: &&Row| (1.80..1.82).contains(&there.depth(row.position));
+    let rows = solved("secondary_row_points", &spec, "cycloid_disc", &[]);
+    let row: Vec<&Row> = rows.iter().filter(is_of_row).collect();
+    assert_eq!(row.len(), 11);
+    assert!(row.iter().all(|row| row.status == "cut away" && row.reason.contains("in another position")));
+}
+
 /// The tooth of a rack: flanks, roundings and the land of the tip. x is the height over the datum line, away from the work.
 struct Rack {
     module: f64,

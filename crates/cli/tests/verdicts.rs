@@ -212,3 +212,43 @@ fn coordinates_that_follow_from_each_other_are_told() {
         assert_eq!(told.contains(&words), !fine, "{told}");
     }
 }
+
+/// The branch that a grid follows leaves the ranges at some of its points; another one has a point within them there. It is told with
+/// what selects it, in words and in the document.
+#[test]
+fn another_branch_within_the_ranges_is_told() {
+    let spec = "machine shaper {
+    axis W : rotary
+    axis T : rotary
+    frame bed
+    frame work in bed = rotate_z(W)
+    frame holder in bed = translate(99.5719 mm, 0 mm, 7.843 mm) rotate_x(-1.569414271179295 rad) rotate_z(T)
+}
+tool thread {
+    surface face(u: length in 46.8305 mm .. 54.2733 mm, v: angle in 0.6566 rad .. 5.6266 rad) {
+        at = [u * cos(v), u * sin(v), 2.0425 mm/rad * v - 3.208351497478576 mm + (u - 50.5519 mm) * tan(0.356 rad)]
+        body towards [0, 0, 1]
+    }
+}
+job wheel {
+    machine m = shaper
+    tool t = thread
+    mount t on m.holder
+    motion phi : angle in -2.78 rad .. 4.016 rad
+    drive m.W = -phi / 24
+    drive m.T = phi
+    surface f in m.work = envelope(t.face, over: phi)
+    sample f { u: 51.334 mm .. 54.6832 mm by 3, z: -13.763 mm .. -9.263 mm by 3 }
+}
+";
+    let (told, surface) = solved(&folder("verdicts_beyond"), spec, 0);
+    assert!(told.contains("the ranges of f hold another branch that is not among its points"), "{told}");
+    let elsewhere = surface["branches"]["elsewhere"].as_array().expect("a list");
+    let [other] = &elsewhere[..] else { panic!("{elsewhere:?}") };
+    let keep = &other["keep"];
+    let of = other["unknowns"].as_array().expect("a list").iter().find(|unknown| unknown["name"] == keep["name"]);
+    let value = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let [low, at, high] = [&keep["low"], &of.expect("keep names an unknown")["value"], &keep["high"]].map(value);
+    assert!(low < at && at < high, "{other}");
+    assert!(told.contains(&format!("keep {}: ", keep["name"].as_str().expect("a name"))), "{told}");
+}

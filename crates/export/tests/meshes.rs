@@ -205,3 +205,16 @@ fn the_same_dataset_gives_the_same_bytes() {
         assert_eq!(bytes(write, &dataset), bytes(write, &dataset));
     }
 }
+
+/// A backslash at the end of a line would join the next one to it.
+#[test]
+fn no_line_of_an_obj_file_goes_on() {
+    let mut dataset = dataset("job\\", vec![plane([3, 3], [30.0, 0.0, 0.0], 5.0)]);
+    dataset.header.conventions = vec!["a sentence \\".to_owned()];
+    let patch = &mut dataset.patches[0];
+    (patch.name, patch.frame) = ("flank\\".to_owned(), "m.work\\\\".to_owned());
+    let written = bytes(OBJ, &dataset);
+    let text = std::str::from_utf8(&written).expect("text");
+    assert!(text.lines().all(|line| !line.ends_with('\\')), "{text}");
+    assert_eq!(from_obj(&written)[0].points.len(), 9);
+}

@@ -31,13 +31,14 @@ pub(crate) fn jobs<'g>(
 /// # Errors
 /// All findings, if one is an error.
 pub(crate) fn sound<'g>(compilation: Compilation<'g>, monitor: &dyn Monitor) -> Result<Compilation<'g>, Failure> {
+    if compilation.diagnostics.is_empty() {
+        return Ok(compilation);
+    }
     let findings = Findings::new(&compilation.diagnostics, &compilation.sources);
     if compilation.has_errors() {
         return Err(Failure::Findings(findings));
     }
-    if !findings.is_empty() {
-        monitor.warn(&findings);
-    }
+    monitor.warn(&findings);
     Ok(compilation)
 }
 

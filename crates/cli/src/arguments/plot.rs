@@ -1,0 +1,93 @@
+//! The arguments of `flank plot`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Means, Which, folder};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Without --what: the first three that fit of deviation, left, surface, section, contact-lines, machine, curvature.
+
+Maps show the first surface that is sampled, or those of --surface.
+
+Examples:
+  flank plot specs/hobbing/helical_gear.chain
+  flank plot specs/bevel/pinion_19x62.chain --what section,machine,motion --surface convex
+  flank plot specs/hobbing/spur_gear.chain --what contact-lines --surface flank_plus,flank_minus --format svg
+  flank plot specs/bevel/pinion_19x62.chain --what sensitivity --of m.radial_distance,c.blade_angle
+  flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --from conjugate.concave")]
+pub(crate) struct Plot {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    /// What is drawn, several with commas
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) what: Vec<What>,
+    /// The surfaces that pictures show, several with commas; otherwise maps show the first that is sampled
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) surface: Vec<String>,
+    /// The surface that the one of --surface is held against: for deviation and topography
+    #[arg(long, value_name = "SURFACE", requires = "surface")]
+    pub(crate) from: Option<String>,
+    /// The parameters or settings whose influence `sensitivity` shows; those that do most otherwise
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) of: Vec<String>,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
+    pub(crate) out: PathBuf,
+    /// png, svg, or both with a comma
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "png,svg")]
+    pub(crate) format: Vec<PictureFormat>,
+    /// Pixels across and down; lines and letters grow with them
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", value_parser = pixels)]
+    pub(crate) size: (u32, u32),
+    /// Leave out the line with spec, hash and program, and residuals, as a paper wants it
+    #[arg(long)]
+    pub(crate) no_origin: bool,
+    /// Print what the files show as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) means: Means,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PictureFormat {
+    Png,
+    Svg,
+}
+
+/// A kind of picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum What {
+    /// All surfaces in space, with axis, frame and dimensions
+    Surface,
+    /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the plane that fits best
+    Topography,
+    /// Maps of the principal curvatures, their product and their mean
+    Curvature,
+    /// Maps of how far parameters and settings move the surface
+    Sensitivity,
+    /// A map of how far a surface lies off the one of --from
+    Deviation,
+    /// A map of what single edges leave
+    Left,
+    /// A map of what the solved equations leave
+    Residual,
+    /// Lines on which the motions have equal values
+    ContactLines,
+    /// A section through the tooth space, with the tool where it touches
+    Section,
+    /// The machine as a kinematic diagram
+    Machine,
+    /// Positions of the axes over the motions
+    Motion,
+}
+
+/// Pixels across and down.
+fn pixels(text: &str) -> Result<(u32, u32), String> {
+    let side = |digits: &str| digits.trim().parse::<u32>().ok().filter(|side| (64..=16_384).contains(side));
+    let both = text.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    both.ok_or("write two numbers from 64 to 16384, for example 2400x1800".to_string())
+}
