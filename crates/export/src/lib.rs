@@ -57,43 +57,19 @@
 //!
 //! The same dataset gives the same bytes, in every format.
 
-mod atomic_file;
-mod bands;
-mod columns;
-mod conventions;
-mod csv_file;
-mod dataset;
-mod error;
-mod facets;
-mod json_file;
-mod json_layout;
-mod known;
-mod lock;
+mod files;
 mod measuring;
 mod motion;
-mod number;
-mod obj_file;
+mod points;
 #[cfg(feature = "parquet")]
-mod parquet_file;
-mod regions;
 pub mod shape;
 mod step;
-mod stl_file;
-mod tally;
 pub mod text;
-mod threemf_file;
-mod unfinished;
-mod vtp_file;
-mod xml;
+pub mod vector;
 
-pub use atomic_file::{FileSet, make_folder, write_atomically};
-pub use bands::{Banded, Surfaces, Taker};
-pub use conventions::sentences as conventions;
-pub use csv_file::write_csv;
-pub use dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
-pub use error::{FileError, FolderError, Malformed, WriteError};
-pub use json_file::{SCHEMA, write_json};
-pub use known::{Kept, Known};
+pub use files::atomic_file::{FileSet, make_folder, write_atomically};
+pub use files::error::{FileError, FolderError, Malformed, WriteError};
+pub use files::regions::Target;
 pub use measuring::{
     FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,
     Part, read_measured, write_grid_csv, write_grid_json,
@@ -102,13 +78,18 @@ pub use motion::{
     AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,
 };
-pub use number::{degrees, fixed};
-pub use obj_file::write_obj;
+pub use points::bands::{Banded, Surfaces, Taker};
+pub use points::conventions::sentences as conventions;
+pub use points::csv::write_csv;
+pub use points::dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
+pub use points::json::{SCHEMA, write_json};
+pub use points::known::{Kept, Known};
+pub use points::obj::write_obj;
 #[cfg(feature = "parquet")]
-pub use parquet_file::write_parquet;
-pub use regions::Target;
+pub use points::parquet::write_parquet;
+pub use points::stl::write_stl;
+pub use points::tally::Tally;
+pub use points::threemf::write_3mf;
+pub use points::vtp::write_vtp;
 pub use step::{Deviation, Face, write_step};
-pub use stl_file::write_stl;
-pub use tally::Tally;
-pub use threemf_file::write_3mf;
-pub use vtp_file::write_vtp;
+pub use text::number::{degrees, fixed};

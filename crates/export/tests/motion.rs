@@ -315,7 +315,7 @@ fn refusal(dialect: Dialect, seconds: f64, spoil: impl Fn(&mut MotionTable)) -> 
     spoil(&mut table);
     let mut bytes = Vec::new();
     match write_nc(&table, dialect, seconds, &mut bytes) {
-        Err(WriteError::Nc(error)) if bytes.is_empty() => error,
+        Err(WriteError::Refused(error)) if bytes.is_empty() => *error.downcast().expect("refused as an NC program"),
         other => panic!("{other:?}, {} bytes written", bytes.len()),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::paint::{Place, Rect};
 use flank_export::shape::Node;
-use flank_export::shape::vector::{Vector, across, add, cross, dot, length, scale, sub, unit};
+use flank_export::vector::{Vector, across, add, cross, dot, length, scale, sub, unit};
 
 const Z: Vector = [0.0, 0.0, 1.0];
 

@@ -13,10 +13,10 @@ use super::paint::{Anchor, Item, Rect, Sheet};
 use super::palette::{self, GREY, INK};
 use super::surface::{Detail, Layers, add_mesh};
 use flank_export::Tally;
-use flank_export::shape::vector::Vector;
 use flank_export::shape::{Mesh, Node};
 use flank_export::text as number;
 use flank_export::text::one_line;
+use flank_export::vector::Vector;
 use flank_export::{Dataset, Header, Patch};
 
 pub(super) const MARGIN: f64 = 48.0;

@@ -11,7 +11,7 @@ use super::paint::{Anchor, Item, Place, Rect, Sheet};
 use super::palette::{self, FAINT, GREY, INK};
 use super::surface::{Detail, Layers, add_mesh};
 use flank_export::shape::Node;
-use flank_export::shape::vector::Vector;
+use flank_export::vector::Vector;
 
 const DETAIL: Detail = Detail { smooth: 8, grid_spacing: f64::INFINITY, grid_width: 0.5, border_width: 1.0 };
 

@@ -7,9 +7,9 @@ use super::palette::{self, GREY, INK};
 use flank_export::Patch;
 use flank_export::Tally;
 use flank_export::shape::node;
-use flank_export::shape::vector::Vector;
 use flank_export::text::dimension;
 use flank_export::text::one_line;
+use flank_export::vector::Vector;
 
 /// From entry to entry, the roomiest first: with dimensions on two lines, on one, without them; sheet units.
 const ENTRIES: [f64; 3] = [62.0, 33.0, 25.0];

@@ -11,9 +11,9 @@ use super::paint::{Anchor, Colour, Item, Place, Rect, Sheet};
 use super::palette::{FAINT, GREY, INK, RED};
 use super::surface::{Detail, Layers, add_mesh};
 use flank_export::shape::Mesh;
-use flank_export::shape::vector::{Vector, add, cross, scale, unit};
 use flank_export::text::one_line;
 use flank_export::text::with_minus;
+use flank_export::vector::{Vector, add, cross, scale, unit};
 use flank_export::{Header, Patch};
 
 /// How wide the list is beside the diagram, and how high below it on a sheet that is higher than wide.

@@ -7,7 +7,7 @@ use super::paint::{Place, Sheet};
 use super::palette::{RED, WHITE};
 use flank_export::Patch;
 use flank_export::shape::node;
-use flank_export::shape::vector::{Vector, add, scale, sub};
+use flank_export::vector::{Vector, add, scale, sub};
 
 const ARM: f64 = 4.0;
 

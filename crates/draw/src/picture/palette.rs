@@ -1,7 +1,7 @@
 //! Colours: Okabe and Ito's set, which colour-blind readers can tell apart, in an order that differs in lightness too.
 
 use super::paint::Colour;
-use flank_export::shape::vector::{Vector, dot};
+use flank_export::vector::{Vector, dot};
 
 pub(super) const WHITE: Colour = Colour([255, 255, 255]);
 pub(super) const INK: Colour = Colour([26, 26, 26]);

@@ -2,9 +2,9 @@
 
 use flank_export::Patch;
 use flank_export::shape::Mesh;
-use flank_export::shape::vector::{Vector, cross, length, sub};
 use flank_export::shape::{Side, axial, ends, named_sides, words};
 use flank_export::text::one_line;
+use flank_export::vector::{Vector, cross, length, sub};
 
 /// A patch of which less than this share is seen in the axial plane is laid by rows and columns.
 const LEAST_SHARE: f64 = 0.04;

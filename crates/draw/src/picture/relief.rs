@@ -9,8 +9,8 @@ use super::paint::{Anchor, Item, Place, Rect, Sheet};
 use super::palette::{FAINT, GREY, INK};
 use super::projection::middle;
 use super::surface::{Layers, SEAM};
-use flank_export::shape::vector::{Vector, cross, dot, sub};
 use flank_export::text::{levelled, shown_unit};
+use flank_export::vector::{Vector, cross, dot, sub};
 
 /// The largest height is drawn as this share of the flank's length.
 const HEIGHT: f64 = 0.22;

@@ -3,8 +3,8 @@
 use super::camera::View;
 use super::paint::{Colour, Item, Place};
 use super::palette;
-use flank_export::shape::vector::{Vector, add, length, scale, sub, unit};
 use flank_export::shape::{Edge, Mesh, Node};
+use flank_export::vector::{Vector, add, length, scale, sub, unit};
 
 /// Pieces overlap their neighbours by half of this, so much that no ground shines through where their edges are smoothed.
 pub(super) const SEAM: f64 = 2.4;

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use super::{Hand, MeasuringGrid, NominalFlank, places, sentences};
-use crate::conventions::one_line;
-use crate::error::WriteError;
-use crate::number::shortest;
+use crate::files::error::WriteError;
+use crate::text::number::shortest;
+use crate::text::one_line;
 
 /// Writes a measuring grid as CSV: `# ` lines state order, frame, units and signs; the columns are
 /// `surface, flank, part, row, column, x, y, z, nx, ny, nz, status`. Cells of a point that is not solved are empty.

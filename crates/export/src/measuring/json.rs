@@ -5,10 +5,10 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::{Hand, MeasuringGrid, NominalFlank, Part, places, sentences};
-use crate::dataset::{Patch, Point};
-use crate::error::WriteError;
-use crate::json_layout::{Head, write_document};
-use crate::number::plain;
+use crate::files::error::WriteError;
+use crate::points::dataset::{Patch, Point};
+use crate::points::json_layout::{Head, write_document};
+use crate::text::number::plain;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
 pub const GRID_SCHEMA: &str = "flank.grid/1";

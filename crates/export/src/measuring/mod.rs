@@ -4,9 +4,9 @@ mod csv;
 mod json;
 mod measured;
 
-use crate::dataset::{Header, Patch, Point};
-use crate::shape::vector::{Vector, add, sub};
+use crate::points::dataset::{Header, Patch, Point};
 use crate::shape::{Seen, Sides, is_last, is_thread, sides};
+use crate::vector::{Vector, add, sub};
 
 pub use csv::write_grid_csv;
 pub use json::{GRID_SCHEMA, write_grid_json};
@@ -143,8 +143,8 @@ fn places(patch: &Patch) -> impl Iterator<Item = ([usize; 2], &Point)> {
 
 /// What a reader must know to use the numbers.
 fn sentences(grid: &MeasuringGrid) -> Vec<String> {
-    let percent = grid.margins.map(|share| crate::number::shortest((share * 1e4).round() / 1e2));
-    let own = grid.header.conventions.iter().map(|sentence| crate::conventions::one_line(sentence));
+    let percent = grid.margins.map(|share| crate::text::number::shortest((share * 1e4).round() / 1e2));
+    let own = grid.header.conventions.iter().map(|sentence| crate::text::one_line(sentence));
     [
         "lengths in mm; z of the frame is the axis of the work".to_string(),
         "normals have unit length and point out of the material: a deviation along them is plus where there is too much of it".to_string(),

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use super::table::{AS_IN_THE_SPEC, MotionTable};
-use crate::conventions::one_line;
-use crate::error::WriteError;
-use crate::number::shortest;
+use crate::files::error::WriteError;
+use crate::text::number::shortest;
+use crate::text::one_line;
 
 /// Behind the names of axes.
 const RATES: [&str; 3] = ["velocity", "acceleration", "jerk"];

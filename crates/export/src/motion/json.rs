@@ -5,9 +5,9 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::table::{AS_IN_THE_SPEC, MachineAxis, MotionTable};
-use crate::error::WriteError;
-use crate::json_layout::{Head, write_document};
-use crate::number::plain;
+use crate::files::error::WriteError;
+use crate::points::json_layout::{Head, write_document};
+use crate::text::number::plain;
 
 /// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
 pub const MOTION_SCHEMA: &str = "flank.motion/2";

@@ -4,8 +4,8 @@ use std::io::Write;
 
 use super::dialect::Dialect;
 use super::table::{MachineAxis, MotionTable};
-use crate::error::WriteError;
-use crate::number::{plain, shortest};
+use crate::files::error::WriteError;
+use crate::text::number::{plain, shortest};
 
 /// Why a motion table makes no NC program.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -81,6 +81,12 @@ pub enum NcError {
         /// Largest feed that it takes.
         high: f64,
     },
+}
+
+impl From<NcError> for WriteError {
+    fn from(error: NcError) -> WriteError {
+        WriteError::Refused(Box::new(error))
+    }
 }
 
 /// Writes an NC program that passes the rows in order, in straight lines of all axes at once with inverse-time feed (`G93`).
@@ -302,6 +308,6 @@ fn feeds(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Vec
 fn motion_text(table: &MotionTable, value: f64) -> String {
     let unit = table.motion.unit;
     let rounded = (unit.written(value) * 1e6).round() / 1e6;
-    let behind = if unit == crate::dataset::Unit::One { "" } else { unit.symbol() };
+    let behind = if unit == crate::points::dataset::Unit::One { "" } else { unit.symbol() };
     format!("{} = {} {behind}", table.motion.name, shortest(plain(rounded))).trim_end().to_owned()
 }

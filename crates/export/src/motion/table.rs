@@ -1,9 +1,9 @@
 //! The positions of a machine's axes over a motion.
 
-use crate::conventions::one_line;
-use crate::dataset::{Header, Unit, Unknown};
-use crate::error::Malformed;
-use crate::number::{degrees, fixed, plain};
+use crate::files::error::Malformed;
+use crate::points::dataset::{Header, Unit, Unknown};
+use crate::text::number::{degrees, fixed, plain};
+use crate::text::one_line;
 
 /// How positions of files of data are to be read.
 pub(crate) const AS_IN_THE_SPEC: &str = "axes are named, signed and counted as in the machine's spec";

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::dataset::{Patch, Point};
-use crate::shape::vector::{Vector, unit};
+use crate::points::dataset::{Patch, Point};
+use crate::vector::{Vector, unit};
 
 /// Beyond a thousand kilometres nothing is a gear, and squares of coordinates could overflow.
 const FARTHEST: f64 = 1e9;

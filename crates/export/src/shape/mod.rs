@@ -2,7 +2,6 @@
 
 mod mesh;
 mod sides;
-pub mod vector;
 
 pub use mesh::{Edge, Mesh, Node, node};
 pub use sides::{Seen, Side, Sides, axial, ends, is_last, is_thread, named_sides, rows_follow_profile, sides, words};

@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use super::mesh::{Mesh, Node};
-use crate::conventions::one_line;
-use crate::dataset::Patch;
-use crate::shape::vector::{Vector, add, cross, dot, sub, unit};
+use crate::points::dataset::Patch;
+use crate::text::one_line;
+use crate::vector::{Vector, add, cross, dot, sub, unit};
 
 /// A tooth whose radius changes by less than this share of its way along the axis lies between two faces: a cone of 6 degrees.
 const LEAST_CONE: f64 = 0.1;

@@ -1,8 +1,8 @@
 //! A surface as one smooth face, and how far it is off.
 
 use super::spline::SplineSurface;
-use crate::dataset::{Patch, Point};
-use crate::shape::vector::{cross, dot};
+use crate::points::dataset::{Patch, Point};
+use crate::vector::{cross, dot};
 
 /// A smooth face through points of a patch.
 #[derive(Debug, Clone)]
@@ -127,7 +127,7 @@ fn largest_rectangle(patch: &Patch) -> Option<([usize; 2], [usize; 2])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::{Axis, Outcome};
+    use crate::points::dataset::{Axis, Outcome};
 
     fn patch(rows: &[&str]) -> Patch {
         let axis = |count| Axis { label: String::new(), count };

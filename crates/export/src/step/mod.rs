@@ -7,10 +7,10 @@ use std::io::Write;
 
 pub use face::{Deviation, Face};
 
-use crate::conventions::one_line;
-use crate::dataset::Header;
-use crate::error::WriteError;
-use crate::number::shortest;
+use crate::files::error::WriteError;
+use crate::points::dataset::Header;
+use crate::text::number::shortest;
+use crate::text::one_line;
 use spline::Direction;
 
 const SCHEMA: &str = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }";

@@ -1,6 +1,6 @@
 //! B-spline surfaces through grids of points.
 
-use crate::shape::vector::{Vector, add, cross, dot, scale, sub};
+use crate::vector::{Vector, add, cross, dot, scale, sub};
 
 /// The highest degree: curvature continues from piece to piece.
 const CUBIC: usize = 3;
@@ -200,7 +200,7 @@ mod tests {
     fn a_point_beside_the_surface_is_as_far_off_as_it_was_put() {
         let surface = through_bent([6, 6]);
         let [at, by_u, by_v] = surface.at(2.37, 3.61);
-        let normal = crate::shape::vector::unit(cross(by_u, by_v)).expect("a regular point");
+        let normal = crate::vector::unit(cross(by_u, by_v)).expect("a regular point");
         let off = surface.distance(add(at, scale(0.002, normal)), normal, [2.5, 3.5]).expect("near");
         assert!((off - 0.002).abs() < 1e-14, "{off}");
     }

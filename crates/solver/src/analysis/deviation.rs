@@ -1,0 +1,252 @@
+//! How far one surface lies off another one, along the other's normals.
+
+use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::{Expr, LANES, TapeError};
+use rayon::prelude::*;
+
+use crate::equations::solution::{Outcome, Range};
+use crate::equations::system::System;
+use crate::newton::batch::LaneNewton;
+use crate::newton::scalar::{LONGEST_STEP, solve};
+use crate::surface::points::SurfacePoint;
+
+/// Distances along a normal are looked for up to here, mm.
+pub(crate) const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
+/// Turns about the axis are looked for in here.
+const A_TURN: Range = Range { low: -2.0 * std::f64::consts::PI, high: 2.0 * std::f64::consts::PI };
+/// Points that a thread takes at a time.
+const TILE: usize = 16 * LANES;
+
+/// A surface that is held against points of another one: of the same body in the same frame, but for a turn about its z axis.
+#[derive(Clone, Debug)]
+pub struct Deviation {
+    /// Unknowns of the surface and a distance; the point, the normal and the turn are parameters.
+    along_normal: System,
+    /// Unknowns of the surface and a turn; the point is a parameter.
+    around_axis: System,
+    ranges: Vec<Range>,
+}
+
+impl Deviation {
+    /// Of a surface whose unknowns lie in `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    ///
+    /// # Panics
+    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
+    pub fn new<'g>(
+        surface: &Surface<'g>,
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Deviation, TapeError> {
+        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
+        let bound = surface.bound(bindings);
+        let graph = bound.position.0[0].graph();
+        let vector = |names: [&str; 3]| Vector3(names.map(|name| graph.variable(name)));
+        let (point, normal) = (vector(["point x", "point y", "point z"]), vector(["normal x", "normal y", "normal z"]));
+        let (distance, turn) = (graph.variable("distance"), graph.variable("turn"));
+        let [x, y, z] = bound.position.0;
+        let turned = Vector3([x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos(), z]);
+        let residuals = |apart: Vector3<'g>| [bound.constraints.as_slice(), &apart.0].concat();
+        let unknowns = |last: Expr<'g>| [bound.unknowns.as_slice(), &[last]].concat();
+        let reached = point + normal.map(|part| part * distance);
+        let parameters: Vec<Expr<'g>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();
+        Ok(Deviation {
+            along_normal: System::new(&residuals(turned - reached), &unknowns(distance), &parameters)?,
+            around_axis: System::one_by_one(&residuals(turned - point), &unknowns(turn), &point.0)?,
+            ranges,
+        })
+    }
+
+    /// The turn about the z axis, radians, that brings the surface to a point. `near` is a point of the surface from which it is
+    /// looked for: one with the same z and distance from the axis, if there is one. `None` if the surface does not come
+    /// to the point within its ranges.
+    pub fn turn_to(&self, point: [f64; 3], near: &SurfacePoint) -> Option<f64> {
+        let angle = |[x, y, _]: [f64; 3]| y.atan2(x);
+        let apart = angle(point) - angle(near.position);
+        let start = apart - std::f64::consts::TAU * (apart / std::f64::consts::TAU).round();
+        self.last_unknown(&self.around_axis, A_TURN, &point, near, start)
+    }
+
+    /// How far the surface, turned about the z axis, lies off a point of another one: along the point's normal, mm, positive
+    /// on the side to which it points, which is out of the body. `near` is as in [`Deviation::turn_to`]. `None` if the normal
+    /// does not meet the surface within its ranges.
+    pub fn along_normal(&self, from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> Option<f64> {
+        let (start, parameters) = asked(from, near, turn);
+        self.last_unknown(&self.along_normal, FARTHEST, &parameters, near, start)
+    }
+
+    /// [`Deviation::along_normal`] at many points, many at once; `None` also where one of the two points is not solved. What needs
+    /// care is solved alone.
+    ///
+    /// # Panics
+    /// If there are not as many points of the one as of the other.
+    pub fn map(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+        assert_eq!(from.len(), near.len(), "one start for each point");
+        let tiles = from.par_chunks(TILE).zip(near.par_chunks(TILE));
+        tiles.flat_map_iter(|(from, near)| self.tile(from, near, turn)).collect()
+    }
+
+    fn tile(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+        let ranges = [&self.ranges[..], &[FARTHEST]].concat();
+        let mut newton = LaneNewton::new(&self.along_normal, &ranges);
+        let mut found = Vec::with_capacity(from.len());
+        for (from, near) in from.chunks(LANES).zip(near.chunks(LANES)) {
+            let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
+            let active: Vec<bool> =
+                from.iter().zip(near).map(|(from, near)| is_solved(from) && is_solved(near)).collect();
+            for lane in (0..active.len()).filter(|lane| active[*lane]) {
+                let (start, parameters) = asked(&from[lane], &near[lane], turn);
+                newton.put(lane, near[lane].unknowns.iter().copied().chain([start]), &parameters);
+            }
+            newton.run(&active, true);
+            found.extend((0..active.len()).map(|lane| {
+                let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
+                match active[lane] {
+                    false => None,
+                    true if is_near && newton.outcome(lane) == Outcome::Solved => {
+                        Some(newton.input(self.ranges.len())[lane])
+                    }
+                    true => self.along_normal(&from[lane], &near[lane], turn),
+                }
+            }));
+        }
+        found
+    }
+
+    fn last_unknown(
+        &self,
+        system: &System,
+        range: Range,
+        parameters: &[f64],
+        near: &SurfacePoint,
+        start: f64,
+    ) -> Option<f64> {
+        let ranges = [&self.ranges[..], &[range]].concat();
+        let start = [&near.unknowns[..], &[start]].concat();
+        let solution = solve(system, &ranges, parameters, &start);
+        (solution.outcome == Outcome::Solved).then(|| solution.unknowns[self.ranges.len()])
+    }
+}
+
+/// Where the distance along the normal of a point to a surface, turned about z, is looked for first, and the parameters of the
+/// system that says so.
+fn asked(from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> (f64, [f64; 7]) {
+    let (sine, cosine) = turn.sin_cos();
+    let ([x, y, z], [nx, ny, nz]) = (near.position, from.normal);
+    let [px, py, pz] = from.position;
+    let start = (x * cosine - y * sine - px) * nx + (x * sine + y * cosine - py) * ny + (z - pz) * nz;
+    (start, [px, py, pz, nx, ny, nz, turn])
+}
+
+/// What a map of deviations is like: the parabola in both directions of the grid that fits it best, each direction running from
+/// −1 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EaseOff {
+    /// From the first row to the last, and from the first column to the last: rise from end to end.
+    pub slopes: [f64; 2],
+    /// In the same directions: drop from the middle to the ends. Positive for a crowned flank.
+    pub crownings: [f64; 2],
+    /// Rise along the columns in the last row, less that in the first one.
+    pub bias: f64,
+}
+
+/// A term of the parabola of which less than this share is its own, over the points with a value, is not told from the others: rounding of
+/// the squares leaves 1e-8 of a term that others make up, and three neighbours of a grid of 200 points a hundred times this share.
+const INDEPENDENT: f64 = 1e-6;
+
+impl EaseOff {
+    /// Of the deviations of a grid, row by row; `None` where there is none. `None` if these are too few or lie too much on a
+    /// line to say.
+    ///
+    /// # Panics
+    /// If there are not `counts[0] · counts[1]` values.
+    pub fn of(deviations: &[Option<f64>], counts: [usize; 2]) -> Option<EaseOff> {
+        let [rows, columns] = counts;
+        assert_eq!(deviations.len(), rows * columns, "one value for each point of the grid");
+        let share = |k: usize, count: usize| if count > 1 { 2.0 * k as f64 / (count - 1) as f64 - 1.0 } else { 0.0 };
+        let known = deviations.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
+        let (mut normal, mut right) = (nalgebra::Matrix6::zeros(), nalgebra::Vector6::zeros());
+        for (at, value) in known {
+            let (v, u) = (share(at / columns, rows), share(at % columns, columns));
+            let terms = nalgebra::Vector6::new(1.0, v, u, v * v, v * u, u * u);
+            normal += terms * terms.transpose();
+            right += terms * value;
+        }
+        let independent = |l: nalgebra::Vector6<f64>| l.min() > INDEPENDENT * l.max();
+        let factors = normal.cholesky().filter(|factors| independent(factors.l().diagonal()))?;
+        let [_, v, u, vv, vu, uu] = factors.solve(&right).into();
+        Some(EaseOff { slopes: [2.0 * v, 2.0 * u], crownings: [-vv, -uu], bias: 4.0 * vu })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flank_expr::Graph;
+
+    /// Two coaxial cylinders, radii 10 and 10.5 mm: everywhere 0.5 mm apart.
+    #[test]
+    fn a_cylinder_lies_off_a_smaller_one_by_the_difference_of_the_radii() {
+        let graph = Graph::new();
+        let (angle, height) = (graph.variable("angle"), graph.variable("height"));
+        let cylinder = |radius: f64| {
+            Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false)
+        };
+        let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -50.0, high: 50.0 }];
+        let deviation = Deviation::new(&cylinder(10.5), ranges, &[]).expect("nothing else is unknown");
+        let point = |angle: f64, radius: f64| SurfacePoint {
+            outcome: Outcome::Solved,
+            unknowns: vec![angle, 7.0],
+            position: [radius * angle.cos(), radius * angle.sin(), 7.0],
+            normal: [angle.cos(), angle.sin(), 0.0],
+            residual: 0.0,
+        };
+        for angle in [-3.0, -1.0, 0.2, 2.5] {
+            let off = deviation.along_normal(&point(angle, 10.0), &point(angle + 0.1, 10.5), 0.0).expect("it is met");
+            assert!((off - 0.5).abs() < 1e-13, "{off}");
+            assert_eq!(deviation.turn_to([20.0, 0.0, 7.0], &point(angle, 10.5)), None, "it is farther out");
+        }
+    }
+
+    /// A plane through the axis, turned against another: the turn is found, and the deviation is none after it.
+    #[test]
+    fn a_plane_through_the_axis_is_turned_onto_another() {
+        let graph = Graph::new();
+        let (radius, height) = (graph.variable("radius"), graph.variable("height"));
+        let plane = Surface::parametric([radius, height], Vector3([radius, 0.0 * radius, height]), false);
+        let ranges = vec![Range { low: 1.0, high: 50.0 }, Range { low: -50.0, high: 50.0 }];
+        let deviation = Deviation::new(&plane, ranges, &[]).expect("nothing else is unknown");
+        let point = |turn: f64| SurfacePoint {
+            outcome: Outcome::Solved,
+            unknowns: vec![20.0, 3.0],
+            position: [20.0 * turn.cos(), 20.0 * turn.sin(), 3.0],
+            normal: [-turn.sin(), turn.cos(), 0.0],
+            residual: 0.0,
+        };
+        let wanted = point(0.3);
+        let turn = deviation.turn_to(wanted.position, &point(0.0)).expect("it reaches the point");
+        assert!((turn - 0.3).abs() < 1e-14);
+        let off = deviation.along_normal(&wanted, &point(0.0), turn).expect("it is met");
+        assert!(off.abs() < 1e-12, "{off:e}");
+        let as_it_lies = deviation.along_normal(&wanted, &point(0.0), 0.0).expect("it is met");
+        assert!((as_it_lies + 20.0 * 0.3f64.tan()).abs() < 1e-12, "{as_it_lies}");
+    }
+
+    #[test]
+    fn a_parabola_has_its_own_numbers() {
+        let [rows, columns] = [7, 11];
+        let value = |at: usize| {
+            let (v, u) = ((at / columns) as f64 / 3.0 - 1.0, (at % columns) as f64 / 5.0 - 1.0);
+            Some(5.0 + 2.0 * v - 3.0 * u - 50.0 * v * v - 25.0 * u * u + 1.5 * u * v)
+        };
+        let mut deviations: Vec<Option<f64>> = (0..rows * columns).map(value).collect();
+        deviations[3] = None;
+        let found = EaseOff::of(&deviations, [rows, columns]).expect("enough values");
+        let wanted = EaseOff { slopes: [4.0, -6.0], crownings: [50.0, 25.0], bias: 6.0 };
+        let numbers = |of: &EaseOff| [of.slopes[0], of.slopes[1], of.crownings[0], of.crownings[1], of.bias];
+        assert!(numbers(&found).iter().zip(numbers(&wanted)).all(|(a, b)| (a - b).abs() < 1e-11), "{found:?}");
+        assert_eq!(EaseOff::of(&[Some(1.0); 5], [1, 5]), None, "one row has no slope across");
+    }
+}

@@ -1,0 +1,240 @@
+//! How far measured points lie off a surface, along its normals.
+
+use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::{Expr, TapeError};
+use rayon::prelude::*;
+
+use crate::analysis::deviation::FARTHEST;
+use crate::equations::solution::{Outcome, Range};
+use crate::equations::system::System;
+use crate::newton::scalar::solve;
+use crate::surface::points::SurfacePoint;
+
+/// A turn that changes by less, radians, has settled: 1e-9 um on a radius of a metre.
+const SETTLED: f64 = 1e-15;
+/// Where turning moves points along their normals by a smaller share of their radii (root of the mean of the squares), it moves none:
+/// rounding is left of a surface of revolution.
+const UNMOVED: f64 = 1e-9;
+/// The turn settles in a few steps: what it does to a deviation is known but for what the normal changes on the way to the foot.
+const MOST_STEPS: usize = 20;
+
+/// A surface that measured points are held against: each has its foot on it, where the surface's normal goes through the point.
+#[derive(Clone, Debug)]
+pub struct Inspection {
+    /// Unknowns of the surface and a distance along its normal; the point is a parameter.
+    foot: System,
+    ranges: Vec<Range>,
+}
+
+impl Inspection {
+    /// Of a surface whose unknowns lie in `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    ///
+    /// # Panics
+    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
+    pub fn new<'g>(
+        surface: &Surface<'g>,
+        ranges: Vec<Range>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Inspection, TapeError> {
+        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
+        let bound = surface.bound(bindings);
+        let graph = bound.position.0[0].graph();
+        let point = ["point x", "point y", "point z"].map(|name| graph.variable(name));
+        let distance = graph.variable("distance");
+        let reached = bound.position + bound.normal.map(|part| part * distance);
+        let apart = (reached - Vector3(point)).0;
+        let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(apart).collect();
+        let unknowns: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain([distance]).collect();
+        Ok(Inspection { foot: System::one_by_one(&residuals, &unknowns, &point)?, ranges })
+    }
+
+    /// How far each measured point, mm, turned about the z axis by an angle in radians, lies off the surface, mm: positive on the side
+    /// to which the surface's normal points, where there is more material than there should be. `nominal` are points of the surface
+    /// near them. `None` where there is no measured point, no solved nominal one, or no foot within the ranges.
+    ///
+    /// # Panics
+    /// If there are not as many points of the one as of the other.
+    #[must_use]
+    pub fn deviations(&self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+        assert_eq!(measured.len(), nominal.len(), "one nominal point for each place");
+        let pairs = measured.par_iter().zip(nominal);
+        pairs.map(|(measured, nominal)| self.deviation(turned((*measured)?, turn), nominal)).collect()
+    }
+
+    /// The turn about the z axis, radians, after which the measured points lie as near to the surface as a turn brings them: the sum
+    /// of the squares of their deviations is least. `None` if no point has a deviation, or turning moves none along its normal.
+    ///
+    /// # Panics
+    /// If there are not as many points of the one as of the other.
+    #[must_use]
+    pub fn best_turn(&self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
+        let mut turn = apart(measured, nominal)?;
+        for _ in 0..MOST_STEPS {
+            let deviations = self.deviations(measured, nominal, turn);
+            let known = deviations.iter().zip(nominal).filter_map(|(off, point)| Some(((*off)?, point)));
+            let [off, levers, radii] = known.fold([0.0; 3], |[off, levers, radii], (one, point)| {
+                let ([x, y, _], lever) = (point.position, lever(point));
+                [off + one * lever, levers + lever * lever, radii + x * x + y * y]
+            });
+            if levers <= UNMOVED.powi(2) * radii {
+                return None;
+            }
+            let step = off / levers;
+            turn -= step;
+            if step.abs() < SETTLED {
+                break;
+            }
+        }
+        Some(turn)
+    }
+
+    fn deviation(&self, measured: [f64; 3], nominal: &SurfacePoint) -> Option<f64> {
+        if nominal.outcome != Outcome::Solved {
+            return None;
+        }
+        let start: f64 = (0..3).map(|k| (measured[k] - nominal.position[k]) * nominal.normal[k]).sum();
+        let ranges = [&self.ranges[..], &[FARTHEST]].concat();
+        let start = [&nominal.unknowns[..], &[start]].concat();
+        let solution = solve(&self.foot, &ranges, &measured, &start);
+        (solution.outcome == Outcome::Solved).then(|| solution.unknowns[self.ranges.len()])
+    }
+}
+
+/// How far each measured point, turned about the z axis by an angle in radians, lies beside its nominal one, mm: square to the normal
+/// there. `None` where there is no measured point or no solved nominal one.
+///
+/// # Panics
+/// If there are not as many points of the one as of the other.
+#[must_use]
+pub fn beside(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+    assert_eq!(measured.len(), nominal.len(), "one nominal point for each place");
+    let of = |(measured, nominal): (&Option<[f64; 3]>, &SurfacePoint)| {
+        let measured = turned((*measured)?, turn);
+        let way: [f64; 3] = std::array::from_fn(|k| measured[k] - nominal.position[k]);
+        let along: f64 = way.iter().zip(&nominal.normal).map(|(way, normal)| way * normal).sum();
+        let aside = way.iter().zip(&nominal.normal).map(|(way, normal)| (way - along * normal).powi(2)).sum::<f64>();
+        (nominal.outcome == Outcome::Solved).then(|| aside.sqrt())
+    };
+    measured.iter().zip(nominal).map(of).collect()
+}
+
+/// How far a point moves along its normal for a turn of one radian about z, mm.
+fn lever(point: &SurfacePoint) -> f64 {
+    point.position[0] * point.normal[1] - point.position[1] * point.normal[0]
+}
+
+fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
+    let (sine, cosine) = turn.sin_cos();
+    [x * cosine - y * sine, x * sine + y * cosine, z]
+}
+
+/// The mean turn about z from measured points to nominal ones; `None` where no place has both.
+fn apart(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
+    let pairs = measured.iter().zip(nominal).filter(|(_, point)| point.outcome == Outcome::Solved);
+    let (sine, cosine) = pairs
+        .filter_map(|(measured, point)| Some(((*measured)?, point.position)))
+        .fold((0.0, 0.0), |(sine, cosine), ([x, y, _], [to_x, to_y, _])| {
+            (sine + x * to_y - y * to_x, cosine + x * to_x + y * to_y)
+        });
+    (sine != 0.0 || cosine != 0.0).then(|| sine.atan2(cosine))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flank_expr::Graph;
+
+    fn solved(unknowns: Vec<f64>, position: [f64; 3], normal: [f64; 3]) -> SurfacePoint {
+        SurfacePoint { outcome: Outcome::Solved, unknowns, position, normal, residual: 0.0 }
+    }
+
+    /// A sphere knows the distance of any point from it, wherever the nominal point lies.
+    #[test]
+    fn points_about_a_sphere() {
+        let graph = Graph::new();
+        let (u, v) = (graph.variable("u"), graph.variable("v"));
+        let sphere = Surface::parametric(
+            [u, v],
+            Vector3([20.0 * u.cos() * v.cos(), 20.0 * u.sin() * v.cos(), 20.0 * v.sin()]),
+            false,
+        );
+        let inspection =
+            Inspection::new(&sphere, vec![Range { low: -3.0, high: 3.0 }, Range { low: -1.5, high: 1.5 }], &[])
+                .expect("bound");
+        let on = |u: f64, v: f64| [u.cos() * v.cos(), u.sin() * v.cos(), v.sin()];
+        let nominal = [solved(vec![0.4, 0.3], on(0.4, 0.3).map(|x| 20.0 * x), on(0.4, 0.3))];
+        for (radius, du, dv) in [(20.25, 0.0, 0.0), (19.5, 0.2, -0.1), (20.0, 0.0, 0.4), (21.0, -0.3, 0.3)] {
+            let measured = [Some(on(0.4 + du, 0.3 + dv).map(|x| radius * x))];
+            let off = inspection.deviations(&measured, &nominal, 0.0)[0].expect("a foot");
+            assert!((off - (radius - 20.0)).abs() < 1e-12, "{off}");
+        }
+        assert_eq!(
+            inspection.best_turn(&[Some([20.0, 0.0, 0.0])], &nominal),
+            None,
+            "turning moves no point along its normal"
+        );
+        assert_eq!(inspection.deviations(&[None], &nominal, 0.0), [None]);
+    }
+
+    /// Of a surface of revolution a turn moves nothing but roundings: at these radii and angles they do not cancel.
+    #[test]
+    fn a_surface_of_revolution_is_not_turned() {
+        let graph = Graph::new();
+        let (angle, height) = (graph.variable("angle"), graph.variable("height"));
+        let radius = 17.3 + 0.1 * height;
+        let cone =
+            Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false);
+        let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -20.0, high: 20.0 }];
+        let inspection = Inspection::new(&cone, ranges, &[]).expect("bound");
+        let slope = 1.01f64.sqrt();
+        let places: Vec<[f64; 2]> = (0..24).map(|k| [0.137 * f64::from(k), 0.731 * f64::from(k % 7) - 1.9]).collect();
+        let nominal: Vec<SurfacePoint> = places
+            .iter()
+            .map(|&[angle, height]| {
+                let ((sine, cosine), radius) = (angle.sin_cos(), 17.3 + 0.1 * height);
+                let normal = [cosine / slope, sine / slope, -0.1 / slope];
+                solved(vec![angle, height], [radius * cosine, radius * sine, height], normal)
+            })
+            .collect();
+        assert!(nominal.iter().any(|point| lever(point) != 0.0), "roundings are there");
+        let off = |k: usize| 0.01 + 0.002 * (k % 5) as f64;
+        let measured: Vec<Option<[f64; 3]>> = nominal
+            .iter()
+            .enumerate()
+            .map(|(k, point)| Some(std::array::from_fn(|i| point.position[i] + off(k) * point.normal[i])))
+            .collect();
+        assert_eq!(inspection.best_turn(&measured, &nominal), None);
+        for (k, found) in inspection.deviations(&measured, &nominal, 0.0).into_iter().enumerate() {
+            assert!((found.expect("a foot") - off(k)).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    /// A plane through the axis at 0.3 rad, measured at 0.2 rad with an error that no turn takes away.
+    #[test]
+    fn a_turn_takes_away_what_a_turn_can() {
+        let graph = Graph::new();
+        let (radius, height) = (graph.variable("radius"), graph.variable("height"));
+        let (sine, cosine) = 0.3f64.sin_cos();
+        let plane = Surface::parametric([radius, height], Vector3([radius * cosine, radius * sine, height]), true);
+        let ranges = vec![Range { low: 1.0, high: 50.0 }, Range { low: -50.0, high: 50.0 }];
+        let inspection = Inspection::new(&plane, ranges, &[]).expect("bound");
+        let places: Vec<[f64; 2]> = [10.0, 20.0, 30.0].iter().flat_map(|&r| [[r, -5.0], [r, 5.0]]).collect();
+        let nominal: Vec<SurfacePoint> =
+            places.iter().map(|&[r, z]| solved(vec![r, z], [r * cosine, r * sine, z], [-sine, cosine, 0.0])).collect();
+        let measured: Vec<Option<[f64; 3]>> = places
+            .iter()
+            .map(|&[r, z]| {
+                let off = if z > 0.0 { 0.01 } else { -0.01 };
+                Some(turned([r, off, z], 0.2))
+            })
+            .collect();
+        let turn = inspection.best_turn(&measured, &nominal).expect("a turn");
+        assert!((turn - 0.1).abs() < 1e-14, "{turn}");
+        for (off, [_, z]) in inspection.deviations(&measured, &nominal, turn).into_iter().zip(places) {
+            assert!((off.expect("a foot") - 0.002 * z).abs() < 1e-12, "{off:?}");
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Where two surfaces meet, along lines of the coordinates of the first.
+
+use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
+
+use crate::equations::solution::{Outcome, Range, Solution, distance};
+use crate::equations::system::{Evaluation, System};
+use crate::newton::scalar::{inverse_times, solve_with};
+use crate::surface::SurfaceProblem;
+use crate::surface::points::SurfacePoint;
+
+/// Points of the second surface in each of its first two unknowns, from which meetings are looked for.
+const SEEDS: usize = 9;
+/// Pairs of points, one of each surface, that a line's meetings are looked for from; the nearest ones.
+const PAIRS: usize = 6;
+/// Two iterations that end nearer than this share of the ranges found the same meeting.
+const SAME: f64 = 1e-6;
+/// Surfaces at a smaller angle only touch: with curvatures of 1/mm they then part by less than the tolerance of a point over the
+/// distance in which they could cross.
+const TOUCHING: f64 = 1e-5;
+
+/// Two surfaces in one frame, and the system that says where they meet: both sets of constraints, equal positions, and a
+/// line in the coordinates of the first.
+#[derive(Clone, Debug)]
+pub struct Intersection {
+    system: System,
+    ranges: Vec<Range>,
+    first_unknowns: usize,
+    /// Of the unknowns and the line: position, both normals, how far along the line, and its derivatives.
+    probe: Tape,
+    seeds: Vec<SurfacePoint>,
+}
+
+/// A line in the plane of two coordinates: `from + s · direction`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Where s is zero.
+    pub from: [f64; 2],
+    /// Of length one.
+    pub direction: [f64; 2],
+}
+
+/// A point that two surfaces have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// The point as one of the first surface.
+    pub first: SurfacePoint,
+    /// The point as one of the second.
+    pub second: SurfacePoint,
+    /// How far along the line it lies.
+    pub along: f64,
+    /// Whether the first surface, farther along the line, runs on outside the body that owns the second. If so, its points
+    /// there are cut away; if not, those before the meeting.
+    pub leaves: bool,
+}
+
+impl Intersection {
+    /// Of two surfaces in one frame; the meetings lie on lines of two `coordinates`, functions of the first one's unknowns.
+    /// The unknowns of each are looked for in its `ranges`; `bindings` replace the remaining variables by numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor bound.
+    ///
+    /// # Panics
+    /// If a surface does not have two unknowns more than constraints, or not as many as ranges.
+    pub fn new<'g>(
+        surfaces: [&Surface<'g>; 2],
+        coordinates: [Expr<'g>; 2],
+        ranges: [Vec<Range>; 2],
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Intersection, TapeError> {
+        let graph = coordinates[0].graph();
+        let [first, second] = surfaces.map(|surface| surface.bound(bindings));
+        // both may be envelopes over the same motion, at different values of it
+        let own: Vec<Expr<'g>> =
+            second.unknowns.iter().map(|&p| graph.variable(format!("{p} of the second"))).collect();
+        let renaming: Vec<(Expr<'g>, Expr<'g>)> = second.unknowns.iter().copied().zip(own.iter().copied()).collect();
+        let second = Surface { unknowns: own, ..second.bound(&renaming) };
+        let seeds = seeds(&second, &ranges[1])?;
+        let line = ["from 1", "from 2", "direction 1", "direction 2"].map(|name| graph.variable(name));
+        let across = graph.substitute(&coordinates, bindings);
+        let (x, y) = (across[0] - line[0], across[1] - line[1]);
+        let along = x * line[2] + y * line[3];
+        let apart = first.position - second.position;
+        let constraints = first.constraints.iter().chain(&second.constraints).copied();
+        let residuals: Vec<Expr<'g>> = constraints.chain(apart.0).chain([x * line[3] - y * line[2]]).collect();
+        let unknowns: Vec<Expr<'g>> = first.unknowns.iter().chain(&second.unknowns).copied().collect();
+        let conditions = [first.clearance_minors(), second.clearance_minors()].concat();
+        let slopes = first.unknowns.iter().map(|&p| along.derivative(p));
+        let vectors = [first.position, first.normal, second.normal].into_iter().flat_map(|Vector3(parts)| parts);
+        let probe: Vec<Expr<'g>> = vectors.chain([along]).chain(slopes).collect();
+        let inputs: Vec<Expr<'g>> = unknowns.iter().chain(&line).copied().collect();
+        Ok(Intersection {
+            system: System::one_by_one(&residuals, &unknowns, &line)?.with_conditions(
+                &residuals,
+                &conditions,
+                &[],
+                &inputs,
+            )?,
+            ranges: ranges.concat(),
+            first_unknowns: first.unknowns.len(),
+            probe: Tape::new(&probe, &inputs)?,
+            seeds,
+        })
+    }
+
+    /// The points at which the surfaces cross on a line, in the order along it: inside the ranges, of the part of both that
+    /// the tool leaves, and not where they only touch.
+    ///
+    /// They are looked for from unknowns of both (meetings on the line beside this one, say) and from points of the first
+    /// surface near the line, each with the nearest known point of the second.
+    pub fn on_line(&self, line: Line, unknowns: &[Vec<f64>], near: &[&SurfacePoint]) -> Vec<Meeting> {
+        let parameters = [line.from, line.direction].concat();
+        let mut evaluation = self.system.evaluation(&parameters);
+        let mut found: Vec<Meeting> = Vec::new();
+        for start in unknowns.iter().cloned().chain(self.pairs(near)) {
+            let solution = solve_with(&mut evaluation, &self.ranges, &start);
+            let is_new = |meeting: &Meeting| distance(&meeting.unknowns(), &solution.unknowns, &self.ranges) > SAME;
+            if solution.outcome != Outcome::Solved || !found.iter().all(is_new) {
+                continue;
+            }
+            let meeting = self.meeting(&mut evaluation, &parameters, &solution);
+            if !meeting.only_touches() {
+                found.push(meeting);
+            }
+        }
+        found.sort_by(|a, b| a.along.total_cmp(&b.along));
+        found
+    }
+
+    /// A root as a point of both surfaces.
+    fn meeting(&self, evaluation: &mut Evaluation<'_>, line: &[f64], solution: &Solution) -> Meeting {
+        let mut out = vec![0.0; self.probe.output_count()];
+        ScalarEvaluator::new(&self.probe).run(&[&solution.unknowns[..], line].concat(), &mut out);
+        let vector = |k: usize| [out[k], out[k + 1], out[k + 2]];
+        let [position, first_normal, second_normal] = [0, 3, 6].map(vector);
+        let (along, slopes) = (out[9], &out[10..]);
+        // how far the meeting moves along the line if the first surface is held a little outside the second: of the
+        // equations, the last four are the equal positions and the line
+        let mut held = vec![0.0; self.system.size()];
+        let equal_positions = self.system.size() - 4;
+        held[equal_positions..equal_positions + 3].copy_from_slice(&second_normal);
+        evaluation.at(&solution.unknowns);
+        let moved = inverse_times(evaluation, &held);
+        let farther: f64 = slopes.iter().zip(&moved).map(|(slope, by)| slope * by).sum();
+        let point = |unknowns: &[f64], normal| SurfacePoint {
+            outcome: Outcome::Solved,
+            unknowns: unknowns.to_vec(),
+            position,
+            normal,
+            residual: solution.residual,
+        };
+        let (first, second) = solution.unknowns.split_at(self.first_unknowns);
+        Meeting {
+            first: point(first, first_normal),
+            second: point(second, second_normal),
+            along,
+            leaves: farther > 0.0,
+        }
+    }
+
+    /// Unknowns of both surfaces where they are near each other.
+    fn pairs(&self, near: &[&SurfacePoint]) -> impl Iterator<Item = Vec<f64>> {
+        let mut pairs: Vec<(f64, &SurfacePoint, &SurfacePoint)> = Vec::new();
+        for point in near {
+            let nearest = self.seeds.iter().map(|seed| (squared_distance(point, seed), *point, seed));
+            pairs.extend(nearest.min_by(|a, b| a.0.total_cmp(&b.0)));
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        pairs.into_iter().take(PAIRS).map(|(_, a, b)| [&a.unknowns[..], &b.unknowns].concat())
+    }
+}
+
+impl Meeting {
+    /// Whether the surfaces have the same tangent plane there, as far as points within the tolerance can tell.
+    fn only_touches(&self) -> bool {
+        let [a, b] = [&self.first, &self.second].map(|point| nalgebra::Vector3::from(point.normal));
+        a.cross(&b).norm() < TOUCHING
+    }
+
+    /// The unknowns of the first surface and of the second.
+    pub fn unknowns(&self) -> Vec<f64> {
+        [&self.first.unknowns[..], &self.second.unknowns].concat()
+    }
+}
+
+/// Points all over a surface that its tool leaves.
+fn seeds(surface: &Surface<'_>, ranges: &[Range]) -> Result<Vec<SurfacePoint>, TapeError> {
+    let coordinates = [surface.unknowns[0], surface.unknowns[1]];
+    // machine code does not pay for so few
+    let problem = SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?.on(InstructionSet::widest());
+    let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
+    let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
+    let (points, _) = problem.solve(&targets, [SEEDS; 2]);
+    Ok(points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect())
+}
+
+fn squared_distance(a: &SurfacePoint, b: &SurfacePoint) -> f64 {
+    a.position.iter().zip(b.position).map(|(a, b)| (a - b) * (a - b)).sum()
+}

@@ -1,0 +1,12 @@
+//! What follows from a solved surface: geometry, sensitivities, deviations, and what cuts it.
+
+pub(crate) mod cutting;
+pub(crate) mod deviation;
+pub(crate) mod extent;
+pub(crate) mod geometry;
+pub(crate) mod inspection;
+pub(crate) mod integer_points;
+pub(crate) mod intersection;
+pub(crate) mod secondary;
+pub(crate) mod sensitivity;
+pub(crate) mod trim;

@@ -1,0 +1,229 @@
+//! Which points of a grid are held against the tool's positions.
+
+use nalgebra::Vector3;
+
+use crate::analysis::secondary::SecondaryCutting;
+use crate::analysis::secondary::line::{Cut, Place, Pose, Poses, Way};
+use crate::analysis::secondary::net::Seen;
+use crate::equations::solution::{CutBy, Outcome};
+use crate::surface::points::SurfacePoint;
+
+/// Of a grid with no more points than this, each is judged: between lines that are far apart a whole piece may be cut away.
+const FEW: usize = 1024;
+/// Parts into which rows and columns are divided first.
+const PARTS: usize = 8;
+/// Feet that are looked for before the rest is given up, and for each line of a grid.
+const MOST_LOOKS: [u64; 2] = [100_000, 1000];
+
+/// What is known once a grid was judged.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Judged {
+    /// The numbers of the pieces that cut points away, and how deep, mm, the deepest of these was seen to lie in the steel.
+    pub deepest: Vec<(usize, f64)>,
+    /// What was not looked at.
+    pub unseen: Option<Unseen>,
+}
+
+/// Positions that points were not held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// Those that differ from a point's own in several motions at once.
+    SeveralMotions,
+    /// All that was left when the budget was spent.
+    Budget,
+}
+
+/// A verdict on one point.
+type Verdict = Option<Cut>;
+
+struct Judge<'c> {
+    cutting: &'c SecondaryCutting,
+    poses: Poses<'c>,
+    seen: Vec<Seen<'c>>,
+    /// For each motion the values that are looked at; if there is only one, the poses there.
+    values: Vec<Vec<f64>>,
+    fixed: Vec<Pose>,
+    looks: u64,
+}
+
+impl SecondaryCutting {
+    /// Marks the solved points of a grid, row by row, that the tool cuts away in another position, as
+    /// [`CutBy::ItsToolElsewhere`]. The motions are the last of a point's unknowns.
+    ///
+    /// Points are held against all positions that differ from their own in one motion. Where a grid has many, some of them are, evenly spread,
+    /// and all where verdicts change; what lies between points of one verdict has it too.
+    ///
+    /// # Panics
+    /// If there are not `counts[0] · counts[1]` points.
+    pub fn judge(&self, points: &mut [SurfacePoint], counts: [usize; 2]) -> Judged {
+        assert_eq!(points.len(), counts[0] * counts[1], "one point for each place of the grid");
+        let mut judged = Judged::default();
+        let is_solved = |point: &&SurfacePoint| point.outcome == Outcome::Solved;
+        let Some(middle) = points.iter().filter(is_solved).nth(points.iter().filter(is_solved).count() / 2) else {
+            return judged;
+        };
+        if self.ranges.is_empty() {
+            return judged;
+        }
+        let judge = Judge::new(self, middle);
+        let mut spread = Spread { judge, points, counts, verdicts: vec![None; points.len()], is_spent: false };
+        spread.all();
+        let Spread { verdicts, is_spent, .. } = spread;
+        for (point, verdict) in points.iter_mut().zip(verdicts) {
+            let Some(Some(cut)) = verdict else { continue };
+            point.outcome = Outcome::CutAway(CutBy::ItsToolElsewhere(cut.by));
+            match judged.deepest.iter_mut().find(|(by, _)| *by == cut.by) {
+                Some((_, depth)) => *depth = depth.max(cut.depth),
+                None => judged.deepest.push((cut.by, cut.depth)),
+            }
+        }
+        judged.unseen = match is_spent {
+            true => Some(Unseen::Budget),
+            false => (self.ranges.len() > 1).then_some(Unseen::SeveralMotions),
+        };
+        judged
+    }
+}
+
+impl<'c> Judge<'c> {
+    fn new(cutting: &'c SecondaryCutting, middle: &SurfacePoint) -> Judge<'c> {
+        let mut poses = Poses::new(cutting);
+        let count = cutting.ranges.len();
+        let motions = middle.unknowns[middle.unknowns.len() - count..].to_vec();
+        let position = Vector3::from(middle.position);
+        let values: Vec<Vec<f64>> = (0..count).map(|k| poses.values(&motions, k, &position)).collect();
+        let fixed =
+            if count == 1 { values[0].iter().map(|value| poses.at(&[*value], 0)).collect() } else { Vec::new() };
+        let seen = cutting.pieces.iter().map(|piece| piece.seen()).collect();
+        Judge { cutting, poses, seen, values, fixed, looks: 0 }
+    }
+
+    fn verdict(&mut self, point: &SurfacePoint) -> Verdict {
+        let count = self.cutting.ranges.len();
+        let motions = &point.unknowns[point.unknowns.len() - count..];
+        let position = Vector3::from(point.position);
+        let mut deepest: Verdict = None;
+        for running in 0..count {
+            let places = self.places(&position, motions, running);
+            for seen in &mut self.seen {
+                let motions = motions.to_vec();
+                let mut way = Way { poses: &mut self.poses, seen, point: position, motions, running, looks: 0 };
+                let cut = way.cut(&places);
+                self.looks += 1 + way.looks;
+                deepest = deepest.into_iter().chain(cut).reduce(Cut::deeper);
+            }
+        }
+        deepest
+    }
+
+    /// Where a point is in the tool's frame while one of the motions runs, and the others stay; one of the places is its own.
+    fn places(&mut self, position: &Vector3<f64>, motions: &[f64], running: usize) -> Vec<Place> {
+        let own = motions[running];
+        let mut at = motions.to_vec();
+        let mut place = |number: usize, value: f64| {
+            at[running] = value;
+            let pose = self.fixed.get(number).copied().unwrap_or_else(|| self.poses.at(&at, running));
+            pose.place(value, position)
+        };
+        let values = self.values[running].iter().enumerate();
+        let mut places: Vec<Place> = values.map(|(number, value)| place(number, *value)).collect();
+        let here = place(usize::MAX, own);
+        let after = places.partition_point(|place| place.motion < own);
+        match places.get_mut(after) {
+            Some(place) if place.motion == own => *place = here,
+            _ => places.insert(after, here),
+        }
+        places
+    }
+}
+
+/// Verdicts that spread over a grid.
+struct Spread<'p, 'c> {
+    judge: Judge<'c>,
+    points: &'p [SurfacePoint],
+    counts: [usize; 2],
+    verdicts: Vec<Option<Verdict>>,
+    is_spent: bool,
+}
+
+impl Spread<'_, '_> {
+    fn all(&mut self) {
+        if self.points.len() <= FEW {
+            (0..self.points.len()).for_each(|at| {
+                self.known(at);
+            });
+            return;
+        }
+        let [rows, columns] = self.counts.map(lines);
+        for i in rows.windows(2) {
+            for j in columns.windows(2) {
+                self.block([i[0], i[1]], [j[0], j[1]]);
+            }
+        }
+    }
+
+    fn known(&mut self, at: usize) -> Option<Verdict> {
+        if self.points[at].outcome != Outcome::Solved {
+            return None;
+        }
+        if self.verdicts[at].is_none() {
+            let [most, each] = MOST_LOOKS;
+            if self.judge.looks > most + each * self.counts.iter().sum::<usize>() as u64 {
+                self.is_spent = true;
+                return None;
+            }
+            self.verdicts[at] = Some(self.judge.verdict(&self.points[at]));
+        }
+        self.verdicts[at]
+    }
+
+    /// A block between rows and columns: of one verdict if its corners are.
+    fn block(&mut self, rows: [usize; 2], columns: [usize; 2]) {
+        let corners = rows.into_iter().flat_map(|i| columns.map(|j| i * self.counts[1] + j));
+        let corners: Vec<usize> = corners.collect();
+        let known: Vec<Option<Verdict>> = corners.iter().map(|at| self.known(*at)).collect();
+        let [high, wide] = [rows, columns].map(|[from, to]| to - from);
+        if self.is_spent || (high <= 1 && wide <= 1) {
+            return;
+        }
+        let solved: Vec<Verdict> = known.iter().flatten().copied().collect();
+        let number = |verdict: &Verdict| verdict.map(|cut| cut.by);
+        let is_one = solved.len() == 4 && solved.iter().all(|verdict| number(verdict) == number(&solved[0]));
+        let mut has_local = false;
+        let mut inside = Vec::new();
+        for i in rows[0]..=rows[1] {
+            let first = i * self.counts[1];
+            for at in first + columns[0]..=first + columns[1] {
+                match self.points[at].outcome {
+                    Outcome::Solved => inside.push(at),
+                    outcome => has_local |= outcome == Outcome::CutAway(CutBy::ItsTool),
+                }
+            }
+        }
+        if is_one && !has_local {
+            for at in inside {
+                self.verdicts[at].get_or_insert(solved[0]);
+            }
+            return;
+        }
+        if inside.is_empty() {
+            return;
+        }
+        if high >= wide {
+            let middle = rows[0] + high / 2;
+            self.block([rows[0], middle], columns);
+            self.block([middle, rows[1]], columns);
+        } else {
+            let middle = columns[0] + wide / 2;
+            self.block(rows, [columns[0], middle]);
+            self.block(rows, [middle, columns[1]]);
+        }
+    }
+}
+
+/// The first line, the last, and some between them.
+fn lines(count: usize) -> Vec<usize> {
+    let mut lines: Vec<usize> = (0..=PARTS).map(|k| k * (count - 1) / PARTS).collect();
+    lines.dedup();
+    if lines.len() == 1 { vec![0, 0] } else { lines }
+}

@@ -1,0 +1,295 @@
+//! The way of one point of the work through the tool's frame while one motion runs, and where it enters the steel.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::analysis::secondary::SecondaryCutting;
+use crate::analysis::secondary::net::{Foot, Found, Near, Seen, Side};
+use crate::analysis::secondary::tape::Runner;
+
+/// A point less deep in the steel than this, mm, is only touched: points are good to this.
+const TOUCH: f64 = 1e-9;
+/// How much longer than by the speeds at its ends a way may be.
+const LONGER: f64 = 1.25;
+/// Where the cubic through clearances and their slopes stays above this share of the smaller one, so does the clearance.
+const CLEAR: f64 = 0.3;
+/// Halvings of the way between two places. About a clearance that is least they find a depth of [`TOUCH`].
+const MOST_HALVINGS: u32 = 14;
+/// Steps in which the greatest depth is looked for.
+const STEPS_DOWN: usize = 30;
+
+/// The pose of the work in the tool, and its derivative by the motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    rotation: [Matrix3<f64>; 2],
+    translation: [Vector3<f64>; 2],
+}
+
+/// A point of the work in the tool's frame at one value of the motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) motion: f64,
+    point: Vector3<f64>,
+    velocity: Vector3<f64>,
+}
+
+/// A place as a piece of the tool sees it.
+#[derive(Clone, Copy)]
+struct Sight {
+    place: Place,
+    near: Near,
+    /// Once it was looked for.
+    found: Option<Found>,
+}
+
+/// The tool cuts a point away.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    /// The number of the piece that does.
+    pub(super) by: usize,
+    /// How deep in the steel the point lies at least.
+    pub(super) depth: f64,
+}
+
+impl Cut {
+    pub(super) fn deeper(self, other: Cut) -> Cut {
+        if other.depth > self.depth { other } else { self }
+    }
+}
+
+/// The position of the work in the tool, for one motion after the other.
+pub(super) struct Poses<'c> {
+    cutting: &'c SecondaryCutting,
+    evaluator: Runner<'c>,
+    out: Vec<f64>,
+}
+
+impl<'c> Poses<'c> {
+    pub(super) fn new(cutting: &'c SecondaryCutting) -> Poses<'c> {
+        let out = vec![0.0; cutting.pose.output_count()];
+        Poses { cutting, evaluator: cutting.pose.runner(), out }
+    }
+
+    /// At values of the motions, with the derivative by the one of a number.
+    pub(super) fn at(&mut self, motions: &[f64], running: usize) -> Pose {
+        self.evaluator.run(motions, &mut self.out);
+        let matrix = |from: usize| Matrix3::from_row_slice(&self.out[from..from + 9]);
+        let vector = |from: usize| Vector3::from_row_slice(&self.out[from..from + 3]);
+        let [own, derived] = [0, 12 * (1 + running)];
+        Pose { rotation: [matrix(own), matrix(derived)], translation: [vector(own + 9), vector(derived + 9)] }
+    }
+
+    /// The motion's values that are looked at first: the way of a point bends little from one to the next.
+    pub(super) fn values(&mut self, motions: &[f64], running: usize, point: &Vector3<f64>) -> Vec<f64> {
+        const FEWEST: usize = 16;
+        const MOST: usize = 1024;
+        const BEND: f64 = 0.3;
+        let range = self.cutting.ranges[running];
+        let mut at = motions.to_vec();
+        let mut count = FEWEST;
+        loop {
+            let values: Vec<f64> = (0..=count).map(|k| range.at(k as f64 / count as f64)).collect();
+            let velocities: Vec<Vector3<f64>> = values
+                .iter()
+                .map(|value| {
+                    at[running] = *value;
+                    self.at(&at, running).velocity(point)
+                })
+                .collect();
+            let fastest = velocities.iter().map(|velocity| velocity.norm()).fold(0.0, f64::max);
+            let bends = |pair: &[Vector3<f64>]| (pair[1] - pair[0]).norm() > BEND * fastest;
+            if count >= MOST || !velocities.windows(2).any(bends) {
+                return values;
+            }
+            count *= 2;
+        }
+    }
+}
+
+impl Pose {
+    fn velocity(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation[1] * point + self.translation[1]
+    }
+
+    pub(super) fn place(&self, motion: f64, point: &Vector3<f64>) -> Place {
+        let velocity = self.velocity(point);
+        Place { motion, point: self.rotation[0] * point + self.translation[0], velocity }
+    }
+}
+
+/// One point of the work, one motion that runs, one piece of the tool.
+pub(super) struct Way<'w, 'c> {
+    pub(super) poses: &'w mut Poses<'c>,
+    pub(super) seen: &'w mut Seen<'c>,
+    /// Of the work.
+    pub(super) point: Vector3<f64>,
+    pub(super) motions: Vec<f64>,
+    pub(super) running: usize,
+    /// Feet that were looked for.
+    pub(super) looks: u64,
+}
+
+impl Way<'_, '_> {
+    /// Whether the piece cuts the point away on its way through some places, one after the other; one of them is where it is
+    /// generated.
+    pub(super) fn cut(&mut self, places: &[Place]) -> Option<Cut> {
+        let mut before: Option<Sight> = None;
+        let mut deepest: Option<Cut> = None;
+        for (number, place) in places.iter().enumerate() {
+            let beside = &places[number.saturating_sub(1)..places.len().min(number + 2)];
+            let is_far = beside.len() > 1 && {
+                let fastest = beside.iter().map(|place| place.velocity.norm()).fold(0.0, f64::max);
+                let farther = (beside[1].motion - beside[0].motion).max(beside[beside.len() - 1].motion - place.motion);
+                self.seen.piece.least(&place.point) > LONGER * fastest * farther
+            };
+            let mut sight = if is_far { None } else { self.sight(*place) };
+            if let (Some(before), Some(sight)) = (&mut before, &mut sight)
+                && let Some(cut) = self.between(before, sight, 0)
+            {
+                deepest = Some(deepest.map_or(cut, |deepest| deepest.deeper(cut)));
+            }
+            before = sight;
+        }
+        deepest
+    }
+
+    fn sight(&self, place: Place) -> Option<Sight> {
+        self.seen.piece.near(&place.point).map(|near| Sight { place, near, found: None })
+    }
+
+    fn sight_at(&mut self, motion: f64) -> Option<Sight> {
+        let own = std::mem::replace(&mut self.motions[self.running], motion);
+        let place = self.poses.at(&self.motions, self.running).place(motion, &self.point);
+        self.motions[self.running] = own;
+        self.sight(place)
+    }
+
+    /// The foot of a place on the piece or a little beyond it, and on which side of the piece it lies, if that is known.
+    fn foot(&mut self, sight: &mut Sight) -> (Option<Foot>, Option<Side>) {
+        if sight.found.is_none() {
+            self.looks += 1;
+            sight.found = Some(self.seen.foot(&sight.place.point, sight.near.at));
+        }
+        match sight.found {
+            Some(Found::Foot(foot)) => (Some(foot), Some(self.seen.piece.side(foot.at))),
+            Some(Found::Beyond(side)) => (None, Some(side)),
+            Some(Found::Lost) | None => (None, None),
+        }
+    }
+
+    fn between(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
+        let fastest = a.place.velocity.norm().max(b.place.velocity.norm());
+        let span = b.place.motion - a.place.motion;
+        let way = LONGER * fastest * span;
+        if a.near.least + b.near.least > way || a.near.least.max(b.near.least) > way {
+            return None;
+        }
+        let ((foot_a, side_a), (foot_b, side_b)) = (self.foot(a), self.foot(b));
+        if let (Some(side_a), Some(side_b)) = (side_a, side_b)
+            && (0..2).any(|k| side_a[k] * side_b[k] > 0)
+        {
+            return None;
+        }
+        let (Some(foot_a), Some(foot_b)) = (foot_a, foot_b) else { return self.halved(a, b, halvings) };
+        let (clear_a, clear_b) = (foot_a.clearance, foot_b.clearance);
+        if clear_a.max(clear_b) < -TOUCH {
+            return None;
+        }
+        let is_entered = clear_a.min(clear_b) < -TOUCH;
+        let is_same = self.seen.piece.are_beside(foot_a.at, foot_b.at);
+        if is_entered {
+            let is_on = side_a == Some([0, 0]) && side_b == Some([0, 0]);
+            let is_through = (clear_a - clear_b).abs() <= way;
+            // the last halves may lie on both sides of the seam of a closed surface
+            if is_on && is_through && (is_same || halvings >= MOST_HALVINGS) {
+                return Some(self.deepest(if clear_a < clear_b { *a } else { *b }, span));
+            }
+            return self.halved(a, b, halvings);
+        }
+        if !is_same {
+            return self.halved(a, b, halvings);
+        }
+        match [clear_a, clear_b].map(|clear| clear <= TOUCH) {
+            [true, true] => None,
+            [true, false] => self.beside(a, b, halvings),
+            [false, true] => self.beside(b, a, halvings),
+            [false, false] => {
+                let rates = [(foot_a, &a.place), (foot_b, &b.place)].map(|(foot, place)| foot.rate(place.velocity));
+                let least = least_of_cubic([clear_a, clear_b], rates.map(|rate| rate * span));
+                if least > CLEAR * clear_a.min(clear_b) { None } else { self.halved(a, b, halvings) }
+            }
+        }
+    }
+
+    fn halved(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
+        if halvings >= MOST_HALVINGS {
+            return None;
+        }
+        let mut middle = self.sight_at(0.5 * (a.place.motion + b.place.motion))?;
+        self.between(a, &mut middle, halvings + 1).or_else(|| self.between(&mut middle, b, halvings + 1))
+    }
+
+    /// Beside a contact, where the clearance is zero and least, what it is over the square of the way from there tells whether it
+    /// becomes negative.
+    fn beside(&mut self, contact: &Sight, other: &Sight, halvings: u32) -> Option<Cut> {
+        let mut far = *other;
+        for halving in halvings..MOST_HALVINGS {
+            let mut middle = self.sight_at(0.5 * (contact.place.motion + far.place.motion))?;
+            let (Some(near_foot), Some(far_foot)) = (self.foot(&mut middle).0, self.foot(&mut far).0) else {
+                return self.ordered(&mut { *contact }, &mut middle, halving + 1);
+            };
+            let outer = self.ordered(&mut middle, &mut far, halving + 1);
+            if outer.is_some() || near_foot.clearance.abs() <= TOUCH {
+                return outer;
+            }
+            if near_foot.clearance < -TOUCH {
+                return self.ordered(&mut { *contact }, &mut middle, halving + 1);
+            }
+            // over the square, in units of the farther one's
+            let [near, far_one] = [4.0 * near_foot.clearance, far_foot.clearance];
+            let is_even = far_one < 4.0 * near && near < 4.0 * far_one;
+            if is_even && 2.0 * near - far_one > 0.25 * near {
+                return None;
+            }
+            far = middle;
+        }
+        None
+    }
+
+    fn ordered(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
+        if a.place.motion < b.place.motion { self.between(a, b, halvings) } else { self.between(b, a, halvings) }
+    }
+
+    /// How deep the point goes about a place where it is in the steel.
+    fn deepest(&mut self, sight: Sight, span: f64) -> Cut {
+        let by = self.seen.piece.number;
+        let range = self.poses.cutting.ranges[self.running];
+        let Some(Found::Foot(foot)) = sight.found else { return Cut { by, depth: TOUCH } };
+        let mut depth = -foot.clearance;
+        let mut motion = sight.place.motion;
+        let mut step = if foot.rate(sight.place.velocity) > 0.0 { -0.5 * span } else { 0.5 * span };
+        for _ in 0..STEPS_DOWN {
+            let next = (motion + step).clamp(range.low, range.high);
+            match self.sight_at(next).map(|mut sight| self.foot(&mut sight)) {
+                Some((Some(foot), Some([0, 0]))) if -foot.clearance > depth => {
+                    depth = -foot.clearance;
+                    motion = next;
+                    step *= 2.0;
+                }
+                _ => step *= -0.3,
+            }
+        }
+        Cut { by, depth }
+    }
+}
+
+/// The least value between two ends of the cubic with these values and slopes there, over a way of length one.
+fn least_of_cubic([a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2]) -> f64 {
+    // a + slope_a x + p x² + q x³
+    let p = 3.0 * (b - a) - 2.0 * slope_a - slope_b;
+    let q = slope_a + slope_b - 2.0 * (b - a);
+    let value = |x: f64| a + x * (slope_a + x * (p + x * q));
+    let root = (p * p - 3.0 * q * slope_a).sqrt();
+    let candidates = [(-p + root) / (3.0 * q), (-p - root) / (3.0 * q), -slope_a / (2.0 * p)];
+    let inside = candidates.into_iter().filter(|x| (0.0..=1.0).contains(x));
+    inside.map(value).fold(a.min(b), f64::min)
+}

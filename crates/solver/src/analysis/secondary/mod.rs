@@ -1,0 +1,60 @@
+//! Whether the tool, in another of its positions, cuts away a point that it generates.
+//!
+//! The clearance's Hessian ([`Surface::clearance_minors`]) tells of the positions just before and after. Here each point goes through
+//! the tool's frame as the motions have it, and is held against all pieces of the tool's surface: where it crosses one, the tool's
+//! steel has been on both sides of it.
+
+mod grid;
+mod line;
+mod net;
+mod tape;
+
+use flank_expr::geometry::{Chain, Surface};
+use flank_expr::{Expr, TapeError};
+
+use crate::analysis::secondary::net::Piece;
+use crate::analysis::secondary::tape::PlaceTape;
+use crate::equations::solution::Range;
+pub use grid::{Judged, Unseen};
+
+/// A tool with its positions.
+#[derive(Clone, Debug)]
+pub struct SecondaryCutting {
+    pieces: Vec<Piece>,
+    /// Of the motions: the work's pose in the tool, then its derivative by each motion; rotation row by row, then translation.
+    pose: PlaceTape,
+    ranges: Vec<Range>,
+}
+
+impl SecondaryCutting {
+    /// Of `pieces`, a tool's surfaces of two free unknowns in its own frame with normals out of its steel, each with the number by
+    /// which it is named and the ranges of its unknowns. `t_work_tool` is the pose of the tool in the work, which depends on
+    /// `motions`; these run through their `ranges`. `bindings` replace the remaining variables by numbers.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor a motion nor bound.
+    ///
+    /// # Panics
+    /// If a piece does not have two unknowns, or there are not as many ranges as motions.
+    pub fn new<'g>(
+        pieces: &[(usize, &Surface<'g>, [Range; 2])],
+        t_work_tool: &Chain<'g>,
+        (motions, ranges): (&[Expr<'g>], Vec<Range>),
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<SecondaryCutting, TapeError> {
+        assert_eq!(motions.len(), ranges.len(), "one range for each motion");
+        let t_tool_work = t_work_tool.substituted(bindings).inverse().merged().pose();
+        let own: Vec<Expr<'g>> = t_tool_work.rotation.entries().into_iter().chain(t_tool_work.translation.0).collect();
+        let derived = motions.iter().flat_map(|&motion| own.iter().map(move |entry| entry.derivative(motion)));
+        let outputs: Vec<Expr<'g>> = own.iter().copied().chain(derived).collect();
+        let piece = |(number, surface, ranges): &(usize, &Surface<'g>, [Range; 2])| {
+            assert_eq!(surface.unknowns.len(), 2, "a piece has two unknowns");
+            Piece::new(*number, surface, *ranges, bindings)
+        };
+        Ok(SecondaryCutting {
+            pieces: pieces.iter().map(piece).collect::<Result<_, _>>()?,
+            pose: PlaceTape::new(&outputs, motions)?,
+            ranges,
+        })
+    }
+}

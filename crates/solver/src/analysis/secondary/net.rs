@@ -1,0 +1,301 @@
+//! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
+
+use flank_expr::geometry::Surface;
+use flank_expr::{Expr, TapeError};
+use nalgebra::Vector3;
+
+use crate::analysis::secondary::tape::{PlaceTape, Runner};
+use crate::equations::solution::{ROUNDING, Range};
+
+/// Normal and tangents turn by no more than this (rad) over a cell: Newton from anywhere in it finds the foot.
+const TURN: f64 = 0.4;
+/// Places in each direction at which it is looked at how a surface turns.
+const PROBES: usize = 7;
+/// Most cells in one direction; more of a surface would turn farther in each.
+const MOST_CELLS: usize = 192;
+/// Cells that are looked at together.
+const BLOCK: usize = 8;
+/// The foot is found when the next step along the surface is shorter, mm: what it misses then is its square over the radius of
+/// curvature.
+const STILL: f64 = 1e-7;
+const MOST_STEPS: usize = 12;
+/// How far beyond its range a parameter is followed to the foot, as a share of the range.
+const BEYOND: f64 = 0.05;
+
+/// Outputs: position, normal, and the derivatives of both by either parameter.
+const OUTPUTS: usize = 18;
+
+/// A surface of a tool in the tool's frame.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) number: usize,
+    tape: PlaceTape,
+    ranges: [Range; 2],
+    steps: [f64; 2],
+    cells: Vec<Cell>,
+    blocks: Vec<Ball>,
+    /// The least and the greatest coordinates of its cells.
+    hull: [Vector3<f64>; 2],
+}
+
+/// A ball that holds some cells.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    center: Vector3<f64>,
+    radius: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    ball: Ball,
+    /// From its middle to the ends of either parameter.
+    halves: [Vector3<f64>; 2],
+    /// What tells the share of these halves in a vector.
+    duals: [Vector3<f64>; 2],
+    /// How far the surface may be from the parallelogram of the halves.
+    sagitta: f64,
+    at: [f64; 2],
+}
+
+/// The least distance that a point may have from a piece, mm, and the parameters near which.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    pub(super) least: f64,
+    pub(super) at: [f64; 2],
+}
+
+/// The foot of a point on a piece, or on what lies a little beyond its ranges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub(super) at: [f64; 2],
+    /// From the surface to the point, along the normal: negative behind the surface, in the steel.
+    pub(super) clearance: f64,
+    pub(super) normal: Vector3<f64>,
+}
+
+impl Foot {
+    /// How fast the clearance of a point grows that moves so.
+    pub(super) fn rate(&self, velocity: Vector3<f64>) -> f64 {
+        self.normal.dot(&velocity)
+    }
+}
+
+/// What Newton finds from a place on a piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Found {
+    Foot(Foot),
+    /// Beyond an end of a range, or of both.
+    Beyond(Side),
+    /// Nothing.
+    Lost,
+}
+
+/// Beyond which end of the range of each parameter a place lies: -1, 1, or 0 within it.
+pub(super) type Side = [i8; 2];
+
+/// Something that evaluates a piece.
+pub(super) struct Seen<'p> {
+    pub(super) piece: &'p Piece,
+    evaluator: Runner<'p>,
+    out: [f64; OUTPUTS],
+}
+
+impl Piece {
+    pub(super) fn new(
+        number: usize,
+        surface: &Surface<'_>,
+        ranges: [Range; 2],
+        bindings: &[(Expr<'_>, Expr<'_>)],
+    ) -> Result<Piece, TapeError> {
+        let bound = surface.bound(bindings);
+        let parts = [bound.position, bound.normal];
+        let slopes = parts.iter().flat_map(|part| bound.unknowns.iter().map(|&p| part.derivative(p)));
+        let outputs: Vec<Expr<'_>> = parts.iter().copied().chain(slopes).flat_map(|vector| vector.0).collect();
+        let tape = PlaceTape::new(&outputs, &bound.unknowns)?;
+        let mut piece = Piece {
+            number,
+            tape,
+            ranges,
+            steps: [0.0; 2],
+            cells: Vec::new(),
+            blocks: Vec::new(),
+            hull: [Vector3::zeros(); 2],
+        };
+        let (cells, steps) = piece.seen().cells();
+        let blocks = cells.chunks(BLOCK).map(Ball::around).collect();
+        let reach = |cell: &Cell| cell.halves[0].abs() + cell.halves[1].abs() + Vector3::repeat(cell.sagitta);
+        let low = cells.iter().map(|cell| cell.ball.center - reach(cell)).reduce(|a, b| a.inf(&b));
+        let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
+        piece.hull = [low, high].map(Option::unwrap_or_default);
+        (piece.cells, piece.steps, piece.blocks) = (cells, steps, blocks);
+        Ok(piece)
+    }
+
+    pub(super) fn seen(&self) -> Seen<'_> {
+        Seen { piece: self, evaluator: self.tape.runner(), out: [0.0; OUTPUTS] }
+    }
+
+    /// No part of the piece is nearer to a point than this, mm.
+    pub(super) fn least(&self, point: &Vector3<f64>) -> f64 {
+        let [low, high] = &self.hull;
+        (low - point).sup(&(point - high)).sup(&Vector3::zeros()).norm()
+    }
+
+    /// The cell that a point is nearest to; `None` if the piece has no cells.
+    pub(super) fn near(&self, point: &Vector3<f64>) -> Option<Near> {
+        let mut best = Near { least: f64::INFINITY, at: [0.0; 2] };
+        for (block, cells) in self.blocks.iter().zip(self.cells.chunks(BLOCK)) {
+            if (point - block.center).norm() - block.radius >= best.least {
+                continue;
+            }
+            for cell in cells {
+                let from = point - cell.ball.center;
+                let apart = from.norm() - cell.ball.radius;
+                if apart >= best.least {
+                    continue;
+                }
+                let share = cell.duals.map(|dual| dual.dot(&from).clamp(-1.0, 1.0));
+                let least = (from - cell.halves[0] * share[0] - cell.halves[1] * share[1]).norm() - cell.sagitta;
+                if least < best.least {
+                    let at = [0, 1].map(|k| cell.at[k] + 0.5 * share[k] * self.steps[k]);
+                    best = Near { least, at };
+                }
+            }
+        }
+        best.least.is_finite().then_some(best)
+    }
+
+    /// Whether two places on the piece are no farther apart than neighbouring cells.
+    pub(super) fn are_beside(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        (0..2).all(|k| (a[k] - b[k]).abs() <= 2.0 * self.steps[k])
+    }
+
+    /// On which side of the piece a place lies that Newton has found; both zero on the piece.
+    pub(super) fn side(&self, at: [f64; 2]) -> Side {
+        self.beyond(at, ROUNDING)
+    }
+
+    /// The same with ranges that are wider by a share.
+    fn beyond(&self, at: [f64; 2], share: f64) -> Side {
+        [0, 1].map(|k| {
+            let (range, margin) = (self.ranges[k], share * self.ranges[k].width());
+            i8::from(at[k] > range.high + margin) - i8::from(at[k] < range.low - margin)
+        })
+    }
+}
+
+impl Ball {
+    fn around(cells: &[Cell]) -> Ball {
+        let center = cells.iter().map(|cell| cell.ball.center).sum::<Vector3<f64>>() / cells.len() as f64;
+        let reach = |cell: &Cell| (cell.ball.center - center).norm() + cell.ball.radius;
+        Ball { center, radius: cells.iter().map(reach).fold(0.0, f64::max) }
+    }
+}
+
+impl Seen<'_> {
+    fn run(&mut self, at: [f64; 2]) {
+        self.evaluator.run(&at, &mut self.out);
+    }
+
+    fn vector(&self, k: usize) -> Vector3<f64> {
+        Vector3::new(self.out[3 * k], self.out[3 * k + 1], self.out[3 * k + 2])
+    }
+
+    /// How far normal and tangent turn over the range of each parameter where they do so most.
+    fn turns(&mut self) -> [f64; 2] {
+        let ranges = self.piece.ranges;
+        let mut turns = [0.0f64; 2];
+        for place in 0..PROBES * PROBES {
+            let shares = [place / PROBES, place % PROBES].map(|k| (k as f64 + 0.5) / PROBES as f64);
+            let at = [0, 1].map(|k| ranges[k].at(shares[k]));
+            self.run(at);
+            let tangents = [2, 3].map(|k| self.vector(k).normalize());
+            for k in 0..2 {
+                let by = 1e-4;
+                let mut beside = at;
+                beside[k] += by * ranges[k].width();
+                self.run(beside);
+                let turned = (self.vector(2 + k).normalize() - tangents[k]).norm() / by;
+                let normal = self.vector(4 + k).norm() * ranges[k].width();
+                turns[k] = turns[k].max(turned).max(normal);
+            }
+        }
+        turns
+    }
+
+    fn cells(&mut self) -> (Vec<Cell>, [f64; 2]) {
+        let ranges = self.piece.ranges;
+        let counts = self.turns().map(|turn| ((turn / TURN).ceil() as usize).clamp(1, MOST_CELLS));
+        let steps = [0, 1].map(|k| ranges[k].width() / counts[k] as f64);
+        let corner = |i: usize, j: usize| [ranges[0].low + i as f64 * steps[0], ranges[1].low + j as f64 * steps[1]];
+        let mut corners = Vec::new();
+        for i in 0..=counts[0] {
+            for j in 0..=counts[1] {
+                self.run(corner(i, j));
+                corners.push(self.vector(0));
+            }
+        }
+        let mut cells = Vec::new();
+        for i in 0..counts[0] {
+            for j in 0..counts[1] {
+                let at = [0, 1].map(|k| corner(i, j)[k] + 0.5 * steps[k]);
+                let around = [(0, 0), (0, 1), (1, 0), (1, 1)];
+                let corner = |(a, b): (usize, usize)| corners[(i + a) * (counts[1] + 1) + j + b];
+                cells.extend(self.cell(at, steps, around.map(corner)));
+            }
+        }
+        (cells, steps)
+    }
+
+    /// A cell from its middle and its corners; nothing where the surface has no place or normal.
+    fn cell(&mut self, at: [f64; 2], steps: [f64; 2], corners: [Vector3<f64>; 4]) -> Option<Cell> {
+        self.run(at);
+        let center = self.vector(0);
+        let halves = [0, 1].map(|k| self.vector(2 + k) * (0.5 * steps[k]));
+        let [a, b] = halves;
+        let (aa, ab, bb) = (a.norm_squared(), a.dot(&b), b.norm_squared());
+        let area = aa * bb - ab * ab;
+        let duals = [(a * bb - b * ab) / area, (b * aa - a * ab) / area];
+        let flat = [-a - b, b - a, a - b, a + b];
+        let sagitta =
+            corners.iter().zip(flat).map(|(corner, flat)| (corner - center - flat).norm()).fold(0.0, f64::max);
+        let radius = corners.iter().map(|corner| (corner - center).norm()).fold(0.0, f64::max) + sagitta;
+        let is_whole = duals.iter().all(|dual| dual.iter().all(|x| x.is_finite())) && radius.is_finite();
+        is_whole.then_some(Cell { ball: Ball { center, radius }, halves, duals, sagitta, at })
+    }
+
+    /// The foot of a point that Newton finds from a place.
+    pub(super) fn foot(&mut self, point: &Vector3<f64>, start: [f64; 2]) -> Found {
+        let piece = self.piece;
+        let mut at = start;
+        for _ in 0..MOST_STEPS {
+            self.run(at);
+            let [position, normal, u, v] = [0, 1, 2, 3].map(|k| self.vector(k));
+            let from = point - position;
+            let clearance = from.dot(&normal);
+            let gradient = [from.dot(&u), from.dot(&v)];
+            let metric = [u.norm_squared(), u.dot(&v), v.norm_squared()];
+            let bent = [u.dot(&self.vector(4)), u.dot(&self.vector(5)), v.dot(&self.vector(5))];
+            let curved: [f64; 3] = std::array::from_fn(|k| metric[k] + clearance * bent[k]);
+            let is_least = curved[0] > 0.0 && curved[0] * curved[2] > curved[1] * curved[1];
+            let [a, b, c] = if is_least { curved } else { metric };
+            let area = a * c - b * b;
+            let step = [(c * gradient[0] - b * gradient[1]) / area, (a * gradient[1] - b * gradient[0]) / area];
+            let along = (u * step[0] + v * step[1]).norm();
+            if along.is_nan() {
+                return Found::Lost;
+            }
+            let before = piece.beyond(at, BEYOND);
+            let shorter = (0..2).map(|k| 2.0 * piece.steps[k] / step[k].abs()).fold(1.0, f64::min);
+            at = [0, 1].map(|k| at[k] + shorter * step[k]);
+            if along < STILL {
+                return Found::Foot(Foot { at, clearance, normal });
+            }
+            let after = piece.beyond(at, BEYOND);
+            if before != [0, 0] && after != [0, 0] {
+                return Found::Beyond(after);
+            }
+        }
+        Found::Lost
+    }
+}

@@ -1,0 +1,140 @@
+//! A surface without the points that another one cuts away.
+
+use crate::analysis::intersection::{Intersection, Line, Meeting};
+use crate::equations::solution::{CutBy, Outcome};
+use crate::surface::points::SurfacePoint;
+
+/// A point nearer than this to a meeting on its line, in the line's own unit, lies on the edge and stays.
+const ON_EDGE: f64 = 1e-9;
+
+/// What is known of a point of the grid.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    stays: bool,
+    goes: bool,
+}
+
+/// Marks the solved points of a grid of the intersection's first surface that its second cuts away, as
+/// [`CutBy::Other`]`(number)`, and gives back where the two meet on the grid: on the columns, one after the other, and on the
+/// rows.
+///
+/// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
+/// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
+/// runs outside the body that owns the second one. A point without a meeting on its row and column is as the neighbours
+/// that no meeting parts from it. What rows, columns and neighbours disagree about is [`Outcome::Undecided`]. Where nothing
+/// meets, nothing is cut away.
+///
+/// # Panics
+/// If there are not `counts[0] · counts[1]` targets and points.
+pub fn trim(
+    points: &mut [SurfacePoint],
+    targets: &[[f64; 2]],
+    counts: [usize; 2],
+    intersection: &Intersection,
+    number: usize,
+) -> [Vec<Meeting>; 2] {
+    assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
+    assert_eq!(targets.len(), points.len(), "one point for each target");
+    let mut known = vec![Known::default(); points.len()];
+    let mut joined: Vec<[usize; 2]> = Vec::new();
+    let mut meetings = [Vec::new(), Vec::new()];
+    let [rows, columns] = counts;
+    let columns_down = (0..columns).map(|j| (0..rows).map(|i| i * columns + j).collect());
+    let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
+    for (lines, coordinate) in [(columns_down.collect::<Vec<Vec<usize>>>(), 0), (rows_across.collect(), 1)] {
+        let mut before: Vec<Vec<f64>> = Vec::new();
+        for indices in &lines {
+            let line = Line::through(indices, targets, coordinate);
+            let near: Vec<&SurfacePoint> =
+                indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved).collect();
+            let found = intersection.on_line(line, &before, &near);
+            decide(&mut known, &mut joined, indices, targets, line, &found);
+            if !found.is_empty() {
+                before = found.iter().map(Meeting::unknowns).collect();
+            }
+            meetings[coordinate]
+                .extend(found.into_iter().filter(|meeting| line.is_on_grid(meeting.along, indices, targets)));
+        }
+    }
+    spread(&mut known, &joined);
+    for (point, known) in points.iter_mut().zip(known) {
+        if point.outcome == Outcome::Solved && known.goes {
+            point.outcome = if known.stays { Outcome::Undecided } else { Outcome::CutAway(CutBy::Other(number)) };
+        }
+    }
+    meetings
+}
+
+impl Line {
+    /// Through the first and the last of some targets; along a coordinate if there is only one.
+    fn through(indices: &[usize], targets: &[[f64; 2]], coordinate: usize) -> Line {
+        let ends = [indices.first(), indices.last()].map(|at| at.map_or([0.0; 2], |&at| targets[at]));
+        let by = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+        let length = by[0].hypot(by[1]);
+        let axis = [0, 1].map(|k| if k == coordinate { 1.0 } else { 0.0 });
+        Line { from: ends[0], direction: if length > 0.0 { by.map(|by| by / length) } else { axis } }
+    }
+
+    fn along(&self, target: [f64; 2]) -> f64 {
+        (0..2).map(|k| (target[k] - self.from[k]) * self.direction[k]).sum()
+    }
+
+    /// Whether a place lies between the ends of the line, or beyond them by no more than the points are apart.
+    fn is_on_grid(&self, along: f64, indices: &[usize], targets: &[[f64; 2]]) -> bool {
+        let length = indices.last().map_or(0.0, |&last| self.along(targets[last]));
+        let gap = length / (indices.len().max(2) - 1) as f64;
+        indices.len() < 2 || (-gap..=length + gap).contains(&along)
+    }
+}
+
+/// What the meetings on a line say of its points, and which neighbours on it no meeting parts.
+fn decide(
+    known: &mut [Known],
+    joined: &mut Vec<[usize; 2]>,
+    indices: &[usize],
+    targets: &[[f64; 2]],
+    line: Line,
+    found: &[Meeting],
+) {
+    let place = |at: usize| line.along(targets[at]);
+    for &at in indices {
+        let s = place(at);
+        if found.iter().any(|meeting| (meeting.along - s).abs() <= ON_EDGE) {
+            known[at].stays = true;
+            continue;
+        }
+        let before = found.iter().rev().find(|meeting| meeting.along < s).map(|meeting| meeting.leaves);
+        let after = found.iter().find(|meeting| meeting.along > s).map(|meeting| !meeting.leaves);
+        for goes in [before, after].into_iter().flatten() {
+            known[at].goes |= goes;
+            known[at].stays |= !goes;
+        }
+    }
+    for pair in indices.windows(2) {
+        let (a, b) = (place(pair[0]), place(pair[1]));
+        if !found.iter().any(|meeting| (a.min(b) - ON_EDGE..=a.max(b) + ON_EDGE).contains(&meeting.along)) {
+            joined.push([pair[0], pair[1]]);
+        }
+    }
+}
+
+/// Points of which nothing is known are as those that they hang together with.
+fn spread(known: &mut [Known], joined: &[[usize; 2]]) {
+    let open: Vec<bool> = known.iter().map(|point| !point.stays && !point.goes).collect();
+    loop {
+        let mut changed = false;
+        for &[a, b] in joined.iter().chain(joined.iter().rev()) {
+            for (from, to) in [(a, b), (b, a)] {
+                let Known { stays, goes } = known[from];
+                if open[to] && ((stays && !known[to].stays) || (goes && !known[to].goes)) {
+                    known[to].stays |= stays;
+                    known[to].goes |= goes;
+                    changed = true;
+                }
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! What is known of branches beside the one that a grid follows.
+//!
+//! A grid that is not complete is looked at as a part of a finer one, so that which of its points are solved does not depend on how
+//! many of them there are. Roots are looked for at places of the grid's rectangle that do not depend on that either.
+
+use flank_expr::LANES;
+
+use crate::continuation::anchor::{course, follow_alone};
+use crate::continuation::choice::{Choice, is_same_root};
+use crate::continuation::field::Field;
+use crate::continuation::grid::{Effort, Elsewhere, Followed, Grid, extrapolated};
+use crate::continuation::reach::{back_into, is_within};
+use crate::equations::solution::{Outcome, Solution};
+use crate::newton::batch::LaneNewton;
+use crate::newton::multistart::probe;
+use crate::newton::scalar::solve_with;
+use crate::newton::solvers::Solvers;
+
+/// Steps from the first row, or column, to the last one that a finer grid has at the least.
+const FINE: usize = 32;
+/// Points of the largest grid that is looked at as a part of a finer one.
+const MOST_REFINED: usize = 1024;
+/// Shares of the way across a grid at which branches are looked for beside the middle.
+const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
+/// The same where points are missing.
+const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// How often starts are drawn at each place of a grid whose branch leaves the ranges.
+const OFTEN: usize = 3;
+/// Points that are missing at which branches are looked for.
+const MISSING: usize = 16;
+/// Where a branch folds back, its unknowns change with the root of the distance from the fold. From the last solved point the other
+/// sheet is so many times as far as the point before, for a fold at a tenth, at a half and at the whole of the step to the next point.
+const ACROSS_FOLDS: [f64; 3] = [0.86, 2.7, 4.8];
+/// Points of the largest grid on which several further branches are followed; of larger ones the first is told.
+const MOST_FOLLOWED: usize = 4096;
+/// Branches that are told of, at the most.
+const TOLD: usize = 4;
+/// A grid as far as its branch can be followed; further branches stand in the grid's effort.
+pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &Choice<'_>) -> Followed {
+    let mut followed = follow_alone(grid, solvers, None, choice);
+    let leads_astray = |field: &Field| choice.planes.is_some_and(|planes| planes.are_missing(field, 0..field.len()));
+    if !grid.is_careful && leads_astray(&followed.field) {
+        grid.is_careful = true;
+        let evaluations = grid.effort.evaluations;
+        grid.effort = Effort { evaluations, ..Effort::default() };
+        followed = follow_alone(grid, solvers, None, choice);
+    }
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
+        return followed;
+    }
+    if followed.field.is_complete() {
+        let field = &followed.field;
+        let points = if followed.is_beyond { places_beyond(grid, field, choice) } else { places(grid) };
+        grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, (field, points), choice);
+        return followed;
+    }
+    if grid.are_rows_apart {
+        return followed;
+    }
+    let factors = [grid.rows, grid.columns].map(|count| FINE.div_ceil(count.max(2) - 1));
+    if factors == [1, 1] || grid.targets.len() > MOST_REFINED {
+        return with_others(grid, followed, choice);
+    }
+    let (targets, counts) = refined(grid, factors);
+    let mut fine = Grid::new(grid.system, grid.ranges, (&targets, counts), None);
+    fine.is_careful = grid.is_careful;
+    let found = follow_alone(&mut fine, solvers, None, choice);
+    let found = with_others(&mut fine, found, choice);
+    let evaluations = grid.effort.evaluations;
+    grid.effort = fine.effort;
+    grid.effort.evaluations += evaluations;
+    let counts_of_own = [grid.rows, grid.columns];
+    let mut field = Field::new(found.field.ranges(), counts_of_own, grid.system.extra_count(), None);
+    for point in 0..grid.targets.len() {
+        let (i, j) = (point / grid.columns, point % grid.columns);
+        let same = i * grid.factor(factors, 0) * counts[1] + j * grid.factor(factors, 1);
+        field.copy(point, &found.field, same);
+    }
+    Followed { field, is_beyond: found.is_beyond }
+}
+
+impl Grid<'_> {
+    /// How many steps of a finer grid one of this is.
+    fn factor(&self, factors: [usize; 2], direction: usize) -> usize {
+        if [self.rows, self.columns][direction] == 1 { 1 } else { factors[direction] }
+    }
+}
+
+/// The targets of a grid with further points between its own.
+fn refined(grid: &Grid<'_>, factors: [usize; 2]) -> (Vec<[f64; 2]>, [usize; 2]) {
+    let own = [grid.rows, grid.columns];
+    let counts = [0, 1].map(|k| (own[k] - 1) * grid.factor(factors, k) + 1);
+    let share = |k: usize, at: usize| at as f64 / (counts[k].max(2) - 1) as f64;
+    let target = |point: usize| {
+        let (i, j) = (point / counts[1], point % counts[1]);
+        let [down, across] = [grid.factor(factors, 0), grid.factor(factors, 1)];
+        // its own points bit for bit
+        if i.is_multiple_of(down) && j.is_multiple_of(across) {
+            grid.targets[i / down * grid.columns + j / across]
+        } else {
+            grid.target_at([share(0, i), share(1, j)])
+        }
+    };
+    ((0..counts[0] * counts[1]).map(target).collect(), counts)
+}
+
+/// Of a grid that is not complete: branches at places spread over it and at points that are missing. If the branch that was followed
+/// has no point in the middle, and another one has points, too, nothing says which is meant.
+fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>) -> Followed {
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
+        return followed;
+    }
+    let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
+    let field = &followed.field;
+    let missing: Vec<usize> = (0..field.len()).filter(|point| !field.is_solved(*point)).collect();
+    points.extend(missing.iter().step_by(missing.len().div_ceil(MISSING).max(1)));
+    let mut others = Others { own: &followed.field, found: Vec::new() };
+    for (point, start) in beyond(grid, &followed.field) {
+        grid.evaluation.set_parameters(&grid.targets[point]);
+        let root = solve_with(&mut grid.evaluation, grid.ranges, &start);
+        grid.effort.evaluations += u64::from(root.iterations);
+        others.learn(grid, choice, point, root);
+    }
+    let mut seen = Vec::new();
+    let kept = choice.kept(grid.ranges);
+    for point in points {
+        if seen.contains(&point) || grid.effort.boxes >= choice.most_boxes {
+            continue;
+        }
+        seen.push(point);
+        let found = (choice.roots)(&kept, &grid.targets[point]);
+        grid.effort.boxes += found.boxes;
+        for root in found.isolated.into_iter().map(|root| root.solution).chain(found.unproven) {
+            others.learn(grid, choice, point, root);
+        }
+    }
+    let others = others.found;
+    let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
+    if is_undecided && !others.is_empty() {
+        grid.effort.places = vec![grid.effort.anchor];
+        grid.effort.courses = vec![course(&followed.field)];
+        for (other, field) in others {
+            grid.effort.places.push(other.place);
+            grid.effort.branches.push(other.root);
+            grid.effort.courses.push(course(&field));
+        }
+        followed.field = grid.ambiguous();
+        followed.is_beyond = false;
+    } else {
+        grid.effort.elsewhere = others.into_iter().map(|(elsewhere, _)| elsewhere).collect();
+    }
+    followed
+}
+
+/// Branches beside the one that was followed.
+struct Others<'f> {
+    own: &'f Field,
+    /// Each with what it leads to.
+    found: Vec<(Elsewhere, Field)>,
+}
+
+impl Others<'_> {
+    /// Keeps a root at a point if it is one of another branch that qualifies.
+    fn learn(&mut self, grid: &mut Grid<'_>, choice: &Choice<'_>, point: usize, root: Solution) {
+        let most = if grid.targets.len() > MOST_FOLLOWED { 1 } else { TOLD };
+        let is_on = |field: &Field| {
+            // of singular points, too: roots without a normal, say
+            let is_somewhere = !matches!(field.outcome(point), None | Some(Outcome::NotConverged { .. }));
+            let own: Vec<f64> = field.unknowns(point).collect();
+            is_somewhere && is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic)
+        };
+        let is_known = is_on(self.own) || self.found.iter().any(|(_, field)| is_on(field));
+        if self.found.len() >= most || is_known || !qualifies(&root, choice) {
+            return;
+        }
+        let beside = self.own.solution(point).filter(|own| {
+            own.is_root() && is_within(&back_into(grid.ranges, choice.periodic, &own.unknowns), grid.ranges)
+        });
+        let elsewhere = Elsewhere { place: grid.targets[point], root: root.clone(), beside };
+        let mut own = grid.within(grid.ranges);
+        let field = own.fill(&mut Solvers::new(grid.system, grid.ranges), point, &root);
+        grid.effort.evaluations += own.effort.evaluations;
+        self.found.push((elsewhere, field));
+    }
+}
+
+/// Places beside the ends of a branch with starts for what may lie there: at points that are missing straight on from two that are
+/// solved, where branches cross the way that no step takes; at the last that are solved the other sheet, where the branch folds back.
+fn beyond(grid: &Grid<'_>, field: &Field) -> Vec<(usize, Vec<f64>)> {
+    let [rows, columns] = [grid.rows, grid.columns];
+    let beside = |point: usize| {
+        let (i, j) = (point / columns, point % columns);
+        let at = |di: isize, dj: isize| {
+            let (i, j) = (i.checked_add_signed(di)?, j.checked_add_signed(dj)?);
+            Some(i * columns + j).filter(|at| i < rows && j < columns && field.is_solved(*at))
+        };
+        let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
+        ways.into_iter().find_map(|(di, dj)| Some([point, at(di, dj)?, at(2 * di, 2 * dj)?]))
+    };
+    let edge: Vec<[usize; 3]> = (0..field.len()).filter(|point| !field.is_root(*point)).filter_map(beside).collect();
+    let step = edge.len().div_ceil(MISSING).max(1);
+    let starts = |[missing, near, far]: [usize; 3]| {
+        let from: Vec<f64> = field.unknowns(near).collect();
+        let on = |ratio: f64| extrapolated(&from, field.unknowns(far), ratio);
+        let folded = ACROSS_FOLDS.map(|ratio| (near, on(ratio)));
+        [(missing, on(1.0))].into_iter().chain(folded).collect::<Vec<_>>()
+    };
+    edge.into_iter().step_by(step).flat_map(starts).collect()
+}
+
+/// Whether a root is a point that another branch would have solved.
+fn qualifies(root: &Solution, choice: &Choice<'_>) -> bool {
+    root.is_solved() && choice.keeps(&root.unknowns) && choice.has_tangent_plane(&root.unknowns)
+}
+
+/// Places spread over a grid; in the middle all roots are known.
+fn places(grid: &Grid<'_>) -> Vec<usize> {
+    let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> =
+        shares.filter(|shares| *shares != [0.5; 2]).map(|shares| grid.nearest(shares)).collect();
+    points.dedup();
+    points
+}
+
+/// The same of a grid whose branch leaves the ranges, with points at which it is beyond them: there another one may be within.
+fn places_beyond(grid: &Grid<'_>, field: &Field, choice: &Choice<'_>) -> Vec<usize> {
+    let is_beyond = |point: &usize| {
+        let own: Vec<f64> = field.unknowns(*point).collect();
+        !is_within(&back_into(grid.ranges, choice.periodic, &own), grid.ranges)
+    };
+    let beyond: Vec<usize> = (0..field.len()).filter(is_beyond).collect();
+    let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
+    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
+    points.extend(beyond.iter().step_by(beyond.len().div_ceil(MISSING).max(1)));
+    points.sort_unstable();
+    points.dedup();
+    points.repeat(OFTEN)
+}
+
+/// Of a grid that is complete: roots beside its own at a few places, from starts spread over the ranges, many at once.
+fn beside_complete(
+    grid: &mut Grid<'_>,
+    newton: &mut LaneNewton<'_>,
+    (field, points): (&Field, Vec<usize>),
+    choice: &Choice<'_>,
+) -> Vec<Elsewhere> {
+    let mut others: Vec<Elsewhere> = Vec::new();
+    let kept = choice.kept(grid.ranges);
+    for (number, point) in points.into_iter().enumerate() {
+        let own: Vec<f64> = field.unknowns(point).collect();
+        let target = grid.targets[point];
+        for lane in 0..LANES {
+            newton.put(lane, probe(&kept, (number * LANES + lane + 1) as u32).into_iter(), &target);
+            newton.determinant()[lane] = f64::NAN;
+        }
+        newton.run(&[true; LANES], true);
+        for lane in 0..LANES {
+            if !newton.is_root(lane) || newton.outcome(lane) != Outcome::Solved {
+                continue;
+            }
+            let unknowns: Vec<f64> = (0..own.len()).map(|k| newton.input(k)[lane]).collect();
+            let residual = newton.residuals()[lane];
+            let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
+            let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
+            if !is_own && qualifies(&root, choice) {
+                let beside = field
+                    .solution(point)
+                    .filter(|_| is_within(&back_into(grid.ranges, choice.periodic, &own), grid.ranges));
+                others.push(Elsewhere { place: target, root, beside });
+                return others;
+            }
+        }
+    }
+    others
+}

@@ -1,0 +1,235 @@
+//! Square systems with their exact Jacobian, as one tape.
+
+use std::sync::OnceLock;
+
+use flank_expr::{Expr, InstructionSet, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, TapeError};
+
+use crate::equations::lines;
+use crate::equations::solution::{CutBy, Outcome};
+use crate::equations::step::{GivenTapes, MOST_EQUATIONS, Wanted, written_out};
+
+/// As many equations as unknowns, with parameters that are given for each solution.
+#[derive(Clone, Debug)]
+pub struct System {
+    size: usize,
+    tape: Tape,
+    residuals: Tape,
+    /// What must be positive at a root for it to be one of the thing that is looked for.
+    conditions: Tape,
+    pub(crate) lanes: LaneTapes,
+    /// Residuals, then the Jacobian row by row, for many points at once: laid out when it is wanted first.
+    in_lanes: OnceLock<LaneTape>,
+    extra_count: usize,
+    instructions: InstructionSet,
+}
+
+/// The same for many points at once; all take unknowns, then parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct LaneTapes {
+    /// Residuals, conditions, and what else is wanted at a root, with what these have in common; then the sum of what must be finite
+    /// of that, if anything is wanted.
+    pub(crate) checked: LaneTape,
+    /// The step of Newton, see [`written_out`]; residuals, then the Jacobian row by row where it is not written out.
+    pub(crate) linearized: LaneTape,
+    pub(crate) is_written_out: bool,
+    /// For lines of points that are expected somewhere, see [`lines::expected`]; none if an equation gives an unknown.
+    pub(crate) expected: Option<LaneTape>,
+    pub(crate) given: Option<GivenTapes>,
+}
+
+impl System {
+    /// The system `residuals = 0` in `unknowns`; `parameters` are given numbers for each solution.
+    ///
+    /// # Errors
+    /// If a residual depends on a variable that is neither an unknown nor a parameter.
+    ///
+    /// # Panics
+    /// If there are not as many residuals as unknowns.
+    pub fn new<'g>(
+        residuals: &[Expr<'g>],
+        unknowns: &[Expr<'g>],
+        parameters: &[Expr<'g>],
+    ) -> Result<System, TapeError> {
+        let system = System::one_by_one(residuals, unknowns, parameters)?;
+        if unknowns.len() > MOST_EQUATIONS || unknowns.is_empty() {
+            return Ok(system);
+        }
+        let linearized = written_out(residuals, unknowns, parameters)?;
+        let lanes = LaneTapes { linearized, is_written_out: true, ..system.lanes };
+        Ok(System { lanes, ..system })
+    }
+
+    /// The same without what makes many points at once fast.
+    ///
+    /// # Errors
+    /// As for [`System::new`].
+    ///
+    /// # Panics
+    /// As for [`System::new`].
+    pub(crate) fn one_by_one(
+        residuals: &[Expr<'_>],
+        unknowns: &[Expr<'_>],
+        parameters: &[Expr<'_>],
+    ) -> Result<System, TapeError> {
+        assert_eq!(residuals.len(), unknowns.len(), "a system is square");
+        let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
+        let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
+        let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
+        let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
+        let residuals = Tape::new(residuals, &inputs)?;
+        let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
+        let lanes = LaneTapes { checked, linearized, is_written_out: false, expected: None, given: None };
+        let instructions = InstructionSet::fastest();
+        let in_lanes = OnceLock::new();
+        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, in_lanes, extra_count: 0, instructions })
+    }
+
+    /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
+    /// the unknowns and parameters it was made with, is negative, and singular where one is zero. `extras` are computed at
+    /// the roots of a grid, where unknowns have a closed form if an equation is linear in them.
+    ///
+    /// # Errors
+    /// If a condition depends on another variable.
+    pub(crate) fn with_conditions<'g>(
+        self,
+        residuals: &[Expr<'g>],
+        conditions: &[Expr<'g>],
+        extras: &[Expr<'g>],
+        inputs: &[Expr<'g>],
+    ) -> Result<System, TapeError> {
+        let wanted = Wanted { residuals, conditions, extras };
+        let (unknowns, parameters) = inputs.split_at(self.size);
+        let checked = LaneTape::new(&Tape::new(&wanted.all(), inputs)?);
+        let is_written_out = self.lanes.is_written_out;
+        let given = || GivenTapes::new(&wanted, unknowns, parameters);
+        let given = if is_written_out { given()? } else { None };
+        let is_expected = is_written_out && given.is_none();
+        let expected = is_expected.then(|| lines::expected(&wanted, &[], [unknowns, parameters])).transpose()?;
+        let conditions = Tape::new(conditions, inputs)?;
+        let lanes = LaneTapes { checked, expected, given, ..self.lanes };
+        Ok(System { conditions, lanes, extra_count: extras.len(), ..self })
+    }
+
+    /// The same system, for whose grids only these instructions are used: without machine code of its own, say. The results are
+    /// the same, bit for bit.
+    pub fn on(self, instructions: InstructionSet) -> System {
+        System { instructions, ..self }
+    }
+
+    pub(crate) fn instructions(&self) -> InstructionSet {
+        self.instructions
+    }
+
+    pub(crate) fn condition_count(&self) -> usize {
+        self.conditions.output_count()
+    }
+
+    /// Numbers that are wanted at a root beside the unknowns.
+    pub(crate) fn extra_count(&self) -> usize {
+        self.extra_count
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The tape: unknowns, then parameters in; residuals, then the Jacobian row by row out.
+    pub fn tape(&self) -> &Tape {
+        &self.tape
+    }
+
+    /// The tape of the residuals alone, with the same inputs.
+    pub(crate) fn residual_tape(&self) -> &Tape {
+        &self.residuals
+    }
+
+    /// Something that computes residuals and Jacobian at many points at once.
+    pub(crate) fn in_lanes(&self) -> LaneEvaluator<'_> {
+        LaneEvaluator::new(self.in_lanes.get_or_init(|| LaneTape::new(&self.tape)), self.instructions)
+    }
+
+    /// Something that evaluates it at one set of parameters.
+    pub(crate) fn evaluation(&self, parameters: &[f64]) -> Evaluation<'_> {
+        let mut inputs = vec![0.0; self.size];
+        inputs.extend_from_slice(parameters);
+        let outputs = vec![0.0; self.tape.output_count()];
+        Evaluation {
+            system: self,
+            evaluator: ScalarEvaluator::new(&self.tape),
+            conditions: ScalarEvaluator::new(&self.conditions),
+            met: vec![0.0; self.conditions.output_count()],
+            size: self.size,
+            inputs,
+            outputs,
+        }
+    }
+}
+
+/// Residuals and Jacobian at a point.
+pub(crate) trait Linearized {
+    fn residual(&self, row: usize) -> f64;
+    fn jacobian(&self, row: usize, column: usize) -> f64;
+}
+
+/// Residuals and Jacobian at a point.
+pub(crate) struct Evaluation<'s> {
+    system: &'s System,
+    evaluator: ScalarEvaluator<'s>,
+    conditions: ScalarEvaluator<'s>,
+    met: Vec<f64>,
+    size: usize,
+    inputs: Vec<f64>,
+    outputs: Vec<f64>,
+}
+
+impl<'s> Evaluation<'s> {
+    pub(crate) fn system(&self) -> &'s System {
+        self.system
+    }
+
+    pub(crate) fn parameters(&self) -> &[f64] {
+        &self.inputs[self.size..]
+    }
+
+    pub(crate) fn at(&mut self, unknowns: &[f64]) {
+        self.inputs[..self.size].copy_from_slice(unknowns);
+        self.evaluator.run(&self.inputs, &mut self.outputs);
+    }
+
+    /// What a root is by the conditions.
+    pub(crate) fn side(&mut self, root: &[f64]) -> Outcome {
+        self.inputs[..self.size].copy_from_slice(root);
+        self.conditions.run(&self.inputs, &mut self.met);
+        side_of(self.met.iter().copied())
+    }
+
+    pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.inputs[self.size..].copy_from_slice(parameters);
+    }
+
+    pub(crate) fn unknowns(&self) -> &[f64] {
+        &self.inputs[..self.size]
+    }
+}
+
+impl Linearized for Evaluation<'_> {
+    fn residual(&self, row: usize) -> f64 {
+        self.outputs[row]
+    }
+
+    fn jacobian(&self, row: usize, column: usize) -> f64 {
+        self.outputs[self.size * (1 + row) + column]
+    }
+}
+
+/// What a root is where the conditions of its system have these values.
+pub(crate) fn side_of(conditions: impl Iterator<Item = f64> + Clone) -> Outcome {
+    if conditions.clone().any(|condition| condition < 0.0) {
+        Outcome::CutAway(CutBy::ItsTool)
+    } else if conditions.clone().all(|condition| condition > 0.0) {
+        Outcome::Solved
+    } else {
+        Outcome::Singular
+    }
+}

@@ -1,0 +1,260 @@
+//! What a system is on a whole box of unknowns, and what follows for its roots.
+
+use flank_expr::{Interval, IntervalEvaluator};
+
+use crate::equations::solution::Range;
+use crate::equations::system::System;
+
+/// Evaluates a system on boxes at one set of parameters.
+pub(crate) struct Enclosure<'s> {
+    whole: IntervalEvaluator<'s>,
+    residuals: IntervalEvaluator<'s>,
+    size: usize,
+    inputs: Vec<Interval>,
+    outputs: Vec<Interval>,
+    at_point: Vec<Interval>,
+    /// Inverse of the Jacobian's middle, row by row.
+    inverse: Vec<f64>,
+}
+
+/// What is left of a box.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Contraction {
+    /// It holds no root.
+    Empty,
+    /// All its roots lie in `left`. If it is `regular`, the Jacobian is known well enough to lead somewhere.
+    To {
+        /// What is left of the box.
+        left: Vec<Interval>,
+        /// Whether no diagonal entry of the preconditioned Jacobian may vanish.
+        regular: bool,
+    },
+    /// Nothing was learned: the system may be undefined or its derivatives unbounded in it.
+    Blind,
+}
+
+/// What is proven of a box about a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Proof {
+    /// Nothing.
+    None,
+    /// No two roots lie in it.
+    AtMostOne,
+    /// Exactly one root lies in it.
+    ExactlyOne,
+}
+
+impl<'s> Enclosure<'s> {
+    pub(crate) fn new(system: &'s System, parameters: &[f64]) -> Enclosure<'s> {
+        let size = system.size();
+        let mut inputs = vec![Interval::WHOLE; size];
+        inputs.extend(parameters.iter().copied().map(Interval::point));
+        Enclosure {
+            whole: IntervalEvaluator::new(system.tape()),
+            residuals: IntervalEvaluator::new(system.residual_tape()),
+            size,
+            inputs,
+            outputs: vec![Interval::WHOLE; system.tape().output_count()],
+            at_point: vec![Interval::WHOLE; size],
+            inverse: vec![0.0; size * size],
+        }
+    }
+
+    pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
+        for (input, parameter) in self.inputs[self.size..].iter_mut().zip(parameters) {
+            *input = Interval::point(*parameter);
+        }
+    }
+
+    /// Residuals and Jacobian on a box.
+    fn evaluate(&mut self, boxed: &[Interval]) {
+        self.inputs[..self.size].copy_from_slice(boxed);
+        self.whole.run(&self.inputs, &mut self.outputs);
+    }
+
+    /// Residuals at a point.
+    fn evaluate_point(&mut self, point: &[f64]) {
+        for (input, x) in self.inputs.iter_mut().zip(point) {
+            *input = Interval::point(*x);
+        }
+        self.residuals.run(&self.inputs, &mut self.at_point);
+    }
+
+    /// Whether a residual has no zero on a box: that takes no Jacobian.
+    fn is_empty(&mut self, boxed: &[Interval]) -> bool {
+        self.inputs[..self.size].copy_from_slice(boxed);
+        self.residuals.run(&self.inputs, &mut self.at_point);
+        self.at_point.iter().any(|value| !value.contains(0.0))
+    }
+
+    fn jacobian(&self, row: usize, column: usize) -> Interval {
+        self.outputs[self.size * (1 + row) + column]
+    }
+
+    /// How much of the change of the residuals over the box of the last contraction is due to one unknown: each row's
+    /// changes as shares of their sum.
+    pub(crate) fn smear(&self, boxed: &[Interval], column: usize) -> f64 {
+        let change = |row: usize, k: usize| self.jacobian(row, k).magnitude() * boxed[k].width();
+        let share = |row: usize| {
+            let all: f64 = (0..self.size).map(|k| change(row, k)).sum();
+            if all > 0.0 { change(row, column) / all } else { 0.0 }
+        };
+        (0..self.size).map(share).sum()
+    }
+
+    /// Cuts off what cannot hold a root: by the values on the box, then by the mean value form row by row, then by the
+    /// preconditioned one.
+    pub(crate) fn contract(&mut self, boxed: &[Interval]) -> Contraction {
+        let n = self.size;
+        if self.is_empty(boxed) {
+            return Contraction::Empty;
+        }
+        self.evaluate(boxed);
+        if !self.outputs.iter().all(|output| output.continuous) {
+            return Contraction::Blind;
+        }
+        let middle: Vec<f64> = boxed.iter().map(|x| x.middle()).collect();
+        self.evaluate_point(&middle);
+        let mut left = boxed.to_vec();
+        for row in 0..n {
+            let slopes: Vec<Interval> = (0..n).map(|k| self.jacobian(row, k)).collect();
+            if !narrow(&mut left, &middle, self.at_point[row], &slopes, None) {
+                return Contraction::Empty;
+            }
+        }
+        let mut regular = self.invert_middle();
+        if regular {
+            for row in 0..n {
+                let (value, slopes) = self.preconditioned(row);
+                regular &= !slopes[row].contains(0.0);
+                if !narrow(&mut left, &middle, value, &slopes, Some(row)) {
+                    return Contraction::Empty;
+                }
+            }
+        }
+        Contraction::To { left, regular }
+    }
+
+    /// What Krawczyk's operator proves of the box of these radii about a point.
+    ///
+    /// If each row of Y J over the box is dominated by its diagonal, measured in the radii, J is regular on it and the
+    /// system takes no value twice; if the operator maps the box into its inside, there is a root.
+    pub(crate) fn proof(&mut self, point: &[f64], radii: &[f64]) -> Proof {
+        let n = self.size;
+        let boxed: Vec<Interval> = point.iter().zip(radii).map(|(p, r)| around(*p, *r)).collect();
+        self.evaluate(&boxed);
+        if !self.outputs.iter().all(|output| output.continuous) || !self.invert_middle() {
+            return Proof::None;
+        }
+        self.evaluate_point(point);
+        let mut exists = true;
+        for row in 0..n {
+            let (value, slopes) = self.preconditioned(row);
+            let off = |k: usize| if k == row { Interval::point(1.0) - slopes[k] } else { slopes[k] };
+            let radius = |k: usize| Interval::point(radii[k]);
+            let wander =
+                (0..n).fold(Interval::point(0.0), |sum, k| sum + Interval::point(off(k).magnitude()) * radius(k));
+            if wander.hi.is_nan() || wander.hi >= radii[row] {
+                return Proof::None;
+            }
+            exists &= (wander + Interval::point(value.magnitude())).hi < radii[row];
+        }
+        if exists { Proof::ExactlyOne } else { Proof::AtMostOne }
+    }
+
+    /// How far Newton's step from a point leads in each unknown, at most; `None` where the Jacobian has no inverse.
+    pub(crate) fn newton_reach(&mut self, point: &[f64]) -> Option<Vec<f64>> {
+        let here: Vec<Interval> = point.iter().copied().map(Interval::point).collect();
+        self.evaluate(&here);
+        if !self.invert_middle() {
+            return None;
+        }
+        self.at_point.copy_from_slice(&self.outputs[..self.size]);
+        Some((0..self.size).map(|row| self.preconditioned(row).0.magnitude()).collect())
+    }
+
+    /// A row of Y F at the point and of Y J on the box.
+    fn preconditioned(&self, row: usize) -> (Interval, Vec<Interval>) {
+        let n = self.size;
+        let weights: Vec<Interval> = (0..n).map(|i| Interval::point(self.inverse[row * n + i])).collect();
+        let sum = |of: &dyn Fn(usize) -> Interval| (0..n).fold(Interval::point(0.0), |sum, i| sum + weights[i] * of(i));
+        let value = sum(&|i| self.at_point[i]);
+        (value, (0..n).map(|k| sum(&|i| self.jacobian(i, k))).collect())
+    }
+
+    /// Puts the inverse of the Jacobian's middle into `inverse`; whether there is one.
+    fn invert_middle(&mut self) -> bool {
+        let n = self.size;
+        let mut matrix: Vec<f64> = (0..n * n).map(|k| self.outputs[n + k].middle()).collect();
+        self.inverse.fill(0.0);
+        for k in 0..n {
+            self.inverse[k * n + k] = 1.0;
+        }
+        eliminate(&mut matrix, &mut self.inverse, n)
+    }
+}
+
+/// p ± r, rounded outward.
+pub(crate) fn around(p: f64, r: f64) -> Interval {
+    let spread = Interval::point(p) + Interval::new(-r, r);
+    Interval { continuous: true, ..spread }
+}
+
+/// The box of some ranges.
+pub(crate) fn box_of(ranges: &[Range]) -> Vec<Interval> {
+    ranges.iter().map(|range| Interval::new(range.low, range.high)).collect()
+}
+
+/// Solves `value + Σ slopes (x − middle) = 0` for each unknown (or `only` one) in turn; whether anything is left.
+fn narrow(left: &mut [Interval], middle: &[f64], value: Interval, slopes: &[Interval], only: Option<usize>) -> bool {
+    let shifts: Vec<Interval> = left.iter().zip(middle).map(|(x, m)| *x - Interval::point(*m)).collect();
+    let terms: Vec<Interval> = slopes.iter().zip(&shifts).map(|(slope, shift)| *slope * *shift).collect();
+    if !terms.iter().fold(value, |sum, term| sum + *term).contains(0.0) {
+        return false;
+    }
+    let columns = match only {
+        Some(column) => column..column + 1,
+        None => 0..left.len(),
+    };
+    for column in columns.filter(|&column| !slopes[column].contains(0.0)) {
+        let others = (0..left.len()).filter(|&k| k != column).fold(value, |sum, k| sum + terms[k]);
+        let solved = Interval::point(middle[column]) - others / slopes[column];
+        left[column] = Interval { continuous: true, ..left[column].intersection(solved) };
+        if left[column].is_empty() {
+            return false;
+        }
+    }
+    true
+}
+
+/// Solves a system of `n` equations for some right sides, the columns of `right`, by Gauss and Jordan with the largest pivot of the
+/// column; whether all pivots were numbers other than zero. Its rounding errors do no harm: any matrix may precondition.
+pub(crate) fn eliminate(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
+    let columns = right.len() / n;
+    for column in 0..n {
+        let size = |row: usize| matrix[row * n + column].abs();
+        let Some(pivot) = (column..n).max_by(|&a, &b| size(a).total_cmp(&size(b))) else { return false };
+        let scale = matrix[pivot * n + column];
+        if scale == 0.0 || !scale.is_finite() {
+            return false;
+        }
+        for k in 0..n {
+            matrix.swap(pivot * n + k, column * n + k);
+        }
+        for k in 0..columns {
+            right.swap(pivot * columns + k, column * columns + k);
+        }
+        matrix[column * n..][..n].iter_mut().for_each(|entry| *entry /= scale);
+        right[column * columns..][..columns].iter_mut().for_each(|entry| *entry /= scale);
+        for row in (0..n).filter(|&row| row != column) {
+            let factor = matrix[row * n + column];
+            for k in column..n {
+                matrix[row * n + k] -= factor * matrix[column * n + k];
+            }
+            for k in 0..columns {
+                right[row * columns + k] -= factor * right[column * columns + k];
+            }
+        }
+    }
+    right.iter().all(|entry| entry.is_finite())
+}
