@@ -99,7 +99,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
         let failed = |error: std::io::Error| format!("{}: {error}", arguments.out);
         let mut file = BufWriter::new(File::create(&arguments.out).map_err(failed)?);
         for k in 0..points.len() {
-            let (mut row, placed) = (points.unknowns(k), points.placed(k));
+            let (mut row, placed) = (points.unknowns(k), points.position_and_normal(k));
             if is_curved {
                 row.truncate(1);
                 // asked for is the second form −dr·dn, which is negative where the body is convex

@@ -174,7 +174,7 @@ pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings());
-    let problem = problem.map(|problem| problem.reaching(followed(surface)));
+    let problem = problem.map(|problem| problem.following_beyond(followed(surface)));
     let problem = problem.and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()));
     problem.expect("nothing is unbound")
 }

@@ -4,7 +4,8 @@ use flank_chain_dsl::{Dimension, Job};
 use flank_expr::geometry::{Axis, Chain, Step, Vector3};
 use flank_expr::{Expr, Graph};
 use flank_solver::{
-    Adjustable, PoseProblem, Range, SettingKind, SettingsFit, SettingsProblem, Sought, TargetAxis, UnknownSetting,
+    AdjustableMachine, PoseProblem, Range, SettingBounds, SettingKind, SettingsFit, SettingsProblem, TargetAxis,
+    UnknownSetting,
 };
 use flank_tests::machines::{beside, target_axis, unseen};
 
@@ -46,7 +47,7 @@ fn fit<'g>(job: &Job<'g>, target: &Job<'g>, source: &Chain<'g>, names: &[&str]) 
         };
         let usual = target.parameters.iter().find(|p| p.name == full).map(|p| p.value);
         let range = Range { low: setting.low, high: setting.high };
-        UnknownSetting { variable: setting.variable, sought: Sought { kind, range, usual } }
+        UnknownSetting { variable: setting.variable, sought: SettingBounds { kind, range, usual } }
     };
     let settings: Vec<UnknownSetting<'g>> = names.iter().map(unknown).collect();
     let roll = machine.axes.iter().find(|axis| axis.name == "roll").expect("its one axis");
@@ -56,7 +57,7 @@ fn fit<'g>(job: &Job<'g>, target: &Job<'g>, source: &Chain<'g>, names: &[&str]) 
     let chain = machine.chain(graph, "work", "cutter").expect("both frames").substituted(&laws);
     let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
     let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings_beside(&open)).collect();
-    let generator = Adjustable { chain: &chain, settings: &settings, axes: &axes };
+    let generator = AdjustableMachine { chain: &chain, settings: &settings, axes: &axes };
     let motions = [job.motions[0].variable];
     let problem = SettingsProblem::new(&generator, source, &motions, &unseen(job, &job.surfaces[0]), &bindings, 200.0);
     problem.expect("all bound").fit(&rolls())

@@ -3,11 +3,11 @@
 
 use flank_chain_dsl::{Job, compile_file, compile_text};
 use flank_expr::Graph;
-use flank_solver::{Effort, Outcome, SurfacePoint};
+use flank_solver::{GridReport, Outcome, SurfacePoint};
 use flank_tests::{difference, problem, repository};
 
 /// The points of a surface at its sample, which has so many rows and columns.
-fn solved(job: &Job<'_>, surface: &str) -> (Vec<SurfacePoint>, Effort) {
+fn solved(job: &Job<'_>, surface: &str) -> (Vec<SurfacePoint>, GridReport) {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
@@ -19,7 +19,7 @@ fn text(name: &str) -> String {
 }
 
 /// The points of a spec with one surface, whose sample has other counts than it says there.
-fn with_counts(spec: &str, counts: [[usize; 2]; 2]) -> (Vec<SurfacePoint>, Effort) {
+fn with_counts(spec: &str, counts: [[usize; 2]; 2]) -> (Vec<SurfacePoint>, GridReport) {
     let graph = Graph::new();
     let mut text = text(spec);
     for [own, other] in counts {

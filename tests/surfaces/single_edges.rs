@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::{Graph, ScalarEvaluator, Tape};
-use flank_solver::{CuttingEdges, Left, Outcome, Range, SurfacePoint};
+use flank_solver::{CuttingEdges, Outcome, Range, ScallopHeight, SurfacePoint};
 use flank_tests::{assert_point, difference, job, job_of_text, problem, repository};
 
 const PLANED: &str = "tests/machines/planed.chain";
@@ -15,7 +15,7 @@ fn surface<'j, 'g>(job: &'j Job<'g>, name: &str) -> &'j GeneratedSurface<'g> {
 }
 
 /// What is left of points of a surface.
-fn left(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<Option<Left>> {
+fn left(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<Option<ScallopHeight>> {
     let ideal = surface(job, name);
     let real = &job.surfaces[ideal.cut_by.expect("the job says by what")];
     let ranges: Vec<Range> = real.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
@@ -32,11 +32,11 @@ fn sampled(job: &Job<'_>, name: &str) -> Vec<SurfacePoint> {
 }
 
 /// Height and counts where every point is known.
-fn known(left: &[Option<Left>]) -> Vec<(f64, &[f64])> {
-    let cut = |left: &'_ Option<Left>| matches!(left, Some(Left::Cut { .. }));
+fn known(left: &[Option<ScallopHeight>]) -> Vec<(f64, &[f64])> {
+    let cut = |left: &'_ Option<ScallopHeight>| matches!(left, Some(ScallopHeight::Cut { .. }));
     assert!(left.iter().all(cut), "not known everywhere");
     let each = left.iter().filter_map(|left| match left {
-        Some(Left::Cut { height, edge }) => Some((*height, &edge[2..])),
+        Some(ScallopHeight::Cut { height, edge }) => Some((*height, &edge[2..])),
         _ => None,
     });
     each.collect()
@@ -49,7 +49,7 @@ fn points_at(job: &Job<'_>, name: &str, targets: &[[f64; 2]]) -> Vec<SurfacePoin
     problem(job, asked, by).solve(targets, [1, targets.len()]).0
 }
 
-fn deepest(left: &[Option<Left>]) -> f64 {
+fn deepest(left: &[Option<ScallopHeight>]) -> f64 {
     known(left).iter().map(|(height, _)| *height).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -128,7 +128,7 @@ fn where_no_edge_passes_is_said() {
     for (point, left) in points.iter().zip(left(&job, "plane", &points)) {
         let x = point.position[0];
         let distance = (x - 0.5 * (x / 0.5).round()).abs();
-        let is_wall = matches!(left, Some(Left::Unreached));
+        let is_wall = matches!(left, Some(ScallopHeight::Unreached));
         assert_eq!(is_wall, distance > reach, "{x}: {left:?}");
         *(if is_wall { &mut walls } else { &mut cuts }) += 1;
     }

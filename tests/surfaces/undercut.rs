@@ -82,7 +82,8 @@ impl<'g> Clearance<'g> {
         let signed = all[2];
         let inputs = tool.unknowns.iter().copied().chain(inputs).collect();
         // the foot may lie where the tool's surface is no longer used
-        let wide = |u: &flank_chain_dsl::Bounded<'_>| Range { low: 2.0 * u.low - u.high, high: 2.0 * u.high - u.low };
+        let wide =
+            |u: &flank_chain_dsl::RangedVariable<'_>| Range { low: 2.0 * u.low - u.high, high: 2.0 * u.high - u.low };
         Clearance { graph, system, signed, inputs, ranges: generated.unknowns[..2].iter().map(wide).collect() }
     }
 

@@ -57,7 +57,7 @@ pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
-    Axis, Bounded, Coordinate, Frame, GeneratedSurface, Generation, Giver, Job, LawSource, Limit, Machine, NcWord,
-    Parameter, PieceEnds, Process, Sample, SampleEnds, SampleGrid, ToolShape,
+    Axis, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, NcWord, Parameter, PieceEnds,
+    PointRequirement, Process, RangedVariable, Sample, SampleEnds, SampleGrid, ToolShape, ValueSource,
 };
 pub use values::dimension::Dimension;

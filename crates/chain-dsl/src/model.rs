@@ -22,9 +22,9 @@ pub struct Job<'g> {
     pub parameters: Vec<Parameter<'g>>,
     /// All settings of a machine that stands by itself ([`compile_with_machine`](crate::compile_with_machine)), with the ranges that
     /// they may have, endless where none is stated. Those without a value are not among the parameters.
-    pub settings: Vec<Bounded<'g>>,
+    pub settings: Vec<RangedVariable<'g>>,
     /// What moves.
-    pub motions: Vec<Bounded<'g>>,
+    pub motions: Vec<RangedVariable<'g>>,
     /// Its machines.
     pub machines: Vec<Machine<'g>>,
     /// Its surfaces, in order.
@@ -51,14 +51,14 @@ pub struct Parameter<'g> {
     /// Its doc comment.
     pub doc: Vec<String>,
     /// Who gives it its value.
-    pub given_by: Giver,
+    pub given_by: ValueSource,
     /// Where that value is written.
     pub written: Span,
 }
 
 /// Who gives a parameter its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Giver {
+pub enum ValueSource {
     /// The machine or tool of this name, whose own value it is where nobody gives another one.
     Definition(String),
     /// The job.
@@ -69,7 +69,7 @@ pub enum Giver {
 
 /// A variable that is looked for in a range.
 #[derive(Clone, Debug)]
-pub struct Bounded<'g> {
+pub struct RangedVariable<'g> {
     /// Its name.
     pub name: String,
     /// The variable.
@@ -185,7 +185,7 @@ pub struct GeneratedSurface<'g> {
     /// The surface, in motions and parameters.
     pub surface: Surface<'g>,
     /// Ranges of its unknowns, in the order of `surface.unknowns`.
-    pub unknowns: Vec<Bounded<'g>>,
+    pub unknowns: Vec<RangedVariable<'g>>,
     /// The surfaces of the job that cut points of it away, as indices into its surfaces.
     pub trimmed_by: Vec<usize>,
     /// The sweep of the numbered edges that really cut it, as an index into the surfaces of the job: over the same motions, one
@@ -250,12 +250,12 @@ pub struct Sample<'g> {
     /// Functions of the unknowns, and the ends between which they lie on the branch that is meant.
     pub keep: Vec<(Coordinate<'g>, (f64, f64))>,
     /// What every point must fulfil.
-    pub limits: Vec<Limit<'g>>,
+    pub limits: Vec<PointRequirement<'g>>,
 }
 
 /// A function of the unknowns that must lie between two ends at every point of a sample.
 #[derive(Clone, Debug)]
-pub struct Limit<'g> {
+pub struct PointRequirement<'g> {
     /// The function.
     pub of: Coordinate<'g>,
     /// Lower and upper end.

@@ -64,8 +64,8 @@ fn main() -> ExitCode {
     if command.is_json() {
         memory::tell_as_document();
     }
-    if let Some(means) = command.means() {
-        threads::start(means.threads());
+    if let Some(evaluator) = command.evaluator() {
+        threads::start(evaluator.threads());
     }
     ended(run(&command).unwrap_or_else(|failure| failure.tell(command.is_json())))
 }

@@ -22,7 +22,7 @@ mod newton;
 mod roots;
 mod surface;
 
-pub use analysis::cutting::{CuttingEdges, Left};
+pub use analysis::cutting::{CuttingEdges, ScallopHeight};
 pub use analysis::deviation::{Deviation, EaseOff};
 pub use analysis::extent::extent;
 pub use analysis::geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
@@ -32,10 +32,12 @@ pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::sensitivity::{NormalSensitivity, Parameter};
 pub use analysis::trim::trim;
 pub use continuation::follow::solve_grid;
-pub use continuation::grid::{Effort, Elsewhere};
+pub use continuation::grid::{Elsewhere, GridReport};
 pub use conversion::explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use conversion::poses::{Missing, PoseError, PoseProblem, Posture, TargetAxis};
-pub use conversion::settings::{Adjustable, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
+pub use conversion::settings::{
+    AdjustableMachine, SettingBounds, SettingKind, SettingsFit, SettingsProblem, UnknownSetting,
+};
 pub use conversion::symmetry::{Screw, symmetries, unseen_motion};
 pub use conversion::tube::{Tube, Unproven};
 pub use equations::solution::{CutBy, Outcome, Range, Solution};

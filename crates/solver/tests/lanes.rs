@@ -80,7 +80,7 @@ fn all_instructions_give_the_same_bits() {
     let counts = [61, 45];
     let targets = targets([(-0.2, 1.5), (-0.4, 0.5)], counts);
     let on = |instructions| {
-        let system = half_solvable(&graph).on(instructions);
+        let system = half_solvable(&graph).with_instruction_set(instructions);
         let (points, effort) = solve_grid(&system, &HALF_RANGES, &targets, counts);
         let bits = |point: &Solution| -> Vec<u64> { point.unknowns.iter().map(|value| value.to_bits()).collect() };
         (points.iter().map(|point| (point.outcome, bits(point))).collect::<Vec<_>>(), effort)

@@ -21,7 +21,7 @@ fn plane(
     let surface = Surface::parametric([u, v], Vector3([u, v, graph.constant(0.0)]), false);
     let keep: Vec<_> = keep.into_iter().map(|(unknown, range)| ([u, v][unknown], range)).collect();
     let problem = SurfaceProblem::new(&surface, coordinates(u, v), ranges.to_vec(), &[]).expect("nothing is unbound");
-    let problem = problem.reaching(ranges.map(|range| range.beyond(0.0)).to_vec());
+    let problem = problem.following_beyond(ranges.map(|range| range.beyond(0.0)).to_vec());
     problem.keeping(&[u, v], &keep, &[]).expect("nothing is unbound")
 }
 
@@ -140,7 +140,8 @@ fn cylinder(graph: &Graph, angles: Range) -> SurfaceProblem {
     let surface = Surface::parametric([angle, z], Vector3([3.0 * angle.cos(), 3.0 * angle.sin(), z]), false);
     let ranges = vec![angles, range(-1.0, 1.0)];
     let problem = SurfaceProblem::new(&surface, [3.0 * angle.sin(), z], ranges.clone(), &[]);
-    let problem = problem.expect("nothing is unbound").reaching(ranges.iter().map(|range| range.beyond(0.0)).collect());
+    let problem =
+        problem.expect("nothing is unbound").following_beyond(ranges.iter().map(|range| range.beyond(0.0)).collect());
     problem.keeping(&[angle, z], &[(angle.cos(), range(-1.0, 0.0))], &[]).expect("nothing is unbound")
 }
 

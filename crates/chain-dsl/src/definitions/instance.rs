@@ -7,7 +7,7 @@ use flank_expr::Expr;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
-use crate::model::{Bounded, Giver, Parameter};
+use crate::model::{Parameter, RangedVariable, ValueSource};
 use crate::syntax::ast::{Argument, Dimension, Expression, Param};
 use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::shown;
@@ -39,11 +39,11 @@ impl<'a> Source<'a, '_> {
     }
 
     /// Who gives the value that a parameter has where nobody gives another one.
-    fn by_default(&self) -> Giver {
+    fn by_default(&self) -> ValueSource {
         match self {
-            Source::Instance { definition, .. } => Giver::Definition((*definition).to_string()),
-            Source::Standing { name } => Giver::Definition(name.node.clone()),
-            Source::Definition | Source::Job => Giver::Job,
+            Source::Instance { definition, .. } => ValueSource::Definition((*definition).to_string()),
+            Source::Standing { name } => ValueSource::Definition(name.node.clone()),
+            Source::Definition | Source::Job => ValueSource::Job,
         }
     }
 }
@@ -52,7 +52,7 @@ impl<'a> Source<'a, '_> {
 struct Given<'g> {
     definition: Expr<'g>,
     written: Span,
-    by: Giver,
+    by: ValueSource,
 }
 
 impl<'g> Given<'g> {
@@ -77,7 +77,7 @@ pub(crate) struct Binder<'a, 'g> {
     pub(crate) parameters: Vec<Parameter<'g>>,
     pub(crate) missing: Vec<Name>,
     /// All of them, of a machine that stands by itself.
-    pub(crate) standing: Vec<Bounded<'g>>,
+    pub(crate) standing: Vec<RangedVariable<'g>>,
     /// The settings of an instance by name.
     settings: HashMap<&'a str, &'a Expression>,
 }
@@ -125,7 +125,15 @@ impl<'a, 'g> Binder<'a, 'g> {
         let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
             let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            self.standing.push(Bounded { name: name.clone(), variable, dimension, low, high, is_count, piece: None });
+            self.standing.push(RangedVariable {
+                name: name.clone(),
+                variable,
+                dimension,
+                low,
+                high,
+                is_count,
+                piece: None,
+            });
         }
         if let Some(Given { definition, written, by: given_by }) = given {
             let doc = param.doc.clone();
@@ -152,7 +160,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         param: &'p Param,
         full_name: &str,
         scope: &Scope<'g>,
-    ) -> Option<(&'p Expression, Value<'g>, Giver)>
+    ) -> Option<(&'p Expression, Value<'g>, ValueSource)>
     where
         'a: 'p,
     {
@@ -162,9 +170,9 @@ impl<'a, 'g> Binder<'a, 'g> {
             _ => self.overrides.get(full_name),
         };
         match (overridden, setting, &self.source) {
-            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), Giver::Caller)),
+            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), ValueSource::Caller)),
             (None, Some(value), Source::Instance { job, .. }) => {
-                Some((value, context.evaluate(value, job), Giver::Job))
+                Some((value, context.evaluate(value, job), ValueSource::Job))
             }
             _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
         }

@@ -13,7 +13,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
-use crate::model::{Bounded, Frame, NcWord, Parameter};
+use crate::model::{Frame, NcWord, Parameter, RangedVariable};
 use crate::syntax::ast::{self, AxisKind, Let, MachineStatement, Param, Requirement};
 use crate::values::context::{Context, READABLE, Role};
 use crate::values::dimension::Dimension;
@@ -52,7 +52,7 @@ pub(crate) enum LawKind {
 pub(crate) struct Built<'g> {
     pub(crate) parameters: Vec<Parameter<'g>>,
     /// Of a machine that stands by itself.
-    pub(crate) settings: Vec<Bounded<'g>>,
+    pub(crate) settings: Vec<RangedVariable<'g>>,
     pub(crate) scope: Scope<'g>,
     pub(crate) axes: Vec<BuiltAxis<'g>>,
     pub(crate) frames: Vec<Frame<'g>>,

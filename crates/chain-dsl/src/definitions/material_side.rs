@@ -6,7 +6,7 @@ use flank_expr::{Expr, ScalarEvaluator, Tape};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
-use crate::model::Bounded;
+use crate::model::RangedVariable;
 use crate::values::context::Context;
 
 /// Points in each direction at which the side of the steel is looked at, where there are few directions.
@@ -47,7 +47,7 @@ pub(crate) struct Places {
 pub(crate) fn is_flipped<'g>(
     context: &mut Context<'g>,
     places: Places,
-    unknowns: &[Bounded<'g>],
+    unknowns: &[RangedVariable<'g>],
     raw: Vector3<'g>,
     outward: Vector3<'g>,
 ) -> Option<bool> {
@@ -66,7 +66,7 @@ pub(crate) fn is_flipped<'g>(
 /// The same, or what was seen instead of one answer.
 pub(crate) fn side<'g>(
     context: &Context<'g>,
-    unknowns: &[Bounded<'g>],
+    unknowns: &[RangedVariable<'g>],
     raw: Vector3<'g>,
     outward: Vector3<'g>,
 ) -> Result<bool, Seen> {
@@ -84,12 +84,12 @@ pub(crate) fn side<'g>(
 }
 
 /// Evaluates normal and direction at points all over the surface.
-fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[Bounded<'g>]) -> Seen {
+fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[RangedVariable<'g>]) -> Seen {
     let inputs = context.variables_of(parts);
     let tape = Tape::new(parts, &inputs).expect("what the parts depend on are the inputs");
     let mut evaluator = ScalarEvaluator::new(&tape);
     let mut values: Vec<f64> = inputs.iter().map(|input| context.value_of(*input)).collect();
-    let place = |unknown: &Bounded<'g>| inputs.iter().position(|input| *input == unknown.variable);
+    let place = |unknown: &RangedVariable<'g>| inputs.iter().position(|input| *input == unknown.variable);
     let places: Vec<Option<usize>> = unknowns.iter().map(place).collect();
     let looks = looks(unknowns.len());
     let mut seen = Seen::default();
@@ -155,7 +155,7 @@ impl Seen {
 }
 
 /// Why a surface has no side that the steel lies on.
-pub(crate) fn no_side([point, body]: [Span; 2], unknowns: &[Bounded<'_>], seen: &Seen) -> Diagnostic {
+pub(crate) fn no_side([point, body]: [Span; 2], unknowns: &[RangedVariable<'_>], seen: &Seen) -> Diagnostic {
     let names: Vec<String> = unknowns.iter().map(|unknown| format!("`{}`", unknown.name)).collect();
     let names = names.join(" and ");
     if seen.is_undefined() {
@@ -179,7 +179,7 @@ pub(crate) fn no_side([point, body]: [Span; 2], unknowns: &[Bounded<'_>], seen: 
 }
 
 /// True if the expressions depend on parameters without values (a definition looked at by itself).
-fn unknown_values<'g>(context: &Context<'g>, parts: &[Expr<'g>], unknowns: &[Bounded<'g>]) -> bool {
+fn unknown_values<'g>(context: &Context<'g>, parts: &[Expr<'g>], unknowns: &[RangedVariable<'g>]) -> bool {
     let is_own = |variable: &Expr<'g>| unknowns.iter().any(|unknown| unknown.variable == *variable);
     let depends = context.variables_of(parts);
     depends.iter().any(|variable| !is_own(variable) && context.value_of(*variable).is_nan())

@@ -14,7 +14,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
 use crate::job::sample;
-use crate::model::{Bounded, Parameter, PieceEnds, ToolShape};
+use crate::model::{Parameter, PieceEnds, RangedVariable, ToolShape};
 use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
 use crate::values::context::{Context, Role};
 use crate::values::dimension::Dimension;
@@ -44,7 +44,7 @@ pub(crate) struct Piece<'g> {
     /// The name of the segment.
     pub(crate) name: Option<String>,
     /// `None` if something in it is wrong (and reported), or nobody wants it.
-    pub(crate) surface: Option<(ToolShape<'g>, Vec<Bounded<'g>>)>,
+    pub(crate) surface: Option<(ToolShape<'g>, Vec<RangedVariable<'g>>)>,
 }
 
 /// A segment of a profile.
@@ -168,7 +168,7 @@ fn build_surface<'g>(
     written: &ast::ToolSurface,
     scope: &Scope<'g>,
     along: Option<Along<'_, 'g>>,
-) -> Option<(ToolShape<'g>, Vec<Bounded<'g>>)> {
+) -> Option<(ToolShape<'g>, Vec<RangedVariable<'g>>)> {
     let (scope, unknowns) = own_names(context, written, scope, along)?;
     let (position, steel) = point_and_steel(context, written, &scope)?;
     let shape = match (written.parameters.len(), unknowns.as_slice()) {
@@ -193,7 +193,7 @@ fn own_names<'g>(
     written: &ast::ToolSurface,
     scope: &Scope<'g>,
     along: Option<Along<'_, 'g>>,
-) -> Option<(Scope<'g>, Vec<Bounded<'g>>)> {
+) -> Option<(Scope<'g>, Vec<RangedVariable<'g>>)> {
     if !context.spend(scope.len(), written.name.span) {
         return None;
     }
@@ -261,14 +261,22 @@ fn run_along<'g>(
     name: &Name,
     segment: &Segment<'g>,
     beside: [Option<String>; 2],
-) -> Bounded<'g> {
+) -> RangedVariable<'g> {
     let [low, high] = [segment.from, segment.to].map(|end| match context.constant(end) {
         Constant::Known(value) => value,
         _ => f64::NAN,
     });
     let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
     let piece = Some(PieceEnds { name: segment.name.clone(), beside });
-    Bounded { name: name.node.clone(), variable, dimension: Dimension::LENGTH, low, high, is_count: false, piece }
+    RangedVariable {
+        name: name.node.clone(),
+        variable,
+        dimension: Dimension::LENGTH,
+        low,
+        high,
+        is_count: false,
+        piece,
+    }
 }
 
 /// A direction: lengths or numbers alike.
@@ -297,7 +305,7 @@ pub(crate) fn bounded<'g>(
     parameter: &ast::Parameter,
     scope: &Scope<'g>,
     role: Role,
-) -> Option<Bounded<'g>> {
+) -> Option<RangedVariable<'g>> {
     let name = parameter.name.node.clone();
     let dimension = context.dimension(&parameter.dimension)?;
     let what = format!("`{name}`");
@@ -308,5 +316,5 @@ pub(crate) fn bounded<'g>(
         context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
     }
     let variable = context.variable(name.clone(), role, f64::NAN);
-    Some(Bounded { name, variable, dimension, low, high, is_count, piece: None })
+    Some(RangedVariable { name, variable, dimension, low, high, is_count, piece: None })
 }

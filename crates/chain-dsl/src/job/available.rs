@@ -3,7 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
-use crate::model::{Bounded, ToolShape};
+use crate::model::{RangedVariable, ToolShape};
 use crate::syntax::ast;
 use crate::values::context::{Context, READABLE, quoted};
 
@@ -16,7 +16,7 @@ pub(super) struct Available<'g> {
     /// The piece that it is of what was asked for.
     pub(super) piece: Option<String>,
     pub(super) shape: ToolShape<'g>,
-    pub(super) unknowns: Vec<Bounded<'g>>,
+    pub(super) unknowns: Vec<RangedVariable<'g>>,
     pub(super) frame: FrameRef,
     /// Where it is asked for.
     pub(super) named: Span,

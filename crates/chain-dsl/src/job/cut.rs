@@ -40,6 +40,6 @@ impl<'g> Builder<'_, 'g> {
 fn has_numbered_edges(surface: &GeneratedSurface<'_>) -> bool {
     let motions = &surface.unknowns[surface.unknowns.len() - surface.generation.motions.len()..];
     let is_swept = surface.generation.process == Process::Sweep;
-    let counts = |motions: &[crate::model::Bounded<'_>]| motions.iter().all(|motion| motion.is_count);
+    let counts = |motions: &[crate::model::RangedVariable<'_>]| motions.iter().all(|motion| motion.is_count);
     matches!(motions, [first, rest @ ..] if is_swept && !first.is_count && !rest.is_empty() && counts(rest))
 }

@@ -23,7 +23,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
-use crate::model::{Bounded, GeneratedSurface, Job, Machine, Parameter};
+use crate::model::{GeneratedSurface, Job, Machine, Parameter, RangedVariable};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
 use crate::values::value::{Scope, Value};
@@ -46,7 +46,7 @@ struct Builder<'a, 'g> {
     parameters: Vec<Parameter<'g>>,
     machines: Vec<(Name, String, Built<'g>)>,
     tools: Vec<(Name, BuiltTool<'g>)>,
-    motions: Vec<Bounded<'g>>,
+    motions: Vec<RangedVariable<'g>>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,

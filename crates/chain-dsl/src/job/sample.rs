@@ -6,7 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
 use crate::limits;
-use crate::model::{Coordinate, GeneratedSurface, Limit, Sample, SampleEnds, SampleGrid};
+use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
 use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::Dimension;
@@ -56,12 +56,12 @@ fn kept<'g>(
 
 fn limited<'g>(
     context: &mut Context<'g>,
-    written: &ast::Limit,
+    written: &ast::PointRequirement,
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
-) -> Option<Limit<'g>> {
+) -> Option<PointRequirement<'g>> {
     let (of, ends) = kept(context, &written.within, surface, scope)?;
-    Some(Limit { of, ends, message: written.message.clone() })
+    Some(PointRequirement { of, ends, message: written.message.clone() })
 }
 
 fn grid<'g>(

@@ -6,7 +6,7 @@ use flank_expr::geometry::Surface;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
-use crate::model::{Bounded, Parameter};
+use crate::model::{Parameter, RangedVariable};
 use crate::values::context::Context;
 
 use super::Builder;
@@ -27,8 +27,8 @@ impl<'g> Builder<'_, 'g> {
         &self,
         context: &mut Context<'g>,
         made: &Surface<'g>,
-        unknowns: &[Bounded<'g>],
-        motions: &[(Bounded<'g>, Span)],
+        unknowns: &[RangedVariable<'g>],
+        motions: &[(RangedVariable<'g>, Span)],
         what: &str,
     ) -> bool {
         let mut fine = true;
@@ -85,8 +85,8 @@ fn sliding(motion: &str, span: Span, what: &str, always: bool) -> Diagnostic {
 fn is_zero<'g>(
     meshing: Expr<'g>,
     made: &Surface<'g>,
-    unknowns: &[Bounded<'g>],
-    motion: &Bounded<'g>,
+    unknowns: &[RangedVariable<'g>],
+    motion: &RangedVariable<'g>,
     values: &mut [f64],
 ) -> bool {
     let step = CHANGE * (motion.high - motion.low);
@@ -103,7 +103,7 @@ fn is_zero<'g>(
     })
 }
 
-pub(super) fn value<'v>(values: &'v mut [f64], unknown: &Bounded<'_>) -> &'v mut f64 {
+pub(super) fn value<'v>(values: &'v mut [f64], unknown: &RangedVariable<'_>) -> &'v mut f64 {
     &mut values[unknown.variable.as_variable().expect("unknowns are variables").index()]
 }
 

@@ -8,7 +8,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::job::sample;
 use crate::limits;
-use crate::model::{Bounded, GeneratedSurface, Generation, Process, ToolShape, path};
+use crate::model::{GeneratedSurface, Generation, Process, RangedVariable, ToolShape, path};
 use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
 use crate::values::context::{Context, quoted};
 use crate::values::value::Value;
@@ -53,7 +53,7 @@ impl<'g> Builder<'_, 'g> {
         (call, process): (&ast::Call, Process),
         frame: FrameRef,
         available: Available<'g>,
-        motions: &[(Bounded<'g>, Span)],
+        motions: &[(RangedVariable<'g>, Span)],
     ) -> Option<()> {
         if available.unknowns.len() + motions.len() > limits::SURFACE_UNKNOWNS.most {
             context.report(limits::SURFACE_UNKNOWNS.exceeded(written.value.span));
@@ -73,7 +73,7 @@ impl<'g> Builder<'_, 'g> {
             motions[..=first].rotate_right(1);
             flipped = turned;
         }
-        let unknowns: Vec<Bounded<'g>> =
+        let unknowns: Vec<RangedVariable<'g>> =
             available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
         let over: Vec<Expr<'g>> = motions.iter().map(|(motion, _)| motion.variable).collect();
         let surface = made(context, process, call, &available, &driven, &over, flipped)?;
@@ -114,7 +114,7 @@ impl<'g> Builder<'_, 'g> {
         &self,
         context: &mut Context<'g>,
         call: &'p ast::Call,
-    ) -> Option<(&'p ast::Path, Vec<(Bounded<'g>, Span)>)> {
+    ) -> Option<(&'p ast::Path, Vec<(RangedVariable<'g>, Span)>)> {
         let process = call.function.node.as_str();
         let mut tool = None;
         let mut motions = Vec::new();
@@ -149,7 +149,7 @@ impl<'g> Builder<'_, 'g> {
         tool.map(|tool| (tool, motions))
     }
 
-    fn motion(&self, context: &mut Context<'g>, written: &Expression) -> Option<Bounded<'g>> {
+    fn motion(&self, context: &mut Context<'g>, written: &Expression) -> Option<RangedVariable<'g>> {
         let ExpressionKind::Path(path) = &written.kind else {
             context.report(Diagnostic::new(Code::WrongKind, written.span, "`over:` takes the names of motions"));
             return None;
@@ -202,7 +202,7 @@ impl<'g> Builder<'_, 'g> {
         &self,
         context: &mut Context<'g>,
         driven: &Chain<'g>,
-        motions: &[(Bounded<'g>, Span)],
+        motions: &[(RangedVariable<'g>, Span)],
         written: &ast::GeneratedSurface,
         available: &Available<'g>,
     ) -> bool {
@@ -232,7 +232,7 @@ impl<'g> Builder<'_, 'g> {
                 fine = false;
             }
         }
-        let is_free = |motion: &&Bounded<'g>| {
+        let is_free = |motion: &&RangedVariable<'g>| {
             let taken = motions.iter().any(|(over, _)| over.variable == motion.variable)
                 || available.unknowns.iter().any(|unknown| unknown.variable == motion.variable);
             !taken && !driven.twist(motion.variable).is_zero()

@@ -6,7 +6,7 @@ use crate::definitions::material_side::{self, Seen};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
-use crate::model::Bounded;
+use crate::model::RangedVariable;
 use crate::values::context::Context;
 
 use super::available::Available;
@@ -18,9 +18,9 @@ pub(super) fn side<'g>(
     available: &Available<'g>,
     edge: &Edge<'g>,
     driven: &Chain<'g>,
-    motions: &[(Bounded<'g>, Span)],
+    motions: &[(RangedVariable<'g>, Span)],
 ) -> Option<(usize, bool)> {
-    let unknowns: Vec<Bounded<'g>> =
+    let unknowns: Vec<RangedVariable<'g>> =
         available.unknowns.iter().chain(motions.iter().map(|(motion, _)| motion)).cloned().collect();
     let mut order: Vec<usize> = (0..motions.len()).collect();
     order.sort_by_key(|&k| motions[k].0.is_count);
@@ -42,7 +42,7 @@ pub(super) fn side<'g>(
 }
 
 /// Why none of the motions says on which side the steel lies.
-fn no_side(edge: Span, motions: &[(Bounded<'_>, Span)], seen: &[(usize, Seen)]) -> Diagnostic {
+fn no_side(edge: Span, motions: &[(RangedVariable<'_>, Span)], seen: &[(usize, Seen)]) -> Diagnostic {
     let reason = |k: usize, seen: &Seen| {
         let motion = &motions[k].0.name;
         if seen.is_flat() {

@@ -405,7 +405,7 @@ pub struct Sample {
     /// Which branch is meant.
     pub keeps: Vec<Keep>,
     /// What its points must fulfil.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<PointRequirement>,
     /// The whole statement.
     pub span: Span,
 }
@@ -434,7 +434,7 @@ pub struct Keep {
 
 /// `require key: a .. b, "message"`
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limit {
+pub struct PointRequirement {
     /// A function of the points and where it must lie.
     pub within: Keep,
     /// What is told of points where it does not.

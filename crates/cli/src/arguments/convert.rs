@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Means, Which, count, folder, length};
+use super::{EvaluatorArguments, JobArguments, count, folder, length};
 
 #[derive(Args, Debug)]
 #[command(mut_arg("job", |job| job.help("The job that is carried over, where the file holds several")))]
@@ -21,7 +21,7 @@ Examples:
   flank convert specs/bevel/thesis_gear.chain --to specs/machines/cradle.chain --fit work_offset    settings that do the same")]
 pub(crate) struct Convert {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// The file of the target machine; of several in it the last one
     #[arg(long, value_name = "FILE")]
     pub(crate) to: PathBuf,
@@ -75,7 +75,7 @@ pub(crate) struct Onto {
     #[arg(long, value_name = "NAME", requires = "to")]
     pub(crate) work_frame: Option<String>,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Format, Means, TableFormat, Which, count, folder};
+use super::{EvaluatorArguments, Format, JobArguments, TableFormat, count, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -18,7 +18,7 @@ Examples:
   flank deviation specs/bevel/pinion_19x62.chain concave --measured measured.csv    and back")]
 pub(crate) struct Measure {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// The surfaces, several with commas; all that are sampled otherwise
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) surface: Vec<String>,
@@ -43,7 +43,7 @@ pub(crate) struct Measure {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 /// Where in the sampled area a measuring grid lies.
@@ -79,7 +79,7 @@ Examples:
   flank deviation specs/bevel/pinion_19x62.chain concave --measured measured.csv")]
 pub(crate) struct Deviation {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// The surface
     pub(crate) surface: String,
     /// The surface that it is held against; it is sampled in the spec
@@ -112,5 +112,5 @@ pub(crate) struct Deviation {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }

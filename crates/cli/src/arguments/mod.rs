@@ -19,7 +19,7 @@ use crate::spec;
 
 pub(crate) use convert::{Convert, Onto, TableFormat};
 pub(crate) use measuring::{Deviation, Measure};
-pub(crate) use plot::{PictureFormat, Plot, What};
+pub(crate) use plot::{PictureFormat, Plot, PlotKind};
 pub(crate) use report::{Report, ReportFormat};
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
@@ -109,16 +109,16 @@ impl Command {
 
 impl Command {
     /// How the numbers are worked out, of a command that works out some.
-    pub(crate) fn means(&self) -> Option<Means> {
+    pub(crate) fn evaluator(&self) -> Option<EvaluatorArguments> {
         match self {
-            Command::Solve(arguments) => Some(arguments.means),
-            Command::Convert(arguments) => Some(arguments.onto.means),
-            Command::Derive(arguments) => Some(arguments.onto.means),
-            Command::Plot(arguments) => Some(arguments.means),
-            Command::Report(arguments) => Some(arguments.means),
-            Command::Deviation(arguments) => Some(arguments.means),
-            Command::Measure(arguments) => Some(arguments.means),
-            Command::View(arguments) => Some(arguments.means),
+            Command::Solve(arguments) => Some(arguments.evaluator),
+            Command::Convert(arguments) => Some(arguments.onto.evaluator),
+            Command::Derive(arguments) => Some(arguments.onto.evaluator),
+            Command::Plot(arguments) => Some(arguments.evaluator),
+            Command::Report(arguments) => Some(arguments.evaluator),
+            Command::Deviation(arguments) => Some(arguments.evaluator),
+            Command::Measure(arguments) => Some(arguments.evaluator),
+            Command::View(arguments) => Some(arguments.evaluator),
             Command::Check(_)
             | Command::Explain(_)
             | Command::Import(_)
@@ -131,9 +131,9 @@ impl Command {
     }
 }
 
-/// Which job of which file, with which values.
+/// JobArguments job of which file, with which values.
 #[derive(Args, Debug)]
-pub(crate) struct Which {
+pub(crate) struct JobArguments {
     /// The file that the job stands in; - for stdin
     pub(crate) file: PathBuf,
     /// The job, where the file holds several; all of them otherwise
@@ -145,7 +145,7 @@ pub(crate) struct Which {
     pub(crate) set: Vec<(String, String)>,
 }
 
-impl Which {
+impl JobArguments {
     /// # Errors
     /// If the standard input cannot be read.
     pub(crate) fn jobs(&self) -> Result<JobSelection, Failure> {
@@ -155,7 +155,7 @@ impl Which {
 
 /// How the numbers are worked out; it changes no bit of them.
 #[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct Means {
+pub(crate) struct EvaluatorArguments {
     /// Make no machine code of the equations: they are gone through instruction by instruction, the results are the same bit
     /// for bit. For systems that forbid such memory, and to rule it out as a cause
     #[arg(long)]
@@ -173,7 +173,7 @@ pub(crate) struct Means {
 /// More boxes take minutes, and rarely decide what these do not.
 const MOST_ASKED_FOR: u64 = 10_000_000;
 
-impl Means {
+impl EvaluatorArguments {
     pub(crate) fn threads(self) -> Option<NonZero<usize>> {
         self.threads
     }
@@ -207,7 +207,7 @@ Examples:
   flank solve specs/hobbing/spur_gear.chain --json --no-picture")]
 pub(crate) struct Solve {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
@@ -237,7 +237,7 @@ pub(crate) struct Solve {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -342,7 +342,7 @@ Examples:
   flank derive specs/bevel/tilted_pinion.chain --surface concave --to specs/machines/free_form.chain")]
 pub(crate) struct Derive {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// Print LaTeX instead of text
     #[arg(long)]
     pub(crate) latex: bool,
@@ -457,7 +457,7 @@ Examples:
   flank view specs/bevel/ease_off_19x62.chain --job conjugate --json")]
 pub(crate) struct View {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// Folder for the pages; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
@@ -465,7 +465,7 @@ pub(crate) struct View {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 #[derive(Args, Debug)]

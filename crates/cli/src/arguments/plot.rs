@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Means, Which, folder};
+use super::{EvaluatorArguments, JobArguments, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -20,10 +20,10 @@ Examples:
   flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --from conjugate.concave")]
 pub(crate) struct Plot {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// What is drawn, several with commas
     #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) what: Vec<What>,
+    pub(crate) what: Vec<PlotKind>,
     /// The surfaces that pictures show, several with commas; otherwise maps show the first that is sampled
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) surface: Vec<String>,
@@ -49,7 +49,7 @@ pub(crate) struct Plot {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -60,7 +60,7 @@ pub(crate) enum PictureFormat {
 
 /// A kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum What {
+pub(crate) enum PlotKind {
     /// All surfaces in space, with axis, frame and dimensions
     Surface,
     /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the plane that fits best

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
-use super::{Faces, Means, Which, no_file};
+use super::{EvaluatorArguments, Faces, JobArguments, no_file};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -19,7 +19,7 @@ Examples:
   flank report specs/hobbing/helical_gear.chain --json")]
 pub(crate) struct Report {
     #[command(flatten)]
-    pub(crate) which: Which,
+    pub(crate) which: JobArguments,
     /// Folder for the files, made if it is not there; or a file that ends in .html or .md
     #[arg(long, value_name = "PATH", default_value = "build", value_parser = page_or_folder())]
     pub(crate) out: PathBuf,
@@ -38,7 +38,7 @@ pub(crate) struct Report {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) means: Means,
+    pub(crate) evaluator: EvaluatorArguments,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

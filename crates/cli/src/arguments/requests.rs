@@ -7,8 +7,8 @@ use flank::{
 
 use super::convert::{EmitForm, EmitLanguage, NcDialect};
 use super::{
-    Convert, Derive, Deviation, Format, Measure, Onto, PictureFormat, Plot, Report, ReportFormat, Solve, TableFormat,
-    View, What,
+    Convert, Derive, Deviation, Format, Measure, Onto, PictureFormat, Plot, PlotKind, Report, ReportFormat, Solve,
+    TableFormat, View,
 };
 use crate::failure::Failure;
 
@@ -30,7 +30,7 @@ same! {
     PictureFormat => PictureFormat { Png, Svg }
     TableFormat => TableFormat { Csv, Json }
     ReportFormat => ReportFormat { Html, Md }
-    What => PlotKind {
+    PlotKind => PlotKind {
         Surface, Topography, Curvature, Sensitivity, Deviation, Left, Residual, ContactLines, Section, Machine, Motion
     }
     NcDialect => NcDialect { Fanuc, Siemens, LinuxCnc }
@@ -54,7 +54,7 @@ impl Solve {
             geometry: self.geometry,
             sensitivity: self.sensitivity,
             certify: self.certify,
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         })
     }
 }
@@ -71,7 +71,7 @@ impl Plot {
             format: all(&self.format),
             size: self.size,
             no_origin: self.no_origin,
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         })
     }
 }
@@ -85,14 +85,14 @@ impl Report {
             certify: self.certify,
             step: self.faces.step,
             date: self.date.clone(),
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         })
     }
 }
 
 impl View {
     pub(crate) fn request(&self) -> Result<ViewRequest, Failure> {
-        Ok(ViewRequest { jobs: self.which.jobs()?, out: self.out.clone(), evaluator: self.means.evaluator() })
+        Ok(ViewRequest { jobs: self.which.jobs()?, out: self.out.clone(), evaluator: self.evaluator.evaluator() })
     }
 }
 
@@ -110,7 +110,7 @@ impl Deviation {
             out: self.out.clone(),
             format: all(&self.format),
             no_picture: self.no_picture,
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         })
     }
 }
@@ -126,7 +126,7 @@ impl Measure {
             lines: self.lines,
             out: self.out.clone(),
             format: all(&self.format),
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         })
     }
 }
@@ -137,7 +137,7 @@ impl Onto {
             surface: self.surface.clone(),
             tool_frame: self.tool_frame.clone(),
             work_frame: self.work_frame.clone(),
-            evaluator: self.means.evaluator(),
+            evaluator: self.evaluator.evaluator(),
         }
     }
 }

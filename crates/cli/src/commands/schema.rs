@@ -17,7 +17,7 @@ pub(crate) fn run(arguments: &Schema) -> Result<Ending, Failure> {
 }
 
 /// # Errors
-/// Which there are, if there is none of that name.
+/// JobArguments there are, if there is none of that name.
 fn find(name: &str) -> Result<Shipped, Failure> {
     schema(name).ok_or_else(|| {
         let known: Vec<String> = schemas().into_iter().map(|known| known.name).collect();

@@ -16,13 +16,13 @@ use crate::project::answer::Answer;
 use crate::project::failure::{Failure, not_done};
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{DeviationRequest, JobSelection, Means};
+use crate::project::requests::{DeviationRequest, JobSelection, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::branches;
 use crate::solve::starts::{self, Starts};
-use crate::solve::{self, Wanted, header, patch, problem, ranges};
+use crate::solve::{self, SolveOptions, header, patch, problem, ranges};
 
 const NOTE: &str = "along the normal, plus is material";
 
@@ -40,7 +40,7 @@ impl Named<'_, '_> {
 }
 
 /// What is held against a surface.
-pub(crate) enum Held<'j, 'g> {
+pub(crate) enum ComparedWith<'j, 'g> {
     Surface(Named<'j, 'g>),
     /// So many measured points of a file.
     File {
@@ -49,32 +49,32 @@ pub(crate) enum Held<'j, 'g> {
     },
 }
 
-impl Held<'_, '_> {
+impl ComparedWith<'_, '_> {
     fn name(&self) -> &str {
         match self {
-            Held::Surface(of) => &of.surface.name,
-            Held::File { name, .. } => name,
+            ComparedWith::Surface(of) => &of.surface.name,
+            ComparedWith::File { name, .. } => name,
         }
     }
 
     fn whole_name(&self) -> String {
         match self {
-            Held::Surface(of) => of.whole_name(),
-            Held::File { name, .. } => name.clone(),
+            ComparedWith::Surface(of) => of.whole_name(),
+            ComparedWith::File { name, .. } => name.clone(),
         }
     }
 
     fn frame(&self) -> Option<&str> {
         match self {
-            Held::Surface(of) => Some(&of.surface.frame),
-            Held::File { .. } => None,
+            ComparedWith::Surface(of) => Some(&of.surface.frame),
+            ComparedWith::File { .. } => None,
         }
     }
 }
 
 /// One surface, or what was measured of it, held against a surface.
-pub(crate) struct Measured<'j, 'g> {
-    pub(crate) held: Held<'j, 'g>,
+pub(crate) struct DeviationMap<'j, 'g> {
+    pub(crate) held: ComparedWith<'j, 'g>,
     pub(crate) from: Named<'j, 'g>,
     pub(crate) labels: [String; 2],
     pub(crate) counts: [usize; 2],
@@ -95,7 +95,7 @@ pub(crate) struct Measured<'j, 'g> {
 
 /// What a surface is held against.
 enum Second<'a> {
-    Measured(&'a Path),
+    DeviationMap(&'a Path),
     Surface(&'a str),
 }
 
@@ -116,7 +116,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<An
         return Err(Failure::Request(message));
     }
     let second = match (&request.measured, &request.from) {
-        (Some(file), _) => Second::Measured(file),
+        (Some(file), _) => Second::DeviationMap(file),
         (None, Some(name)) => Second::Surface(name),
         (None, None) => {
             let message = format!("say what `{}` is held against: --from SURFACE or --measured FILE", request.surface);
@@ -127,28 +127,34 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<An
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let mut origin = Origin::of(&compilation);
     let surface = find(&jobs, &request.surface)?;
-    let means = Means::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor);
     let measured = match second {
-        Second::Measured(file) => inspect::inspect(surface, file, (request, means), &mut origin)?,
-        Second::Surface(from) => measure([surface, find(&jobs, from)?], request.as_it_lies, means)?,
+        Second::DeviationMap(file) => inspect::inspect(surface, file, (request, session), &mut origin)?,
+        Second::Surface(from) => measure([surface, find(&jobs, from)?], request.as_it_lies, session)?,
     };
     let written = measured.write(request, &origin, monitor)?;
     let points = units::counted(measured.points.len(), "point");
     let notes = format!("{points} in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3)
         + &measured.opposite()
-        + &trimmed(&measured, means);
+        + &trimmed(&measured, session);
     let (text, document, not_done) = (measured.text(&written), measured.json(&written), measured.missing());
     Ok(Answer { text, document, notes, not_done })
 }
 
 /// Surfaces of which the job trims points away, which have deviations all the same; empty if there are none.
-fn trimmed(measured: &Measured<'_, '_>, means: Means) -> String {
+fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> String {
     let held = match &measured.held {
-        Held::Surface(of) => Some(of),
-        Held::File { .. } => None,
+        ComparedWith::Surface(of) => Some(of),
+        ComparedWith::File { .. } => None,
     };
-    let wanted =
-        Wanted { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, means };
+    let wanted = SolveOptions {
+        geometry: false,
+        sensitivity: false,
+        certificates: false,
+        together: None,
+        of_shown: false,
+        session,
+    };
     let told = held.into_iter().chain([&measured.from]).filter_map(|Named { job, surface }| {
         let sample = surface.sample.as_ref().filter(|_| !surface.trimmed_by.is_empty())?;
         let points = solve::points(job, surface, sample, wanted).points;
@@ -189,17 +195,17 @@ pub(crate) fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 
 pub(crate) fn measure<'j, 'g>(
     [surface, from]: [Named<'j, 'g>; 2],
     as_it_lies: bool,
-    means: Means,
-) -> Result<Measured<'j, 'g>, String> {
+    session: Session,
+) -> Result<DeviationMap<'j, 'g>, String> {
     let of = &from.surface.name;
     let sample = from.surface.sample.as_ref().ok_or(format!(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
     ))?;
-    let _working = means.begin(format!("solving {} and {}", surface.surface.name, from.surface.name));
+    let _working = session.begin(format!("solving {} and {}", surface.surface.name, from.surface.name));
     let counts = sample.counts;
-    let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), means);
+    let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), session);
     let starts = Starts::beside(surface.surface, (sample, &points));
-    let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), means);
+    let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
     let held = &surface.surface.surface;
     let deviation = flank_solver::Deviation::new(held, ranges(surface.surface), &surface.job.bindings())
         .expect("a job without errors leaves nothing unbound");
@@ -221,8 +227,8 @@ pub(crate) fn measure<'j, 'g>(
     let apart = if done.is_none() { apart([surface, from], ends) } else { String::new() };
     let ambiguous = lost + &lost_near;
     let is_cut = |(point, near): &(&SurfacePoint, &SurfacePoint)| is_solved(point) && is_cut_away(near.outcome);
-    Ok(Measured {
-        held: Held::Surface(surface),
+    Ok(DeviationMap {
+        held: ComparedWith::Surface(surface),
         from,
         labels: sample.labels.clone(),
         counts,
@@ -240,9 +246,9 @@ pub(crate) fn measure<'j, 'g>(
 fn solved<'g>(
     of: Named<'_, 'g>,
     (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),
-    means: Means,
+    session: Session,
 ) -> (Vec<SurfacePoint>, String) {
-    let problem = problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), means);
+    let problem = problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), session);
     let (points, effort) = problem.solve(targets, counts);
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
     let told = is_ambiguous.then(|| {
@@ -286,7 +292,7 @@ fn is_solved(point: &SurfacePoint) -> bool {
 /// Nearer than this, um, the middle lies on the surface that it was turned onto: points are solved to 1e-9 mm.
 const ON_IT: f64 = 1e-6;
 
-impl Measured<'_, '_> {
+impl DeviationMap<'_, '_> {
     fn middle(&self) -> usize {
         starts::middle(self.counts)
     }
@@ -348,8 +354,8 @@ impl Measured<'_, '_> {
 
     fn name(&self) -> String {
         match &self.held {
-            Held::Surface(of) => format!("{}.deviation", of.whole_name()),
-            Held::File { .. } => format!("{}.measured.deviation", self.from.whole_name()),
+            ComparedWith::Surface(of) => format!("{}.deviation", of.whole_name()),
+            ComparedWith::File { .. } => format!("{}.measured.deviation", self.from.whole_name()),
         }
     }
 
@@ -419,11 +425,11 @@ impl Measured<'_, '_> {
     pub(crate) fn missing(&self) -> String {
         let (all, known) = (self.points.len(), self.known().count());
         let [surface, from] = match &self.held {
-            Held::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
+            ComparedWith::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
             held => [held.name().to_string(), self.from.surface.name.clone()],
         };
         let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
-        if let Held::File { points, .. } = self.held {
+        if let ComparedWith::File { points, .. } = self.held {
             return missing_of_file(self, [points, known, unsolved]);
         }
         if !self.refused.is_empty() {
@@ -459,8 +465,8 @@ impl Measured<'_, '_> {
             values: Values::Scalars(self.deviations.iter().copied().collect()),
         };
         let held = match &self.held {
-            Held::Surface(of) => Some(of.job),
-            Held::File { .. } => None,
+            ComparedWith::Surface(of) => Some(of.job),
+            ComparedWith::File { .. } => None,
         };
         let jobs: Vec<&Job<'_>> = [self.from.job].into_iter().chain(held).collect();
         let mut header = header(&jobs, which, origin);
@@ -500,7 +506,7 @@ impl Measured<'_, '_> {
 }
 
 /// Why numbers are missing of a grid with so many measured points, known deviations and nominal points that are not solved.
-fn missing_of_file(of: &Measured<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> String {
+fn missing_of_file(of: &DeviationMap<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> String {
     let (all, from) = (of.points.len(), &of.from.surface.name);
     let mut out = String::new();
     if unsolved > 0 {

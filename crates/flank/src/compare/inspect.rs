@@ -3,10 +3,10 @@
 use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
 use flank_solver::{Inspection, Outcome, SurfacePoint, beside};
 
-use crate::compare::deviation::{Held, Measured, Named};
+use crate::compare::deviation::{ComparedWith, DeviationMap, Named};
 use crate::compare::measure::Placed;
 use crate::project::failure::Failure;
-use crate::project::requests::{DeviationRequest, Means};
+use crate::project::requests::{DeviationRequest, Session};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 use crate::solve;
@@ -21,9 +21,9 @@ const MOST_BYTES: usize = 256 << 20;
 pub(crate) fn inspect<'j, 'g>(
     of: Named<'j, 'g>,
     file: &std::path::Path,
-    (request, means): (&DeviationRequest, Means<'j>),
+    (request, session): (&DeviationRequest, Session<'j>),
     origin: &mut Origin,
-) -> Result<Measured<'j, 'g>, Failure> {
+) -> Result<DeviationMap<'j, 'g>, Failure> {
     let shown = shown_path(file);
     let text = origin.other_text(request.jobs.project.files(), file, MOST_BYTES)?;
     let read = read_measured(&text, &of.surface.name).map_err(|fault| format!("{shown}: {fault}"))?;
@@ -36,7 +36,7 @@ pub(crate) fn inspect<'j, 'g>(
         )
         .into());
     }
-    let placed = Placed::new(of.job, of.surface, request.margins(), means)?;
+    let placed = Placed::new(of.job, of.surface, request.margins(), session)?;
     let [profile, length] = placed.shares(counts);
     let sample = placed.sample(&profile, &length);
     let nominal = placed.solved(&sample);
@@ -47,7 +47,7 @@ pub(crate) fn inspect<'j, 'g>(
     }
     let inspection = Inspection::new(&of.surface.surface, solve::ranges(of.surface), &of.job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let _working = means.begin(format!("holding {shown} against {}", of.surface.name));
+    let _working = session.begin(format!("holding {shown} against {}", of.surface.name));
     let turn = inspection.best_turn(&positions, &nominal);
     if let Some((at, off, half)) = misplaced(&positions, &nominal, counts, turn.unwrap_or(0.0)) {
         let [row, column] = [at / counts[1] + 1, at % counts[1] + 1];
@@ -61,8 +61,8 @@ pub(crate) fn inspect<'j, 'g>(
     }
     let done = if request.as_it_lies { 0.0 } else { turn.unwrap_or(0.0) };
     let deviations = inspection.deviations(&positions, &nominal, done);
-    Ok(Measured {
-        held: Held::File { name: shown, points: positions.iter().flatten().count() },
+    Ok(DeviationMap {
+        held: ComparedWith::File { name: shown, points: positions.iter().flatten().count() },
         from: of,
         labels: sample.labels.clone(),
         counts,

@@ -14,12 +14,12 @@ use crate::project::answer::Answer;
 use crate::project::failure::{Failure, not_done};
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{Means, MeasureRequest};
+use crate::project::requests::{MeasureRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve;
-use crate::solve::Wanted;
+use crate::solve::SolveOptions;
 use crate::solve::table::aligned;
 
 /// Rows and columns of the grid that tells how a flank lies.
@@ -34,7 +34,7 @@ pub fn measure(request: &MeasureRequest, monitor: &dyn Monitor, each: &mut dyn F
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
     let named = request.surface.iter().map(|name| deviation::find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
-    let means = Means::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor);
     for job in solve::asked(&jobs, monitor)? {
         let is_meant = |surface: &&GeneratedSurface<'_>| match named.is_empty() {
             true => surface.sample.is_some(),
@@ -45,7 +45,7 @@ pub fn measure(request: &MeasureRequest, monitor: &dyn Monitor, each: &mut dyn F
             continue;
         }
         let flanks =
-            meant.iter().map(|surface| flank(job, surface, (request, means))).collect::<Result<_, Failure>>()?;
+            meant.iter().map(|surface| flank(job, surface, (request, session))).collect::<Result<_, Failure>>()?;
         let header = solve::header(&[job], &request.jobs, &origin);
         let grid = MeasuringGrid { header, margins: request.margins(), flanks };
         let mut folder = Folder::at(&request.out, &origin, monitor)?;
@@ -66,7 +66,7 @@ pub(crate) struct Placed<'j, 'g> {
     sample: &'j Sample<'g>,
     ends: FlankEnds,
     margins: [f64; 2],
-    means: Means<'j>,
+    session: Session<'j>,
 }
 
 impl<'j, 'g> Placed<'j, 'g> {
@@ -77,7 +77,7 @@ impl<'j, 'g> Placed<'j, 'g> {
         job: &'j Job<'g>,
         surface: &'j GeneratedSurface<'g>,
         margins: [f64; 2],
-        means: Means<'j>,
+        session: Session<'j>,
     ) -> Result<Placed<'j, 'g>, Failure> {
         let name = &surface.name;
         let sample = surface.sample.as_ref().ok_or(format!(
@@ -92,7 +92,7 @@ impl<'j, 'g> Placed<'j, 'g> {
         let shares = spaced((0.0, 1.0), TRIAL);
         let trial = lattice(sample, false, [&shares, &shares]);
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
-        let found = solve::points(job, surface, &trial, wanted(means));
+        let found = solve::points(job, surface, &trial, wanted(session));
         if let Some(branches) = found.ambiguous(surface, &trial) {
             return Err(Failure::from(branches).unsolved());
         }
@@ -101,7 +101,7 @@ impl<'j, 'g> Placed<'j, 'g> {
             "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
              does: `toe_root: [z, rho]`, …"
         ))?;
-        Ok(Placed { job, surface, sample, ends, margins, means })
+        Ok(Placed { job, surface, sample, ends, margins, session })
     }
 
     /// Points at shares from root to tip and along the tooth.
@@ -122,8 +122,8 @@ impl<'j, 'g> Placed<'j, 'g> {
     }
 
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Vec<SurfacePoint> {
-        let _working = self.means.begin(format!("solving {}", self.surface.name));
-        solve::points(self.job, self.surface, sample, wanted(self.means)).points
+        let _working = self.session.begin(format!("solving {}", self.surface.name));
+        solve::points(self.job, self.surface, sample, wanted(self.session)).points
     }
 
     fn part(&self, counts: [usize; 2]) -> Patch {
@@ -136,8 +136,8 @@ impl<'j, 'g> Placed<'j, 'g> {
 }
 
 /// Points alone.
-fn wanted(means: Means<'_>) -> Wanted<'_> {
-    Wanted { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, means }
+fn wanted(session: Session<'_>) -> SolveOptions<'_> {
+    SolveOptions { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, session }
 }
 
 /// So many shares from end to end, without the margins.
@@ -173,9 +173,9 @@ fn between(values: [&Vec<f64>; 2], shares: [&[f64]; 2]) -> [Vec<f64>; 2] {
 fn flank<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
-    (request, means): (&MeasureRequest, Means<'_>),
+    (request, session): (&MeasureRequest, Session<'_>),
 ) -> Result<NominalFlank, Failure> {
-    let placed = Placed::new(job, surface, request.margins(), means)?;
+    let placed = Placed::new(job, surface, request.margins(), session)?;
     let grid = placed.part([request.rows as usize, request.columns as usize]);
     let hand = Hand::of(&grid);
     let mut parts = vec![(Part::Grid, grid)];

@@ -4,7 +4,7 @@ use flank_chain_dsl::Axis;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{PoseProblem, Range, Tube};
 
-use super::Carried;
+use super::Conversion;
 use super::files::decimals;
 use super::source::{Flank, Source};
 use crate::project::units;
@@ -21,8 +21,8 @@ pub(super) struct Blocks {
 
 impl Blocks {
     /// For positions of one motion in order; `tube` is where the axes are proven to stand.
-    pub(super) fn of(carried: &Carried<'_, '_>, tube: Option<&Tube>) -> Blocks {
-        let Carried { problem, source, free: axes, positions, line, .. } = carried;
+    pub(super) fn of(carried: &Conversion<'_, '_>, tube: Option<&Tube>) -> Blocks {
+        let Conversion { problem, source, free: axes, positions, line, .. } = carried;
         let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
         let Some(series) = each.collect::<Option<Vec<Vec<Vec<f64>>>>>() else { return Blocks::default() };
         let ends = positions.windows(2).zip(line.windows(2));

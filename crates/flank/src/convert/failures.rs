@@ -1,10 +1,10 @@
 //! What the target cannot do, in words.
 
-use flank_chain_dsl::{Axis, Bounded, Machine};
+use flank_chain_dsl::{Axis, Machine, RangedVariable};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Missing, Outcome, Posture};
 
-use super::Carried;
+use super::Conversion;
 use super::source::Source;
 use crate::project::units;
 
@@ -21,7 +21,11 @@ const FREEDOMS: usize = 6;
 ///
 /// # Errors
 /// In words, if there are fewer.
-pub(super) fn check_count(machine: &Machine<'_>, motions: &[&Bounded<'_>], free: &[&Axis<'_>]) -> Result<(), String> {
+pub(super) fn check_count(
+    machine: &Machine<'_>,
+    motions: &[&RangedVariable<'_>],
+    free: &[&Axis<'_>],
+) -> Result<(), String> {
     let names = |names: Vec<&str>, join: &str| names.join(join);
     let moving = names(motions.iter().map(|motion| motion.name.as_str()).collect(), " and ");
     let axes = names(free.iter().map(|axis| axis.name.as_str()).collect(), ", ");
@@ -39,8 +43,8 @@ pub(super) fn check_count(machine: &Machine<'_>, motions: &[&Bounded<'_>], free:
 }
 
 /// What the target cannot do, each kind once with its first place; empty if nothing.
-pub(super) fn told(carried: &Carried<'_, '_>) -> String {
-    let Carried { positions, line, source, .. } = carried;
+pub(super) fn told(carried: &Conversion<'_, '_>) -> String {
+    let Conversion { positions, line, source, .. } = carried;
     let mut kinds: Vec<(String, String, usize)> = Vec::new();
     for (k, (position, posture)) in positions.iter().zip(line).enumerate() {
         let (kind, told) = match (posture.outcome, posture.missing) {
@@ -65,7 +69,7 @@ pub(super) fn told(carried: &Carried<'_, '_>) -> String {
 }
 
 /// All axes that have to stand beyond their travels, that which is farthest beyond, as a share of its travel, first.
-fn beyond(carried: &Carried<'_, '_>, posture: &Posture) -> (String, String) {
+fn beyond(carried: &Conversion<'_, '_>, posture: &Posture) -> (String, String) {
     let farthest = carried.problem.beyond(&posture.axes);
     let mut kind: Vec<&str> = farthest.iter().map(|(k, _)| carried.free[*k].name.as_str()).collect();
     kind.sort_unstable();
@@ -83,7 +87,7 @@ fn beyond(carried: &Carried<'_, '_>, posture: &Posture) -> (String, String) {
 }
 
 /// The job itself does not say where its tool stands.
-fn undefined(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, String)> {
+fn undefined(carried: &Conversion<'_, '_>, position: &[f64]) -> Option<(String, String)> {
     let Source { driven, motions, work, tool, .. } = &carried.source;
     let pose = driven.substituted(&carried.bindings).pose();
     let rows = pose.rotation.0.into_iter().chain([pose.translation]);
@@ -100,7 +104,7 @@ fn undefined(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, Str
 }
 
 /// The orientation of the tool is one that the rotary axes do not reach.
-fn misdirected(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, String)> {
+fn misdirected(carried: &Conversion<'_, '_>, position: &[f64]) -> Option<(String, String)> {
     let (missed, turning) = carried.problem.turn_missed(position).ok().filter(|(missed, _)| *missed > TURNED)?;
     let is_round = carried.source.symmetries.iter().any(|screw| screw.angular != [0.0; 3]);
     let what = if is_round { "axis" } else { "frame" };
@@ -113,7 +117,7 @@ fn misdirected(carried: &Carried<'_, '_>, position: &[f64]) -> Option<(String, S
     Some(("misdirected".to_string(), told))
 }
 
-fn lacking(carried: &Carried<'_, '_>, missing: Missing) -> (String, String) {
+fn lacking(carried: &Conversion<'_, '_>, missing: Missing) -> (String, String) {
     let line = ["x", "y", "z"][missing.direction % 3];
     let what = if missing.direction < 3 {
         format!("along the tool's own {line} axis, {:.6} mm are missing", missing.by.abs())
@@ -126,7 +130,7 @@ fn lacking(carried: &Carried<'_, '_>, missing: Missing) -> (String, String) {
     )
 }
 
-fn lost(carried: &Carried<'_, '_>, is_singular: bool, near: &Posture, at: &[f64]) -> (String, String) {
+fn lost(carried: &Conversion<'_, '_>, is_singular: bool, near: &Posture, at: &[f64]) -> (String, String) {
     let name = &carried.machine.name;
     let freedoms = carried.problem.unknowns().len();
     if freedoms < FREEDOMS {

@@ -4,12 +4,12 @@ use flank_chain_dsl::{Dimension, NcWord};
 use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown, write_nc};
 use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_polynomials};
 
-use super::Carried;
+use super::Conversion;
 use super::blocks::Blocks;
 use super::table::{Named, Table};
 use crate::project::choices::EmitForm;
 use crate::project::files::Folder;
-use crate::project::requests::{ConvertRequest, Means};
+use crate::project::requests::{ConvertRequest, Session};
 use crate::project::spec::Origin;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.
@@ -26,9 +26,9 @@ pub(super) fn decimals(dimension: Dimension, word: &NcWord) -> u8 {
 /// In words, if a file cannot be written or a program not be made.
 pub(super) fn write(
     table: &Table,
-    carried: &Carried<'_, '_>,
+    carried: &Conversion<'_, '_>,
     header: Header,
-    (request, origin, means): (&ConvertRequest, &Origin, Means<'_>),
+    (request, origin, session): (&ConvertRequest, &Origin, Session<'_>),
 ) -> Result<Vec<String>, String> {
     let source = &carried.source;
     // two tools of one job do not write over each other's files
@@ -54,7 +54,7 @@ pub(super) fn write(
             functions.push((format!("{name}.{}", language.extension()), text));
         }
     }
-    let mut folder = Folder::at(request.out(), origin, means.monitor())?;
+    let mut folder = Folder::at(request.out(), origin, session.monitor())?;
     for format in distinct(request.formats()) {
         folder.motion(&name, &motion, format)?;
     }
@@ -129,7 +129,7 @@ fn polynomials(table: &Table, name: &str, language: Language) -> Result<String, 
 }
 
 /// The same in closed form.
-fn exact(table: &Table, carried: &Carried<'_, '_>, name: &str, language: Language) -> Result<String, String> {
+fn exact(table: &Table, carried: &Conversion<'_, '_>, name: &str, language: Language) -> Result<String, String> {
     let explicit = carried.explicit(false)?;
     let axes: Vec<(&str, Expr<'_>)> =
         table.axes.iter().map(|axis| axis.name.as_str()).zip(explicit.continuous.iter().copied()).collect();

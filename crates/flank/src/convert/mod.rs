@@ -11,7 +11,7 @@ mod table;
 
 use std::path::Path;
 
-use flank_chain_dsl::{Axis, Bounded, Job, Machine, Request, compile_request};
+use flank_chain_dsl::{Axis, Job, Machine, RangedVariable, Request, compile_request};
 use flank_expr::geometry::{Chain, Step};
 use flank_expr::{Expr, Graph};
 use flank_solver::{
@@ -21,7 +21,7 @@ use flank_solver::{
 use crate::project::answer::Answer;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{ConvertRequest, JobSelection, Means, Onto};
+use crate::project::requests::{ConvertRequest, JobSelection, Onto, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
@@ -45,13 +45,13 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Answer
     let (origin, job, target) = compiled(&graph, &request.jobs, &request.to, monitor)?;
     let plan = Plan::of(&graph, &job, &target, &request.onto, &request.fit)?;
     check_settings_alone(&plan, request)?;
-    let means = Means::new(request.onto.evaluator, monitor);
-    let target = plan.solved(means)?;
+    let session = Session::new(request.onto.evaluator, monitor);
+    let target = plan.solved(session)?;
     let (text, document, not_done) = if target.settings.is_empty() {
-        let (table, told) = carry(&job, target, &origin, (request, means))?;
+        let (table, told) = carry(&job, target, &origin, (request, session))?;
         (table.text(), table.json(&told), told)
     } else {
-        settings::find(&job, &target, (request, means))?
+        settings::find(&job, &target, (request, session))?
     };
     Ok(Answer { text, document, notes: String::new(), not_done })
 }
@@ -128,13 +128,13 @@ fn carry<'g>(
     job: &Job<'g>,
     target: Target<'_, 'g>,
     origin: &Origin,
-    (request, means): (&ConvertRequest, Means<'_>),
+    (request, session): (&ConvertRequest, Session<'_>),
 ) -> Result<(Table, String), String> {
     let jobs = [job, target.job];
-    let carried = Carried::on(target, request.positions, means)?;
+    let carried = Conversion::on(target, request.positions, session)?;
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
-    let working = means.begin(format!("polynomials and their proof on {}", carried.machine.name));
+    let working = session.begin(format!("polynomials and their proof on {}", carried.machine.name));
     let series = is_followed.then(|| Series::of(&carried, request)).flatten();
     drop(working);
     match &series {
@@ -150,13 +150,13 @@ fn carry<'g>(
     // a table of one motion; what the target cannot do is no program
     if is_series {
         let header = crate::solve::header(&jobs, &request.jobs, origin);
-        table.written = files::write(&table, &carried, header, (request, origin, means))?;
+        table.written = files::write(&table, &carried, header, (request, origin, session))?;
     }
     Ok((table, carried.source.unsolved.clone() + &told))
 }
 
 /// In words, which of the things that are asked for there are not without power series of the axes; nothing if none is.
-fn without_series(carried: &Carried<'_, '_>, request: &ConvertRequest) -> Option<String> {
+fn without_series(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<String> {
     let motions: Vec<&str> = carried.source.motions.iter().map(|motion| motion.name.as_str()).collect();
     let (asked, why) = match motions[..] {
         [one] => (
@@ -186,7 +186,7 @@ struct Target<'t, 'g> {
     free: Vec<&'t Axis<'g>>,
     axes: Vec<TargetAxis<'g>>,
     /// Settings that are looked for: those without a value, and those asked for.
-    settings: Vec<&'t Bounded<'g>>,
+    settings: Vec<&'t RangedVariable<'g>>,
     /// Numbers for the parameters of both machines.
     bindings: Vec<(Expr<'g>, Expr<'g>)>,
 }
@@ -198,7 +198,7 @@ struct Plan<'t, 'g> {
     chosen: Chosen<'t, 'g>,
     chain: Chain<'g>,
     free: Vec<&'t Axis<'g>>,
-    settings: Vec<&'t Bounded<'g>>,
+    settings: Vec<&'t RangedVariable<'g>>,
     bindings: Vec<(Expr<'g>, Expr<'g>)>,
 }
 
@@ -236,9 +236,9 @@ impl<'t, 'g> Plan<'t, 'g> {
     ///
     /// # Errors
     /// In words, if there are too many of them.
-    fn solved(self, means: Means<'_>) -> Result<Target<'t, 'g>, String> {
+    fn solved(self, session: Session<'_>) -> Result<Target<'t, 'g>, String> {
         let Plan { job, machine, chosen, chain, free, settings, bindings } = self;
-        let source = Source::of(chosen, means)?;
+        let source = Source::of(chosen, session)?;
         let axes = free.iter().map(|axis| target_axis(axis)).collect();
         Ok(Target { job, machine, source, chain, free, axes, settings, bindings })
     }
@@ -343,7 +343,7 @@ fn is_met(posture: &Posture) -> bool {
 }
 
 /// A job on another machine.
-pub(crate) struct Carried<'j, 'g> {
+pub(crate) struct Conversion<'j, 'g> {
     pub(crate) source: Source<'j, 'g>,
     pub(crate) machine: &'j Machine<'g>,
     /// The axes that move the tool against the work.
@@ -356,29 +356,29 @@ pub(crate) struct Carried<'j, 'g> {
     pub(crate) line: Vec<Posture>,
 }
 
-impl<'j, 'g> Carried<'j, 'g> {
+impl<'j, 'g> Conversion<'j, 'g> {
     /// # Errors
     /// In words, if it is not clear what is meant, or the machine has not the axes or the settings for it.
     pub(crate) fn new(
         graph: &'g Graph,
         job: &'j Job<'g>,
         target: &'j Job<'g>,
-        (onto, means): (&Onto, Means<'j>),
+        (onto, session): (&Onto, Session<'j>),
         positions: u32,
-    ) -> Result<Carried<'j, 'g>, String> {
+    ) -> Result<Conversion<'j, 'g>, String> {
         let plan = Plan::of(graph, job, target, onto, &[])?;
         match plan.settings.first() {
             Some(open) => Err(format!("{} has no value: --set {}=…", open.name, open.name)),
-            None => Carried::on(plan.solved(means)?, positions, means),
+            None => Conversion::on(plan.solved(session)?, positions, session),
         }
     }
 
-    fn on(mut target: Target<'j, 'g>, positions: u32, means: Means<'_>) -> Result<Carried<'j, 'g>, String> {
-        let _working = means.begin(format!("following the tool on {}", target.machine.name));
+    fn on(mut target: Target<'j, 'g>, positions: u32, session: Session<'_>) -> Result<Conversion<'j, 'g>, String> {
+        let _working = session.begin(format!("following the tool on {}", target.machine.name));
         let positions = target.source.positions(positions as usize);
         let (problem, line) = target.postures(&positions)?;
         let Target { source, machine, free, chain, bindings, .. } = target;
-        Ok(Carried { source, machine, free, chain, bindings, problem, positions, line })
+        Ok(Conversion { source, machine, free, chain, bindings, problem, positions, line })
     }
 
     /// The axes in closed form; with the parameters as symbols, or as numbers.

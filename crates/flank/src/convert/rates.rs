@@ -1,6 +1,6 @@
 //! Velocity, acceleration and jerk of the axes while the motion runs evenly.
 
-use super::Carried;
+use super::Conversion;
 
 /// Of the order of the derivative: s, s², s³.
 const FACTORIALS: [f64; 3] = [1.0, 2.0, 6.0];
@@ -18,7 +18,7 @@ impl Rates {
     ///
     /// # Errors
     /// In words, if the time is so short that they are no numbers.
-    pub(crate) fn of(carried: &Carried<'_, '_>, seconds: f64) -> Result<Option<Rates>, String> {
+    pub(crate) fn of(carried: &Conversion<'_, '_>, seconds: f64) -> Result<Option<Rates>, String> {
         let range = carried.source.ranges[0];
         let rate = (range.high - range.low) / seconds;
         let row = |(at, posture): (&Vec<f64>, &_)| -> Option<Vec<[f64; 3]>> {

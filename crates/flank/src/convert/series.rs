@@ -4,7 +4,7 @@ use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{PoseProblem, Posture, Tube, Unproven};
 
 use super::source::{Flank, Source};
-use super::{Carried, at, is_met};
+use super::{Conversion, at, is_met};
 use crate::project::requests::ConvertRequest;
 
 /// The highest order that is tried.
@@ -32,8 +32,8 @@ pub(crate) struct Series {
 }
 
 impl Series {
-    pub(crate) fn of(carried: &Carried<'_, '_>, request: &ConvertRequest) -> Option<Series> {
-        let Carried { source, problem, positions, line, .. } = carried;
+    pub(crate) fn of(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<Series> {
+        let Conversion { source, problem, positions, line, .. } = carried;
         let about = at(source.ranges[0], 0.5);
         let middle = middle(carried, about)?;
         let highest = if request.tolerance.is_some() { HIGHEST } else { request.order() };
@@ -105,8 +105,8 @@ impl Series {
 }
 
 /// The posture in the middle of the motion, which need not be one of the positions; nothing if it cannot be followed there.
-fn middle(carried: &Carried<'_, '_>, about: f64) -> Option<Posture> {
-    let Carried { problem, positions, line, .. } = carried;
+fn middle(carried: &Conversion<'_, '_>, about: f64) -> Option<Posture> {
+    let Conversion { problem, positions, line, .. } = carried;
     let apart = |k: &usize| (positions[*k][0] - about).abs();
     let nearest = (0..positions.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
     problem.follow(&line[nearest], &[positions[nearest].clone(), vec![about]]).pop().filter(is_met)

@@ -2,16 +2,18 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Bounded, Dimension, Job};
+use flank_chain_dsl::{Dimension, Job, RangedVariable};
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Adjustable, Range, SettingKind, SettingsFit, SettingsProblem, Sought, UnknownSetting};
+use flank_solver::{
+    AdjustableMachine, Range, SettingBounds, SettingKind, SettingsFit, SettingsProblem, UnknownSetting,
+};
 use serde_json::{Value, json};
 
 use super::Target;
 use super::source::{Flank, Source};
 use crate::project::failure::not_done;
-use crate::project::requests::{ConvertRequest, Means};
+use crate::project::requests::{ConvertRequest, Session};
 use crate::project::shown_path;
 use crate::project::units;
 use crate::solve::table::aligned;
@@ -30,10 +32,10 @@ pub(super) fn wanted<'t, 'g>(
     target: &'t Job<'g>,
     chain: &Chain<'g>,
     asked: &[String],
-) -> Result<Vec<&'t Bounded<'g>>, String> {
+) -> Result<Vec<&'t RangedVariable<'g>>, String> {
     let machine = &target.machines[0].name;
     let matter = that_matter(target, chain);
-    let matters = |setting: &Bounded<'g>| matter.iter().any(|known| known.variable == setting.variable);
+    let matters = |setting: &RangedVariable<'g>| matter.iter().any(|known| known.variable == setting.variable);
     for name in asked {
         let known = target.settings.iter().find(|setting| short(setting) == *name || setting.name == *name);
         let reason = match known {
@@ -49,9 +51,10 @@ pub(super) fn wanted<'t, 'g>(
             can => format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")),
         });
     }
-    let has_value = |setting: &Bounded<'g>| target.parameters.iter().any(|p| p.variable == setting.variable);
-    let is_asked = |setting: &Bounded<'g>| asked.iter().any(|name| short(setting) == *name || setting.name == *name);
-    let wanted: Vec<&Bounded<'g>> =
+    let has_value = |setting: &RangedVariable<'g>| target.parameters.iter().any(|p| p.variable == setting.variable);
+    let is_asked =
+        |setting: &RangedVariable<'g>| asked.iter().any(|name| short(setting) == *name || setting.name == *name);
+    let wanted: Vec<&RangedVariable<'g>> =
         target.settings.iter().filter(|s| is_asked(s) || (!has_value(s) && matters(s))).collect();
     match wanted.iter().find(|setting| setting.is_count) {
         Some(count) => Err(format!("{} has no value: --set {}=…", count.name, count.name)),
@@ -60,12 +63,12 @@ pub(super) fn wanted<'t, 'g>(
 }
 
 /// The settings that move the tool against the work.
-fn that_matter<'t, 'g>(target: &'t Job<'g>, chain: &Chain<'g>) -> Vec<&'t Bounded<'g>> {
+fn that_matter<'t, 'g>(target: &'t Job<'g>, chain: &Chain<'g>) -> Vec<&'t RangedVariable<'g>> {
     let reached = chain.substituted(&target.bindings_beside(&variables(&target.settings)));
     target.settings.iter().filter(|setting| !reached.twist(setting.variable).is_zero()).collect()
 }
 
-fn variables<'g>(settings: &[Bounded<'g>]) -> Vec<Expr<'g>> {
+fn variables<'g>(settings: &[RangedVariable<'g>]) -> Vec<Expr<'g>> {
     settings.iter().map(|setting| setting.variable).collect()
 }
 
@@ -73,12 +76,12 @@ fn variables<'g>(settings: &[Bounded<'g>]) -> Vec<Expr<'g>> {
 pub(super) fn find(
     job: &Job<'_>,
     target: &Target<'_, '_>,
-    (request, means): (&ConvertRequest, Means<'_>),
+    (request, session): (&ConvertRequest, Session<'_>),
 ) -> Result<(String, Value, String), String> {
     let Target { source, settings, .. } = target;
     let positions = source.positions(request.positions as usize);
     let unknown: Vec<UnknownSetting<'_>> = settings.iter().map(|setting| unknown(target.job, setting)).collect();
-    let machine = Adjustable { chain: &target.chain, settings: &unknown, axes: &target.axes };
+    let machine = AdjustableMachine { chain: &target.chain, settings: &unknown, axes: &target.axes };
     let reach = reach(target, &positions);
     let motions = target.motions();
     let problem = SettingsProblem::new(&machine, source.driven, &motions, &source.symmetries, &target.bindings, reach)
@@ -87,7 +90,7 @@ pub(super) fn find(
         Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),
         _ => positions.clone(),
     };
-    let _working = means.begin(format!("looking for settings of {}", target.machine.name));
+    let _working = session.begin(format!("looking for settings of {}", target.machine.name));
     let fit = problem.fit(&some);
     let deviation = source.flanks.iter().filter_map(|flank| deviation(&problem, source, flank, &fit, &some));
     let deviation = deviation.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))));
@@ -99,7 +102,7 @@ pub(super) fn find(
     Ok((found.text(), found.json(), found.told()))
 }
 
-fn unknown<'g>(target: &Job<'g>, setting: &Bounded<'g>) -> UnknownSetting<'g> {
+fn unknown<'g>(target: &Job<'g>, setting: &RangedVariable<'g>) -> UnknownSetting<'g> {
     let usual = target.parameters.iter().find(|p| p.variable == setting.variable).map(|p| p.value);
     let kind = match setting.dimension {
         Dimension::LENGTH => SettingKind::Length,
@@ -107,7 +110,7 @@ fn unknown<'g>(target: &Job<'g>, setting: &Bounded<'g>) -> UnknownSetting<'g> {
         _ => SettingKind::Number,
     };
     let range = Range { low: setting.low, high: setting.high };
-    UnknownSetting { variable: setting.variable, sought: Sought { kind, range, usual } }
+    UnknownSetting { variable: setting.variable, sought: SettingBounds { kind, range, usual } }
 }
 
 /// How far tool and work are apart at the most, either one seen from the other, mm.
@@ -223,7 +226,7 @@ impl Found<'_, '_, '_> {
 
     fn json(&self) -> Value {
         let Found { target, fit, .. } = self;
-        let setting = |(k, (setting, value)): (usize, (&&Bounded<'_>, &f64))| {
+        let setting = |(k, (setting, value)): (usize, (&&RangedVariable<'_>, &f64))| {
             json!({
                 "name": short(setting), "unit": units::symbol(setting.dimension),
                 "value": units::shown(setting.dimension, *value), "determined": !fit.undetermined.contains(&k),
@@ -250,6 +253,6 @@ impl Found<'_, '_, '_> {
 }
 
 /// The setting's own name, without its machine's.
-fn short(setting: &Bounded<'_>) -> String {
+fn short(setting: &RangedVariable<'_>) -> String {
     setting.name.rsplit('.').next().unwrap_or(&setting.name).to_string()
 }

@@ -1,15 +1,15 @@
 //! What is carried over: a tool that moves against a work.
 
-use flank_chain_dsl::{Bounded, GeneratedSurface, Job, ToolShape, spaced};
+use flank_chain_dsl::{GeneratedSurface, Job, RangedVariable, ToolShape, spaced};
 use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::project::units;
 use crate::solve::stream;
 use crate::solve::table;
-use crate::solve::{self, Wanted};
+use crate::solve::{self, SolveOptions};
 
 /// Points that lie no farther apart than this share of a motion's range have it at one value: what differs is rounding.
 const STILL: f64 = 1e-9;
@@ -25,7 +25,7 @@ pub(crate) struct Source<'j, 'g> {
     pub(crate) is_one_of_several: bool,
     /// From work to tool, in motions.
     pub(crate) driven: &'j Chain<'g>,
-    pub(crate) motions: Vec<&'j Bounded<'g>>,
+    pub(crate) motions: Vec<&'j RangedVariable<'g>>,
     /// Over which the motions are carried over: as far as the sampled points need them; all of them, where the points need none to move.
     pub(crate) ranges: Vec<Range>,
     /// Where all sampled points have the motions, if that is at one value of each.
@@ -61,7 +61,7 @@ pub(super) struct Chosen<'j, 'g> {
     /// The surfaces that the tool makes there over the motions.
     mates: Vec<&'j GeneratedSurface<'g>>,
     is_one_of_several: bool,
-    pub(super) motions: Vec<&'j Bounded<'g>>,
+    pub(super) motions: Vec<&'j RangedVariable<'g>>,
 }
 
 impl<'j, 'g> Chosen<'j, 'g> {
@@ -89,7 +89,7 @@ impl<'j, 'g> Chosen<'j, 'g> {
             ));
         }
         let generation = &first.generation;
-        let motions: Vec<&Bounded<'g>> =
+        let motions: Vec<&RangedVariable<'g>> =
             job.motions.iter().filter(|motion| generation.motions.contains(&motion.variable)).collect();
         if motions.is_empty() {
             return Err(format!(
@@ -111,15 +111,15 @@ impl<'j, 'g> Source<'j, 'g> {
     ///
     /// # Errors
     /// In words, if a surface has more points than can be carried over.
-    pub(super) fn of(chosen: Chosen<'j, 'g>, means: Means) -> Result<Source<'j, 'g>, String> {
+    pub(super) fn of(chosen: Chosen<'j, 'g>, session: Session) -> Result<Source<'j, 'g>, String> {
         let Chosen { job, work, tool, mates, is_one_of_several, motions } = chosen;
-        let wanted = Wanted {
+        let wanted = SolveOptions {
             geometry: false,
             sensitivity: false,
             certificates: false,
             together: Some("carrying its tool over"),
             of_shown: false,
-            means,
+            session,
         };
         stream::check_kept(job, mates.iter().copied(), wanted)?;
         let made: Vec<Made<'j, 'g>> =
@@ -209,7 +209,11 @@ impl Flank<'_, '_> {
 }
 
 /// The points of a surface; none where no sample asks for any.
-fn made<'j, 'g>(job: &'j Job<'g>, surface: &'j GeneratedSurface<'g>, wanted: Wanted) -> Result<Made<'j, 'g>, String> {
+fn made<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    wanted: SolveOptions,
+) -> Result<Made<'j, 'g>, String> {
     let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
         return Ok(Made { surface, points: Vec::new(), told: String::new() });
     };
@@ -229,7 +233,7 @@ impl<'j, 'g> Made<'j, 'g> {
 }
 
 /// As far as the solved points need a motion; all of it where there are none.
-fn reached(motion: &Bounded<'_>, made: &[Made<'_, '_>]) -> Range {
+fn reached(motion: &RangedVariable<'_>, made: &[Made<'_, '_>]) -> Range {
     let place = |surface: &GeneratedSurface<'_>, variable: Expr<'_>| {
         surface.unknowns.iter().position(|unknown| unknown.variable.as_variable() == variable.as_variable())
     };

@@ -7,7 +7,7 @@ use flank_export::fixed;
 use flank_solver::{Outcome, Posture, Screw, Unproven};
 use serde_json::{Map, Value, json};
 
-use super::Carried;
+use super::Conversion;
 use super::blocks::Blocks;
 use super::rates::Rates;
 use super::series::Series;
@@ -54,11 +54,11 @@ pub(crate) struct Table {
 impl Table {
     pub(crate) fn new(
         job: &Job<'_>,
-        carried: &Carried<'_, '_>,
+        carried: &Conversion<'_, '_>,
         (series, rates): (Option<Series>, Option<Rates>),
         request: &ConvertRequest,
     ) -> Table {
-        let Carried { source, machine, free, .. } = carried;
+        let Conversion { source, machine, free, .. } = carried;
         let axis = |axis: &&Axis<'_>| Named { name: axis.name.clone(), dimension: axis.dimension, travel: axis.travel };
         let motions = source.motions.iter();
         let motions =

@@ -10,12 +10,12 @@ use flank_expr::{Graph, Style};
 use flank_solver::Explicit;
 use serde_json::{Value, json};
 
-use crate::convert::{self, Carried};
+use crate::convert::{self, Conversion};
 use crate::derive::cost::SurfaceCost;
 use crate::project::answer::Answer;
 use crate::project::failure::{self, Failure};
 use crate::project::monitor::Monitor;
-use crate::project::requests::{DeriveRequest, Means};
+use crate::project::requests::{DeriveRequest, Session};
 use crate::project::spec;
 
 /// What the compiler built, stage by stage; or the axes of another machine in closed form; or how many operations a point takes.
@@ -53,9 +53,9 @@ const POSITIONS: u32 = 101;
 
 /// The axes of another machine in closed form.
 fn carried(graph: &Graph, to: &Path, (request, monitor): (&DeriveRequest, &dyn Monitor)) -> Result<Answer, Failure> {
-    let means = Means::new(request.onto.evaluator, monitor);
+    let session = Session::new(request.onto.evaluator, monitor);
     let carry = |job: &Job<'_>, target: &Job<'_>| {
-        let carried = Carried::new(graph, job, target, (&request.onto, means), POSITIONS)?;
+        let carried = Conversion::new(graph, job, target, (&request.onto, session), POSITIONS)?;
         // the postures that tell which elbow is meant lie as far as points are solved
         let unsolved = carried.source.unsolved.clone();
         let axes = match carried.failures() {
@@ -71,7 +71,7 @@ fn carried(graph: &Graph, to: &Path, (request, monitor): (&DeriveRequest, &dyn M
 }
 
 /// The given vectors, then the axes from them.
-fn explicit_page<'g>(job: &Job<'g>, carried: &Carried<'_, 'g>, explicit: &Explicit<'g>, style: Style) -> String {
+fn explicit_page<'g>(job: &Job<'g>, carried: &Conversion<'_, 'g>, explicit: &Explicit<'g>, style: Style) -> String {
     let (work, tool) = (&carried.source.work, &carried.source.tool);
     let name = |unknown: usize| match carried.free.get(unknown) {
         Some(axis) => axis.name.clone(),

@@ -5,11 +5,11 @@ use flank_draw::{PictureOptions, field_maps, topography};
 use flank_export::Dataset;
 
 use super::{Drawing, options, told, with_origin, write};
-use crate::compare::deviation::{self, Measured};
+use crate::compare::deviation::{self, DeviationMap};
 use crate::project::answer::Answer;
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
-use crate::project::requests::{Means, PlotRequest};
+use crate::project::requests::{PlotRequest, Session};
 use crate::project::spec::Origin;
 
 /// What there is to draw of a comparison.
@@ -37,20 +37,20 @@ pub(super) fn check(request: &PlotRequest) -> Result<(), Failure> {
 pub(super) fn plot(
     jobs: &[Job<'_>],
     from: &str,
-    (request, means): (&PlotRequest, Means<'_>),
+    (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Answer, String> {
     let surface = deviation::find(jobs, &request.surface[0])?;
-    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, means)?;
+    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, session)?;
     let asked = if request.what.is_empty() { &KINDS[..] } else { &request.what };
     let drawings: Vec<(PlotKind, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, request, origin, &options(request)))).collect();
-    let written = write(&drawings, &surface.whole_name(), (request, means), origin)?;
+    let written = write(&drawings, &surface.whole_name(), (request, session), origin)?;
     Ok(told(&surface.job.name, &written, measured.missing(), request))
 }
 
 fn draw(
-    measured: &Measured<'_, '_>,
+    measured: &DeviationMap<'_, '_>,
     what: PlotKind,
     request: &PlotRequest,
     origin: &Origin,

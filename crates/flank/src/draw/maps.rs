@@ -183,7 +183,7 @@ pub(super) fn contact_lines(subject: &Subject<'_, '_>, options: &PictureOptions)
         let solved = &subject.solved[at];
         let own = solved.surface.unknowns.iter().enumerate();
         let moving = own.filter(|(_, unknown)| solved.surface.generation.motions.contains(&unknown.variable));
-        let values = |(k, unknown): (usize, &flank_chain_dsl::Bounded<'_>)| {
+        let values = |(k, unknown): (usize, &flank_chain_dsl::RangedVariable<'_>)| {
             let is_root = |point: &&flank_solver::SurfacePoint| point.outcome == Outcome::Solved;
             let values = solved.points.iter().map(|point| {
                 Some(point).filter(is_root).map(|point| units::shown(unknown.dimension, point.unknowns[k]))

@@ -20,7 +20,7 @@ use crate::project::choices::PlotKind;
 use crate::project::failure::{self, Failure};
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{Means, PlotRequest};
+use crate::project::requests::{PlotRequest, Session};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -79,10 +79,10 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
-    let means = Means::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor);
     let done = match &request.from {
-        Some(from) => vec![comparison::plot(&jobs, from, (request, means), &origin)?],
-        None => plot_jobs(&jobs, (request, means), &origin)?,
+        Some(from) => vec![comparison::plot(&jobs, from, (request, session), &origin)?],
+        None => plot_jobs(&jobs, (request, session), &origin)?,
     };
     done.into_iter().for_each(each);
     Ok(())
@@ -90,7 +90,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
 
 fn plot_jobs(
     jobs: &[Job<'_>],
-    (request, means): (&PlotRequest, Means<'_>),
+    (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Vec<Answer>, String> {
     let named = request.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
@@ -111,12 +111,12 @@ fn plot_jobs(
     let plot = |job: &&Job<'_>| {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
         let header = with_origin(solve::header(&[job], &request.jobs, origin), request);
-        let solved = |kinds: &[PlotKind]| Subject::new(job, &names, header.clone(), kinds, means);
+        let solved = |kinds: &[PlotKind]| Subject::new(job, &names, header.clone(), kinds, session);
         let subject = solved(&request.what)?;
         // what fits is known of what is solved with all that pictures show
         let drawings = drawings(&subject, request)
             .map_err(|(what, why)| solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request)))?;
-        let written = write(&drawings, &job.name, (request, means), origin)?;
+        let written = write(&drawings, &job.name, (request, session), origin)?;
         let not_done = table::failures(job, &subject.solved)
             + &cut::unknown(&subject.solved)
             + &travel::beyond(job, &subject.solved);
@@ -196,10 +196,10 @@ fn options(request: &PlotRequest) -> PictureOptions {
 fn write(
     drawings: &[(PlotKind, Drawing)],
     stem: &str,
-    (request, means): (&PlotRequest, Means<'_>),
+    (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Vec<Written>, String> {
-    let mut folder = Folder::at(&request.out, origin, means.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     let mut written = Vec::new();
     for (what, drawing) in drawings {
         let before = folder.written.len();

@@ -1,6 +1,6 @@
 //! What the axes of a machine do over the motions.
 
-use flank_chain_dsl::{Bounded, Dimension};
+use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_draw::{PictureOptions, axis_positions};
 use flank_export::{MachineAxis, MotionRow, MotionTable, Unknown};
 use flank_expr::Expr;
@@ -30,7 +30,7 @@ pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Resul
 }
 
 /// As far as the solved points need it.
-fn range(motion: &Bounded<'_>, reached: &[(Expr<'_>, Range)]) -> Range {
+fn range(motion: &RangedVariable<'_>, reached: &[(Expr<'_>, Range)]) -> Range {
     let found = reached.iter().find(|(variable, _)| variable.as_variable() == motion.variable.as_variable());
     found.map_or(Range { low: motion.low, high: motion.high }, |(_, range)| *range)
 }
@@ -38,7 +38,7 @@ fn range(motion: &Bounded<'_>, reached: &[(Expr<'_>, Range)]) -> Range {
 /// All axes over one motion; the other motions stand where the middle of the surface is made.
 fn table<'g>(
     subject: &Subject<'_, 'g>,
-    motion: &Bounded<'g>,
+    motion: &RangedVariable<'g>,
     range: Range,
     posture: &[(Expr<'g>, Expr<'g>)],
 ) -> MotionTable {

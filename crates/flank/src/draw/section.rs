@@ -283,7 +283,7 @@ mod tests {
     use crate::project::Project;
     use crate::project::choices::PlotKind;
     use crate::project::monitor::Unwatched;
-    use crate::project::requests::{EvaluatorOptions, JobSelection, Means};
+    use crate::project::requests::{EvaluatorOptions, JobSelection, Session};
     use crate::project::spec;
     use crate::solve;
 
@@ -295,8 +295,8 @@ mod tests {
         let graph = Graph::new();
         let (_, jobs) = spec::jobs(&graph, &which, &Unwatched).expect("it is shipped");
         let header = solve::header(&[&jobs[0]], &which, &spec::Origin::default());
-        let means = Means::new(EvaluatorOptions::default(), &Unwatched);
-        let subject = Subject::new(&jobs[0], &[], header, &[PlotKind::Section], means).expect("it is sampled");
+        let session = Session::new(EvaluatorOptions::default(), &Unwatched);
+        let subject = Subject::new(&jobs[0], &[], header, &[PlotKind::Section], session).expect("it is sampled");
         of(&subject).expect("it has a section")
     }
 

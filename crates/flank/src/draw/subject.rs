@@ -1,15 +1,15 @@
 //! A job with its solved surfaces: what pictures are drawn of.
 
-use flank_chain_dsl::{Bounded, Job, Machine};
+use flank_chain_dsl::{Job, Machine, RangedVariable};
 use flank_export::{Dataset, Header};
 use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::choices::PlotKind;
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::solve::stream;
 use crate::solve::table::Solved;
-use crate::solve::{self, Wanted};
+use crate::solve::{self, SolveOptions};
 
 pub(crate) struct Subject<'j, 'g> {
     pub(super) job: &'j Job<'g>,
@@ -33,21 +33,21 @@ impl<'j, 'g> Subject<'j, 'g> {
         names: &[&'j str],
         header: Header,
         kinds: &[PlotKind],
-        means: Means<'j>,
+        session: Session<'j>,
     ) -> Result<Subject<'j, 'g>, String> {
         let mapped = mapped(job, names);
-        let wanted = Wanted {
+        let wanted = SolveOptions {
             geometry: kinds.contains(&PlotKind::Curvature) || kinds.is_empty(),
             sensitivity: kinds.contains(&PlotKind::Sensitivity),
             certificates: false,
             together: None,
             of_shown: true,
-            means,
+            session,
         };
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solve_one = |surface: usize| {
             let is_chosen = mapped.contains(&&*job.surfaces[surface].name);
-            let points_only = Wanted { geometry: false, sensitivity: false, ..wanted };
+            let points_only = SolveOptions { geometry: false, sensitivity: false, ..wanted };
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
         let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, _>>()?;
@@ -107,7 +107,7 @@ impl<'j, 'g> Subject<'j, 'g> {
     }
 
     /// The motions over which the first surface is made.
-    pub(super) fn motions(&self) -> Vec<&'j Bounded<'g>> {
+    pub(super) fn motions(&self) -> Vec<&'j RangedVariable<'g>> {
         let motions = &self.first().surface.generation.motions;
         self.job.motions.iter().filter(|motion| motions.contains(&motion.variable)).collect()
     }
@@ -122,7 +122,9 @@ impl<'j, 'g> Subject<'j, 'g> {
     pub(super) fn posture(&self, point: &SurfacePoint) -> Vec<(Expr<'g>, Expr<'g>)> {
         let surface = self.first().surface;
         let mut bindings = self.job.bindings();
-        let at = |(unknown, value): (&Bounded<'g>, &f64)| (unknown.variable, unknown.variable.graph().constant(*value));
+        let at = |(unknown, value): (&RangedVariable<'g>, &f64)| {
+            (unknown.variable, unknown.variable.graph().constant(*value))
+        };
         bindings.extend(surface.unknowns.iter().zip(&point.unknowns).map(at));
         let known: Vec<Expr<'g>> = bindings.iter().map(|(variable, _)| *variable).collect();
         // motions of other tools stand in the middle of their ranges

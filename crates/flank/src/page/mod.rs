@@ -7,7 +7,7 @@ mod surfaces;
 mod thin;
 mod tools;
 
-use flank_chain_dsl::{Bounded, Job};
+use flank_chain_dsl::{Job, RangedVariable};
 use flank_draw::{PageMotion, Scene};
 use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
@@ -17,19 +17,19 @@ use crate::project::answer::Answer;
 use crate::project::failure::{Failure, not_done};
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::project::requests::ViewRequest;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::limits::Line;
 use crate::solve::stream;
 use crate::solve::table::{self, Solved};
-use crate::solve::{self, Wanted};
+use crate::solve::{self, SolveOptions};
 use functions::Functions;
 
 /// What a surface can be coloured by and what a click tells of a point.
-fn wanted(means: Means<'_>) -> Wanted<'_> {
-    Wanted { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, means }
+fn wanted(session: Session<'_>) -> SolveOptions<'_> {
+    SolveOptions { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, session }
 }
 
 /// Share of what a motion passes over that its slider goes beyond.
@@ -44,7 +44,7 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
     for job in solve::asked(&jobs, monitor)? {
-        let wanted = wanted(Means::new(request.evaluator, monitor));
+        let wanted = wanted(Session::new(request.evaluator, monitor));
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
@@ -166,7 +166,7 @@ fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scen
 }
 
 /// Over what the solved points pass, and a little beyond; it starts where the middle of the first surface is generated.
-fn page_motion(motion: &Bounded<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
+fn page_motion(motion: &RangedVariable<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
     let values = |solved: &Solved<'_, '_>| -> Vec<f64> {
         let place = solved.surface.unknowns.iter().position(|unknown| unknown.variable == motion.variable);
         let of_points = solved.points.iter().filter(|point| point.outcome == flank_solver::Outcome::Solved);

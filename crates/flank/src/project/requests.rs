@@ -82,14 +82,14 @@ impl Default for EvaluatorOptions {
 
 /// The same with who follows the work.
 #[derive(Clone, Copy)]
-pub(crate) struct Means<'m> {
+pub(crate) struct Session<'m> {
     options: EvaluatorOptions,
     monitor: &'m dyn Monitor,
 }
 
-impl<'m> Means<'m> {
-    pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Means<'m> {
-        Means { options, monitor }
+impl<'m> Session<'m> {
+    pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Session<'m> {
+        Session { options, monitor }
     }
 
     pub(crate) fn boxes(self) -> u64 {

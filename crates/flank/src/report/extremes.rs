@@ -1,6 +1,6 @@
 //! The largest and the smallest of what was found.
 
-use flank_chain_dsl::{Bounded, Dimension};
+use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_draw::{Block, Column, ReportSection};
 use flank_export::{Values, fixed};
 use serde_json::{Value, json};
@@ -105,7 +105,7 @@ fn coordinates(findings: &Findings<'_, '_>) -> Block {
     Block::Table("Coordinates of the solved points".to_string(), columns, rows)
 }
 
-fn range(of: &Bounded<'_>) -> String {
+fn range(of: &RangedVariable<'_>) -> String {
     let [low, high] = [of.low, of.high].map(|end| units::digits(of.dimension, end, 4));
     format!("{low} .. {high}")
 }

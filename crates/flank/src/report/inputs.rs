@@ -1,6 +1,6 @@
 //! What a job was given: parameters, settings and motions.
 
-use flank_chain_dsl::{Bounded, Dimension, Giver, Parameter};
+use flank_chain_dsl::{Dimension, Parameter, RangedVariable, ValueSource};
 use flank_draw::{Block, Column, ReportSection};
 use flank_export::fixed;
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ fn groups<'j, 'g>(findings: &Findings<'j, 'g>) -> Vec<Vec<&'j Parameter<'g>>> {
 /// A table, and the names of those that are zero by default and of which there is nothing to say.
 fn blocks(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Vec<Block> {
     let is_idle = |parameter: &&&Parameter<'_>| {
-        let is_default = matches!(parameter.given_by, Giver::Definition(_));
+        let is_default = matches!(parameter.given_by, ValueSource::Definition(_));
         is_default && parameter.value == 0.0 && parameter.doc.is_empty()
     };
     let (idle, told): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = parameters.iter().partition(is_idle);
@@ -75,8 +75,8 @@ fn owner_text(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Str
         return format!("Machine {owner} = {}", machine.definition);
     }
     let definition = parameters.iter().find_map(|parameter| match &parameter.given_by {
-        Giver::Definition(name) => Some(format!(" = {name}")),
-        Giver::Job | Giver::Caller => None,
+        ValueSource::Definition(name) => Some(format!(" = {name}")),
+        ValueSource::Job | ValueSource::Caller => None,
     });
     format!("Tool {owner}{}", definition.unwrap_or_default())
 }
@@ -101,9 +101,9 @@ fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<
         ];
         cells.extend(has_ranges.then_some(range));
         let giver = match parameter.given_by {
-            Giver::Definition(_) => "default",
-            Giver::Job => "job",
-            Giver::Caller => "--set",
+            ValueSource::Definition(_) => "default",
+            ValueSource::Job => "job",
+            ValueSource::Caller => "--set",
         };
         cells.push(giver.to_string());
         cells.extend(has_docs.then(|| joined(&parameter.doc)));
@@ -114,7 +114,7 @@ fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<
 
 fn motions(findings: &Findings<'_, '_>) -> Block {
     let reached = travel::reached(findings.job, findings.solved());
-    let row = |motion: &Bounded<'_>| {
+    let row = |motion: &RangedVariable<'_>| {
         let found = reached.iter().find(|(variable, _)| *variable == motion.variable).map(|(_, range)| range);
         let show = |x: f64| number(motion.dimension, x);
         let needed = found.map_or("\u{2013}".to_string(), |range| {
@@ -170,9 +170,9 @@ pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
         let (low, high) = parameter.range.unzip();
         let shown = |value: f64| units::shown(parameter.dimension, value);
         let (by, definition) = match &parameter.given_by {
-            Giver::Definition(name) => ("definition", Some(name)),
-            Giver::Job => ("job", None),
-            Giver::Caller => ("caller", None),
+            ValueSource::Definition(name) => ("definition", Some(name)),
+            ValueSource::Job => ("job", None),
+            ValueSource::Caller => ("caller", None),
         };
         json!({
             "name": parameter.name, "written": written(findings, parameter), "value": shown(parameter.value),
@@ -185,7 +185,7 @@ pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
 
 pub(super) fn motions_json(findings: &Findings<'_, '_>) -> Value {
     let reached = travel::reached(findings.job, findings.solved());
-    let entry = |motion: &Bounded<'_>| {
+    let entry = |motion: &RangedVariable<'_>| {
         let found = reached.iter().find(|(variable, _)| *variable == motion.variable).map(|(_, range)| range);
         let shown = |value: f64| units::shown(motion.dimension, value);
         json!({

@@ -23,7 +23,7 @@ use crate::project::answer::Answer;
 use crate::project::choices::PlotKind;
 use crate::project::failure::{Failure, not_done};
 use crate::project::monitor::Monitor;
-use crate::project::requests::{Means, ReportRequest};
+use crate::project::requests::{ReportRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::certify;
@@ -34,7 +34,7 @@ use crate::solve::step::{self, Smooth};
 use crate::solve::stream;
 use crate::solve::table::{self, Solved};
 use crate::solve::travel::{self, Run};
-use crate::solve::{self, Wanted};
+use crate::solve::{self, SolveOptions};
 use target::Target;
 
 /// Writes all that is known of jobs, a page each. `each` is given what is to be said of each job.
@@ -83,24 +83,24 @@ impl<'j, 'g> Findings<'j, 'g> {
         origin: &'j Origin,
         (request, monitor): (&'j ReportRequest, &'j dyn Monitor),
     ) -> Result<Self, String> {
-        let wanted = Wanted {
+        let wanted = SolveOptions {
             geometry: true,
             sensitivity: true,
             certificates: request.certify,
             together: None,
             of_shown: true,
-            means: Means::new(request.evaluator, monitor),
+            session: Session::new(request.evaluator, monitor),
         };
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
-        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.means);
+        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.session);
         lines
             .extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
         // those of a surface one after the other
         let place = |line: &Line<'_, '_>| job.surfaces.iter().position(|surface| surface.name == line.surface.name);
         lines.sort_by_key(place);
-        let bare = Wanted { geometry: false, sensitivity: false, certificates: false, ..wanted };
+        let bare = SolveOptions { geometry: false, sensitivity: false, certificates: false, ..wanted };
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
         let faces = request.step.into_iter().flat_map(smooth).collect();
         let runs = travel::runs(job, &solved);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Bounded, Coordinate, Dimension, GeneratedSurface};
+use flank_chain_dsl::{Coordinate, Dimension, GeneratedSurface, RangedVariable};
 use flank_export::fixed;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
@@ -217,7 +217,7 @@ fn what_decides(solved: &Solved<'_, '_>) -> String {
 /// The branches of a surface at the place where they were looked for, and what is not excluded there.
 pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
     let unknowns = &solved.surface.unknowns;
-    let range = |of: &Bounded<'_>, low: f64, high: f64| {
+    let range = |of: &RangedVariable<'_>, low: f64, high: f64| {
         let [low, high] = [low, high].map(|x| units::shown(of.dimension, x));
         json!({ "name": of.name, "unit": units::symbol(of.dimension), "low": low, "high": high })
     };
@@ -264,10 +264,10 @@ fn why(doubt: Doubt) -> &'static str {
     }
 }
 
-fn named(of: &Bounded<'_>, x: f64) -> String {
+fn named(of: &RangedVariable<'_>, x: f64) -> String {
     format!("{} {}", of.name, value(of, x))
 }
 
-fn value(of: &Bounded<'_>, x: f64) -> String {
+fn value(of: &RangedVariable<'_>, x: f64) -> String {
     units::text(of.dimension, x, DECIMALS)
 }

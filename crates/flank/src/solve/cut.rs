@@ -5,10 +5,10 @@ use std::fmt::Write;
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Values};
-use flank_solver::{CuttingEdges, Left, SurfacePoint};
+use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
 use serde_json::{Value, json};
 
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::solve::ranges;
 use crate::solve::table::Solved;
 
@@ -21,7 +21,7 @@ pub(crate) struct Cut {
     /// The surface of the edges, and their counts.
     by: String,
     counts: Vec<String>,
-    left: Vec<Option<Left>>,
+    left: Vec<Option<ScallopHeight>>,
 }
 
 /// Nothing if the job does not ask for it.
@@ -29,12 +29,12 @@ pub(crate) fn of<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
     points: &[SurfacePoint],
-    means: Means,
+    session: Session,
 ) -> Option<Cut> {
     let by = &job.surfaces[surface.cut_by?];
     let edges = CuttingEdges::new(&surface.surface, &by.surface, &ranges(by), &job.bindings())
         .expect("a job without errors leaves nothing unbound")
-        .on(means.instructions());
+        .with_instruction_set(session.instructions());
     let counts = by.unknowns[2..].iter().map(|count| count.name.clone()).collect();
     Some(Cut { by: by.name.clone(), counts, left: edges.left(points) })
 }
@@ -44,7 +44,7 @@ impl Cut {
     pub(crate) fn fields(&self) -> Vec<Field> {
         let scalars = |value: &dyn Fn(f64, &[f64]) -> f64| {
             let known = self.left.iter().map(|left| match left {
-                Some(Left::Cut { height, edge }) => Some(value(*height, edge)),
+                Some(ScallopHeight::Cut { height, edge }) => Some(value(*height, edge)),
                 _ => None,
             });
             Values::Scalars(known.collect())
@@ -78,11 +78,11 @@ struct Tally {
 
 impl Cut {
     fn tally(&self) -> Tally {
-        let count = |what: Left| self.left.iter().flatten().filter(|left| **left == what).count();
+        let count = |what: ScallopHeight| self.left.iter().flatten().filter(|left| **left == what).count();
         Tally {
             asked: self.left.iter().flatten().count(),
-            unreached: count(Left::Unreached),
-            undecided: count(Left::Undecided),
+            unreached: count(ScallopHeight::Unreached),
+            undecided: count(ScallopHeight::Undecided),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Which `keep` in a sample would select one of several branches.
 
-use flank_chain_dsl::{Bounded, Dimension};
+use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_solver::SurfacePoint;
 use serde_json::{Value, json};
 
@@ -75,7 +75,7 @@ impl Function {
 }
 
 /// What may tell branches apart: unknowns, then sums and differences of two angles, as of a spindle and the thread that it turns.
-fn functions(unknowns: &[Bounded<'_>]) -> Vec<Function> {
+fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
     let single = |k: usize| {
         let of = &unknowns[k];
         let weights = (0..unknowns.len()).map(|other| f64::from(u8::from(other == k))).collect();
@@ -100,7 +100,7 @@ fn functions(unknowns: &[Bounded<'_>]) -> Vec<Function> {
 }
 
 /// What tells some branches apart, each known at some points: wholly if that can be, by the first point of each otherwise.
-fn chosen(unknowns: &[Bounded<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
+fn chosen(unknowns: &[RangedVariable<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
     let functions = functions(unknowns);
     let firsts: Vec<Vec<Vec<f64>>> = branches.iter().map(|points| points[..1].to_vec()).collect();
     let best = |branches: &[Vec<Vec<f64>>], functions: &[Function]| {
@@ -117,7 +117,11 @@ fn chosen(unknowns: &[Bounded<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
 
 /// For each of some branches; none if there are not several, or nothing tells them apart. `courses` are the unknowns of each at
 /// further points, as far as they are known.
-pub(crate) fn proposed(unknowns: &[Bounded<'_>], branches: &[SurfacePoint], courses: &[Vec<Vec<f64>>]) -> Vec<Keep> {
+pub(crate) fn proposed(
+    unknowns: &[RangedVariable<'_>],
+    branches: &[SurfacePoint],
+    courses: &[Vec<Vec<f64>>],
+) -> Vec<Keep> {
     let points = |(number, branch): (usize, &SurfacePoint)| {
         let followed = courses.get(number).into_iter().flatten().cloned();
         std::iter::once(branch.unknowns.clone()).chain(followed).collect()
@@ -127,7 +131,7 @@ pub(crate) fn proposed(unknowns: &[Bounded<'_>], branches: &[SurfacePoint], cour
 }
 
 /// For a branch against the one that was followed, which is known at one point.
-pub(crate) fn against(unknowns: &[Bounded<'_>], own: &SurfacePoint, other: &SurfacePoint) -> Option<Keep> {
+pub(crate) fn against(unknowns: &[RangedVariable<'_>], own: &SurfacePoint, other: &SurfacePoint) -> Option<Keep> {
     let branches = [own, other].map(|point| vec![point.unknowns.clone()]);
     chosen(unknowns, &branches).pop()
 }

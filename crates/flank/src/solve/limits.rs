@@ -3,10 +3,10 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample, spaced};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
-use flank_solver::{Effort, SurfacePoint, SurfaceProblem};
+use flank_solver::{GridReport, SurfacePoint, SurfaceProblem};
 use rayon::prelude::*;
 
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::solve;
 use crate::solve::reach;
 use crate::solve::reasons;
@@ -61,19 +61,19 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
 pub(crate) fn lines<'j, 'g: 'j>(
     job: &Job<'g>,
     surfaces: impl IntoIterator<Item = &'j GeneratedSurface<'g>>,
-    means: Means,
+    session: Session,
 ) -> Vec<Line<'j, 'g>> {
     let sought: Vec<Sought<'j, 'g>> = surfaces.into_iter().flat_map(sought).collect();
     let Some(one) = sought.first() else { return Vec::new() };
     let others = sought.iter().any(|other| other.surface.name != one.surface.name);
     let _working =
-        means.begin(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
+        session.begin(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
     // along the coordinate that follows the line farther: it may run across the other one
-    let mut lines = look(job, &sought, 0, means);
+    let mut lines = look(job, &sought, 0, session);
     let is_open = |line: &Line<'_, '_>| line.summary.solved() < line.points.len();
     let open: Vec<usize> = (0..lines.len()).filter(|at| is_open(&lines[*at])).collect();
     let again: Vec<Sought<'j, 'g>> = open.iter().map(|at| sought[*at]).collect();
-    for (at, second) in open.into_iter().zip(look(job, &again, 1, means)) {
+    for (at, second) in open.into_iter().zip(look(job, &again, 1, session)) {
         if second.found() > lines[at].found() {
             lines[at] = second;
         }
@@ -101,10 +101,10 @@ fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
 }
 
 /// Lines at values of one of the coordinates of their surfaces' samples, in the order in which they are sought.
-fn look<'j, 'g>(job: &Job<'g>, sought: &[Sought<'j, 'g>], k: usize, means: Means) -> Vec<Line<'j, 'g>> {
+fn look<'j, 'g>(job: &Job<'g>, sought: &[Sought<'j, 'g>], k: usize, session: Session) -> Vec<Line<'j, 'g>> {
     let problems: Vec<(SurfaceProblem, Vec<[f64; 2]>)> =
-        sought.iter().map(|sought| (sought.problem(job, k, means), sought.targets(k))).collect();
-    let found: Vec<(Vec<SurfacePoint>, Effort)> =
+        sought.iter().map(|sought| (sought.problem(job, k, session), sought.targets(k))).collect();
+    let found: Vec<(Vec<SurfacePoint>, GridReport)> =
         problems.par_iter().map(|(problem, targets)| problem.solve(targets, [1, targets.len()])).collect();
     sought.iter().zip(found).map(|(sought, found)| sought.line(k, found)).collect()
 }
@@ -117,15 +117,15 @@ impl<'j, 'g> Sought<'j, 'g> {
         spaced((low, high), count).into_iter().map(|value| [0.0, value]).collect()
     }
 
-    fn problem(&self, job: &Job<'g>, k: usize, means: Means) -> SurfaceProblem {
+    fn problem(&self, job: &Job<'g>, k: usize, session: Session) -> SurfaceProblem {
         let (surface, along) = (self.surface, &self.sample.coordinates[k]);
         let ranges = solve::ranges(surface);
         let problem = SurfaceProblem::line(&surface.surface, self.quantity, along.value, ranges, &job.bindings())
             .expect("a job without errors leaves nothing unbound");
-        problem.reaching(reach::followed(surface)).on(means.instructions())
+        problem.following_beyond(reach::followed(surface)).with_instruction_set(session.instructions())
     }
 
-    fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, Effort)) -> Line<'j, 'g> {
+    fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, GridReport)) -> Line<'j, 'g> {
         let surface = self.surface;
         let name = format!("{}.{}", surface.name, self.kind.replace(' ', "_"));
         let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);

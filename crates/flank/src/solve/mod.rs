@@ -26,7 +26,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
 use flank_draw::{PictureOptions, picture};
 use flank_export::{Axis, Banded, Dataset, Face, Header, Outcome, Patch, Point, Surfaces, Unit, Unknown};
 use flank_expr::{Expr, Graph};
-use flank_solver::{Effort, Range, Solution, SurfacePoint, SurfaceProblem};
+use flank_solver::{GridReport, Range, Solution, SurfacePoint, SurfaceProblem};
 
 use self::cut::Cut;
 use self::limits::Line;
@@ -40,7 +40,7 @@ use crate::project::answer::Answer;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{JobSelection, Means, SolveRequest};
+use crate::project::requests::{JobSelection, Session, SolveRequest};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -54,13 +54,13 @@ pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
-    let wanted = Wanted {
+    let wanted = SolveOptions {
         geometry: request.geometry,
         sensitivity: request.sensitivity,
         certificates: request.certify,
         together: None,
         of_shown: false,
-        means: Means::new(request.evaluator, monitor),
+        session: Session::new(request.evaluator, monitor),
     };
     for job in asked(&jobs, monitor)? {
         each(solved_job(job, (request, &origin), wanted, start)?);
@@ -71,14 +71,14 @@ pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
 fn solved_job(
     job: &Job<'_>,
     (request, origin): (&SolveRequest, &Origin),
-    wanted: Wanted<'_>,
+    wanted: SolveOptions<'_>,
     start: Instant,
 ) -> Result<Answer, Failure> {
     stream::check_kept(job, &job.surfaces, wanted)?;
     let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
     let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
     let limited = job.surfaces.iter().filter(|_| request.limits);
-    let limits = limits::lines(job, limited, wanted.means);
+    let limits = limits::lines(job, limited, wanted.session);
     // a trim that takes nothing has no line
     let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
     let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
@@ -87,7 +87,7 @@ fn solved_job(
     let faces: Vec<Smooth> = tolerance
         .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
         .collect();
-    let written = write_files(&dataset, &solved, &faces, (&job.name, wanted.means), (request, origin))?;
+    let written = write_files(&dataset, &solved, &faces, (&job.name, wanted.session), (request, origin))?;
     let not_done = table::failures(job, &solved)
         + &cut::unknown(&solved)
         + &certify::failed(&solved)
@@ -122,7 +122,7 @@ pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>], monitor: &dyn Monitor) -> Resul
 
 /// What is wanted of a surface beside its points.
 #[derive(Clone, Copy)]
-pub(crate) struct Wanted<'m> {
+pub(crate) struct SolveOptions<'m> {
     pub(crate) geometry: bool,
     pub(crate) sensitivity: bool,
     pub(crate) certificates: bool,
@@ -130,14 +130,14 @@ pub(crate) struct Wanted<'m> {
     pub(crate) together: Option<&'static str>,
     /// Whether geometry and sensitivity are wanted of the points that are shown alone, where a surface has too many to keep.
     pub(crate) of_shown: bool,
-    pub(crate) means: Means<'m>,
+    pub(crate) session: Session<'m>,
 }
 
 /// The points of one surface, if any are asked for.
 pub(crate) fn solve_surface<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
-    wanted: Wanted<'j>,
+    wanted: SolveOptions<'j>,
 ) -> Option<Result<Solved<'j, 'g>, String>> {
     let sample = surface.sample.as_ref()?;
     match stream::is_streamed(job, surface, sample, wanted) {
@@ -145,7 +145,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         Ok(false) => {}
         Err(reason) => return Some(Err(reason)),
     }
-    let _working = wanted.means.begin(format!("solving {}", surface.name));
+    let _working = wanted.session.begin(format!("solving {}", surface.name));
     let Found { problem, points, effort, trims, positions } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
     let elsewhere = elsewhere(&problem, &effort);
@@ -156,11 +156,11 @@ pub(crate) fn solve_surface<'j, 'g>(
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
     fields.extend(radii.as_deref().map(certify::field));
-    let cut = cut::of(job, surface, &points, wanted.means);
+    let cut = cut::of(job, surface, &points, wanted.session);
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
     let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
-    let kept_out = kept_out(job, surface, (&effort, &summary), wanted.means);
+    let kept_out = kept_out(job, surface, (&effort, &summary), wanted.session);
     Some(Ok(Solved {
         surface,
         sample,
@@ -188,9 +188,9 @@ fn in_bands<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &'j Sample<'g>,
-    wanted: Wanted<'j>,
+    wanted: SolveOptions<'j>,
 ) -> Solved<'j, 'g> {
-    let mut streamed = Streamed::new(job, surface, sample, wanted.means);
+    let mut streamed = Streamed::new(job, surface, sample, wanted.session);
     let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown);
     let is_of_drawn = wanted.geometry && wanted.of_shown;
     Solved {
@@ -201,7 +201,7 @@ fn in_bands<'j, 'g>(
         lines: streamed.drawn(),
         branches: streamed.problem().points(&effort.branches),
         elsewhere: elsewhere(streamed.problem(), &effort),
-        kept_out: kept_out(job, surface, (&effort, &summary), wanted.means),
+        kept_out: kept_out(job, surface, (&effort, &summary), wanted.session),
         summary,
         streamed: Some(streamed),
         effort,
@@ -219,7 +219,7 @@ fn in_bands<'j, 'g>(
 pub(crate) struct Found<'j, 'g> {
     problem: SurfaceProblem,
     pub(crate) points: Vec<SurfacePoint>,
-    effort: Effort,
+    effort: GridReport,
     trims: Vec<Line<'j, 'g>>,
     positions: Positions,
 }
@@ -241,14 +241,14 @@ pub(crate) fn points<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     sample: &Sample<'g>,
-    wanted: Wanted,
+    wanted: SolveOptions,
 ) -> Found<'j, 'g> {
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, wanted.means);
+    let problem = problem(job, surface, coordinates, wanted.session);
     let (mut points, effort) = problem.solve(&sample.targets(), sample.counts);
     let trims = surface.trimmed_by.iter().enumerate();
     let trims = trims.map(|(number, &by)| {
-        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.means))
+        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.session))
     });
     let trims = trims.collect();
     let positions = secondary::judge(job, surface, &mut points, sample.counts);
@@ -260,11 +260,11 @@ pub(crate) fn problem<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
     coordinates: [Expr<'g>; 2],
-    means: Means,
+    session: Session,
 ) -> SurfaceProblem {
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
-    on_any_branch(job, surface, coordinates, means)
+    on_any_branch(job, surface, coordinates, session)
         .keeping(&surface.surface.unknowns, &keep, &job.bindings())
         .expect("a job without errors leaves nothing unbound")
 }
@@ -274,34 +274,34 @@ fn on_any_branch<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
     coordinates: [Expr<'g>; 2],
-    means: Means,
+    session: Session,
 ) -> SurfaceProblem {
     SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
         .expect("a job without errors leaves nothing unbound")
-        .reaching(reach::followed(surface))
-        .on(means.instructions())
-        .boxes(means.boxes())
+        .following_beyond(reach::followed(surface))
+        .with_instruction_set(session.instructions())
+        .boxes(session.boxes())
 }
 
 /// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.
 fn kept_out<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
-    (effort, summary): (&Effort, &Summary),
-    means: Means,
+    (effort, summary): (&GridReport, &Summary),
+    session: Session,
 ) -> Vec<SurfacePoint> {
     let is_kept = |sample: &&Sample<'g>| !sample.keep.is_empty();
     let is_nothing = summary.solved() == 0 && effort.branches.is_empty();
     let Some(sample) = surface.sample.as_ref().filter(is_kept).filter(|_| is_nothing) else { return Vec::new() };
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = on_any_branch(job, surface, coordinates, means);
+    let problem = on_any_branch(job, surface, coordinates, session);
     let found = problem.all_points(effort.anchor);
     let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();
     problem.points(&found)
 }
 
 /// Branches at other places, each with the point of the surface's own branch there if it has one.
-fn elsewhere(problem: &SurfaceProblem, effort: &Effort) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
+fn elsewhere(problem: &SurfaceProblem, effort: &GridReport) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
     let point = |root: &Solution| problem.points(std::slice::from_ref(root)).remove(0);
     effort.elsewhere.iter().map(|other| (point(&other.root), other.beside.as_ref().map(point))).collect()
 }
@@ -386,10 +386,10 @@ fn write_files(
     dataset: &Dataset,
     solved: &[Solved<'_, '_>],
     faces: &[Smooth],
-    (name, means): (&str, Means<'_>),
+    (name, session): (&str, Session<'_>),
     (request, origin): (&SolveRequest, &Origin),
 ) -> Result<Vec<String>, String> {
-    let mut folder = Folder::at(&request.out, origin, means.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
     let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));

@@ -1,6 +1,6 @@
 //! Points that the ranges do not reach: where they would lie if the ranges went on.
 
-use flank_chain_dsl::{Bounded, GeneratedSurface, Job, PieceEnds};
+use flank_chain_dsl::{GeneratedSurface, Job, PieceEnds, RangedVariable};
 use flank_solver::{Outcome, Range, SurfacePoint};
 
 use crate::project::units;
@@ -93,7 +93,7 @@ pub(crate) fn beside_piece(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec
 fn next_piece(
     job: &Job<'_>,
     surface: &GeneratedSurface<'_>,
-    (of, piece): (&Bounded<'_>, &PieceEnds),
+    (of, piece): (&RangedVariable<'_>, &PieceEnds),
     k: usize,
 ) -> String {
     let end = units::text(of.dimension, [of.low, of.high][k], 4);

@@ -1,6 +1,6 @@
 //! Why points were not solved, in words.
 
-use flank_chain_dsl::{Bounded, GeneratedSurface, Job};
+use flank_chain_dsl::{GeneratedSurface, Job, RangedVariable};
 use flank_solver::{CutBy, Outcome};
 
 use crate::project::units;
@@ -164,6 +164,6 @@ fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> Stri
     }
 }
 
-fn amount(of: &Bounded<'_>, by: f64) -> String {
+fn amount(of: &RangedVariable<'_>, by: f64) -> String {
     units::text(of.dimension, by, 6)
 }

@@ -1,6 +1,6 @@
 //! What samples require of their points.
 
-use flank_chain_dsl::Limit;
+use flank_chain_dsl::PointRequirement;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::Outcome;
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ use crate::solve::table::Solved;
 
 /// The solved points of a surface at which a requirement of its sample does not hold.
 pub(crate) struct Broken<'j, 'g> {
-    limit: &'j Limit<'g>,
+    limit: &'j PointRequirement<'g>,
     places: Places,
     /// The smallest and the largest value at them.
     ends: [f64; 2],
@@ -23,7 +23,7 @@ fn broken<'j, 'g>(solved: &Solved<'j, 'g>) -> Vec<Broken<'j, 'g>> {
     solved.sample.limits.iter().filter_map(|limit| broken_by(solved, limit)).collect()
 }
 
-fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j Limit<'g>) -> Option<Broken<'j, 'g>> {
+fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j PointRequirement<'g>) -> Option<Broken<'j, 'g>> {
     let value = limit.of.value;
     let value = value.graph().substitute(&[value], &solved.bindings);
     let tape =

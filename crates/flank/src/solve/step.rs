@@ -7,7 +7,7 @@ use flank_export::{Axis, Face, Patch};
 use serde_json::{Value, json};
 
 use crate::solve::table::Solved;
-use crate::solve::{self, Wanted};
+use crate::solve::{self, SolveOptions};
 
 /// A finer grid than this is not solved to make a face better.
 const MOST_POINTS: usize = 250_000;
@@ -24,9 +24,9 @@ pub(crate) struct Smooth {
 
 /// The face of a surface, through its sampled points (some of very many) or, where that leaves it off by more than `tolerance` (mm),
 /// through grids with twice the rows and columns.
-pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: Wanted) -> Smooth {
+pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: SolveOptions) -> Smooth {
     let surface = solved.surface;
-    let working = wanted.means.begin(format!("making a smooth face of {}", surface.name));
+    let working = wanted.session.begin(format!("making a smooth face of {}", surface.name));
     let (mut sample, mut coarse) = match thinned(solved.sample) {
         Some(thin) => {
             let points = solve::points(job, surface, &thin, wanted).points;

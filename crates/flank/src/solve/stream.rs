@@ -4,12 +4,12 @@
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Banded, Field, Patch, Point, Taker, WriteError};
-use flank_solver::{Band, Effort, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
+use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::solve::geometry::{self, Described, TOGETHER};
 use crate::solve::summary::Summary;
-use crate::solve::{Wanted, patch, point, problem};
+use crate::solve::{SolveOptions, patch, point, problem};
 
 /// Surfaces of more points are streamed if nothing needs all of them together.
 const KEPT: usize = 1 << 16;
@@ -32,13 +32,13 @@ pub(crate) struct Streamed<'j, 'g> {
     sample: &'j Sample<'g>,
     problem: SurfaceProblem,
     outline: Patch,
-    means: Means<'j>,
+    session: Session<'j>,
 }
 
 /// What is kept of its points.
 pub(crate) struct Kept {
     pub(crate) summary: Summary,
-    pub(crate) effort: Effort,
+    pub(crate) effort: GridReport,
     /// Those in some rows and columns, for pictures.
     pub(crate) drawn: Vec<SurfacePoint>,
 }
@@ -50,7 +50,7 @@ pub(crate) struct Kept {
 pub(crate) fn check_kept<'s, 'g: 's>(
     job: &Job<'g>,
     surfaces: impl IntoIterator<Item = &'s GeneratedSurface<'g>>,
-    wanted: Wanted,
+    wanted: SolveOptions,
 ) -> Result<(), String> {
     let (mut points, mut bytes, mut needed) = (0_usize, 0_usize, None);
     for (surface, sample) in surfaces.into_iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?))) {
@@ -60,7 +60,7 @@ pub(crate) fn check_kept<'s, 'g: 's>(
         bytes += if count <= KEPT || all_needed.is_some() {
             count * bytes_of_point(job, surface, sample, wanted)
         } else {
-            let shown = Wanted { geometry: wanted.geometry && wanted.of_shown, ..wanted };
+            let shown = SolveOptions { geometry: wanted.geometry && wanted.of_shown, ..wanted };
             let of_shown = bytes_of_point(job, surface, sample, shown);
             count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_shown
         };
@@ -86,11 +86,11 @@ pub(crate) fn check_kept<'s, 'g: 's>(
 }
 
 /// Numbers that are kept of each point of a surface whose points are not.
-fn numbers_of_all(surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> usize {
+fn numbers_of_all(surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: SolveOptions) -> usize {
     if wanted.geometry && !wanted.of_shown { geometry::numbers(surface, sample) } else { 0 }
 }
 
-fn bytes_of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> usize {
+fn bytes_of_point(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: SolveOptions) -> usize {
     let parameters = job.parameters.iter().filter(|parameter| !parameter.is_count).count();
     let geometry = if wanted.geometry { geometry::numbers(surface, sample) } else { 0 };
     let sensitivity = if wanted.sensitivity { parameters } else { 0 };
@@ -106,7 +106,7 @@ pub(crate) fn is_streamed(
     job: &Job<'_>,
     surface: &GeneratedSurface<'_>,
     sample: &Sample<'_>,
-    wanted: Wanted,
+    wanted: SolveOptions,
 ) -> Result<bool, String> {
     let count = sample.counts[0] * sample.counts[1];
     match needs_all(job, surface, sample, wanted) {
@@ -121,7 +121,12 @@ pub(crate) fn is_streamed(
 }
 
 /// What needs all points of a surface together, if something does.
-fn needs_all(job: &Job<'_>, surface: &GeneratedSurface<'_>, sample: &Sample<'_>, wanted: Wanted) -> Option<String> {
+fn needs_all(
+    job: &Job<'_>,
+    surface: &GeneratedSurface<'_>,
+    sample: &Sample<'_>,
+    wanted: SolveOptions,
+) -> Option<String> {
     let trim = surface.trimmed_by.first().map(|by| ("trim", *by));
     let between = trim.or(surface.cut_by.map(|by| ("cut", by)));
     let between = between.map(|(word, by)| format!("`{word} {} by {}`", surface.name, job.surfaces[by].name));
@@ -137,7 +142,7 @@ impl<'j, 'g> Streamed<'j, 'g> {
         job: &'j Job<'g>,
         surface: &'j GeneratedSurface<'g>,
         sample: &'j Sample<'g>,
-        means: Means<'j>,
+        session: Session<'j>,
     ) -> Streamed<'j, 'g> {
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let axis = |k: usize| Axis { label: sample.labels[k].clone(), count: sample.counts[k] };
@@ -145,9 +150,9 @@ impl<'j, 'g> Streamed<'j, 'g> {
             job,
             surface,
             sample,
-            problem: problem(job, surface, coordinates, means),
+            problem: problem(job, surface, coordinates, session),
             outline: patch(job, &surface.name, surface, [axis(0), axis(1)], &[]),
-            means,
+            session,
         }
     }
 
@@ -193,8 +198,8 @@ impl<'j, 'g> Streamed<'j, 'g> {
         &self.problem
     }
 
-    fn solve<E>(&self, mut each: impl FnMut(&Band<'_>) -> Result<(), E>) -> Result<Effort, E> {
-        let working = self.means.begin(format!("solving {}", self.surface.name));
+    fn solve<E>(&self, mut each: impl FnMut(&Band<'_>) -> Result<(), E>) -> Result<GridReport, E> {
+        let working = self.session.begin(format!("solving {}", self.surface.name));
         let target = |row: usize, column: usize| self.sample.grid.at(row, column);
         self.problem.in_bands(target, self.sample.counts, None, |band| {
             each(band)?;

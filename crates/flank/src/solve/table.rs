@@ -6,7 +6,7 @@ use std::time::Instant;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Field, fixed};
 use flank_expr::Expr;
-use flank_solver::{Effort, SurfacePoint};
+use flank_solver::{GridReport, SurfacePoint};
 use serde_json::{Map, Value, json};
 
 use crate::project::failure::not_done;
@@ -42,7 +42,7 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) lines: [Vec<usize>; 2],
     /// What hands over the points if they are too many to keep.
     pub(crate) streamed: Option<Streamed<'j, 'g>>,
-    pub(crate) effort: Effort,
+    pub(crate) effort: GridReport,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
     /// Which positions of its tool its points were held against.

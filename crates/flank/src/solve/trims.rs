@@ -3,7 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_solver::{CutBy, Deviation, Intersection, Outcome, SurfacePoint, trim};
 
-use crate::project::requests::Means;
+use crate::project::requests::Session;
 use crate::solve::limits::Line;
 use crate::solve::summary::Summary;
 use crate::solve::{problem, ranges};
@@ -15,7 +15,7 @@ pub(crate) fn cut<'j, 'g>(
     [surface, by]: [&'j GeneratedSurface<'g>; 2],
     sample: &Sample<'g>,
     points: &mut [SurfacePoint],
-    (number, means): (usize, Means),
+    (number, session): (usize, Session),
 ) -> Line<'j, 'g> {
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
     let both = [ranges(surface), ranges(by)];
@@ -23,7 +23,7 @@ pub(crate) fn cut<'j, 'g>(
         .expect("a job without errors leaves nothing unbound");
     let [on_columns, on_rows] = trim(points, &sample.targets(), sample.counts, &intersection, number);
     if on_columns.is_empty() && on_rows.is_empty() {
-        mark_deeper(job, by, sample.counts, points, (number, means));
+        mark_deeper(job, by, sample.counts, points, (number, session));
     }
     // whichever cross the line oftener show more of it; on the columns it runs along the rows
     let (meetings, along) =
@@ -53,11 +53,11 @@ fn mark_deeper<'g>(
     by: &GeneratedSurface<'g>,
     counts: [usize; 2],
     points: &mut [SurfacePoint],
-    (number, means): (usize, Means),
+    (number, session): (usize, Session),
 ) {
     let Some(places) = Places::telling(points) else { return };
     let coordinates = places.of(by.surface.position.0, |x, y| (x * x + y * y).sqrt());
-    let (near, _) = problem(job, by, coordinates, means).solve(&places.targets(points), counts);
+    let (near, _) = problem(job, by, coordinates, session).solve(&places.targets(points), counts);
     let deviation =
         Deviation::new(&by.surface, ranges(by), &job.bindings()).expect("a job without errors leaves nothing unbound");
     let off = deviation.map(points, &near, 0.0);

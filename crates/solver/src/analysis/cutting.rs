@@ -53,7 +53,7 @@ struct Edges {
 
 /// What is left at a point of the ideal surface.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Left {
+pub enum ScallopHeight {
     /// The lowest edge is known.
     Cut {
         /// Of what it leaves over the ideal surface along its outward normal, mm; plus is material.
@@ -100,15 +100,15 @@ impl CuttingEdges {
         })
     }
 
-    /// The same edges, for which only these instructions are used; see [`System::on`].
-    pub fn on(self, instructions: InstructionSet) -> CuttingEdges {
-        let on = |edges: Edges| Edges { system: edges.system.on(instructions), ..edges };
+    /// The same edges, for which only these instructions are used; see [`System::with_instruction_set`].
+    pub fn with_instruction_set(self, instructions: InstructionSet) -> CuttingEdges {
+        let on = |edges: Edges| Edges { system: edges.system.with_instruction_set(instructions), ..edges };
         CuttingEdges { ideal: on(self.ideal), real: on(self.real), ..self }
     }
 
     /// What the edges leave at points of the ideal surface, on as many threads as there are; `None` for a point that is not
     /// solved. The result depends on the points alone.
-    pub fn left(&self, points: &[SurfacePoint]) -> Vec<Option<Left>> {
+    pub fn left(&self, points: &[SurfacePoint]) -> Vec<Option<ScallopHeight>> {
         let solved = points.iter().filter(|point| point.outcome == Outcome::Solved);
         let size = solved.flat_map(|point| point.position).fold(1.0, |size: f64, x| size.max(x.abs()));
         let wide = self.real.wide(size);
@@ -140,7 +140,7 @@ impl CuttingEdges {
         probes.par_iter().filter_map(spread).collect::<Vec<f64>>().into_iter().fold(0.0, f64::max)
     }
 
-    fn tile(&self, points: &[SurfacePoint], wide: &[Range; 3], differing: f64) -> Vec<Option<Left>> {
+    fn tile(&self, points: &[SurfacePoint], wide: &[Range; 3], differing: f64) -> Vec<Option<ScallopHeight>> {
         let mut guide = ScalarEvaluator::new(&self.guide);
         let mut passing = Passing::new(&self.real, wide);
         let is_solved = |point: &&SurfacePoint| point.outcome == Outcome::Solved;
@@ -166,8 +166,8 @@ impl CuttingEdges {
                 search.learn(passes.by_ref().zip(passed.by_ref()).take(count), differing);
             }
         }
-        let mut found = searches.into_iter().map(|search| search.map_or(Left::Undecided, Search::end));
-        points.iter().map(|point| is_solved(&point).then(|| found.next().unwrap_or(Left::Undecided))).collect()
+        let mut found = searches.into_iter().map(|search| search.map_or(ScallopHeight::Undecided, Search::end));
+        points.iter().map(|point| is_solved(&point).then(|| found.next().unwrap_or(ScallopHeight::Undecided))).collect()
     }
 }
 
@@ -352,7 +352,7 @@ struct Search {
     nearest: Option<f64>,
     lowest: Option<(f64, Vec<f64>)>,
     lost: bool,
-    left: Option<Left>,
+    left: Option<ScallopHeight>,
 }
 
 impl Search {
@@ -364,12 +364,12 @@ impl Search {
     /// The edges of the next round.
     fn next(&mut self, ranges: &[Range]) -> Vec<Pass> {
         let Some(places) = self.guide.near.within(self.level, ranges, MOST_EDGES) else {
-            self.left = Some(Left::Undecided);
+            self.left = Some(ScallopHeight::Undecided);
             return Vec::new();
         };
         if places.len() == self.count && self.nearest.is_none() && self.level > self.guide.near.step() {
             // a wider circle holds no further edge
-            self.left = Some(if self.lost { Left::Undecided } else { Left::Unreached });
+            self.left = Some(if self.lost { ScallopHeight::Undecided } else { ScallopHeight::Unreached });
         }
         let new = places.iter().filter(|place| place.q > self.tried).map(|place| self.guide.pass(place)).collect();
         self.count = places.len();
@@ -401,15 +401,15 @@ impl Search {
         }
     }
 
-    fn verdict(&mut self) -> Left {
+    fn verdict(&mut self) -> ScallopHeight {
         match self.lowest.take() {
-            Some((height, edge)) if !self.lost => Left::Cut { height, edge },
-            _ => Left::Undecided,
+            Some((height, edge)) if !self.lost => ScallopHeight::Cut { height, edge },
+            _ => ScallopHeight::Undecided,
         }
     }
 
-    fn end(self) -> Left {
-        self.left.unwrap_or(Left::Undecided)
+    fn end(self) -> ScallopHeight {
+        self.left.unwrap_or(ScallopHeight::Undecided)
     }
 }
 
@@ -425,7 +425,7 @@ mod tests {
     }
 
     /// What becomes of a search if each edge becomes the same.
-    fn end(mut search: Search, counts: Range, passed: fn() -> Passed) -> Left {
+    fn end(mut search: Search, counts: Range, passed: fn() -> Passed) -> ScallopHeight {
         while search.left.is_none() {
             let passes = search.next(&[counts]);
             search.learn(passes.iter().map(|pass| (pass, passed())), 0.0);
@@ -436,12 +436,12 @@ mod tests {
     #[test]
     fn what_was_not_tried_or_not_followed_is_not_unreached() {
         let few = Range { low: -3.0, high: 3.0 };
-        assert_eq!(end(search(1.0), few, || Passed::Beyond), Left::Unreached);
-        assert_eq!(end(search(1.0), few, || Passed::Lost), Left::Undecided);
+        assert_eq!(end(search(1.0), few, || Passed::Beyond), ScallopHeight::Unreached);
+        assert_eq!(end(search(1.0), few, || Passed::Lost), ScallopHeight::Undecided);
         let at = || Passed::At { height: 0.5, swept: [0.0; 2] };
-        assert!(matches!(end(search(1.0), few, at), Left::Cut { height: 0.5, .. }));
+        assert!(matches!(end(search(1.0), few, at), ScallopHeight::Cut { height: 0.5, .. }));
         // more than can be tried, from the first
         let many = Range { low: -1e6, high: 1e6 };
-        assert_eq!(end(search(1e-9), many, || Passed::Beyond), Left::Undecided);
+        assert_eq!(end(search(1e-9), many, || Passed::Beyond), ScallopHeight::Undecided);
     }
 }

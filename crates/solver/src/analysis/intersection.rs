@@ -188,7 +188,8 @@ impl Meeting {
 fn seeds(surface: &Surface<'_>, ranges: &[Range]) -> Result<Vec<SurfacePoint>, TapeError> {
     let coordinates = [surface.unknowns[0], surface.unknowns[1]];
     // machine code does not pay for so few
-    let problem = SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?.on(InstructionSet::widest());
+    let problem =
+        SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?.with_instruction_set(InstructionSet::widest());
     let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
     let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
     let (points, _) = problem.solve(&targets, [SEEDS; 2]);

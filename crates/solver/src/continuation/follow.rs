@@ -3,7 +3,7 @@
 use crate::continuation::anchor::follow_alone;
 use crate::continuation::choice::{Choice, Several};
 use crate::continuation::field::Field;
-use crate::continuation::grid::{Effort, Followed, Grid};
+use crate::continuation::grid::{Followed, Grid, GridReport};
 use crate::continuation::reach::settle;
 use crate::continuation::survey::surveyed;
 use crate::equations::solution::{Range, Solution};
@@ -31,7 +31,7 @@ pub fn solve_grid(
     ranges: &[Range],
     targets: &[[f64; 2]],
     counts: [usize; 2],
-) -> (Vec<Solution>, Effort) {
+) -> (Vec<Solution>, GridReport) {
     let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
     let choice = Choice {
         roots: &roots,
@@ -50,7 +50,7 @@ pub fn solve_grid(
 
 /// The same without an allocation for each point, with a choice among several branches; the branch may be given by a start
 /// for the point in the middle, which is tried first.
-pub(crate) fn solve_settled(mut grid: Grid<'_>, start: Option<&[f64]>, choice: &Choice<'_>) -> (Field, Effort) {
+pub(crate) fn solve_settled(mut grid: Grid<'_>, start: Option<&[f64]>, choice: &Choice<'_>) -> (Field, GridReport) {
     let mut solvers = Solvers::new(grid.system, grid.ranges);
     let Followed { mut field, .. } = follow(&mut grid, &mut solvers, start, choice);
     let all = 0..field.len();

@@ -36,7 +36,7 @@ pub(crate) struct Followed {
 
 /// What a grid cost, and what is known about where it starts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Effort {
+pub struct GridReport {
     /// Evaluations of residuals with Jacobian, without those of the search for the anchor.
     pub evaluations: u64,
     /// Boxes that the search for the anchor looked at.
@@ -73,7 +73,7 @@ pub(crate) struct Grid<'s> {
     pub(crate) is_careful: bool,
     /// Of a field that is not needed any more.
     memory: Option<Field>,
-    pub(crate) effort: Effort,
+    pub(crate) effort: GridReport,
 }
 
 /// A branch that has a point in the ranges somewhere, and is not the one of the points.
@@ -105,7 +105,7 @@ impl<'s> Grid<'s> {
             are_rows_apart: false,
             is_careful: false,
             memory,
-            effort: Effort::default(),
+            effort: GridReport::default(),
         }
     }
 

@@ -8,7 +8,7 @@ use flank_expr::LANES;
 use crate::continuation::anchor::{course, follow_alone};
 use crate::continuation::choice::{Choice, is_same_root};
 use crate::continuation::field::Field;
-use crate::continuation::grid::{Effort, Elsewhere, Followed, Grid, extrapolated};
+use crate::continuation::grid::{Elsewhere, Followed, Grid, GridReport, extrapolated};
 use crate::continuation::reach::{back_into, is_within};
 use crate::equations::solution::{Outcome, Solution};
 use crate::newton::batch::LaneNewton;
@@ -42,7 +42,7 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
     if !grid.is_careful && leads_astray(&followed.field) {
         grid.is_careful = true;
         let evaluations = grid.effort.evaluations;
-        grid.effort = Effort { evaluations, ..Effort::default() };
+        grid.effort = GridReport { evaluations, ..GridReport::default() };
         followed = follow_alone(grid, solvers, None, choice);
     }
     if followed.field.outcome(0) == Some(Outcome::Ambiguous) {

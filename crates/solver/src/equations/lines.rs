@@ -4,7 +4,7 @@
 use flank_expr::{Expr, LaneTape, Tape, TapeError, Varies};
 
 use crate::equations::closed_form::Given;
-use crate::equations::step::{Linear, Wanted};
+use crate::equations::step::{Linear, RootOutputs};
 use crate::equations::tolerance::{CLEAR, PREDICTED, TOLERANCE};
 
 /// Lays out [`PlainRoot`] of points with some unknowns in closed form, the others as expected, and so the determinant.
@@ -15,7 +15,7 @@ use crate::equations::tolerance::{CLEAR, PREDICTED, TOLERANCE};
 /// # Errors
 /// If something depends on a variable that is neither an unknown nor a parameter.
 pub(crate) fn expected<'g>(
-    wanted: &Wanted<'_, 'g>,
+    wanted: &RootOutputs<'_, 'g>,
     given: &[Given<'g>],
     [unknowns, parameters]: [&[Expr<'g>]; 2],
 ) -> Result<LaneTape, TapeError> {
@@ -38,7 +38,7 @@ pub(crate) fn expected<'g>(
 /// # Errors
 /// If something depends on a variable that is neither an unknown nor a parameter.
 pub(crate) fn laid_out<'g>(
-    wanted: &Wanted<'_, 'g>,
+    wanted: &RootOutputs<'_, 'g>,
     given: &[Given<'g>],
     linear: &Linear<'g>,
     [unknowns, parameters]: [&[Expr<'g>]; 2],
@@ -67,7 +67,12 @@ struct PlainRoot<'g> {
 
 impl<'g> PlainRoot<'g> {
     /// Where `doubt` is positive or no number the point is no plain root either.
-    fn new(wanted: &Wanted<'_, 'g>, unknowns: &[Expr<'g>], determinant: Expr<'g>, doubt: Expr<'g>) -> PlainRoot<'g> {
+    fn new(
+        wanted: &RootOutputs<'_, 'g>,
+        unknowns: &[Expr<'g>],
+        determinant: Expr<'g>,
+        doubt: Expr<'g>,
+    ) -> PlainRoot<'g> {
         let graph = determinant.graph();
         let [lows, highs] = ["low", "high"]
             .map(|name| (0..unknowns.len()).map(|k| graph.variable(format!("{name} {k}"))).collect::<Vec<Expr<'g>>>());

@@ -187,7 +187,7 @@ pub struct Solution {
     pub unknowns: Vec<f64>,
     /// The largest residual there.
     pub residual: f64,
-    /// Evaluations of the system; zero for points of a grid, whose [`Effort`](crate::Effort) has their sum.
+    /// Evaluations of the system; zero for points of a grid, whose [`GridReport`](crate::GridReport) has their sum.
     pub iterations: u32,
 }
 

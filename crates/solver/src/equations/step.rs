@@ -39,13 +39,13 @@ pub(crate) fn written_out<'g>(
 }
 
 /// What is wanted at a root.
-pub(crate) struct Wanted<'a, 'g> {
+pub(crate) struct RootOutputs<'a, 'g> {
     pub(crate) residuals: &'a [Expr<'g>],
     pub(crate) conditions: &'a [Expr<'g>],
     pub(crate) extras: &'a [Expr<'g>],
 }
 
-impl<'g> Wanted<'_, 'g> {
+impl<'g> RootOutputs<'_, 'g> {
     /// The sum of what must be finite, if anything is: it is so only if all of that is.
     pub(crate) fn vital(&self) -> Option<Expr<'g>> {
         self.extras.iter().take(VITAL).copied().reduce(|a, b| a + b)
@@ -77,7 +77,7 @@ impl GivenTapes {
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor a parameter.
     pub(crate) fn new<'g>(
-        wanted: &Wanted<'_, 'g>,
+        wanted: &RootOutputs<'_, 'g>,
         unknowns: &[Expr<'g>],
         parameters: &[Expr<'g>],
     ) -> Result<Option<GivenTapes>, TapeError> {

@@ -6,7 +6,7 @@ use flank_expr::{Expr, InstructionSet, LaneEvaluator, LaneTape, ScalarEvaluator,
 
 use crate::equations::lines;
 use crate::equations::solution::{CutBy, Outcome};
-use crate::equations::step::{GivenTapes, MOST_EQUATIONS, Wanted, written_out};
+use crate::equations::step::{GivenTapes, MOST_EQUATIONS, RootOutputs, written_out};
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -97,7 +97,7 @@ impl System {
         extras: &[Expr<'g>],
         inputs: &[Expr<'g>],
     ) -> Result<System, TapeError> {
-        let wanted = Wanted { residuals, conditions, extras };
+        let wanted = RootOutputs { residuals, conditions, extras };
         let (unknowns, parameters) = inputs.split_at(self.size);
         let checked = LaneTape::new(&Tape::new(&wanted.all(), inputs)?);
         let is_written_out = self.lanes.is_written_out;
@@ -112,7 +112,7 @@ impl System {
 
     /// The same system, for whose grids only these instructions are used: without machine code of its own, say. The results are
     /// the same, bit for bit.
-    pub fn on(self, instructions: InstructionSet) -> System {
+    pub fn with_instruction_set(self, instructions: InstructionSet) -> System {
         System { instructions, ..self }
     }
 

@@ -9,7 +9,7 @@ use std::ops::{Range, RangeInclusive};
 use crate::continuation::choice::Choice;
 use crate::continuation::field::Field;
 use crate::continuation::follow::follow;
-use crate::continuation::grid::{Effort, Followed, Grid};
+use crate::continuation::grid::{Followed, Grid, GridReport};
 use crate::continuation::line::{levels, stencil};
 use crate::continuation::reach::settle;
 use crate::equations::solution::{self, Outcome};
@@ -106,7 +106,7 @@ pub(crate) fn solve_in_bands<E>(
     choice: &Choice<'_>,
     points: usize,
     each: &mut dyn FnMut(Range<usize>, Field, usize) -> Result<Field, E>,
-) -> Result<Effort, E> {
+) -> Result<GridReport, E> {
     let [rows, columns] = wanted.counts;
     let mut places: Vec<usize> = (0..rows).step_by(spacing(points, columns)).chain([rows - 1]).collect();
     places.dedup();

@@ -13,7 +13,7 @@ use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeErro
 use crate::continuation::choice::{Choice, Several};
 use crate::continuation::field::Field;
 use crate::continuation::follow::solve_settled;
-use crate::continuation::grid::{Effort, Grid};
+use crate::continuation::grid::{Grid, GridReport};
 use crate::continuation::reach::{Reach, periodic_in};
 use crate::continuation::verdicts::{Keep, TangentPlanes};
 use crate::equations::solution::{Outcome, Range, Solution, verdict};
@@ -112,7 +112,7 @@ impl SurfaceProblem {
     /// targets `[0, value]`. The singular line has the last of [`Surface::clearance_minors`] as its quantity, the limit of
     /// the contact on the tool [`Surface::contact_limit`].
     ///
-    /// Of several such lines in the ranges the one is taken that reaches the most points; [`Effort`] tells of the others. No
+    /// Of several such lines in the ranges the one is taken that reaches the most points; [`GridReport`] tells of the others. No
     /// point of the line is cut away or singular by the clearance's Hessian: the line is where that changes. The rest is
     /// as for [`SurfaceProblem::new`].
     ///
@@ -181,9 +181,9 @@ impl SurfaceProblem {
         })
     }
 
-    /// The same problem, for whose grids only these instructions are used; see [`System::on`].
-    pub fn on(self, instructions: InstructionSet) -> SurfaceProblem {
-        SurfaceProblem { system: self.system.on(instructions), ..self }
+    /// The same problem, for whose grids only these instructions are used; see [`System::with_instruction_set`].
+    pub fn with_instruction_set(self, instructions: InstructionSet) -> SurfaceProblem {
+        SurfaceProblem { system: self.system.with_instruction_set(instructions), ..self }
     }
 
     /// The same problem, where a grid is solved in bands of rows if it has more points than this. It sets how much memory a grid
@@ -250,7 +250,7 @@ impl SurfaceProblem {
     ///
     /// # Panics
     /// If `wider` has not one range for each unknown.
-    pub fn reaching(self, wider: Vec<Range>) -> SurfaceProblem {
+    pub fn following_beyond(self, wider: Vec<Range>) -> SurfaceProblem {
         assert_eq!(wider.len(), self.ranges.len(), "one range for each unknown");
         // a turn of what is periodic is all there is
         let searched = wider.iter().zip(&self.ranges).zip(&self.periodic);
@@ -260,11 +260,11 @@ impl SurfaceProblem {
     }
 
     /// Solves a grid of targets, row by row; every point gets a verdict. If the ranges hold several branches that qualify,
-    /// every point is [`Outcome::Ambiguous`], and [`Effort::branches`] lists them.
+    /// every point is [`Outcome::Ambiguous`], and [`GridReport::branches`] lists them.
     ///
     /// # Panics
     /// If there are not `counts[0] · counts[1]` targets.
-    pub fn solve(&self, targets: &[[f64; 2]], counts: [usize; 2]) -> (Vec<SurfacePoint>, Effort) {
+    pub fn solve(&self, targets: &[[f64; 2]], counts: [usize; 2]) -> (Vec<SurfacePoint>, GridReport) {
         let (points, effort) = self.solve_points(targets, counts, None, None);
         ((0..points.len()).map(|k| points.point(k)).collect(), effort)
     }
@@ -281,7 +281,7 @@ impl SurfaceProblem {
         counts: [usize; 2],
         start: Option<&[f64]>,
         memory: Option<SurfacePoints>,
-    ) -> (SurfacePoints, Effort) {
+    ) -> (SurfacePoints, GridReport) {
         assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
         let memory = memory.map(|points| points.field);
         let (mut field, effort) = if targets.len() <= self.at_once {
@@ -301,7 +301,7 @@ impl SurfaceProblem {
         counts: [usize; 2],
         start: Option<&[f64]>,
         memory: Option<Field>,
-    ) -> (Field, Effort) {
+    ) -> (Field, GridReport) {
         let mut whole = Field::new(&self.ranges, counts, self.system.extra_count(), memory);
         let target = |i: usize, j: usize| targets[i * counts[1] + j];
         let taken = self.fields(Targets { target: &target, counts }, start, &mut |rows, field, line| {
@@ -329,7 +329,7 @@ impl SurfaceProblem {
         counts: [usize; 2],
         start: Option<&[f64]>,
         mut each: impl FnMut(&Band<'_>) -> Result<(), E>,
-    ) -> Result<Effort, E> {
+    ) -> Result<GridReport, E> {
         self.fields(Targets { target: &target, counts }, start, &mut |rows, mut field, line| {
             let first = line * counts[1];
             let asked = |point: usize| target(rows.start + (point - first) / counts[1], (point - first) % counts[1]);
@@ -345,7 +345,7 @@ impl SurfaceProblem {
         wanted: Targets<'_>,
         start: Option<&[f64]>,
         each: &mut dyn FnMut(std::ops::Range<usize>, Field, usize) -> Result<Field, E>,
-    ) -> Result<Effort, E> {
+    ) -> Result<GridReport, E> {
         let (system, ranges) = (&self.system, &self.ranges);
         self.choosing(|choice| {
             if wanted.len() > self.at_once {

@@ -58,7 +58,7 @@ impl SurfacePoints {
     }
 
     /// Position, mm, in the frame of the surface, then the unit normal out of the body that owns the surface.
-    pub fn placed(&self, point: usize) -> [f64; 6] {
+    pub fn position_and_normal(&self, point: usize) -> [f64; 6] {
         std::array::from_fn(|k| self.field.extra(point, k))
     }
 
@@ -77,7 +77,7 @@ impl SurfacePoints {
 
     /// All of that for one point.
     pub fn point(&self, point: usize) -> SurfacePoint {
-        let [x, y, z, nx, ny, nz] = self.placed(point);
+        let [x, y, z, nx, ny, nz] = self.position_and_normal(point);
         SurfacePoint {
             outcome: self.outcome(point),
             unknowns: self.unknowns(point),

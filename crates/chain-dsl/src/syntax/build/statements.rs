@@ -8,8 +8,8 @@ use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
-    Limit, MachineStatement, NcWord, Param, Parameter, Path, Range, Requirement, Sample, SampleEntry, SampleValues,
-    ToolStatement,
+    MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample, SampleEntry,
+    SampleValues, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -227,10 +227,10 @@ impl Build<'_> {
         Keep { key, definition, range: self.range(parts.required(Rule::range)) }
     }
 
-    fn limit(&mut self, pair: Pair<'_, Rule>) -> Limit {
+    fn limit(&mut self, pair: Pair<'_, Rule>) -> PointRequirement {
         let mut parts = Parts::of(pair);
         let within = self.keep(&mut parts);
-        Limit { within, message: self.text(parts.required(Rule::string)).node }
+        PointRequirement { within, message: self.text(parts.required(Rule::string)).node }
     }
 
     /// The name of a coordinate, and what it is if that is said.

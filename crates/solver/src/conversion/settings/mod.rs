@@ -17,12 +17,12 @@ pub struct UnknownSetting<'g> {
     /// Its variable in the chain.
     pub variable: Expr<'g>,
     /// Which values it may have.
-    pub sought: Sought,
+    pub sought: SettingBounds,
 }
 
 /// Which values a setting may have.
 #[derive(Clone, Copy, Debug)]
-pub struct Sought {
+pub struct SettingBounds {
     /// What it is counted in.
     pub kind: SettingKind,
     /// Where it may lie; endless where nothing is said.
@@ -33,7 +33,7 @@ pub struct Sought {
 
 /// A machine that is to be set up.
 #[derive(Clone, Copy, Debug)]
-pub struct Adjustable<'a, 'g> {
+pub struct AdjustableMachine<'a, 'g> {
     /// From work to tool.
     pub chain: &'a Chain<'g>,
     /// The constants in it that are looked for.
@@ -90,7 +90,7 @@ impl<'g> SettingsProblem<'g> {
     /// # Panics
     /// If there is no motion.
     pub fn new(
-        target: &Adjustable<'_, 'g>,
+        target: &AdjustableMachine<'_, 'g>,
         source: &Chain<'g>,
         motions: &[Expr<'g>],
         symmetries: &[Screw],
@@ -98,7 +98,7 @@ impl<'g> SettingsProblem<'g> {
         reach: f64,
     ) -> Result<SettingsProblem<'g>, TapeError> {
         let graph = motions[0].graph();
-        let Adjustable { chain, settings, axes } = *target;
+        let AdjustableMachine { chain, settings, axes } = *target;
         let [target, source] = [chain, source].map(|chain| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
         let constants: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();

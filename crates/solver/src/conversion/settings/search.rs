@@ -7,7 +7,7 @@ use faer::linalg::solvers::{Qr, SolveLstsq, Svd};
 use flank_expr::{ScalarEvaluator, Tape};
 use rayon::prelude::*;
 
-use super::{SettingKind, SettingsFit, Sought};
+use super::{SettingBounds, SettingKind, SettingsFit};
 use crate::equations::solution::Range;
 use crate::newton::multistart::probe;
 
@@ -41,7 +41,7 @@ const SHARE: f64 = 1e-6;
 /// The numbers of a [`SettingsProblem`](super::SettingsProblem).
 #[derive(Clone, Debug)]
 pub(super) struct Search {
-    pub(super) settings: Vec<Sought>,
+    pub(super) settings: Vec<SettingBounds>,
     /// Of what moves.
     pub(super) is_rotary: Vec<bool>,
     /// Of settings, what moves, and the source's motions: rows of the deviation, then their derivatives by the first two.
@@ -283,7 +283,7 @@ impl Search {
 
     /// Less is better: the deviation, then ranges, then what is usual.
     fn rank(&self, state: &State, poses: usize) -> f64 {
-        let unusual = |(k, (setting, x)): (usize, (&Sought, &f64))| {
+        let unusual = |(k, (setting, x)): (usize, (&SettingBounds, &f64))| {
             ((x - setting.usual.unwrap_or(0.0)) / self.scale(k)).powi(2).min(1e6)
         };
         let unusual: f64 = self.settings.iter().zip(&state.settings).enumerate().map(unusual).sum();
@@ -341,7 +341,7 @@ impl Search {
 }
 
 /// A value for a start: at a share of where a setting is looked for, lengths as far as `reach` from zero, mm.
-fn somewhere(setting: &Sought, reach: f64, share: f64) -> f64 {
+fn somewhere(setting: &SettingBounds, reach: f64, share: f64) -> f64 {
     match setting.kind {
         SettingKind::Length => setting.range.near_zero(reach).at(share),
         SettingKind::Angle => setting.range.near_zero(std::f64::consts::PI).at(share),
@@ -369,7 +369,7 @@ mod tests {
     fn starts_are_spread_over_the_range_wherever_it_lies() {
         for kind in [SettingKind::Length, SettingKind::Angle, SettingKind::Number] {
             for (low, high) in [(2e3, 5e3), (-5e3, -2e3), (0.5, 0.7), (-1.0, 2e4), (4.0, 5.0), (2e3, f64::INFINITY)] {
-                let sought = Sought { kind, range: Range { low, high }, usual: None };
+                let sought = SettingBounds { kind, range: Range { low, high }, usual: None };
                 let starts: Vec<f64> = (0..=10).map(|k| somewhere(&sought, 100.0, f64::from(k) / 10.0)).collect();
                 // arsinh and sinh take a few roundings
                 let is_within = |x: &f64| sought.range.excess(*x) <= 1e-12 * x.abs();
