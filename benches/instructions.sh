@@ -30,7 +30,7 @@ run() { # job rows columns repetitions
 process() { # name
     case $1 in
         surface) set -- solve benches/spiral_bevel.chain --job flank ;;
-        ease_off) set -- deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave ;;
+        ease_off) set -- deviation specs/bevel/ease_off_19x62.chain pinion.concave --reference conjugate.concave ;;
         *) echo "no process is called $1" >&2; return 1 ;;
     esac
     RAYON_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null target/debug/flank "$@" --no-picture --out "$out" \

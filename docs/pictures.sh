@@ -59,12 +59,12 @@ hob=specs/hobbing/real_hob.chain
 wheel=specs/hobbing/worm_wheel.chain
 pinion=specs/bevel/pinion_19x62.chain
 ease_off=specs/bevel/ease_off_19x62.chain
-flanks=(--surface upper.flank --from conjugate_upper.flank)
+flanks=(--surface upper.flank --reference conjugate_upper.flank)
 picture real_hob_run_out $hob --what left --set run_out="0.02 mm"
 picture worm_wheel_ease_off $wheel --what deviation "${flanks[@]}"
 picture worm_wheel_ease_off_shifted $wheel --what deviation "${flanks[@]}" --set oversize="2 mm" --set m.swivel="0 deg"
-picture ease_off_19x62 $ease_off --what deviation --surface pinion.concave --from conjugate.concave
-picture topography $ease_off --what topography --surface pinion.concave --from conjugate.concave
+picture ease_off_19x62 $ease_off --what deviation --surface pinion.concave --reference conjugate.concave
+picture topography $ease_off --what topography --surface pinion.concave --reference conjugate.concave
 picture sensitivity $pinion --what sensitivity
 picture curvature $pinion --what curvature
 picture contact_lines $pinion --what contact-lines

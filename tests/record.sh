@@ -72,4 +72,4 @@ for spec in specs/*/*.chain; do
     run "$name.view" view "$spec" --json $to
     run "$name.convert" convert "$spec" --to specs/machines/free_form.chain $to
 done
-run ease_off deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave $to
+run ease_off deviation specs/bevel/ease_off_19x62.chain pinion.concave --reference conjugate.concave $to

@@ -9,7 +9,7 @@ fn deviation_of_two_flanks_is_told_and_drawn() {
     let out = folder("deviation");
     let spec = "specs/bevel/ease_off_19x62.chain";
     let into = out.to_str().unwrap();
-    let of = ["deviation", spec, "pinion.concave", "--from", "conjugate.concave", "--out", into];
+    let of = ["deviation", spec, "pinion.concave", "--reference", "conjugate.concave", "--out", into];
     let run = flank(&[&of[..], &["--json"]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let told: serde_json::Value = serde_json::from_str(&text(&run.stdout)).unwrap();
@@ -18,12 +18,12 @@ fn deviation_of_two_flanks_is_told_and_drawn() {
     for extension in ["csv", "png", "svg"] {
         assert!(out.join(format!("pinion.concave.deviation.{extension}")).exists(), "{extension}");
     }
-    let run = flank(&["deviation", spec, "concave", "--from", "conjugate.concave", "--out", into]);
+    let run = flank(&["deviation", spec, "concave", "--reference", "conjugate.concave", "--out", into]);
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).contains("several jobs have a surface `concave`"), "{}", text(&run.stderr));
-    let run = flank(&["deviation", spec, "pinion.convex", "--from", "conjugate.concave", "--out", into]);
+    let run = flank(&["deviation", spec, "pinion.convex", "--reference", "conjugate.concave", "--out", into]);
     assert!(text(&run.stderr).contains("there is no surface `pinion.convex`"), "{}", text(&run.stderr));
-    let run = flank(&["deviation", spec, "conjugate.concave", "--from", "pinion.concave", "--out", into]);
+    let run = flank(&["deviation", spec, "conjugate.concave", "--reference", "pinion.concave", "--out", into]);
     assert!(text(&run.stderr).contains("`concave` is not sampled"), "{}", text(&run.stderr));
 }
 
@@ -33,7 +33,7 @@ fn normals_that_face_apart_are_told() {
     let out = folder("deviation_opposite");
     let of = |surface| {
         let spec = "specs/hobbing/spur_gear.chain";
-        let rest = ["--from", "flank_minus", "--no-picture", "--out", out.to_str().expect("a plain path")];
+        let rest = ["--reference", "flank_minus", "--no-picture", "--out", out.to_str().expect("a plain path")];
         text(&flank(&[&["deviation", spec, surface], &rest[..]].concat()).stderr)
     };
     let told = "note: flank_plus and flank_minus have their steel on opposite sides in the middle of the grid";
@@ -45,7 +45,7 @@ fn normals_that_face_apart_are_told() {
 #[test]
 fn a_worm_wheel_lies_off_the_conjugate_one() {
     let out = folder("worm_wheel");
-    let surfaces = ["specs/hobbing/worm_wheel.chain", "upper.flank", "--from", "conjugate_upper.flank"];
+    let surfaces = ["specs/hobbing/worm_wheel.chain", "upper.flank", "--reference", "conjugate_upper.flank"];
     let rest = ["--no-picture", "--out", out.to_str().expect("a plain path")];
     let run = flank(&[&["deviation"], &surfaces[..], &rest].concat());
     let told = text(&run.stdout);
@@ -82,9 +82,9 @@ fn a_deviation_is_told_across_half_a_turn() {
         "deviation",
         &spec,
         "real",
-        "--from",
+        "--reference",
         "ideal",
-        "--as-it-lies",
+        "--no-align",
         "--no-picture",
         "--json",
         "--out",
@@ -102,7 +102,7 @@ fn a_deviation_is_told_across_half_a_turn() {
 #[test]
 fn nothing_has_no_sign() {
     let out = folder("deviation_of_itself");
-    let of = ["deviation", "specs/bevel/thesis_gear.chain", "concave", "--from", "concave", "--no-picture"];
+    let of = ["deviation", "specs/bevel/thesis_gear.chain", "concave", "--reference", "concave", "--no-picture"];
     let run = flank(&[&of[..], &["--out", out.to_str().unwrap()]].concat());
     let told = text(&run.stdout);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -139,7 +139,7 @@ fn names_of_unknowns_say_nothing_of_places() {
     let library = self_contained(&["machines/hobbing_6axis", "machines/rack_generating"]);
     let spec = written(&out, "rails.chain", &format!("{library}{job}"));
     let run =
-        flank(&["deviation", &spec, "b", "--from", "a", "--no-picture", "--json", "--out", out.to_str().unwrap()]);
+        flank(&["deviation", &spec, "b", "--reference", "a", "--no-picture", "--json", "--out", out.to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     assert_eq!((told["asked"].as_u64(), told["known"].as_u64()), (Some(21), Some(21)));
@@ -192,7 +192,7 @@ fn several_branches_are_listed() {
             "deviation",
             &spec,
             "again",
-            "--from",
+            "--reference",
             "original",
             "--no-picture",
             "--json",

@@ -34,7 +34,7 @@ fn used_files_are_not_written_over() {
     let job = self_contained(&["hobbing/spur_gear"]);
     let job = job.replace("by 25", "by 5").replace("by 11", "by 3").replace("by 15", "by 5");
     let plot = ["--what", "machine"];
-    let deviation = ["flank_plus", "--from", "flank_minus", "--as-it-lies", "--no-picture"];
+    let deviation = ["flank_plus", "--reference", "flank_minus", "--no-align", "--no-picture"];
     for (command, name, arguments) in [
         ("solve", "spur_gear.csv", &[][..]),
         ("solve", "spur_gear.vtp", &["--format", "vtp", "--no-picture"]),

@@ -220,7 +220,7 @@ fn known_deviations_come_back() {
         tables[2] += &line(both.0, format!("{}", 1e3 * both.1));
     }
     for (table, turn, more) in [
-        (&tables[0], 0.0, &["--as-it-lies"][..]),
+        (&tables[0], 0.0, &["--no-align"][..]),
         (&tables[0], 0.0, &[]),
         (&tables[1], -0.7, &[]),
         (&tables[2], 0.0, &[]),
@@ -273,7 +273,7 @@ fn a_middle_that_is_missing_hides_nothing() {
         "concave",
         "--measured",
         &file,
-        "--as-it-lies",
+        "--no-align",
         "--no-picture",
         "--out",
         out.to_str().unwrap(),
@@ -297,7 +297,7 @@ fn ends_that_were_not_measured_keep_their_place() {
     let file = written(&out, "measured.csv", &table);
     let run = flank(
         &[
-            &["deviation", PINION, "concave", "--measured", &file, "--as-it-lies", "--no-picture", "--json"][..],
+            &["deviation", PINION, "concave", "--measured", &file, "--no-align", "--no-picture", "--json"][..],
             &["--out", out.to_str().unwrap()],
         ]
         .concat(),
@@ -333,7 +333,7 @@ fn lines_that_are_not_there_move_no_others() {
     for (there, said) in [([4, 9], ["--rows", "5"]), ([5, 8], ["--columns", "9"]), ([5, 9], ["--margin", "0.05"])] {
         let file = table("x,y,z", &place, there);
         let wrong = if said[0] == "--margin" { &["--margin", "0.2"][..] } else { &[] };
-        for more in [&["--as-it-lies"][..], &[]] {
+        for more in [&["--no-align"][..], &[]] {
             let refused = run(&file, &[wrong, more].concat());
             let told = text(&refused.stderr);
             assert_eq!(refused.status.code(), Some(1), "{told}");
@@ -345,13 +345,13 @@ fn lines_that_are_not_there_move_no_others() {
         assert!(told["rms_um"].as_f64().expect("a number") < 1e-6, "{told}");
     }
     let file = table("deviation_um", &|point| point.0[0].to_string(), [4, 9]);
-    let told: Value = serde_json::from_slice(&run(&file, &["--rows", "5", "--as-it-lies"]).stdout).expect("JSON");
+    let told: Value = serde_json::from_slice(&run(&file, &["--rows", "5", "--no-align"]).stdout).expect("JSON");
     let number = |key: &str| told[key].as_f64().expect("a number");
     assert_eq!((number("asked"), number("known")), (45.0, 36.0), "{told}");
     assert!((number("lowest_um") - 1.0).abs().max((number("highest_um") - 4.0).abs()) < 1e-9, "{told}");
     let few = run(&file, &["--rows", "3"]);
     assert!(text(&few.stderr).contains("4 rows are named, more than --rows 3"), "{}", text(&few.stderr));
-    let without = flank(&["deviation", PINION, "concave", "--from", "convex", "--rows", "5"]);
+    let without = flank(&["deviation", PINION, "concave", "--reference", "convex", "--rows", "5"]);
     assert_eq!(without.status.code(), Some(2), "{}", text(&without.stderr));
 }
 
@@ -372,7 +372,7 @@ fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
     measure(&out, &[&[PINION, "--surface", "concave", "--set", &set][..], &dense].concat());
     let file = out.join("pinion_19x62.grid.csv");
     let arguments =
-        ["deviation", PINION, "concave", "--measured", file.to_str().unwrap(), "--margin", "0", "--as-it-lies"];
+        ["deviation", PINION, "concave", "--measured", file.to_str().unwrap(), "--margin", "0", "--no-align"];
     let run = flank(&[&arguments[..], &["--no-picture", "--out", out.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let found = deviations(&out, "pinion_19x62.concave.measured.deviation.csv");
@@ -412,10 +412,10 @@ fn what_is_missing_or_wrong_is_told() {
         (&["measure", PINION, "--surface", "flank"][..], 1, "there is no surface `flank`"),
         (&["measure", PINION, "--rows", "1"], 2, "write a whole number from 2 to 1000"),
         (&["measure", PINION, "--margin", "0.5"], 2, "from 0 to below 0.5"),
-        (&["deviation", PINION, "concave"], 2, "`concave` is held against: --from SURFACE or --measured FILE"),
+        (&["deviation", PINION, "concave"], 2, "`concave` is held against: --reference SURFACE or --measured FILE"),
         (&["measure", PINION, "--rows", "-1"], 2, "write a whole number from 2 to 1000"),
         (&["measure", PINION, "--margin", "-0.1"], 2, "write one share or two"),
-        (&["deviation", PINION, "concave", "--from", "convex", "--margin", "0.1"], 2, "--margin says where"),
+        (&["deviation", PINION, "concave", "--reference", "convex", "--margin", "0.1"], 2, "--margin says where"),
         (
             &["deviation", PINION, "concave", "--measured", "none.csv"],
             1,

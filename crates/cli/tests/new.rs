@@ -121,7 +121,7 @@ fn what_stands_there_stays_whatever_it_is() {
 fn questions_are_answered_line_by_line() {
     let out = folder("new-ask");
     let mut run = Command::new(env!("CARGO_BIN_EXE_flank"))
-        .args(["new", "helical_gear", "--ask", "--set", "normal_module=2 mm", "--out"])
+        .args(["new", "helical_gear", "--interactive", "--set", "normal_module=2 mm", "--out"])
         .arg(&out)
         .current_dir(top())
         .stdin(Stdio::piped())
@@ -165,7 +165,7 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
     assert!(wrong(&["helical_gear", "--set", "teeth=}"], 1).contains("error"));
     assert!(wrong(&["helical_gear", "--name", "my gear"], 2).contains("a letter first"));
     assert!(wrong(&["helical_gear", "--name", "job"], 2).contains("this is a word of the language"));
-    for flag in [&["--name", "mine"][..], &["--set", "teeth=3"], &["--ask"]] {
+    for flag in [&["--name", "mine"][..], &["--set", "teeth=3"], &["--interactive"]] {
         assert!(wrong(flag, 2).contains("<TEMPLATE>"), "{flag:?} without a job to start from");
     }
 }

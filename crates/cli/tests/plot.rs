@@ -150,7 +150,7 @@ fn surfaces_are_chosen_by_name() {
 fn a_comparison_is_a_map_and_a_topography() {
     let out = folder("plot_comparison");
     let arguments =
-        ["plot", "specs/bevel/ease_off_19x62.chain", "--surface", "pinion.concave", "--from", "conjugate.concave"];
+        ["plot", "specs/bevel/ease_off_19x62.chain", "--surface", "pinion.concave", "--reference", "conjugate.concave"];
     let run = flank(&[&arguments[..], &["--format", "svg", "--out", out.to_str().unwrap()]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     for kind in ["deviation", "topography"] {
@@ -159,7 +159,7 @@ fn a_comparison_is_a_map_and_a_topography() {
     }
     let run = flank(&[&arguments[..], &["--what", "section"]].concat());
     assert_eq!(run.status.code(), Some(2));
-    assert!(text(&run.stderr).contains("what fits with --from: deviation, topography"), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("what fits with --reference: deviation, topography"), "{}", text(&run.stderr));
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn what_does_not_fit_says_why_and_what_does() {
         assert!(told.contains("what fits: surface") && told.contains("machine"), "{told}");
     }
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--what", "deviation"]);
-    assert!(text(&run.stderr).contains("takes a second surface: --surface NAME --from OTHER"), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("takes a second surface: --surface NAME --reference OTHER"), "{}", text(&run.stderr));
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--size", "12"]);
     assert_eq!(run.status.code(), Some(2));
     assert!(text(&run.stderr).contains("for example 2400x1800"), "{}", text(&run.stderr));

@@ -119,10 +119,10 @@ fn comparisons_and_pictures() {
     let mut judge = Judge::new();
     let out = folder("schemas_plot");
     let at = ["--json", "--out", out.to_str().unwrap()];
-    let ease_off = ["deviation", "specs/bevel/ease_off_19x62.chain", "pinion.concave", "--from", "conjugate.concave"];
+    let ease_off = ["deviation", "specs/bevel/ease_off_19x62.chain", "pinion.concave", "--reference", "conjugate.concave"];
     judge.run(&[&ease_off[..], &at, &["--no-picture"]].concat(), 0);
-    judge.run(&[&ease_off[..], &at, &["--no-picture", "--as-it-lies"]].concat(), 3);
-    judge.run(&[&["deviation", PINION, "concave", "--from", "flank", "--no-picture"][..], &at].concat(), 1);
+    judge.run(&[&ease_off[..], &at, &["--no-picture", "--no-align"]].concat(), 3);
+    judge.run(&[&["deviation", PINION, "concave", "--reference", "flank", "--no-picture"][..], &at].concat(), 1);
     judge.run(&[&["plot", SPUR, "--what", "surface,machine", "--format", "svg"][..], &at].concat(), 0);
     judge.run(&[&["plot", SPUR, "--what", "left"][..], &at].concat(), 1);
     judge.run(&[&["view", SPUR][..], &at].concat(), 0);
@@ -183,7 +183,7 @@ fn failures_of_all_commands() {
         &["solve", &wrong][..],
         &["convert", &wrong, "--to", FREE_FORM],
         &["derive", &wrong],
-        &["deviation", &wrong, "a", "--from", "b"],
+        &["deviation", &wrong, "a", "--reference", "b"],
         &["plot", &wrong],
         &["view", &wrong],
     ] {

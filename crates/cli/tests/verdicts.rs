@@ -94,7 +94,7 @@ fn what_a_command_does_not_give_is_told() {
     let told = text(&flank(&["new", "hobbing/elliptical_gear_hobbed.chain"]).stderr);
     assert!(told.contains("did you mean `elliptical_gear_hobbed`?"), "{told}");
     let spec = "specs/hobbing/undercut_gear.chain";
-    let to = ["--from", "flank_plus", "--no-picture", "--out", out.to_str().expect("a plain path")];
+    let to = ["--reference", "flank_plus", "--no-picture", "--out", out.to_str().expect("a plain path")];
     let run = flank(&[&["deviation", spec, "flank_plus"][..], &to].concat());
     let told = text(&run.stderr);
     assert!(told.contains("note: `trim` takes away 28 of 287 points of the sample of flank_plus"), "{told}");

@@ -66,16 +66,16 @@ fn margins(text: &str) -> Result<[f64; 2], String> {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The deviation is signed, in um, plus is material: along the normal of the surface after --from, at the points of that one's sample.
+The deviation is signed, in um, plus is material: along the normal of the surface after --reference, at the points of that one's sample.
 A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are laid onto each
-other. Without --as-it-lies the surface is first turned about z until both meet in the middle of the grid.
+other. Without --no-align the surface is first turned about z until both meet in the middle of the grid.
 
 With --measured, the points of a file are held against the surface: a CSV table with row and column as `flank measure` counts them,
-and x, y, z in mm or deviation_um. Without --as-it-lies they are first turned about z until the sum of the squares is least.
+and x, y, z in mm or deviation_um. Without --no-align they are first turned about z until the sum of the squares is least.
 
 Examples:
-  flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --from conjugate.concave
-  flank deviation specs/bevel/gear_19x62.chain concave --from convex --as-it-lies    width of the tooth space
+  flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --reference conjugate.concave
+  flank deviation specs/bevel/gear_19x62.chain concave --reference convex --no-align    width of the tooth space
   flank deviation specs/bevel/pinion_19x62.chain concave --measured measured.csv")]
 pub(crate) struct Deviation {
     #[command(flatten)]
@@ -84,7 +84,7 @@ pub(crate) struct Deviation {
     pub(crate) surface: String,
     /// The surface that it is held against; it is sampled in the spec
     #[arg(long, value_name = "SURFACE", conflicts_with = "measured")]
-    pub(crate) from: Option<String>,
+    pub(crate) reference: Option<String>,
     /// Measured points that are held against the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]
     pub(crate) measured: Option<PathBuf>,
@@ -98,7 +98,7 @@ pub(crate) struct Deviation {
     pub(crate) margin: Margin,
     /// Do not turn it
     #[arg(long)]
-    pub(crate) as_it_lies: bool,
+    pub(crate) no_align: bool,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,

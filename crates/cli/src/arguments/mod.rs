@@ -159,7 +159,7 @@ pub(crate) struct EvaluatorArguments {
     /// Make no machine code of the equations: they are gone through instruction by instruction, the results are the same bit
     /// for bit. For systems that forbid such memory, and to rule it out as a cause
     #[arg(long)]
-    no_machine_code: bool,
+    no_jit: bool,
     /// How many threads share the work, at most four for each processor; otherwise as RAYON_NUM_THREADS says in the environment, and
     /// without that one for each processor
     #[arg(long, value_name = "N", value_parser = threads)]
@@ -179,7 +179,7 @@ impl EvaluatorArguments {
     }
 
     pub(crate) fn evaluator(self) -> EvaluatorOptions {
-        EvaluatorOptions { machine_code: !self.no_machine_code, boxes: self.boxes }
+        EvaluatorOptions { machine_code: !self.no_jit, boxes: self.boxes }
     }
 }
 
@@ -518,7 +518,7 @@ pub(crate) struct Man {
 Examples:
   flank new                                                   what there is to start from
   flank new helical_gear --name my_gear --set teeth=37 --set helix_angle=\"15 deg\"
-  flank new pinion_19x62 --ask --out my_gears                 asks for each parameter; Enter keeps it")]
+  flank new pinion_19x62 --interactive --out my_gears                 asks for each parameter; Enter keeps it")]
 pub(crate) struct New {
     /// The job to start from; without one, all are listed
     pub(crate) template: Option<String>,
@@ -530,7 +530,7 @@ pub(crate) struct New {
     pub(crate) set: Vec<(String, String)>,
     /// Ask for each parameter that is not set
     #[arg(long, requires = "template")]
-    pub(crate) ask: bool,
+    pub(crate) interactive: bool,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = ".", value_parser = folder(), requires = "template")]
     pub(crate) out: PathBuf,

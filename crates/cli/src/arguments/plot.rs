@@ -17,7 +17,7 @@ Examples:
   flank plot specs/bevel/pinion_19x62.chain --what section,machine,motion --surface convex
   flank plot specs/hobbing/spur_gear.chain --what contact-lines --surface flank_plus,flank_minus --format svg
   flank plot specs/bevel/pinion_19x62.chain --what sensitivity --of m.radial_distance,c.blade_angle
-  flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --from conjugate.concave")]
+  flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --reference conjugate.concave")]
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) which: JobArguments,
@@ -29,7 +29,7 @@ pub(crate) struct Plot {
     pub(crate) surface: Vec<String>,
     /// The surface that the one of --surface is held against: for deviation and topography
     #[arg(long, value_name = "SURFACE", requires = "surface")]
-    pub(crate) from: Option<String>,
+    pub(crate) reference: Option<String>,
     /// The parameters or settings whose influence `sensitivity` shows; those that do most otherwise
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) of: Vec<String>,
@@ -69,7 +69,7 @@ pub(crate) enum PlotKind {
     Curvature,
     /// Maps of how far parameters and settings move the surface
     Sensitivity,
-    /// A map of how far a surface lies off the one of --from
+    /// A map of how far a surface lies off the one of --reference
     Deviation,
     /// A map of what single edges leave
     Left,

@@ -17,8 +17,8 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     let words = |text: &String, origin: &str| Words { text: text.clone(), origin: origin.to_string() };
     let mut values: Vec<(String, Words)> =
         arguments.set.iter().map(|(name, value)| (name.clone(), words(value, "--set"))).collect();
-    if arguments.ask {
-        values.extend(asked(template, &values)?.iter().map(|(name, value)| (name.clone(), words(value, "--ask"))));
+    if arguments.interactive {
+        values.extend(asked(template, &values)?.iter().map(|(name, value)| (name.clone(), words(value, "--interactive"))));
     }
     let name = arguments.name.as_ref().map(|name| words(name, "--name"));
     let made = new_job(&NewJob { template: template.clone(), name, values, folder: arguments.out.clone() })?;

@@ -107,19 +107,19 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<An
     let start = Instant::now();
     if request.measured.is_none() && request.margin.is_some() {
         let message =
-            "--margin says where the points of --measured lie; with --from they are those of its sample".to_string();
+            "--margin says where the points of --measured lie; with --reference they are those of its sample".to_string();
         return Err(Failure::Request(message));
     }
     if request.measured.is_none() && (request.rows.is_some() || request.columns.is_some()) {
         let message =
-            "--rows and --columns are those of --measured; with --from the points are those of its sample".to_string();
+            "--rows and --columns are those of --measured; with --reference the points are those of its sample".to_string();
         return Err(Failure::Request(message));
     }
-    let second = match (&request.measured, &request.from) {
+    let second = match (&request.measured, &request.reference) {
         (Some(file), _) => Second::DeviationMap(file),
         (None, Some(name)) => Second::Surface(name),
         (None, None) => {
-            let message = format!("say what `{}` is held against: --from SURFACE or --measured FILE", request.surface);
+            let message = format!("say what `{}` is held against: --reference SURFACE or --measured FILE", request.surface);
             return Err(Failure::Request(message));
         }
     };
@@ -130,7 +130,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<An
     let session = Session::new(request.evaluator, monitor);
     let measured = match second {
         Second::DeviationMap(file) => inspect::inspect(surface, file, (request, session), &mut origin)?,
-        Second::Surface(from) => measure([surface, find(&jobs, from)?], request.as_it_lies, session)?,
+        Second::Surface(from) => measure([surface, find(&jobs, from)?], request.no_align, session)?,
     };
     let written = measured.write(request, &origin, monitor)?;
     let points = units::counted(measured.points.len(), "point");
@@ -194,7 +194,7 @@ pub(crate) fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 
 
 pub(crate) fn measure<'j, 'g>(
     [surface, from]: [Named<'j, 'g>; 2],
-    as_it_lies: bool,
+    no_align: bool,
     session: Session,
 ) -> Result<DeviationMap<'j, 'g>, String> {
     let of = &from.surface.name;
@@ -212,7 +212,7 @@ pub(crate) fn measure<'j, 'g>(
     let middle = starts::middle(counts);
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
     let turn = both.and_then(|(point, near)| deviation.turn_to(point.position, near));
-    let done = if as_it_lies { Some(0.0) } else { turn };
+    let done = if no_align { Some(0.0) } else { turn };
     let is_opposite = both.zip(done).is_some_and(|((point, near), turn)| {
         let [x, y, z] = near.normal;
         let (sin, cos) = turn.sin_cos();
@@ -235,7 +235,7 @@ pub(crate) fn measure<'j, 'g>(
         cut_away: points.iter().zip(&near).filter(is_cut).count(),
         points,
         turn,
-        is_turned: !as_it_lies,
+        is_turned: !no_align,
         deviations,
         is_opposite,
         refused: if ambiguous.is_empty() { apart } else { ambiguous },
@@ -266,7 +266,7 @@ fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> String {
         of.map(|of| of.whole_name())
     };
     let [point, near] = ends;
-    let way_out = "`--as-it-lies` does without the turn that brings both to meet there";
+    let way_out = "`--no-align` does without the turn that brings both to meet there";
     match (point, near) {
         (Some(point), _) if point != Outcome::Solved => {
             format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}\n", point.word())

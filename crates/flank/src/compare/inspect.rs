@@ -59,7 +59,7 @@ pub(crate) fn inspect<'j, 'g>(
         )
         .into());
     }
-    let done = if request.as_it_lies { 0.0 } else { turn.unwrap_or(0.0) };
+    let done = if request.no_align { 0.0 } else { turn.unwrap_or(0.0) };
     let deviations = inspection.deviations(&positions, &nominal, done);
     Ok(DeviationMap {
         held: ComparedWith::File { name: shown, points: positions.iter().flatten().count() },
@@ -68,7 +68,7 @@ pub(crate) fn inspect<'j, 'g>(
         counts,
         points: nominal,
         turn,
-        is_turned: !request.as_it_lies,
+        is_turned: !request.no_align,
         deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
         is_opposite: false,
         refused: String::new(),

@@ -42,7 +42,7 @@ const DEFAULTS: [PlotKind; 6] = [
 const MOST_DEFAULTS: usize = 3;
 
 /// What a deviation is of.
-const SECOND: &str = "takes a second surface: --surface NAME --from OTHER";
+const SECOND: &str = "takes a second surface: --surface NAME --reference OTHER";
 
 /// A picture, and what it shows in a few words.
 pub(crate) struct Drawing {
@@ -68,7 +68,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
     if !request.of.is_empty() && !request.what.contains(&PlotKind::Sensitivity) {
         return Err(Failure::Request("--of names what `sensitivity` shows, and that is not among --what".to_string()));
     }
-    match &request.from {
+    match &request.reference {
         Some(_) => comparison::check(request)?,
         None if request.what.contains(&PlotKind::Deviation) => {
             let message = format!("--what deviation {SECOND}");
@@ -80,7 +80,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
     let session = Session::new(request.evaluator, monitor);
-    let done = match &request.from {
+    let done = match &request.reference {
         Some(from) => vec![comparison::plot(&jobs, from, (request, session), &origin)?],
         None => plot_jobs(&jobs, (request, session), &origin)?,
     };

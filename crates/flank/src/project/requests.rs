@@ -163,7 +163,7 @@ pub struct PlotRequest {
     /// The surfaces that pictures show; otherwise maps show the first that is sampled.
     pub surface: Vec<String>,
     /// The surface that the one surface is held against.
-    pub from: Option<String>,
+    pub reference: Option<String>,
     /// The parameters whose influence is shown; those that do most otherwise.
     pub of: Vec<String>,
     /// Folder for the files; made if it is not there.
@@ -216,7 +216,7 @@ pub struct DeviationRequest {
     /// The surface.
     pub surface: String,
     /// The surface that it is held against.
-    pub from: Option<String>,
+    pub reference: Option<String>,
     /// Measured points that are held against the surface.
     pub measured: Option<PathBuf>,
     /// Rows of the grid that was measured; the largest that the file names otherwise.
@@ -226,7 +226,7 @@ pub struct DeviationRequest {
     /// What a measuring grid leaves out at each end, as shares from root to tip and along the tooth.
     pub margin: Option<[f64; 2]>,
     /// Whether it is not turned.
-    pub as_it_lies: bool,
+    pub no_align: bool,
     /// Folder for the files; made if it is not there.
     pub out: PathBuf,
     /// Files with the points.
