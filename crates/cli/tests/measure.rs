@@ -406,7 +406,7 @@ fn what_is_missing_or_wrong_is_told() {
     assert!(told.contains("not solved: 18 of 45 points of flank_plus, grid (row, column)"), "{told}");
     assert!(told.contains("(undercut): (1, 1) (1, 2)"), "{told}");
     let content = std::fs::read_to_string(out.join("undercut_gear.grid.csv")).expect("written");
-    assert!(content.contains("flank_plus,left,grid,1,1,,,,,,,cut away"), "{content}");
+    assert!(content.contains("flank_plus,left,grid,1,1,,,,,,,undercut"), "{content}");
     let partial = written(&out, "partial.csv", "row,column,deviation_um\n1,1,3\n2,2,4\n3,3,5\n");
     for (arguments, code, words) in [
         (&["measure", PINION, "--surface", "flank"][..], 1, "there is no surface `flank`"),

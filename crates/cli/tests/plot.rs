@@ -179,7 +179,11 @@ fn what_does_not_fit_says_why_and_what_does() {
         assert!(told.contains("what fits: surface") && told.contains("machine"), "{told}");
     }
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--what", "deviation"]);
-    assert!(text(&run.stderr).contains("takes a second surface: --surface NAME --reference OTHER"), "{}", text(&run.stderr));
+    assert!(
+        text(&run.stderr).contains("takes a second surface: --surface NAME --reference OTHER"),
+        "{}",
+        text(&run.stderr)
+    );
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--size", "12"]);
     assert_eq!(run.status.code(), Some(2));
     assert!(text(&run.stderr).contains("for example 2400x1800"), "{}", text(&run.stderr));

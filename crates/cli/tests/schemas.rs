@@ -119,7 +119,8 @@ fn comparisons_and_pictures() {
     let mut judge = Judge::new();
     let out = folder("schemas_plot");
     let at = ["--json", "--out", out.to_str().unwrap()];
-    let ease_off = ["deviation", "specs/bevel/ease_off_19x62.chain", "pinion.concave", "--reference", "conjugate.concave"];
+    let ease_off =
+        ["deviation", "specs/bevel/ease_off_19x62.chain", "pinion.concave", "--reference", "conjugate.concave"];
     judge.run(&[&ease_off[..], &at, &["--no-picture"]].concat(), 0);
     judge.run(&[&ease_off[..], &at, &["--no-picture", "--no-align"]].concat(), 3);
     judge.run(&[&["deviation", PINION, "concave", "--reference", "flank", "--no-picture"][..], &at].concat(), 1);

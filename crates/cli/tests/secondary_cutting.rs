@@ -53,7 +53,7 @@ fn deepest(depth: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> f64 {
 
 /// Holds the verdict on a point against the depth to which the tool comes; what is touched lies between.
 fn held_against(row: &Row, depth: f64) {
-    let is_cut = row.status == "cut away";
+    let is_cut = row.status == "undercut";
     assert!(is_cut || row.status == "solved", "{}: {}", row.surface, row.status);
     if depth > 1e-8 {
         assert!(is_cut, "{} {:?} lies {depth:e} mm in the steel, told {}", row.surface, row.position, row.status);
@@ -175,7 +175,7 @@ fn a_row_between_rows_that_stay_is_cut() {
     let rows = solved("secondary_row_points", &spec, "cycloid_disc", &[]);
     let row: Vec<&Row> = rows.iter().filter(is_of_row).collect();
     assert_eq!(row.len(), 11);
-    assert!(row.iter().all(|row| row.status == "cut away" && row.reason.contains("in another position")));
+    assert!(row.iter().all(|row| row.status == "undercut" && row.reason.contains("in another position")));
 }
 
 /// The tooth of a rack: flanks, roundings and the land of the tip. x is the height over the datum line, away from the work.
@@ -220,7 +220,7 @@ fn a_rack_cuts_flanks_by_its_rounding_and_fillets_by_its_flank() {
         let rack = Rack { module: 3.0, shift: 0.6, teeth: f64::from(teeth) };
         let set = format!("teeth={teeth}");
         let rows = solved("secondary_rack", "specs/hobbing/spur_gear.chain", "spur_gear", &["--set", &set]);
-        let cut = rows.iter().filter(|row| row.status == "cut away").count();
+        let cut = rows.iter().filter(|row| row.status == "undercut").count();
         // a spur gear is the same at each height
         let mut seen: Vec<[f64; 2]> = Vec::new();
         for row in &rows {

@@ -140,14 +140,17 @@ fn what_is_cut_away_is_counted() {
     assert_eq!(run.status.code(), Some(3));
     let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let outcomes = &table["surfaces"][0]["outcomes"];
-    assert_eq!((&outcomes["solved"], &outcomes["cut away"]), (&189.into(), &98.into()), "{outcomes}");
+    assert_eq!(outcomes["solved"], 189, "{outcomes}");
+    assert_eq!((&outcomes["undercut"], &outcomes["trimmed"]), (&70.into(), &28.into()), "{outcomes}");
     assert_eq!(table["lines"][0]["name"], "flank_plus.trimmed_by_fillet_plus");
     assert_eq!(table["lines"][0]["solved"], 7);
     let told = text(&run.stderr);
     assert!(told.contains("70: cut away by the tool itself"), "{told}");
     assert!(told.contains("28: cut away by what makes fillet_plus, as `trim` asks for"), "{told}");
     let csv = std::fs::read_to_string(out.join("undercut_gear.csv")).unwrap();
-    assert_eq!(csv.lines().filter(|row| row.starts_with("flank_plus,") && row.contains(",cut away,")).count(), 98);
+    let rows_with =
+        |status: &str| csv.lines().filter(|row| row.starts_with("flank_plus,") && row.contains(status)).count();
+    assert_eq!([rows_with(",undercut,"), rows_with(",trimmed,")], [70, 28]);
 }
 
 /// `cut`: what is left goes out with the points, as a map, and as a summary; where no edge passes, that is said.
@@ -266,7 +269,7 @@ fn a_job_without_solution_exits_3_and_writes_statuses() {
     for row in flank_rows {
         // nor are curvatures or sensitivities
         let row = row.trim_end_matches(',');
-        let told = [" iterations", ",not converged,no start leads there", ",singular"];
+        let told = [" iterations", ",not_converged,no start leads there", ",singular"];
         assert!(
             told.iter().any(|end| row.ends_with(end)) || row.contains(",outside,") && row.ends_with(" mm"),
             "{row}"
@@ -291,8 +294,8 @@ fn statuses_have_reasons() {
         assert!(rows.any(|row| row.contains(reason)), "no row has {reason}: {csv}");
     };
     solve(&["specs/hobbing/undercut_gear.chain"]);
-    told("undercut_gear.csv", "cut away,\"by the tool itself, beyond the singular line of the envelope (undercut)\"");
-    told("undercut_gear.csv", "cut away,\"by what makes fillet_plus, as `trim` asks for\"");
+    told("undercut_gear.csv", "undercut,\"by the tool itself, beyond the singular line of the envelope (undercut)\"");
+    told("undercut_gear.csv", "trimmed,\"by what makes fillet_plus, as `trim` asks for\"");
     let spec = self_contained(&["tutorial/first_gear"]);
     let narrow = spec.replace("motion roll : angle in -40 deg .. 40 deg", "motion roll : angle in -5 deg .. 5 deg");
     assert_ne!(spec, narrow);

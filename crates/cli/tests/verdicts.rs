@@ -43,7 +43,7 @@ fn what_lies_deeper_takes_all_of_a_surface_whatever_its_coordinates_are() {
             sample over { SAMPLE }
         }";
         let (told, surface) = solved(&folder, &format!("{library}{}", job.replace("SAMPLE", sample)), 0);
-        assert_eq!(surface["outcomes"]["cut away"], 21, "{sample}: {surface}\n{told}");
+        assert_eq!(surface["outcomes"]["trimmed"], 21, "{sample}: {surface}\n{told}");
     }
 }
 
@@ -58,7 +58,7 @@ fn a_branch_that_is_cut_away_whole_is_told_to_be_so() {
     let other = first.lines().map(|line| if line.contains("sample flank_plus") { by_unknowns } else { line });
     for spec in [other.collect::<Vec<&str>>().join("\n"), first.clone()] {
         let (told, surface) = solved(&folder, &spec, 0);
-        assert_eq!(surface["outcomes"]["cut away"], 45, "{surface}\n{told}");
+        assert_eq!(surface["outcomes"]["undercut"], 45, "{surface}\n{told}");
         assert!(told.contains("nothing of the surface stays: the tool's `body` may lie on the wrong side"), "{told}");
         assert!(!told.contains("would reach"), "{told}");
     }
@@ -117,7 +117,7 @@ fn the_end_of_a_table_is_told() {
         1,
     );
     let (told, surface) = solved(&folder, &relieved, 0);
-    assert!(surface["outcomes"]["not converged"].as_u64() > Some(0), "{surface}");
+    assert!(surface["outcomes"]["not_converged"].as_u64() > Some(0), "{surface}");
     let ends = "the table of `depth` covers u -4 mm .. 1 mm, the range of u is -4 mm .. 4 mm";
     assert!(told.contains(ends), "{told}");
 }

@@ -165,7 +165,7 @@ fn the_figure_says_what_it_shows() {
     }
     let all = labels.join(" ");
     assert!(all.contains("Solved 343 of 375 points asked for; worst residual 1.1e-14."), "{all}");
-    assert!(all.contains("not converged 6, outside 25, singular 1"), "{all}");
+    assert!(all.contains("not_converged 6, out_of_range 25, singular 1"), "{all}");
 }
 
 /// Patches of two frames do not lie over each other, and all of many patches are named.
@@ -212,10 +212,10 @@ fn crosses_stand_only_beside_solved_points() {
         svg.matches("stroke=\"#be0000\"").count() / 2
     };
     assert_eq!(crosses(|_, _| None), 0);
-    assert_eq!(crosses(|i, j| (i == 4 && j == 4).then_some("outside")), 1);
+    assert_eq!(crosses(|i, j| (i == 4 && j == 4).then_some("out_of_range")), 1);
     // Rows beyond the third from the known ones have no neighbour to tell where they are.
-    assert_eq!(crosses(|i, _| (i > 4).then_some("outside")), 9);
-    assert_eq!(crosses(|_, _| Some("outside")), 0);
+    assert_eq!(crosses(|i, _| (i > 4).then_some("out_of_range")), 9);
+    assert_eq!(crosses(|_, _| Some("out_of_range")), 0);
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn no_numbers_make_it_panic() {
             point.normal = [(); 3].map(|()| noise.number());
             point.residual = noise.number();
         }
-        let mut patch = synthetic::without(patch, |i, j| ((i + 2 * j) % 5 == 4).then_some("outside"));
+        let mut patch = synthetic::without(patch, |i, j| ((i + 2 * j) % 5 == 4).then_some("out_of_range"));
         if noise.next(4) == 0 {
             patch.rows.count = [0, 1, 7, usize::MAX][noise.next(4) as usize];
             patch.columns.count = [0, 1, 7, usize::MAX][noise.next(4) as usize];

@@ -64,7 +64,7 @@ fn points_that_are_cut_away_have_all_their_numbers() {
         assert_eq!(record[10].parse::<f64>(), Ok(point.unknowns[1]));
         assert_eq!(record[17].is_empty(), !point.is_solved(), "{record:?}");
     }
-    assert_eq!(records.iter().filter(|record| &record[12] == "cut away").count(), 5);
+    assert_eq!(records.iter().filter(|record| &record[12] == "undercut").count(), 5);
     assert_eq!(&records[3][12], "undecided");
 }
 
@@ -83,7 +83,7 @@ fn the_head_states_the_conventions() {
         "# unknown `phi` in deg",
         "# unknown `s` in mm",
         "# surface `right flank`: frame m.table; 25 rows i: z; 15 columns j: root -> tip; solved 343 of 375 asked \
-         (not converged 6, outside 25, singular 1), worst residual 1.1e-14",
+         (not_converged 6, out_of_range 25, singular 1), worst residual 1.1e-14",
         "# all surfaces: solved 349 of 381 asked",
     ] {
         assert!(head.iter().any(|line| line.contains(wanted)), "no `{wanted}` in\n{}", head.join("\n"));
@@ -109,7 +109,7 @@ fn unknowns_are_united_and_told_apart() {
 
 #[test]
 fn fields_follow_the_status() {
-    let first = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("outside")));
+    let first = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("out_of_range")));
     let mut second = with_fields(plane([1, 1], [0.0; 3], 1.0));
     // the unit of another field of that name, and the name of an unknown
     second.fields[0].unit = "1/um".into();
@@ -160,7 +160,7 @@ fn a_dataset_that_contradicts_itself_is_refused() {
     assert_eq!(refusal(poor).to_string(), "surface `flank`, point (1, 1): 1 values for 2 unknowns");
     let mut invented = sound();
     invented.points[4] =
-        Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("outside", f64::NAN, String::new()) };
+        Point { outcome: flank_export::Outcome::Solved, ..Point::unsolved("out_of_range", f64::NAN, String::new()) };
     assert!(matches!(refusal(invented), Malformed::UnknownCount { .. }));
     let mut endless = sound();
     endless.points[4].normal[1] = f64::INFINITY;

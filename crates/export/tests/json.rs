@@ -70,7 +70,7 @@ fn numbers_come_back_and_holes_are_null() {
 
 #[test]
 fn fields_stand_with_their_points() {
-    let patch = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("outside")));
+    let patch = with_fields(without(bevel([3, 2]), |i, _| (i == 2).then_some("out_of_range")));
     let document: Value = serde_json::from_str(&text_of(&dataset("job", vec![patch]))).unwrap();
     let surface = &document["surfaces"][0];
     assert_eq!(

@@ -64,12 +64,12 @@ fn facets_face_where_the_point_normals_do() {
 #[test]
 fn only_solved_points_are_used() {
     let whole = plane([3, 3], [0.0; 3], 2.0);
-    let corner = without(whole.clone(), |i, j| (i == 0 && j == 0).then_some("outside"));
+    let corner = without(whole.clone(), |i, j| (i == 0 && j == 0).then_some("out_of_range"));
     assert_eq!(triangles(vec![corner.clone()]).len(), 7);
     assert_facets_agree(&corner, &triangles(vec![corner.clone()]));
-    let centre = without(whole.clone(), |i, j| (i == 1 && j == 1).then_some("outside"));
+    let centre = without(whole.clone(), |i, j| (i == 1 && j == 1).then_some("out_of_range"));
     assert_eq!(triangles(vec![centre]).len(), 4);
-    let row = without(whole.clone(), |i, _| (i == 1).then_some("outside"));
+    let row = without(whole.clone(), |i, _| (i == 1).then_some("out_of_range"));
     assert!(triangles(vec![row]).is_empty());
     let holed = without(Gear { helix: 0.0, width: 20.0 }.flank("flank", [25, 15]), holes);
     assert!(triangles(vec![holed]).iter().all(|(_, corners)| corners.iter().flatten().all(|x| x.is_finite())));

@@ -64,8 +64,8 @@ fn a_point_that_is_right_is_found_right() {
     let point = touched(&case, 20.0);
     assert_eq!(found(&case, 20.0, &told("solved", &point)), [""; 0]);
     let cut = touched(&case, 80.0);
-    assert_eq!(found(&case, 80.0, &told("cut away", &cut)), [""; 0]);
-    assert_eq!(found(&case, 80.0, &unsolved("cut away")), [""; 0]);
+    assert_eq!(found(&case, 80.0, &told("undercut", &cut)), [""; 0]);
+    assert_eq!(found(&case, 80.0, &unsolved("undercut")), [""; 0]);
     assert_eq!(found(&case, 20.0, &unsolved("ambiguous")), [""; 0]);
 }
 
@@ -94,7 +94,7 @@ fn a_point_that_the_tool_takes_away_elsewhere_is_not_solved() {
 fn a_point_that_nothing_takes_away_is_not_cut() {
     let case = disc(None);
     let point = touched(&case, 20.0);
-    assert_eq!(found(&case, 20.0, &told("cut away", &point)), ["cut_away_by_nothing", "lost_cut_away"]);
+    assert_eq!(found(&case, 20.0, &told("undercut", &point)), ["cut_away_by_nothing", "lost_cut_away"]);
 }
 
 #[test]
@@ -115,12 +115,16 @@ fn a_point_off_the_tool_or_off_its_place_is_not_solved() {
 fn a_point_that_is_there_is_not_lost() {
     let case = disc(None);
     for (status, kind) in
-        [("not converged", "lost_not_converged"), ("outside", "lost_outside"), ("singular", "lost_singular")]
+        [("not_converged", "lost_not_converged"), ("out_of_range", "lost_outside"), ("singular", "lost_singular")]
     {
         assert_eq!(found(&case, 20.0, &unsolved(status)), [kind]);
     }
     let asked = [(Coordinate::Unknown(2), 20f64.to_radians()), (Coordinate::Unknown(1), 3.0)];
-    assert_eq!(found_at(&case, asked, &unsolved("outside"), true), [""; 0], "it was told that this is not decided");
+    assert_eq!(
+        found_at(&case, asked, &unsolved("out_of_range"), true),
+        [""; 0],
+        "it was told that this is not decided"
+    );
 }
 
 /// Eleven lobes, and two sides of each, have points at one distance from the axis.
@@ -139,7 +143,7 @@ fn what_is_kept_out_is_neither_solved_nor_missed() {
     let case = disc(Some(Range { low: 0.5, high: 1.0 }));
     let point = touched(&case, 20.0);
     assert_eq!(found(&case, 20.0, &told("solved", &point)), ["solved_but_not_kept"]);
-    assert_eq!(found(&case, 20.0, &unsolved("outside")), [""; 0]);
+    assert_eq!(found(&case, 20.0, &unsolved("out_of_range")), [""; 0]);
 }
 
 /// A globoid worm cuts its wheel all over, and in the position in which its own blade stood a line that does not depend on when.
@@ -182,9 +186,9 @@ fn what_two_jobs_say_of_a_point_is_compared() {
     assert_eq!(kinds(solved(&one), solved(&one), false, false), 0);
     assert_eq!(kinds(solved(&one), solved(&two), false, false), 1);
     assert_eq!(kinds(solved(&one), solved(&two), false, true), 0);
-    assert_eq!(kinds(solved(&one), unsolved("outside"), false, false), 1);
-    assert_eq!(kinds(unsolved("cut away"), solved(&one), false, false), 1);
+    assert_eq!(kinds(solved(&one), unsolved("out_of_range"), false, false), 1);
+    assert_eq!(kinds(unsolved("undercut"), solved(&one), false, false), 1);
     assert_eq!(kinds(solved(&one), unsolved("ambiguous"), false, false), 0);
-    assert_eq!(kinds(solved(&one), unsolved("outside"), true, false), 1);
-    assert_eq!(kinds(unsolved("outside"), solved(&one), true, false), 0, "wider ranges reach more");
+    assert_eq!(kinds(solved(&one), unsolved("out_of_range"), true, false), 1);
+    assert_eq!(kinds(unsolved("out_of_range"), solved(&one), true, false), 0, "wider ranges reach more");
 }

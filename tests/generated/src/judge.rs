@@ -152,7 +152,7 @@ impl<'a> Judged<'a> {
         });
         let wrong = misplaced.or_else(|| match point.status.as_str() {
             "solved" => self.untouched(point, position).or_else(|| self.cut(point, position, counts)),
-            "cut away" => self.cut_by_nothing(point, position),
+            "undercut" | "trimmed" => self.cut_by_nothing(point, position),
             _ => None,
         });
         wrong.map(|(kind, what)| self.finding(kind, format!("{}: {what}", self.place(point))))
@@ -216,9 +216,9 @@ impl<'a> Judged<'a> {
         let other = truth.stay.iter().find(is_another)?;
         let kind = match point.status.as_str() {
             "solved" => "second_branch_untold",
-            "not converged" => "lost_not_converged",
-            "outside" => "lost_outside",
-            "cut away" => "lost_cut_away",
+            "not_converged" => "lost_not_converged",
+            "out_of_range" => "lost_outside",
+            "undercut" | "trimmed" => "lost_cut_away",
             _ => "lost_singular",
         };
         let Touched { unknowns, position } = other;

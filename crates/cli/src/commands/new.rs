@@ -18,7 +18,9 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     let mut values: Vec<(String, Words)> =
         arguments.set.iter().map(|(name, value)| (name.clone(), words(value, "--set"))).collect();
     if arguments.interactive {
-        values.extend(asked(template, &values)?.iter().map(|(name, value)| (name.clone(), words(value, "--interactive"))));
+        values.extend(
+            asked(template, &values)?.iter().map(|(name, value)| (name.clone(), words(value, "--interactive"))),
+        );
     }
     let name = arguments.name.as_ref().map(|name| words(name, "--name"));
     let made = new_job(&NewJob { template: template.clone(), name, values, folder: arguments.out.clone() })?;

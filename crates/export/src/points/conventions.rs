@@ -8,7 +8,7 @@ const FRAMES: &str = "positions and unit normals are in the frame named with the
 const NORMALS: &str = "a normal points out of the body that owns the surface: out of the gear's steel on a tooth flank";
 const PLACES: &str = "row i and column j count from 0; what each runs over is named with its surface";
 
-const CUT_AWAY: &str = "a point that is `cut away` lies on the generated surface and is no point of the finished work; of one that is \
+const CUT_AWAY: &str = "a point that is `undercut` or `trimmed` lies on the generated surface and is no point of the finished work; of one that is \
      `undecided` this is not known";
 
 /// What a reader must know to use the numbers of all points, then the caller's own sentences.
@@ -26,7 +26,7 @@ pub(crate) fn sentences_of_mesh(header: &Header) -> Vec<String> {
 
 /// The same for all points that have a place, with triangles between the solved ones.
 pub(crate) fn sentences_of_points(header: &Header) -> Vec<String> {
-    let placed = "status 0 is `solved`, 1 `cut away`, 2 `undecided`; other points are not in this file";
+    let placed = "status 0 is `solved`, 1 `undercut`, 2 `trimmed`, 3 `undecided`; other points are not in this file";
     let triangles = "triangles join solved points and face where the normals point";
     with_own(&[UNITS, FRAMES, NORMALS, PLACES, placed, CUT_AWAY, triangles], header)
 }

@@ -16,7 +16,7 @@ use crate::text::one_line;
 /// patches in order of first appearance, then `residual, status`, `reason` if a point has one, then the fields of all patches (three columns for a
 /// vector). Positions are mm, angles degrees, numbers the shortest
 /// text that reads back as the same bits. Cells are empty where a patch has no such unknown or field, where a field is
-/// not defined and where a point has no numbers: only points that are solved, cut away or undecided have a position, a normal and
+/// not defined and where a point has no numbers: only points that are solved, undercut, trimmed or undecided have a position, a normal and
 /// unknowns, and only solved ones have fields. An unknown or a field whose title is taken by another column is written as
 /// `name [unit]`.
 ///

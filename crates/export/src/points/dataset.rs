@@ -122,12 +122,14 @@ pub struct Point {
 pub enum Outcome {
     /// Position, normal, unknowns and residual are those of a root.
     Solved,
-    /// They are those of a root that is no point of the finished work: something cuts it away. Tables show its numbers; meshes and
-    /// pictures leave it out, and it has no fields.
-    CutAway,
+    /// They are those of a root that is no point of the finished work: the tool that generates it cuts it away. Tables show its
+    /// numbers; meshes and pictures leave it out, and it has no fields.
+    Undercut,
+    /// The same, where another surface cuts it away.
+    Trimmed,
     /// The same, where it is not known whether something cuts it away.
     Undecided,
-    /// There is no such point, and the word says why: `outside`, `singular`, `not converged`. Of the point's numbers
+    /// There is no such point, and the word says why: `out_of_range`, `singular`, `not_converged`. Of the point's numbers
     /// only the residual is written: what the best attempt left. [`Point::reason`] says more.
     Unsolved(&'static str),
 }
@@ -190,7 +192,8 @@ impl Outcome {
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
-            Outcome::CutAway => "cut away",
+            Outcome::Undercut => "undercut",
+            Outcome::Trimmed => "trimmed",
             Outcome::Undecided => "undecided",
             Outcome::Unsolved(word) => word,
         }
@@ -223,7 +226,7 @@ impl Point {
         self.outcome == Outcome::Solved
     }
 
-    /// Whether the point's numbers are those of a point of the surface, be it cut away: what tables show.
+    /// Whether the point's numbers are those of a point of the surface, be it undercut or trimmed: what tables show.
     #[must_use]
     pub fn is_placed(&self) -> bool {
         !matches!(self.outcome, Outcome::Unsolved(_))

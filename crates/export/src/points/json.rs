@@ -19,7 +19,7 @@ pub const SCHEMA: &str = "flank.surfaces/3";
 /// Writes all points as JSON, one point a line, keys in a fixed order.
 ///
 /// Positions are mm, angles degrees. Of a point that is not solved, `fields` is `null`; `position`, `normal` and `unknowns` are, too,
-/// unless it is cut away or undecided. Of a solved one, a field that is not defined there is.
+/// unless it is undercut, trimmed or undecided. Of a solved one, a field that is not defined there is.
 ///
 /// The points are asked for twice.
 ///

@@ -13,7 +13,7 @@ pub struct Tally {
     pub asked: usize,
     /// Points solved.
     pub solved: usize,
-    /// Points with numbers: these, and those that are cut away or undecided.
+    /// Points with numbers: these, and those that are undercut, trimmed or undecided.
     pub placed: usize,
     /// Largest residual of a solved point, by absolute value; `None` where nothing was solved.
     pub worst_residual: Option<f64>,

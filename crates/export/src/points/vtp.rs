@@ -12,7 +12,7 @@ use crate::text::xml::escaped;
 
 /// Writes all surfaces as one VTK PolyData file (`.vtp`, XML with raw appended data, little-endian), one piece for each.
 ///
-/// Points are the solved ones, and those that are cut away or undecided, mm. Each has its `status` (0, 1 or 2), its `normal`, `row` and
+/// Points are the solved ones, and those that are undercut, trimmed or undecided, mm. Each has its `status` (0 to 3), its `normal`, `row` and
 /// `column` in the grid, its patch's number as `surface` (from 0, in the order of the file's head), its unknowns and fields as
 /// `name [unit]`, and its `residual`; NaN where a patch has no such unknown or field, or a field is not defined. Cells are triangles
 /// of solved points that face out of the body, as in STL. A comment at the head states the conventions, and how many points were
@@ -251,8 +251,9 @@ impl Array<'_> {
 fn status(outcome: Outcome) -> usize {
     match outcome {
         Outcome::Solved => 0,
-        Outcome::CutAway => 1,
-        Outcome::Undecided => 2,
+        Outcome::Undercut => 1,
+        Outcome::Trimmed => 2,
+        Outcome::Undecided => 3,
         Outcome::Unsolved(_) => unreachable!("such a point is not in the file"),
     }
 }

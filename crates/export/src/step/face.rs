@@ -140,7 +140,7 @@ mod tests {
                 residual: 0.0,
                 reason: String::new(),
             },
-            _ => Point::unsolved("outside", f64::NAN, String::new()),
+            _ => Point::unsolved("out_of_range", f64::NAN, String::new()),
         };
         Patch {
             name: "flank".into(),

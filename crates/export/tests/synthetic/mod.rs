@@ -184,7 +184,7 @@ pub(crate) fn without(mut patch: Patch, lost: impl Fn(usize, usize) -> Option<&'
 pub(crate) fn undercut(mut patch: Patch, rows: std::ops::Range<usize>) -> Patch {
     let columns = patch.columns.count;
     for point in &mut patch.points[rows.start * columns..rows.end * columns] {
-        (point.outcome, point.reason) = (Outcome::CutAway, "by the tool itself".to_string());
+        (point.outcome, point.reason) = (Outcome::Undercut, "by the tool itself".to_string());
     }
     patch.points[rows.start * columns].outcome = Outcome::Undecided;
     patch
@@ -193,9 +193,9 @@ pub(crate) fn undercut(mut patch: Patch, rows: std::ops::Range<usize>) -> Patch 
 /// A corner of the grid is outside, and one point is singular.
 pub(crate) fn holes(i: usize, j: usize) -> Option<&'static str> {
     match (i, j) {
-        _ if i + 2 * j < 9 => Some("outside"),
+        _ if i + 2 * j < 9 => Some("out_of_range"),
         (12, 7) => Some("singular"),
-        (16..=18, 10..=11) => Some("not converged"),
+        (16..=18, 10..=11) => Some("not_converged"),
         _ => None,
     }
 }
@@ -244,7 +244,7 @@ pub(crate) fn gallery() -> Vec<(&'static str, Dataset)> {
             "undercut",
             dataset("flank with undercut", vec![undercut(with_fields(spur.flank("right flank", [25, 15])), 0..8)]),
         ),
-        ("unsolved", dataset("nothing solved", vec![without(flank, |_, _| Some("outside"))])),
+        ("unsolved", dataset("nothing solved", vec![without(flank, |_, _| Some("out_of_range"))])),
         ("tiny", dataset("a micrometre", vec![plane([3, 3], [1.0, 2.0, 3.0], 1e-3)])),
         ("face", dataset("a plane across the axis", vec![plane([9, 9], [-20.0, -20.0, 0.0], 40.0)])),
     ]

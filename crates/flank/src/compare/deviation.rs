@@ -106,20 +106,22 @@ enum Second<'a> {
 pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
     let start = Instant::now();
     if request.measured.is_none() && request.margin.is_some() {
-        let message =
-            "--margin says where the points of --measured lie; with --reference they are those of its sample".to_string();
+        let message = "--margin says where the points of --measured lie; with --reference they are those of its sample"
+            .to_string();
         return Err(Failure::Request(message));
     }
     if request.measured.is_none() && (request.rows.is_some() || request.columns.is_some()) {
         let message =
-            "--rows and --columns are those of --measured; with --reference the points are those of its sample".to_string();
+            "--rows and --columns are those of --measured; with --reference the points are those of its sample"
+                .to_string();
         return Err(Failure::Request(message));
     }
     let second = match (&request.measured, &request.reference) {
         (Some(file), _) => Second::DeviationMap(file),
         (None, Some(name)) => Second::Surface(name),
         (None, None) => {
-            let message = format!("say what `{}` is held against: --reference SURFACE or --measured FILE", request.surface);
+            let message =
+                format!("say what `{}` is held against: --reference SURFACE or --measured FILE", request.surface);
             return Err(Failure::Request(message));
         }
     };

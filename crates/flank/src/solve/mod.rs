@@ -26,7 +26,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
 use flank_draw::{PictureOptions, picture};
 use flank_export::{Axis, Banded, Dataset, Face, Header, Outcome, Patch, Point, Surfaces, Unit, Unknown};
 use flank_expr::{Expr, Graph};
-use flank_solver::{GridReport, Range, Solution, SurfacePoint, SurfaceProblem};
+use flank_solver::{CutBy, GridReport, Range, Solution, SurfacePoint, SurfaceProblem};
 
 use self::cut::Cut;
 use self::limits::Line;
@@ -373,7 +373,8 @@ pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &Surf
     let has_numbers = || solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
     let outcome = match solved.outcome {
         flank_solver::Outcome::Solved => Outcome::Solved,
-        flank_solver::Outcome::CutAway(_) if has_numbers() => Outcome::CutAway,
+        flank_solver::Outcome::CutAway(CutBy::Other(_)) if has_numbers() => Outcome::Trimmed,
+        flank_solver::Outcome::CutAway(_) if has_numbers() => Outcome::Undercut,
         flank_solver::Outcome::Undecided if has_numbers() => Outcome::Undecided,
         other => return Point::unsolved(other.word(), solved.residual, reason),
     };

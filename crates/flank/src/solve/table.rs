@@ -150,7 +150,7 @@ fn none(surface: &GeneratedSurface<'_>, summary: &Summary) -> String {
     let outcomes: Vec<(&&str, &usize)> = summary.outcomes.iter().collect();
     let by = reasons::outside(surface, summary);
     match outcomes[..] {
-        [] | [(&"outside", _)] => {
+        [] | [(&"out_of_range", _)] => {
             format!("none within the ranges{}", by.map_or(String::new(), |by| format!(": outside, {by}")))
         }
         [(word, _)] => format!("none: {word}"),

@@ -145,11 +145,12 @@ impl Outcome {
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
-            Outcome::CutAway(_) => "cut away",
+            Outcome::CutAway(CutBy::Other(_)) => "trimmed",
+            Outcome::CutAway(_) => "undercut",
             Outcome::Undecided => "undecided",
-            Outcome::Outside { .. } | Outcome::NotKept { .. } => "outside",
+            Outcome::Outside { .. } | Outcome::NotKept { .. } => "out_of_range",
             Outcome::Singular => "singular",
-            Outcome::NotConverged { .. } => "not converged",
+            Outcome::NotConverged { .. } => "not_converged",
             Outcome::Ambiguous => "ambiguous",
         }
     }

@@ -31,17 +31,17 @@ export class Equations {
             const isRoot = this.isRoot(unknowns);
             // below the tolerance it goes on while it pays: the floor is the rounding of the residuals
             if (isRoot && (worst === 0 || worst > 0.5 * before)) return { unknowns, residual: worst };
-            if (!Number.isFinite(worst)) return { why: "not converged" };
+            if (!Number.isFinite(worst)) return { why: "not_converged" };
             const step = this.step(count);
             if (!step) return { why: "singular" };
             if (iteration === 0 && step.some((by, k) => Math.abs(by) > LONGEST_STEP * this.widths[k])) {
-                return { why: "not converged" };
+                return { why: "not_converged" };
             }
             step.forEach((by, k) => (unknowns[k] += by));
             before = worst;
         }
         this.evaluate(...unknowns, ...targets, ...settings, this.out);
-        return this.isRoot(unknowns) ? { unknowns, residual: this.worstResidual(count) } : { why: "not converged" };
+        return this.isRoot(unknowns) ? { unknowns, residual: this.worstResidual(count) } : { why: "not_converged" };
     }
 
     worstResidual(count) {

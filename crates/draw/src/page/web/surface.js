@@ -98,8 +98,8 @@ export class WorkSurface {
             const room = ROUNDING * (high - low);
             return unknowns[k] < low - room || unknowns[k] > high + room;
         });
-        if (outside) return "outside";
-        if (conditions.some((condition) => condition < 0)) return "cut away";
+        if (outside) return "out_of_range";
+        if (conditions.some((condition) => condition < 0)) return "undercut";
         if (!conditions.every((condition) => condition > 0) || !placed.every(Number.isFinite)) return "singular";
         return "solved";
     }
