@@ -36,6 +36,45 @@ fn code(path: &Path) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
+/// The rooms of a crate, each after all that it uses.
+const ROOMS: [(&str, &[&str]); 3] = [
+    ("solver", &["equations", "newton", "roots", "continuation", "surface", "analysis", "conversion"]),
+    ("export", &["vector", "text", "files", "points", "shape", "step", "motion", "measuring"]),
+    ("flank", &["project", "solve", "compare", "convert", "derive", "draw", "report", "page", "exchange", "language"]),
+];
+
+/// Entries of a crate's `src/` at the most.
+const MOST_ENTRIES: usize = 12;
+
+#[test]
+fn rooms_use_only_those_before_them() {
+    for (folder, rooms) in ROOMS {
+        let root = repository(&format!("crates/{folder}/src"));
+        for (number, room) in rooms.iter().enumerate() {
+            let inner = if root.join(room).is_dir() {
+                sources(&root.join(room))
+            } else {
+                vec![root.join(format!("{room}.rs"))]
+            };
+            for path in inner {
+                let code = code(&path);
+                let before_tests = code.split("#[cfg(test)]").next().unwrap_or_default();
+                for later in &rooms[number + 1..] {
+                    assert!(!before_tests.contains(&format!("crate::{later}::")), "{} uses {later}", path.display());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_crate_shows_at_most_a_dozen_entries() {
+    for folder in BELOW.iter().chain(&["cli"]) {
+        let entries = std::fs::read_dir(repository(&format!("crates/{folder}/src"))).expect("a folder").count();
+        assert!(entries <= MOST_ENTRIES, "{folder}: {entries}");
+    }
+}
+
 #[test]
 fn libraries_know_no_terminal() {
     for folder in BELOW {
