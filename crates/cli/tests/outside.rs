@@ -56,7 +56,7 @@ fn what_is_asked_for_outside_is_outside() {
         let (name, by) = if sample.starts_with('u') { ("u", "288.000000 mm") } else { ("v", "68.000000 mm") };
         assert!(told.contains(&format!("6: {name} outside its range, by up to {by}")), "{told}");
         let last = verdicts(&folder.join("j.csv"), "a").pop().expect("a row");
-        assert_eq!(last, format!("outside: {name} by {by}"));
+        assert_eq!(last, format!("out_of_range: {name} by {by}"));
     }
     // what lies within is found all the same; rolling the rail densely, without equations, cuts u = 4, 5 and 6 mm by up to 0.1228 mm
     let mixed = RAIL.replace("SAMPLE", "u: -3 mm .. 57 mm by 61, v: 0 mm");

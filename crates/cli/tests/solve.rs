@@ -271,7 +271,7 @@ fn a_job_without_solution_exits_3_and_writes_statuses() {
         let row = row.trim_end_matches(',');
         let told = [" iterations", ",not_converged,no start leads there", ",singular"];
         assert!(
-            told.iter().any(|end| row.ends_with(end)) || row.contains(",outside,") && row.ends_with(" mm"),
+            told.iter().any(|end| row.ends_with(end)) || row.contains(",out_of_range,") && row.ends_with(" mm"),
             "{row}"
         );
         assert!(row.contains(",,,,,,"), "no position is invented: {row}");
@@ -300,7 +300,7 @@ fn statuses_have_reasons() {
     let narrow = spec.replace("motion roll : angle in -40 deg .. 40 deg", "motion roll : angle in -5 deg .. 5 deg");
     assert_ne!(spec, narrow);
     solve(&[&written(&out, "narrow.chain", &narrow)]);
-    told("first_gear.csv", "outside,roll by ");
+    told("first_gear.csv", "out_of_range,roll by ");
 }
 
 /// The hob's thread comes by again after a turn: the JSON lists the teeth with what keeps each of them.

@@ -173,7 +173,7 @@ fn points_beyond_a_keep_are_told() {
     let told = text(&run.stderr);
     assert!(told.contains(": outside of `keep u: -1.0000 mm .. 1.0000 mm`"), "{told}");
     let points = std::fs::read_to_string(out.join("first_gear.csv")).expect("it is written");
-    assert!(points.contains("outside,outside of `keep u: -1.0000 mm .. 1.0000 mm`"), "{points}");
+    assert!(points.contains("out_of_range,outside of `keep u: -1.0000 mm .. 1.0000 mm`"), "{points}");
 }
 
 /// What is left undecided by the search is told with what would decide it, and how long it looked.

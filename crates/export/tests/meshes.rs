@@ -179,7 +179,7 @@ fn vtk_has_points_that_are_cut_away() {
     let patch = undercut(with_fields(plane([5, 4], [0.0; 3], 5.0)), 1..2);
     let data = dataset("job", vec![patch.clone()]);
     let pieces = pieces(&bytes(VTP, &data));
-    let status = |at: usize| [0.0, 1.0, 2.0][usize::from((4..8).contains(&at)) + usize::from(at == 4)];
+    let status = |at: usize| [0.0, 1.0, 3.0][usize::from((4..8).contains(&at)) + usize::from(at == 4)];
     assert_eq!(array(&pieces[0], "status"), (0..20).map(status).collect::<Vec<_>>());
     assert_eq!(
         threes(array(&pieces[0], "points")),
