@@ -1,8 +1,8 @@
 //! Why a command did not do what it was asked for, in words and as data.
 
-use flank::Findings;
-use serde_json::{Value, json};
+use flank::{Finding, Findings};
 
+use crate::document::{self, FailureDocument};
 use crate::{Ending, eprint, print};
 
 /// What ends a command early.
@@ -13,7 +13,7 @@ pub(crate) struct Failure {
     text: String,
     /// The same without colours and source.
     message: String,
-    findings: Vec<Value>,
+    findings: Vec<Finding>,
 }
 
 impl From<String> for Failure {
@@ -38,13 +38,8 @@ impl Failure {
     pub(crate) fn tell(&self, as_document: bool) -> Ending {
         eprint(&self.text);
         if as_document {
-            print(&format!(
-                "{:#}\n",
-                json!({
-                    "schema": "flank.failure/1", "exit_code": self.ending.code(),
-                    "message": self.message, "findings": self.findings,
-                })
-            ));
+            let (message, findings) = (self.message.clone(), self.findings.clone());
+            print(&document::text(&FailureDocument { exit_code: self.ending.code(), message, findings }));
         }
         self.ending
     }
@@ -53,7 +48,7 @@ impl Failure {
         &self.message
     }
 
-    pub(crate) fn findings(&self) -> &[Value] {
+    pub(crate) fn findings(&self) -> &[Finding] {
         &self.findings
     }
 }
@@ -65,7 +60,7 @@ impl From<flank::Failure> for Failure {
                 ending: Ending::Wrong,
                 text: findings_in_full(&findings),
                 message: counted(findings.counts()),
-                findings: findings.list().iter().map(|finding| json!(finding)).collect(),
+                findings: findings.list(),
             },
             flank::Failure::Request(reason) => Failure::of_usage(reason),
             flank::Failure::Unsolved(reason) => Failure { ending: Ending::Unsolved, ..Failure::from(reason) },

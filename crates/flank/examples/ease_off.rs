@@ -21,8 +21,9 @@ fn main() -> Result<(), Failure> {
         no_picture: true,
         evaluator: EvaluatorOptions::default(),
     };
-    let answer = deviation(&request, &Unwatched)?;
-    print!("{}", answer.text);
-    println!("bias {} um", answer.document["bias_um"]);
+    let found = deviation(&request, &Unwatched)?;
+    print!("{found}");
+    let largest = found.deviations().iter().fold(0.0, |largest: f64, off| largest.max(off.abs()));
+    println!("{largest} um at most");
     Ok(())
 }

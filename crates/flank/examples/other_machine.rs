@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flank::{ConvertRequest, Disk, Failure, JobSelection, Monitor, Onto, Project, TableFormat, Work, convert};
+use flank::{
+    ConvertRequest, ConvertResult, Disk, Failure, JobSelection, Monitor, Onto, Project, TableFormat, Work, convert,
+};
 
 struct Printer;
 
@@ -34,7 +36,10 @@ fn main() -> Result<(), Failure> {
         emit: Vec::new(),
         emit_form: Vec::new(),
     };
-    let answer = convert(&request, &Printer)?;
-    print!("{}", answer.text);
+    let found = convert(&request, &Printer)?;
+    print!("{found}");
+    if let ConvertResult::Motion(motion) = &found {
+        println!("{} axes at {} positions", motion.axes.len(), motion.positions.len());
+    }
     Ok(())
 }

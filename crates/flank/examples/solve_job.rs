@@ -1,4 +1,4 @@
-//! The surfaces of a job: how many points are solved, and where the files are.
+//! The surfaces of a job: how many points are solved, the first of them, and where the files are.
 
 use std::sync::Arc;
 
@@ -11,11 +11,17 @@ fn main() -> Result<(), Failure> {
         format: vec![PointFormat::Csv, PointFormat::Stl],
         ..SolveRequest::of(JobSelection { set, ..JobSelection::all(spec) })
     };
-    solve(&request, &Unwatched, &mut |answer| {
-        for surface in answer.document["surfaces"].as_array().into_iter().flatten() {
-            println!("{}: {} of {} points", surface["name"], surface["solved"], surface["asked"]);
+    solve(&request, &Unwatched, &mut |solved| {
+        for surface in &solved.surfaces {
+            let summary = &surface.summary;
+            println!("{}: {} of {} points", summary.name, summary.solved, summary.asked);
+            for (position, normal) in surface.positions().iter().zip(surface.normals()).take(3) {
+                println!("  {position:?} mm, normal {normal:?}");
+            }
         }
-        println!("files: {}", answer.document["files"]);
-        print!("{}", answer.not_done);
+        println!("files: {}", solved.files.join(", "));
+        for missing in &solved.not_done {
+            println!("{:?}: {missing}", missing.kind);
+        }
     })
 }

@@ -7,12 +7,12 @@ use flank::{Disk, Failure, JobSelection, Project, SolveRequest, Unwatched, solve
 fn main() -> Result<(), Failure> {
     let spec = Project::open("specs/bevel/pinion_19x62.chain", Arc::new(Disk));
     let request = SolveRequest { sensitivity: true, no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
-    solve(&request, &Unwatched, &mut |answer| {
-        let surface = &answer.document["surfaces"][0];
-        println!("{} moves by", surface["name"]);
-        for setting in surface["sensitivity"]["parameters"].as_array().into_iter().flatten().take(5) {
-            let change = &setting["usual_change"];
-            println!("  {} um for {} {} of {}", change["rms_um"], change["size"], change["unit"], setting["name"]);
+    solve(&request, &Unwatched, &mut |solved| {
+        let surface = &solved.surfaces[0];
+        println!("{} moves by", surface.summary.name);
+        for setting in surface.sensitivity.iter().flat_map(|table| &table.parameters).take(5) {
+            let change = &setting.usual_change;
+            println!("  {} um for {} {} of {}", change.rms_um, change.size, change.unit, setting.name);
         }
     })
 }

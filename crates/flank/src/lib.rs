@@ -1,9 +1,10 @@
 //! Tooth surfaces of any machine: the library that the command line `flank` stands on.
 //!
 //! A [`Project`] is a spec with the files that it uses. What works on the text alone takes one: [`check`], [`lay_out`]. What works on jobs
-//! takes a request of its own and a [`Monitor`], which hears how far it is, and gives an [`Answer`] for each job: [`solve`],
-//! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. What is wrong with a spec comes as [`Findings`],
-//! data with a code and a place.
+//! takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
+//! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
+//! whose schema [`schemas`] has, its `Display` a text for people, and what was not done stands in it ([`Answer::not_done`]). What is wrong
+//! with a spec comes as [`Findings`], data with a code and a place.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -21,13 +22,16 @@
 //! ```no_run
 //! use std::sync::Arc;
 //!
-//! use flank::{Disk, JobSelection, Project, SolveRequest, Unwatched, solve};
+//! use flank::{Answer, Disk, JobSelection, Project, SolveRequest, Unwatched, solve};
 //!
 //! let spec = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
 //! let request = SolveRequest { no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
-//! solve(&request, &Unwatched, &mut |answer| {
-//!     let surfaces = answer.document["surfaces"].as_array().map_or(0, Vec::len);
-//!     println!("{surfaces} surfaces, complete: {}", answer.is_complete());
+//! solve(&request, &Unwatched, &mut |solved| {
+//!     for surface in &solved.surfaces {
+//!         let highest = surface.positions().iter().map(|[_, _, z]| *z).fold(f64::MIN, f64::max);
+//!         println!("{} of {} reaches z = {highest} mm", surface.summary.name, solved.job);
+//!     }
+//!     println!("complete: {}", solved.is_complete());
 //! })?;
 //! # Ok::<(), flank::Failure>(())
 //! ```
@@ -44,10 +48,20 @@ mod report;
 mod solve;
 
 pub use compare::deviation::deviation;
+pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
 pub use compare::measure::measure;
+pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
 pub use convert::convert;
+pub use convert::result::{
+    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, ConvertResult, FittedPosition, FoundSetting,
+    FoundSettings, MissingMotion, NcDeviation, Remainders, UnseenMotion,
+};
 pub use derive::derive;
+pub use derive::result::{
+    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
+};
 pub use draw::plot;
+pub use draw::result::{PlotResult, WrittenPicture};
 pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
 pub use exchange::templates::{
     JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, Words, new_job, template_parameters,
@@ -55,10 +69,11 @@ pub use exchange::templates::{
 };
 pub use flank_chain_dsl::syntax::is_reserved;
 pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
-pub use language::check::{Checked, check};
-pub use language::errors::{ErrorCode, error_codes, error_page};
+pub use language::check::{CheckResult, Checked, check};
+pub use language::errors::{ErrorCode, Explanation, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
-pub use language::schemas::{Schema, schema, schemas};
+pub use language::schemas::{Schema, schema_of, schemas};
+pub use page::result::ViewResult;
 pub use page::view;
 pub use project::answer::Answer;
 pub use project::choices::{
@@ -68,12 +83,23 @@ pub use project::failure::Failure;
 pub use project::files::write_texts;
 pub use project::findings::{Finding, Findings, Note, Place, Severity};
 pub use project::monitor::{Monitor, Unwatched, Work};
+pub use project::not_done::{NotDone, NotDoneKind};
+pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::requests::{
     ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, JobSelection, MeasureRequest, Onto, PlotRequest,
     ReportRequest, SolveRequest, ViewRequest,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
+pub use report::result::{
+    AxisKind, AxisSource, BuiltAxis, BuiltFrame, BuiltMachine, ExtremeCurvature, GeneratingProcess, Input, InputSource,
+    NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
+};
+pub use solve::result::{
+    BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,
+    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, Status, SurfaceResult, ToolPositions,
+    UsualChange,
+};
 pub use solve::solve;
 
 /// What is asked and what is answered goes from thread to thread.
@@ -89,7 +115,14 @@ const _: () = {
     is_shared::<MeasureRequest>();
     is_shared::<ConvertRequest>();
     is_shared::<DeriveRequest>();
-    is_shared::<Answer>();
+    is_shared::<SolveResult>();
+    is_shared::<DeviationResult>();
+    is_shared::<MeasureResult>();
+    is_shared::<ConvertResult>();
+    is_shared::<DeriveResult>();
+    is_shared::<PlotResult>();
+    is_shared::<ViewResult>();
+    is_shared::<ReportResult>();
     is_shared::<Checked>();
     is_shared::<Findings>();
     is_shared::<Layout>();

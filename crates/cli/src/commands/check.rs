@@ -1,7 +1,6 @@
 //! `flank check`
 
-use flank::{Checked, check};
-use serde_json::json;
+use flank::{CheckResult, Checked, check};
 
 use crate::arguments::Check;
 use crate::failure::{Failure, findings_in_full};
@@ -17,8 +16,9 @@ pub(crate) fn run(arguments: &Check) -> Result<Ending, Failure> {
         }
         files.push(checked);
     }
+    let ending = if files.iter().all(|checked| checked.ok) { Ending::Done } else { Ending::Wrong };
     if arguments.json {
-        print(&document::text("flank.check/1", &json!({ "files": files })));
+        print(&document::text(&CheckResult { files }));
     }
-    Ok(if files.iter().all(|checked| checked.ok) { Ending::Done } else { Ending::Wrong })
+    Ok(ending)
 }

@@ -1,7 +1,6 @@
 //! `flank explain`
 
-use flank::{ErrorCode, error_codes, error_page};
-use serde_json::json;
+use flank::{ErrorCode, Explanation, error_codes, error_page};
 
 use crate::arguments::Explain;
 use crate::{Ending, document, print};
@@ -9,16 +8,9 @@ use crate::{Ending, document, print};
 pub(crate) fn run(arguments: &Explain) -> Ending {
     print(&match (arguments.code, arguments.json) {
         (Some(code), false) => error_page(code).to_string(),
-        (Some(code), true) => {
-            let ErrorCode { code: name, severity, title } = code.into();
-            let page = error_page(code);
-            document::text(
-                "flank.explain/1",
-                &json!({ "code": name, "severity": severity, "title": title, "page": page }),
-            )
-        }
+        (Some(code), true) => document::text(&Explanation::of(code)),
         (None, false) => list(&error_codes()),
-        (None, true) => document::text("flank.explain/1", &json!({ "codes": error_codes() })),
+        (None, true) => document::text(&Explanation::of_all()),
     });
     Ending::Done
 }

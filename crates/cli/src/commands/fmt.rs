@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use flank::{Layout, lay_out, shown_path};
-use serde_json::{Value, json};
 
 use crate::arguments::Fmt;
+use crate::document::{LaidOutFile, LaidOutFiles};
 use crate::failure::Failure;
 use crate::spec::{self, is_stdin};
 use crate::{Ending, document, print};
@@ -17,7 +17,7 @@ pub(crate) fn run(arguments: &Fmt) -> Ending {
         let to_stdout = is_stdin(path) && !arguments.check;
         let done = laid_out(path, arguments.check);
         if arguments.json {
-            told.push(as_json(path, to_stdout, &done));
+            told.push(laid_out_file(path, to_stdout, &done));
         }
         match done {
             Ok(done) => {
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Fmt) -> Ending {
         }
     }
     if arguments.json {
-        print(&document::text("flank.fmt/1", &json!({ "files": told })));
+        print(&document::text(&LaidOutFiles { files: told }));
     }
     ending
 }
@@ -57,16 +57,16 @@ fn shown_change(path: &Path, to_stdout: bool, done: &Layout) -> String {
     }
 }
 
-fn as_json(path: &Path, to_stdout: bool, done: &Result<Layout, Failure>) -> Value {
+fn laid_out_file(path: &Path, to_stdout: bool, done: &Result<Layout, Failure>) -> LaidOutFile {
     let failure = done.as_ref().err();
     let done = done.as_ref().ok();
-    json!({
-        "file": shown_path(path),
-        "changed": done.map(|done| done.is_changed),
-        "text": done.filter(|_| to_stdout).map(|done| &done.text),
-        "message": failure.map(Failure::message),
-        "findings": failure.map_or(&[][..], Failure::findings),
-    })
+    LaidOutFile {
+        file: shown_path(path),
+        changed: done.map(|done| done.is_changed),
+        text: done.filter(|_| to_stdout).map(|done| done.text.clone()),
+        message: failure.map(|failure| failure.message().to_string()),
+        findings: failure.map_or(Vec::new(), |failure| failure.findings().to_vec()),
+    }
 }
 
 /// What is written gets its name when it is whole, so that other names of the same file keep what it was.

@@ -26,6 +26,6 @@ pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     };
     let imported = import(&Disk, &request)?;
     imported.doubts.iter().for_each(|doubt| eprint(&format!("note: {}: {doubt}\n", imported.file)));
-    print(&if arguments.json { document::text("flank.import/2", &imported) } else { imported.text });
+    print(&if arguments.json { document::text(&imported) } else { imported.text });
     Ok(Ending::Done)
 }

@@ -11,7 +11,7 @@ use crate::{Ending, document, eprint, print};
 pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     let Some(template) = &arguments.template else {
         let all = templates();
-        print(&if arguments.json { document::text("flank.templates/2", &all) } else { list(&all) });
+        print(&if arguments.json { document::text(&all) } else { list(&all) });
         return Ok(Ending::Done);
     };
     let words = |text: &String, origin: &str| Words { text: text.clone(), origin: origin.to_string() };
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     let name = arguments.name.as_ref().map(|name| words(name, "--name"));
     let made = new_job(&NewJob { template: template.clone(), name, values, folder: arguments.out.clone() })?;
     print(&if arguments.json {
-        document::text("flank.new/2", &made)
+        document::text(&made)
     } else {
         format!("wrote {}\n\nnow: flank solve {}\n", made.files.join(", "), made.spec)
     });

@@ -7,16 +7,17 @@ use crate::failure::Failure;
 use crate::progress::Terminal;
 use crate::{Ending, document, eprint, print};
 
-type Operation<'o> = dyn Fn(&dyn Monitor, &mut dyn FnMut(Answer)) -> Result<(), Refused> + 'o;
-
-/// Prints each answer as it comes.
-fn told(as_document: bool, operation: &Operation<'_>) -> Result<Ending, Failure> {
+/// Prints each result as it comes.
+fn told<A: Answer>(
+    as_document: bool,
+    operation: impl FnOnce(&dyn Monitor, &mut dyn FnMut(A)) -> Result<(), Refused>,
+) -> Result<Ending, Failure> {
     let mut ending = Ending::Done;
     operation(&Terminal, &mut |answer| {
-        print(&if as_document { document::printed(&answer.document) } else { answer.text });
-        eprint(&answer.notes);
-        if !answer.not_done.is_empty() {
-            eprint(&answer.not_done);
+        print(&if as_document { document::text(&answer) } else { answer.to_string() });
+        eprint(answer.notes());
+        if !answer.is_complete() {
+            eprint(&answer.not_done_text());
             ending = Ending::Unsolved;
         }
     })?;
@@ -25,40 +26,40 @@ fn told(as_document: bool, operation: &Operation<'_>) -> Result<Ending, Failure>
 
 pub(crate) fn solve(arguments: &Solve) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::solve(&request, monitor, each))
+    told(arguments.json, |monitor, each| flank::solve(&request, monitor, each))
 }
 
 pub(crate) fn plot(arguments: &Plot) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::plot(&request, monitor, each))
+    told(arguments.json, |monitor, each| flank::plot(&request, monitor, each))
 }
 
 pub(crate) fn report(arguments: &Report) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::report(&request, monitor, each))
+    told(arguments.json, |monitor, each| flank::report(&request, monitor, each))
 }
 
 pub(crate) fn view(arguments: &View) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::view(&request, monitor, each))
+    told(arguments.json, |monitor, each| flank::view(&request, monitor, each))
 }
 
 pub(crate) fn measure(arguments: &Measure) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::measure(&request, monitor, each))
+    told(arguments.json, |monitor, each| flank::measure(&request, monitor, each))
 }
 
 pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::deviation(&request, monitor).map(each))
+    told(arguments.json, |monitor, each| flank::deviation(&request, monitor).map(each))
 }
 
 pub(crate) fn convert(arguments: &Convert) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::convert(&request, monitor).map(each))
+    told(arguments.json, |monitor, each| flank::convert(&request, monitor).map(each))
 }
 
 pub(crate) fn derive(arguments: &Derive) -> Result<Ending, Failure> {
     let request = arguments.request()?;
-    told(arguments.json, &|monitor, each| flank::derive(&request, monitor).map(each))
+    told(arguments.json, |monitor, each| flank::derive(&request, monitor).map(each))
 }

@@ -1,25 +1,26 @@
 //! `flank schema`
 
-use flank::{Schema as Shipped, schema, schemas};
-use serde_json::json;
+use flank::Schema as Shipped;
 
 use crate::arguments::Schema;
+use crate::document::{SchemaList, schemas};
 use crate::failure::Failure;
 use crate::{Ending, document, print};
 
 pub(crate) fn run(arguments: &Schema) -> Result<Ending, Failure> {
     print(&match &arguments.name {
-        Some(name) => find(name)?.text.to_string(),
-        None if arguments.json => document::text("flank.schemas/1", &json!({ "schemas": schemas() })),
+        Some(name) => find(name)?.text,
+        None if arguments.json => document::text(&SchemaList { schemas: schemas() }),
         None => list(&schemas()),
     });
     Ok(Ending::Done)
 }
 
 /// # Errors
-/// JobArguments there are, if there is none of that name.
+/// Which there are, if there is none of that name.
 fn find(name: &str) -> Result<Shipped, Failure> {
-    schema(name).ok_or_else(|| {
+    // of several versions the newest
+    schemas().into_iter().rfind(|known| known.is_named(name)).ok_or_else(|| {
         let known: Vec<String> = schemas().into_iter().map(|known| known.name).collect();
         Failure::of_usage(format!("there is no schema `{name}`; there is: {}", known.join(", ")))
     })

@@ -1,9 +1,9 @@
 //! `flank completions`, `flank man`
 
 use clap::CommandFactory;
-use serde_json::json;
 
 use crate::arguments::{Arguments, Completions, Man};
+use crate::document::{self, CompletionScript, ManualPages};
 use crate::failure::Failure;
 use crate::{Ending, print};
 
@@ -14,7 +14,7 @@ pub(crate) fn completions(arguments: &Completions) -> Ending {
     let script = String::from_utf8_lossy(&script);
     if arguments.json {
         let shell = arguments.shell.to_string();
-        print(&format!("{:#}\n", json!({ "schema": "flank.completions/1", "shell": shell, "script": script })));
+        print(&document::text(&CompletionScript { shell, script: script.into_owned() }));
     } else {
         print(&script);
     }
@@ -37,7 +37,7 @@ pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
     }
     let files = flank::write_texts(&arguments.out, &texts)?;
     print(&if arguments.json {
-        format!("{:#}\n", json!({ "schema": "flank.man/1", "files": files }))
+        document::text(&ManualPages { files })
     } else {
         format!("wrote {}\n", files.join(", "))
     });

@@ -1,6 +1,5 @@
 //! `flank deviation`
 
-use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
@@ -9,13 +8,13 @@ use flank_draw::{PictureOptions, field_maps};
 use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
 use flank_expr::Graph;
 use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint};
-use serde_json::{Value, json};
 
+use crate::compare::deviation_result::{DeviationResult, EaseOffDirection};
 use crate::compare::inspect;
-use crate::project::answer::Answer;
-use crate::project::failure::{Failure, not_done};
+use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::{DeviationRequest, JobSelection, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -88,7 +87,7 @@ pub(crate) struct DeviationMap<'j, 'g> {
     /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
     pub(crate) is_opposite: bool,
     /// Why nothing could be held against the other, with a way out; empty if it could.
-    pub(crate) refused: String,
+    pub(crate) refused: Vec<NotDone>,
     /// Points at whose places the surface is cut away.
     pub(crate) cut_away: usize,
 }
@@ -103,7 +102,7 @@ enum Second<'a> {
 ///
 /// # Errors
 /// What is wrong with the spec or the measured points; what does not go together; that a file cannot be written.
-pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<DeviationResult, Failure> {
     let start = Instant::now();
     if request.measured.is_none() && request.margin.is_some() {
         let message = "--margin says where the points of --measured lie; with --reference they are those of its sample"
@@ -139,8 +138,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<An
     let notes = format!("{points} in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3)
         + &measured.opposite()
         + &trimmed(&measured, session);
-    let (text, document, not_done) = (measured.text(&written), measured.json(&written), measured.missing());
-    Ok(Answer { text, document, notes, not_done })
+    Ok(measured.result(written, notes))
 }
 
 /// Surfaces of which the job trims points away, which have deviations all the same; empty if there are none.
@@ -226,8 +224,8 @@ pub(crate) fn measure<'j, 'g>(
         None => vec![None; points.len()],
     };
     let ends = [points.get(middle), near.get(middle)].map(|point| point.map(|point| point.outcome));
-    let apart = if done.is_none() { apart([surface, from], ends) } else { String::new() };
-    let ambiguous = lost + &lost_near;
+    let apart = done.is_none().then(|| apart([surface, from], ends));
+    let ambiguous: Vec<NotDone> = lost.into_iter().chain(lost_near).collect();
     let is_cut = |(point, near): &(&SurfacePoint, &SurfacePoint)| is_solved(point) && is_cut_away(near.outcome);
     Ok(DeviationMap {
         held: ComparedWith::Surface(surface),
@@ -240,7 +238,7 @@ pub(crate) fn measure<'j, 'g>(
         is_turned: !no_align,
         deviations,
         is_opposite,
-        refused: if ambiguous.is_empty() { apart } else { ambiguous },
+        refused: if ambiguous.is_empty() { apart.into_iter().collect() } else { ambiguous },
     })
 }
 
@@ -249,7 +247,7 @@ fn solved<'g>(
     of: Named<'_, 'g>,
     (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),
     session: Session,
-) -> (Vec<SurfacePoint>, String) {
+) -> (Vec<SurfacePoint>, Option<NotDone>) {
     let problem = problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), session);
     let (points, effort) = problem.solve(targets, counts);
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
@@ -257,11 +255,11 @@ fn solved<'g>(
         let at = branches::place(coordinates, effort.anchor);
         branches::listed(of.surface, &problem.points(&effort.branches), &at)
     });
-    (points, told.unwrap_or_default())
+    (points, told)
 }
 
 /// Why two surfaces do not meet in the middle of the grid, where the points of both have come to an end each.
-fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> String {
+fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> NotDone {
     let [surface, from] = if of[0].job.name == of[1].job.name {
         of.map(|of| of.surface.name.clone())
     } else {
@@ -269,18 +267,19 @@ fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> String {
     };
     let [point, near] = ends;
     let way_out = "`--no-align` does without the turn that brings both to meet there";
-    match (point, near) {
+    let message = match (point, near) {
         (Some(point), _) if point != Outcome::Solved => {
-            format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}\n", point.word())
+            format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}", point.word())
         }
         (_, Some(near)) if is_cut_away(near) => {
-            format!("no deviation: `{surface}` is cut away where the middle of the grid of `{from}` is; {way_out}\n")
+            format!("no deviation: `{surface}` is cut away where the middle of the grid of `{from}` is; {way_out}")
         }
         _ => format!(
             "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` is turned \
-             about z\n"
+             about z"
         ),
-    }
+    };
+    no_deviation(&surface, message)
 }
 
 fn is_cut_away(outcome: Outcome) -> bool {
@@ -361,70 +360,51 @@ impl DeviationMap<'_, '_> {
         }
     }
 
-    fn text(&self, written: &[String]) -> String {
-        let frame = self.held.frame().map_or(String::new(), |frame| format!(" ({frame})"));
-        let known = self.known().count();
-        let mut out = format!(
-            "deviation of {}{frame} from {} ({}), um along the normal of the latter, plus is material\n\n",
-            self.held.whole_name(),
-            self.from.whole_name(),
-            self.from.surface.frame
-        );
-        let um = |value: f64| fixed(value, 3);
-        let _ = writeln!(out, "  points       {known} of {}", self.points.len());
-        if let Some(turn) = self.turn {
-            let (radius, done) = (self.middle_radius(), if self.is_turned { "" } else { " (not done)" });
-            let _ = writeln!(
-                out,
-                "  turn about z {} deg, {} mm on the circle through the middle{done}",
-                fixed(turn.to_degrees(), 6),
-                fixed(radius * turn, 6)
-            );
-        }
-        if let Some([low, high, rms]) = self.spread() {
-            let middle = self.in_the_middle().map_or(String::new(), |middle| format!(", in the middle {}", um(middle)));
-            let _ = writeln!(out, "  range        {} .. {} um, rms {}{middle}", um(low), um(high), um(rms));
-        }
-        if let Some(ease_off) = self.ease_off() {
-            for (k, label) in self.labels.iter().enumerate() {
-                let rise = ease_off.slopes[k];
-                let angle = self.lengths()[k].map(|length| arcmin(rise, length));
-                let angle = angle.map_or(String::new(), |angle| format!(" ({} arcmin)", um(angle)));
-                let crowning = um(ease_off.crownings[k]);
-                let _ = writeln!(out, "  {label:12} slope {} um{angle}, crowning {crowning} um", um(rise));
-            }
-            let _ = writeln!(out, "  bias         {} um", um(ease_off.bias));
-        }
-        let _ = writeln!(out, "\nwrote {}", written.join(", "));
-        out
-    }
-
-    fn json(&self, written: &[String]) -> Value {
-        let (ease_off, spread) = (self.ease_off(), self.spread());
+    /// What is said of it, with the files that were written.
+    fn result(&self, files: Vec<String>, notes: String) -> DeviationResult {
+        let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
         let direction = |k: usize| {
-            ease_off.map(|of| {
-                let angle = self.lengths()[k].map(|length| arcmin(of.slopes[k], length));
-                json!({ "direction": self.labels[k], "slope_um": of.slopes[k], "slope_arcmin": angle,
-                    "crowning_um": of.crownings[k] })
+            ease_off.map(|of| EaseOffDirection {
+                direction: self.labels[k].clone(),
+                slope_um: of.slopes[k],
+                slope_arcmin: lengths[k].map(|length| arcmin(of.slopes[k], length)),
+                crowning_um: of.crownings[k],
             })
         };
-        json!({
-            "schema": "flank.deviation/1",
-            "surface": self.held.frame().map(|_| self.held.name()), "frame": self.held.frame(),
-            "measured": self.held.frame().is_none().then(|| self.held.name()),
-            "from": self.from.surface.name, "from_frame": self.from.surface.frame,
-            "asked": self.points.len(), "known": self.known().count(),
-            "turn_deg": self.turn.map(f64::to_degrees), "turned": self.is_turned,
-            "turn_mm": self.turn.map(|turn| self.middle_radius() * turn),
-            "lowest_um": spread.map(|of| of[0]), "highest_um": spread.map(|of| of[1]), "rms_um": spread.map(|of| of[2]),
-            "middle_um": self.in_the_middle(),
-            "directions": [direction(0), direction(1)], "bias_um": ease_off.map(|of| of.bias),
-            "files": written, "not_done": not_done(&self.missing()),
-        })
+        let (surface, measured, job) = match &self.held {
+            ComparedWith::Surface(of) => (Some(of.surface.name.clone()), None, Some(of.job.name.clone())),
+            ComparedWith::File { name, .. } => (None, Some(name.clone()), None),
+        };
+        DeviationResult {
+            surface,
+            job,
+            frame: self.held.frame().map(str::to_string),
+            measured,
+            from: self.from.surface.name.clone(),
+            from_job: self.from.job.name.clone(),
+            from_frame: self.from.surface.frame.clone(),
+            asked: self.points.len(),
+            known: self.known().count(),
+            turn_deg: self.turn.map(f64::to_degrees),
+            turned: self.is_turned,
+            turn_mm: self.turn.map(|turn| self.middle_radius() * turn),
+            lowest_um: spread.map(|of| of[0]),
+            highest_um: spread.map(|of| of[1]),
+            rms_um: spread.map(|of| of[2]),
+            middle_um: self.in_the_middle(),
+            directions: [direction(0), direction(1)],
+            bias_um: ease_off.map(|of| of.bias),
+            files,
+            not_done: self.missing(),
+            notes,
+            counts: self.counts,
+            positions: self.points.iter().map(|point| point.position).collect(),
+            deviations: self.deviations.iter().map(|off| off.unwrap_or(f64::NAN)).collect(),
+        }
     }
 
     /// Why numbers are missing, if some are.
-    pub(crate) fn missing(&self) -> String {
+    pub(crate) fn missing(&self) -> Vec<NotDone> {
         let (all, known) = (self.points.len(), self.known().count());
         let [surface, from] = match &self.held {
             ComparedWith::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
@@ -437,23 +417,28 @@ impl DeviationMap<'_, '_> {
         if !self.refused.is_empty() {
             return self.refused.clone();
         }
-        let mut out = String::new();
-        if unsolved > 0 {
-            let _ = writeln!(out, "not solved: {unsolved} of {all} points of {from}");
-        }
         let unmet = all - known - unsolved;
         let cut_away = self.cut_away.min(unmet);
-        if cut_away > 0 {
-            let _ = writeln!(out, "no deviation at {cut_away} of {all} points: {surface} is cut away there");
-        }
-        if unmet > cut_away {
-            let unmet = unmet - cut_away;
-            let _ = writeln!(
-                out,
-                "no deviation at {unmet} of {all} points: the normal of {from} does not meet {surface} within its ranges"
-            );
-        }
-        out
+        let unmet = unmet - cut_away;
+        counted([
+            (unsolved, not_solved(&from, format!("not solved: {unsolved} of {all} points of {from}"))),
+            (
+                cut_away,
+                no_deviation(
+                    &surface,
+                    format!("no deviation at {cut_away} of {all} points: {surface} is cut away there"),
+                ),
+            ),
+            (
+                unmet,
+                no_deviation(
+                    &from,
+                    format!(
+                        "no deviation at {unmet} of {all} points: the normal of {from} does not meet {surface} within its ranges"
+                    ),
+                ),
+            ),
+        ])
     }
 
     /// The points with their deviations as their one field.
@@ -508,23 +493,35 @@ impl DeviationMap<'_, '_> {
 }
 
 /// Why numbers are missing of a grid with so many measured points, known deviations and nominal points that are not solved.
-fn missing_of_file(of: &DeviationMap<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> String {
+fn missing_of_file(of: &DeviationMap<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> Vec<NotDone> {
     let (all, from) = (of.points.len(), &of.from.surface.name);
-    let mut out = String::new();
-    if unsolved > 0 {
-        let _ = writeln!(out, "not solved: {unsolved} of {all} nominal points of {from}");
-    }
-    if measured < all {
-        let _ = writeln!(out, "not measured: {} of {all} points", all - measured);
-    }
-    if known < measured {
-        let _ = writeln!(
-            out,
-            "no deviation at {} of {measured} measured points: no normal of {from} within its ranges goes through them",
-            measured - known
-        );
-    }
-    out
+    let (left_out, unmet) = (all.saturating_sub(measured), measured.saturating_sub(known));
+    counted([
+        (unsolved, not_solved(from, format!("not solved: {unsolved} of {all} nominal points of {from}"))),
+        (left_out, NotDone::new(NotDoneKind::NotMeasured, from, format!("not measured: {left_out} of {all} points"))),
+        (
+            unmet,
+            no_deviation(
+                from,
+                format!(
+                    "no deviation at {unmet} of {measured} measured points: no normal of {from} within its ranges goes through them"
+                ),
+            ),
+        ),
+    ])
+}
+
+fn not_solved(of: &str, message: String) -> NotDone {
+    NotDone::new(NotDoneKind::NotSolved, of, message)
+}
+
+fn no_deviation(of: &str, message: String) -> NotDone {
+    NotDone::new(NotDoneKind::NoDeviation, of, message)
+}
+
+/// Those of which there are some.
+fn counted<const N: usize>(all: [(usize, NotDone); N]) -> Vec<NotDone> {
+    all.into_iter().filter(|(count, _)| *count > 0).map(|(_, one)| one).collect()
 }
 
 /// The angle of a rise in um over a length in mm.

@@ -71,7 +71,7 @@ pub(crate) fn inspect<'j, 'g>(
         is_turned: !request.no_align,
         deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
         is_opposite: false,
-        refused: String::new(),
+        refused: Vec::new(),
         cut_away: 0,
     })
 }

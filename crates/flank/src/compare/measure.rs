@@ -1,26 +1,23 @@
 //! `flank measure`: nominal points and normals for gear measuring machines.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample, SampleGrid, spaced};
+use flank_chain_dsl::{GeneratedSurface, Job, Sample, SampleGrid, spaced};
 use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, Part, Patch, Point};
 use flank_expr::Graph;
 use flank_solver::SurfacePoint;
-use serde_json::{Value, json};
 
 use crate::compare::deviation;
-use crate::project::answer::Answer;
-use crate::project::failure::{Failure, not_done};
+use crate::compare::measure_result::{MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
+use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::{MeasureRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
-use crate::project::units;
 use crate::solve;
 use crate::solve::SolveOptions;
-use crate::solve::table::aligned;
 
 /// Rows and columns of the grid that tells how a flank lies.
 const TRIAL: usize = 13;
@@ -29,7 +26,11 @@ const TRIAL: usize = 13;
 ///
 /// # Errors
 /// What is wrong with the spec; that a surface has no grid, or several branches; that a file cannot be written.
-pub fn measure(request: &MeasureRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+pub fn measure(
+    request: &MeasureRequest,
+    monitor: &dyn Monitor,
+    each: &mut dyn FnMut(MeasureResult),
+) -> Result<(), Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
@@ -52,9 +53,7 @@ pub fn measure(request: &MeasureRequest, monitor: &dyn Monitor, each: &mut dyn F
         for format in &request.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }
-        let (not_done, written) = (unsolved(&grid), folder.finish()?);
-        let (text, document) = (as_text(&grid, &written), as_json(&grid, &written, &not_done));
-        each(Answer { text, document, notes: String::new(), not_done });
+        each(result(&grid, folder.finish()?));
     }
     Ok(())
 }
@@ -195,77 +194,60 @@ fn is_solved(point: &Point) -> bool {
     point.outcome == flank_export::Outcome::Solved
 }
 
-/// Distance from z, z, and angle about z in degrees of the point in the middle.
-fn middle(flank: &NominalFlank) -> Option<[f64; 3]> {
+fn middle(flank: &NominalFlank) -> Option<MiddlePoint> {
     let (_, patch) = flank.parts.iter().find(|(part, _)| *part == Part::Middle)?;
     let [x, y, z] = patch.points.first().filter(|point| is_solved(point))?.position;
-    Some([x.hypot(y), z, y.atan2(x).to_degrees()])
+    Some(MiddlePoint { rho_mm: x.hypot(y), z_mm: z, angle_deg: y.atan2(x).to_degrees() })
 }
 
-fn as_text(grid: &MeasuringGrid, written: &[String]) -> String {
-    let mut out = format!("job {} ({})\n\n", grid.header.job, grid.header.spec);
-    let mut rows = vec![
-        ["surface", "flank", "rows", "columns", "solved", "in the middle: rho mm, z mm, angle deg"].map(String::from),
-    ];
-    for flank in &grid.flanks {
-        let Some((_, patch)) = flank.parts.first() else { continue };
-        let side = |count: usize, [from, to]: &[String; 2]| format!("{count}, {from} to {to}");
-        let middle =
-            middle(flank).map(|place| place.map(|number| units::text(Dimension::NUMBER, number, 6)).join("  "));
-        rows.push([
-            patch.name.clone(),
-            flank.hand.map_or("-", Hand::word).to_string(),
-            side(patch.rows.count, &flank.ends.profile),
-            side(patch.columns.count, &flank.ends.length),
-            format!("{} of {}", solved(patch), patch.points.len()),
-            middle.unwrap_or("-".to_string()),
-        ]);
-    }
-    let _ = write!(out, "{}\nwrote {}\n", aligned(&rows, ""), written.join(", "));
-    out
-}
-
-fn as_json(grid: &MeasuringGrid, written: &[String], told: &str) -> Value {
-    let flank_json = |flank: &NominalFlank| {
-        let parts = flank.parts.iter().map(|(part, patch)| {
-            json!({ "part": part.word(), "rows": patch.rows.count, "columns": patch.columns.count,
-                "asked": patch.points.len(), "solved": solved(patch) })
-        });
-        let first = flank.parts.first().map(|(_, patch)| patch);
-        json!({
-            "surface": first.map(|patch| &patch.name), "frame": first.map(|patch| &patch.frame),
-            "flank": flank.hand.map(Hand::word), "rows": flank.ends.profile, "columns": flank.ends.length,
-            "parts": parts.collect::<Vec<Value>>(),
-            "middle": middle(flank).map(|[rho, z, angle]| json!({ "rho_mm": rho, "z_mm": z, "angle_deg": angle })),
+fn result(grid: &MeasuringGrid, files: Vec<String>) -> MeasureResult {
+    let part = |(part, patch): &(Part, Patch)| MeasuredPart {
+        part: (*part).into(),
+        rows: patch.rows.count,
+        columns: patch.columns.count,
+        asked: patch.points.len(),
+        solved: solved(patch),
+    };
+    let flank = |flank: &NominalFlank| {
+        let (_, first) = flank.parts.first()?;
+        Some(MeasuredFlank {
+            surface: first.name.clone(),
+            frame: first.frame.clone(),
+            flank: flank.hand.map(Into::into),
+            rows: flank.ends.profile.clone(),
+            columns: flank.ends.length.clone(),
+            parts: flank.parts.iter().map(part).collect(),
+            middle: middle(flank),
         })
     };
-    json!({
-        "schema": "flank.measure/1", "job": grid.header.job, "spec": grid.header.spec, "margins": grid.margins,
-        "flanks": grid.flanks.iter().map(flank_json).collect::<Vec<Value>>(),
-        "files": written, "not_done": not_done(told),
-    })
+    MeasureResult {
+        job: grid.header.job.clone(),
+        spec: grid.header.spec.clone(),
+        margins: grid.margins,
+        flanks: grid.flanks.iter().filter_map(flank).collect(),
+        files,
+        not_done: unsolved(grid),
+    }
 }
 
 /// Which points are not there, and why; empty if all are.
-fn unsolved(grid: &MeasuringGrid) -> String {
-    let mut out = String::new();
-    for (part, patch) in grid.flanks.iter().flat_map(|flank| &flank.parts) {
-        let mut reasons: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (at, point) in patch.points.iter().enumerate().filter(|(_, point)| !is_solved(point)) {
-            let reason = format!("{} {}", point.outcome.word(), point.reason).trim_end().to_string();
-            let place = format!("({}, {})", at / patch.columns.count + 1, at % patch.columns.count + 1);
-            reasons.entry(reason).or_default().push(place);
-        }
-        if !reasons.is_empty() {
-            let missing = patch.points.len() - solved(patch);
-            let (name, part, all) = (&patch.name, part.word(), patch.points.len());
-            let _ = writeln!(out, "not solved: {missing} of {all} points of {name}, {part} (row, column)");
-        }
-        for (reason, places) in reasons {
-            let _ = writeln!(out, "  {reason}: {}", places.join(" "));
-        }
+fn unsolved(grid: &MeasuringGrid) -> Vec<NotDone> {
+    let parts = grid.flanks.iter().flat_map(|flank| &flank.parts);
+    parts.filter_map(|(part, patch)| unsolved_in(*part, patch)).collect()
+}
+
+fn unsolved_in(part: Part, patch: &Patch) -> Option<NotDone> {
+    let mut reasons: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (at, point) in patch.points.iter().enumerate().filter(|(_, point)| !is_solved(point)) {
+        let reason = format!("{} {}", point.outcome.word(), point.reason).trim_end().to_string();
+        let place = format!("({}, {})", at / patch.columns.count + 1, at % patch.columns.count + 1);
+        reasons.entry(reason).or_default().push(place);
     }
-    out
+    let (missing, all) = (patch.points.len() - solved(patch), patch.points.len());
+    let (name, part) = (&patch.name, part.word());
+    let told: String = reasons.iter().map(|(reason, places)| format!("\n  {reason}: {}", places.join(" "))).collect();
+    let message = format!("not solved: {missing} of {all} points of {name}, {part} (row, column){told}");
+    (missing > 0).then(|| NotDone::new(NotDoneKind::NotSolved, name, message))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! One surface held against another, against measured points, and nominal points for measuring machines.
 
 pub(crate) mod deviation;
+pub(crate) mod deviation_result;
 pub(crate) mod inspect;
 pub(crate) mod measure;
+pub(crate) mod measure_result;

@@ -6,6 +6,7 @@ use flank_solver::{Missing, Outcome, Posture};
 
 use super::Conversion;
 use super::source::Source;
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::units;
 
 /// Of what all axes can do together: below it they turn fast.
@@ -42,8 +43,8 @@ pub(super) fn check_count(
     }
 }
 
-/// What the target cannot do, each kind once with its first place; empty if nothing.
-pub(super) fn told(carried: &Conversion<'_, '_>) -> String {
+/// What the target cannot do, each kind once with its first place.
+pub(super) fn told(carried: &Conversion<'_, '_>) -> Vec<NotDone> {
     let Conversion { positions, line, source, .. } = carried;
     let mut kinds: Vec<(String, String, usize)> = Vec::new();
     for (k, (position, posture)) in positions.iter().zip(line).enumerate() {
@@ -65,7 +66,10 @@ pub(super) fn told(carried: &Conversion<'_, '_>) -> String {
             None => kinds.push((kind, format!("{told}, at {}", source.place(position)), 1)),
         }
     }
-    kinds.iter().map(|(_, told, count)| format!("not reached: {count} of {} positions: {told}\n", line.len())).collect()
+    let message = |told: &str, count: usize| format!("not reached: {count} of {} positions: {told}", line.len());
+    let name = &carried.machine.name;
+    let each = kinds.iter();
+    each.map(|(_, told, count)| NotDone::new(NotDoneKind::NotReached, name, message(told, *count))).collect()
 }
 
 /// All axes that have to stand beyond their travels, that which is farthest beyond, as a share of its travel, first.

@@ -4,6 +4,7 @@ mod blocks;
 mod failures;
 mod files;
 mod rates;
+pub(crate) mod result;
 mod series;
 mod settings;
 mod source;
@@ -18,15 +19,16 @@ use flank_solver::{
     Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis, unseen_motion,
 };
 
-use crate::project::answer::Answer;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::{ConvertRequest, JobSelection, Onto, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use blocks::Blocks;
 use rates::Rates;
+use result::{AxisMotion, ConvertResult};
 use series::Series;
 use source::{Chosen, Source};
 use table::Table;
@@ -38,7 +40,7 @@ const REACH: f64 = 10_000.0;
 ///
 /// # Errors
 /// What is wrong with the specs; what does not go together; that the machine has not what it takes; that a file cannot be written.
-pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<ConvertResult, Failure> {
     check_positions(request)?;
     check_fit_alone(request)?;
     let graph = Graph::new();
@@ -47,13 +49,11 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Answer
     check_settings_alone(&plan, request)?;
     let session = Session::new(request.onto.evaluator, monitor);
     let target = plan.solved(session)?;
-    let (text, document, not_done) = if target.settings.is_empty() {
-        let (table, told) = carry(&job, target, &origin, (request, session))?;
-        (table.text(), table.json(&told), told)
+    Ok(if target.settings.is_empty() {
+        ConvertResult::Motion(Box::new(carry(&job, target, &origin, (request, session))?))
     } else {
-        settings::find(&job, &target, (request, session))?
-    };
-    Ok(Answer { text, document, notes: String::new(), not_done })
+        ConvertResult::Settings(settings::find(&job, &target, (request, session))?)
+    })
 }
 
 /// # Errors
@@ -123,13 +123,13 @@ pub(crate) fn compiled<'g>(
     }
 }
 
-/// The axes over the motion, their series, what is written, and in words what the target cannot do.
+/// The axes over the motion, their series, what is written, and what the target cannot do.
 fn carry<'g>(
     job: &Job<'g>,
     target: Target<'_, 'g>,
     origin: &Origin,
     (request, session): (&ConvertRequest, Session<'_>),
-) -> Result<(Table, String), String> {
+) -> Result<AxisMotion, String> {
     let jobs = [job, target.job];
     let carried = Conversion::on(target, request.positions, session)?;
     let mut told = carried.failures();
@@ -138,7 +138,7 @@ fn carry<'g>(
     let series = is_followed.then(|| Series::of(&carried, request)).flatten();
     drop(working);
     match &series {
-        Some(series) => told.extend(series.unmet(request.tolerance, &carried.source)),
+        Some(series) => told.extend(series.unmet(request.tolerance, (&carried.machine.name, &carried.source))),
         None if told.is_empty() => told.extend(without_series(&carried, request)),
         None => {}
     }
@@ -152,11 +152,12 @@ fn carry<'g>(
         let header = crate::solve::header(&jobs, &request.jobs, origin);
         table.written = files::write(&table, &carried, header, (request, origin, session))?;
     }
-    Ok((table, carried.source.unsolved.clone() + &told))
+    let not_done = carried.source.unsolved.iter().cloned().chain(told).collect();
+    Ok(table.result(not_done))
 }
 
-/// In words, which of the things that are asked for there are not without power series of the axes; nothing if none is.
-fn without_series(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<String> {
+/// Which of the things that are asked for there are not without power series of the axes; nothing if none is.
+fn without_series(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<NotDone> {
     let motions: Vec<&str> = carried.source.motions.iter().map(|motion| motion.name.as_str()).collect();
     let (asked, why) = match motions[..] {
         [one] => (
@@ -172,7 +173,10 @@ fn without_series(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Opt
             ),
         ),
     };
-    (!asked.is_empty()).then(|| format!("not reached: nothing is done for {}: {why}\n", asked.join(", ")))
+    (!asked.is_empty()).then(|| {
+        let message = format!("not reached: nothing is done for {}: {why}", asked.join(", "));
+        NotDone::new(NotDoneKind::NotReached, &carried.machine.name, message)
+    })
 }
 
 /// The machine that a job is carried over to.
@@ -406,8 +410,8 @@ impl<'j, 'g> Conversion<'j, 'g> {
             .map_err(|reason| format!("no explicit form; {} is solved numerically: {reason}", self.machine.name))
     }
 
-    /// What the target cannot do, each kind once with its first place; empty if nothing.
-    pub(crate) fn failures(&self) -> String {
+    /// What the target cannot do, each kind once with its first place.
+    pub(crate) fn failures(&self) -> Vec<NotDone> {
         failures::told(self)
     }
 }

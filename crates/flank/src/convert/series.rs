@@ -5,6 +5,7 @@ use flank_solver::{PoseProblem, Posture, Tube, Unproven};
 
 use super::source::{Flank, Source};
 use super::{Conversion, at, is_met};
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::ConvertRequest;
 
 /// The highest order that is tried.
@@ -75,7 +76,8 @@ impl Series {
 
 impl Series {
     /// In words, that no order meets a tolerance, and what can be done; nothing if one does.
-    pub(crate) fn unmet(&self, tolerance: Option<f64>, source: &Source<'_, '_>) -> Option<String> {
+    pub(crate) fn unmet(&self, tolerance: Option<f64>, (machine, source): (&str, &Source<'_, '_>)) -> Option<NotDone> {
+        let not_reached = |message: String| Some(NotDone::new(NotDoneKind::NotReached, machine, message));
         /// Nearer than this the flank is not computed, mm.
         const ROUNDING: f64 = 1e-11;
         let tolerance = tolerance.filter(|_| !self.meets)?;
@@ -85,8 +87,8 @@ impl Series {
             } else {
                 "the points of the flank tell, and none is sampled and solved; add a `sample`, or say the order (--order)"
             };
-            return Some(format!(
-                "not reached: no order is known to keep the flank within {:.3e} um: {why}\n",
+            return not_reached(format!(
+                "not reached: no order is known to keep the flank within {:.3e} um: {why}",
                 tolerance * 1e3
             ));
         };
@@ -96,8 +98,8 @@ impl Series {
             "the series do not reach the ends of the motion: carry over a shorter part of it, with a sample of less of the flank, or \
              take the positions or the exact form (--emit-form exact) instead of polynomials"
         };
-        Some(format!(
-            "not reached: no order up to {HIGHEST} keeps the flank within {:.3e} um; order {order} comes nearest, {:.3e} um; {why}\n",
+        not_reached(format!(
+            "not reached: no order up to {HIGHEST} keeps the flank within {:.3e} um; order {order} comes nearest, {:.3e} um; {why}",
             tolerance * 1e3,
             least * 1e3
         ))

@@ -8,11 +8,12 @@ use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{
     AdjustableMachine, Range, SettingBounds, SettingKind, SettingsFit, SettingsProblem, UnknownSetting,
 };
-use serde_json::{Value, json};
 
 use super::Target;
+use super::result::{FittedPosition, FoundSetting, FoundSettings};
 use super::source::{Flank, Source};
-use crate::project::failure::not_done;
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::quantity::UnitSymbol;
 use crate::project::requests::{ConvertRequest, Session};
 use crate::project::shown_path;
 use crate::project::units;
@@ -72,12 +73,12 @@ fn variables<'g>(settings: &[RangedVariable<'g>]) -> Vec<Expr<'g>> {
     settings.iter().map(|setting| setting.variable).collect()
 }
 
-/// The settings as text and as a document, and in words what they leave to be wished.
+/// The settings, and what they leave to be wished.
 pub(super) fn find(
     job: &Job<'_>,
     target: &Target<'_, '_>,
     (request, session): (&ConvertRequest, Session<'_>),
-) -> Result<(String, Value, String), String> {
+) -> Result<FoundSettings, String> {
     let Target { source, settings, .. } = target;
     let positions = source.positions(request.positions as usize);
     let unknown: Vec<UnknownSetting<'_>> = settings.iter().map(|setting| unknown(target.job, setting)).collect();
@@ -99,7 +100,7 @@ pub(super) fn find(
         format!("job {} ({file}) on {} ({to}): {} against {}", job.name, target.machine.name, source.tool, source.work);
     let unsolved = source.unsolved.clone();
     let found = Found { title, job: &job.name, target, positions: some, fit, deviation, unsolved };
-    Ok((found.text(), found.json(), found.told()))
+    Ok(found.result())
 }
 
 fn unknown<'g>(target: &Job<'g>, setting: &RangedVariable<'g>) -> UnknownSetting<'g> {
@@ -163,8 +164,8 @@ struct Found<'f, 't, 'g> {
     fit: SettingsFit,
     /// mm; none where no points are solved.
     deviation: Option<f64>,
-    /// Which points are not, as `flank solve` tells.
-    unsolved: String,
+    /// Which points are not solved, as `flank solve` tells.
+    unsolved: Vec<NotDone>,
 }
 
 impl Found<'_, '_, '_> {
@@ -192,10 +193,10 @@ impl Found<'_, '_, '_> {
         out
     }
 
-    fn told(&self) -> String {
+    fn missed(&self) -> Vec<NotDone> {
         let Found { target, fit, .. } = self;
         let name = &target.machine.name;
-        let mut told = self.unsolved.clone();
+        let mut missed = self.unsolved.clone();
         if !fit.is_exact {
             let more = that_matter(target.job, &target.chain).into_iter();
             let more = more.filter(|s| !s.is_count && target.settings.iter().all(|wanted| wanted.name != s.name));
@@ -204,51 +205,48 @@ impl Found<'_, '_, '_> {
                 true => format!("{name} has no others"),
                 false => format!("perhaps with others: --fit {}", more.join(" or ")),
             };
-            let _ = writeln!(
-                told,
-                "not reached: no values of these settings were found that make all poses on {name}; {others}"
-            );
+            let message =
+                format!("not reached: no values of these settings were found that make all poses on {name}; {others}");
+            missed.push(NotDone::new(NotDoneKind::NotReached, name, message));
         }
         for (setting, value) in target.settings.iter().zip(&fit.settings) {
             let margin = ROUNDING * (1.0 + value.abs());
             if *value < setting.low - margin || *value > setting.high + margin {
                 let [value, low, high] =
                     [*value, setting.low, setting.high].map(|x| units::text(setting.dimension, x, 6));
-                let _ = writeln!(
-                    told,
-                    "not reached: {} would have to be {value}, outside its range {low} .. {high}",
-                    setting.name
-                );
+                let name = &setting.name;
+                let message =
+                    format!("not reached: {name} would have to be {value}, outside its range {low} .. {high}");
+                missed.push(NotDone::new(NotDoneKind::NotReached, name, message));
             }
         }
-        told
+        missed
     }
 
-    fn json(&self) -> Value {
+    fn result(&self) -> FoundSettings {
         let Found { target, fit, .. } = self;
-        let setting = |(k, (setting, value)): (usize, (&&RangedVariable<'_>, &f64))| {
-            json!({
-                "name": short(setting), "unit": units::symbol(setting.dimension),
-                "value": units::shown(setting.dimension, *value), "determined": !fit.undetermined.contains(&k),
-            })
+        let setting = |(k, (setting, value)): (usize, (&&RangedVariable<'_>, &f64))| FoundSetting {
+            name: short(setting),
+            unit: UnitSymbol::of(setting.dimension),
+            value: units::shown(setting.dimension, *value),
+            determined: !fit.undetermined.contains(&k),
         };
         let position = |(at, moving): (&Vec<f64>, &Vec<f64>)| {
             let motions = target.source.motions.iter().zip(at).map(|(motion, x)| units::shown(motion.dimension, *x));
             let axes = target.free.iter().zip(moving).map(|(axis, x)| units::shown(axis.dimension, *x));
-            json!({ "motions": motions.collect::<Vec<f64>>(), "axes": axes.collect::<Vec<f64>>() })
+            FittedPosition { motions: motions.collect(), axes: axes.collect() }
         };
-        let settings: Vec<Value> = target.settings.iter().zip(&fit.settings).enumerate().map(setting).collect();
-        json!({
-            "schema": "flank.settings/1",
-            "job": self.job,
-            "machine": target.machine.name,
-            "settings": settings,
-            "positions": self.positions.iter().zip(&fit.moving).map(position).collect::<Vec<Value>>(),
-            "displacement_mm": fit.displacement,
-            "turn_deg": fit.turn.to_degrees(),
-            "deviation_um": self.deviation.map(|mm| mm * 1e3),
-            "not_done": not_done(&self.told()),
-        })
+        FoundSettings {
+            job: self.job.to_string(),
+            machine: target.machine.name.clone(),
+            settings: target.settings.iter().zip(&fit.settings).enumerate().map(setting).collect(),
+            positions: self.positions.iter().zip(&fit.moving).map(position).collect(),
+            displacement_mm: fit.displacement,
+            turn_deg: fit.turn.to_degrees(),
+            deviation_um: self.deviation.map(|mm| mm * 1e3),
+            not_done: self.missed(),
+            text: self.text(),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
+use crate::project::not_done::NotDone;
 use crate::project::requests::Session;
 use crate::project::units;
 use crate::solve::stream;
@@ -34,8 +35,8 @@ pub(crate) struct Source<'j, 'g> {
     pub(crate) symmetries: Vec<Screw>,
     /// The sampled points of each surface that a surface of the tool made, with that.
     pub(crate) flanks: Vec<Flank<'j, 'g>>,
-    /// PlotKind `flank solve` tells of all points beside numbers: which are not solved, and why; empty if all is well.
-    pub(crate) unsolved: String,
+    /// Which points are not solved, and why.
+    pub(crate) unsolved: Vec<NotDone>,
 }
 
 /// Points of one surface that the tool makes with a face of its own.
@@ -50,7 +51,7 @@ pub(crate) struct Flank<'j, 'g> {
 struct Made<'j, 'g> {
     surface: &'j GeneratedSurface<'g>,
     points: Vec<SurfacePoint>,
-    told: String,
+    told: Vec<NotDone>,
 }
 
 /// Which of a job's tools is carried over: what is known of it before any point is solved.
@@ -125,7 +126,7 @@ impl<'j, 'g> Source<'j, 'g> {
         let made: Vec<Made<'j, 'g>> =
             mates.iter().map(|&surface| made(job, surface, wanted)).collect::<Result<_, String>>()?;
         let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &made)).collect();
-        let unsolved = made.iter().map(|made| made.told.as_str()).collect();
+        let unsolved = made.iter().flat_map(|made| made.told.iter().cloned()).collect();
         let count = made.len();
         let flanks: Vec<Flank<'j, 'g>> = made.into_iter().filter_map(|made| made.by_a_face(job)).collect();
         let tools: Vec<(&Surface<'g>, Vec<Range>)> = flanks
@@ -215,7 +216,7 @@ fn made<'j, 'g>(
     wanted: SolveOptions,
 ) -> Result<Made<'j, 'g>, String> {
     let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
-        return Ok(Made { surface, points: Vec::new(), told: String::new() });
+        return Ok(Made { surface, points: Vec::new(), told: Vec::new() });
     };
     let told = table::failures(job, std::slice::from_ref(&solved));
     Ok(Made { surface, points: solved.points, told })

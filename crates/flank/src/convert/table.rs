@@ -1,17 +1,22 @@
-//! PlotKind `flank convert` tells.
+//! What `flank convert` tells of a motion.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use flank_chain_dsl::{Axis, Dimension, Job, NcWord};
 use flank_export::fixed;
 use flank_solver::{Outcome, Posture, Screw, Unproven};
-use serde_json::{Map, Value, json};
 
 use super::Conversion;
 use super::blocks::Blocks;
 use super::rates::Rates;
+use super::result::{
+    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, MissingMotion, NcDeviation, Remainders,
+    UnseenMotion,
+};
 use super::series::Series;
-use crate::project::failure::not_done;
+use crate::project::not_done::NotDone;
+use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::requests::ConvertRequest;
 use crate::project::shown_path;
 use crate::project::units;
@@ -35,7 +40,7 @@ pub(crate) struct Table {
     pub(super) machine: String,
     pub(super) motions: Vec<Named>,
     pub(super) axes: Vec<Named>,
-    /// PlotKind NC programs say of each axis.
+    /// What NC programs say of each axis.
     pub(super) words: Vec<NcWord>,
     pub(super) positions: Vec<Vec<f64>>,
     pub(super) line: Vec<Posture>,
@@ -92,7 +97,7 @@ impl Table {
         }
     }
 
-    pub(crate) fn text(&self) -> String {
+    fn text(&self) -> String {
         let mut out = format!("{}\n\n", self.title);
         let _ = writeln!(out, "{} positions over {}", self.positions.len(), self.over());
         if let Some(at) = &self.still {
@@ -226,91 +231,86 @@ impl Table {
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     }
 
-    fn by_axis(&self, values: &[f64]) -> Value {
-        self.axes.iter().zip(values).map(|(axis, x)| (axis.name.clone(), json!(x))).collect()
+    fn by_axis<T: Clone>(&self, values: impl IntoIterator<Item = T>) -> BTreeMap<String, T> {
+        self.axes.iter().map(|axis| axis.name.clone()).zip(values).collect()
     }
 
-    /// With what the target cannot do, as told.
-    pub(crate) fn json(&self, told: &str) -> Value {
-        let named = |named: &Named| json!({ "name": named.name, "unit": units::symbol(named.dimension) });
+    /// With what the target cannot do.
+    pub(super) fn result(self, not_done: Vec<NotDone>) -> AxisMotion {
+        let named = |named: &Named| NamedUnit { name: named.name.clone(), unit: UnitSymbol::of(named.dimension) };
         let symmetries = self.symmetries.iter();
-        let symmetries = symmetries.map(|screw| json!({ "angular": screw.angular, "linear": screw.linear }));
-        json!({
-            "schema": "flank.convert/2",
-            "job": self.job,
-            "machine": self.machine,
-            "motions": self.motions.iter().map(named).collect::<Vec<Value>>(),
-            "axes": self.axes_json(),
-            "unseen_by_the_tool": symmetries.collect::<Vec<Value>>(),
-            "positions": self.positions_json(),
-            "polynomials": self.series.as_ref().map(|series| self.series_json(series)),
-            "rates": self.rates.as_ref().map(|rates| self.rates_json(rates)),
-            "nc_deviation": self.blocks.map(|b| json!({ "straight_mm": b.straight, "rounding_mm": b.rounding })),
-            "files": self.written,
-            "not_done": not_done(told),
-        })
+        AxisMotion {
+            motions: self.motions.iter().map(named).collect(),
+            axes: self.axes.iter().enumerate().map(|(k, axis)| self.extent(k, axis)).collect(),
+            unseen_by_the_tool: symmetries
+                .map(|screw| UnseenMotion { angular: screw.angular, linear: screw.linear })
+                .collect(),
+            positions: self.positions.iter().zip(&self.line).map(|(at, posture)| self.position(at, posture)).collect(),
+            polynomials: self.series.as_ref().map(|series| self.polynomials(series)),
+            rates: self.rates.as_ref().map(|rates| self.axis_rates(rates)),
+            nc_deviation: self.blocks.map(|of| NcDeviation { straight_mm: of.straight, rounding_mm: of.rounding }),
+            text: self.text(),
+            job: self.job,
+            machine: self.machine,
+            files: self.written,
+            not_done,
+        }
     }
 
-    fn axes_json(&self) -> Vec<Value> {
-        let of = |(k, axis): (usize, &Named)| {
-            let (low, high) = self.ends(k);
-            let shown = |x: f64| units::shown(axis.dimension, x);
-            let travel = axis.travel.map(|(low, high)| json!({ "low": shown(low), "high": shown(high) }));
-            json!({
-                "name": axis.name, "unit": units::symbol(axis.dimension),
-                "low": shown(low), "high": shown(high), "travel": travel,
-            })
-        };
-        self.axes.iter().enumerate().map(of).collect()
+    fn extent(&self, k: usize, axis: &Named) -> AxisExtent {
+        let (low, high) = self.ends(k);
+        let [low, high] = [low, high].map(|x| finite(units::shown(axis.dimension, x)));
+        let travel = axis.travel.map(|travel| Travel::new(axis.dimension, travel));
+        AxisExtent { name: axis.name.clone(), unit: UnitSymbol::of(axis.dimension), low, high, travel }
     }
 
-    fn positions_json(&self) -> Vec<Value> {
-        let shown = |values: &[f64], of: &[Named]| -> Vec<f64> {
-            of.iter().zip(values).map(|(named, x)| units::shown(named.dimension, *x)).collect()
+    fn position(&self, at: &[f64], posture: &Posture) -> AxisPosition {
+        let shown = |values: &[f64], of: &[Named]| -> Vec<Option<f64>> {
+            of.iter().zip(values).map(|(named, x)| finite(units::shown(named.dimension, *x))).collect()
         };
-        let of = |(position, posture): (&Vec<f64>, &Posture)| {
-            json!({
-                "motions": shown(position, &self.motions),
-                "axes": shown(&posture.axes, &self.axes),
-                "status": posture.outcome.word(),
-                "missing": posture.missing.map(|missing| json!({ "direction": missing.direction, "by": missing.by })),
-            })
-        };
-        self.positions.iter().zip(&self.line).map(of).collect()
+        AxisPosition {
+            motions: shown(at, &self.motions),
+            axes: shown(&posture.axes, &self.axes),
+            status: posture.outcome.word(),
+            missing: posture.missing.map(|missing| MissingMotion { direction: missing.direction, by: missing.by }),
+        }
     }
 
-    fn series_json(&self, series: &Series) -> Value {
-        let coefficients = self.axes.iter().zip(&series.axes).map(|(axis, c)| (axis.name.clone(), json!(c)));
+    fn polynomials(&self, series: &Series) -> AxisPolynomials {
         let bounds = series.remainders.as_ref();
         let not_proven_at = |unproven: &Unproven| units::shown(self.motions[0].dimension, unproven.at);
-        json!({
-            "reference": series.about,
-            "order": series.order,
-            "units": "mm and rad per rad (mm) of the motion to the power",
-            "coefficients": coefficients.collect::<Map<String, Value>>(),
-            "deviation_mm_by_order": series.deviations,
-            "remainders": {
-                "units": "mm and rad",
-                "seen": self.by_axis(&series.seen),
-                "proven": bounds.ok().map(|bounds| self.by_axis(bounds)),
-                "not_proven_at": bounds.err().map(not_proven_at),
+        AxisPolynomials {
+            reference: series.about,
+            order: series.order,
+            units: "mm and rad per rad (mm) of the motion to the power",
+            coefficients: self.by_axis(series.axes.iter().cloned()),
+            deviation_mm_by_order: series.deviations.clone(),
+            remainders: Remainders {
+                units: "mm and rad",
+                seen: self.by_axis(series.seen.iter().copied()),
+                proven: bounds.ok().map(|bounds| self.by_axis(bounds.iter().copied())),
+                not_proven_at: bounds.err().map(not_proven_at),
             },
-        })
+        }
     }
 
-    fn rates_json(&self, rates: &Rates) -> Value {
+    fn axis_rates(&self, rates: &Rates) -> AxisRates {
         let shown = |axis: usize, of: [f64; 3]| of.map(|rate| units::shown(self.axes[axis].dimension, rate));
         let row = |row: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
             row.iter().enumerate().map(|(axis, of)| shown(axis, *of)).collect()
         };
-        let most = self.axes.iter().enumerate().map(|(k, axis)| (axis.name.clone(), json!(shown(k, rates.most(k)))));
-        json!({
-            "seconds": rates.seconds,
-            "units": "velocity, acceleration, jerk: mm or deg per s, s^2, s^3",
-            "most": most.collect::<Map<String, Value>>(),
-            "positions": rates.rows.iter().map(row).collect::<Vec<_>>(),
-        })
+        AxisRates {
+            seconds: rates.seconds,
+            units: "velocity, acceleration, jerk: mm or deg per s, s^2, s^3",
+            most: self.by_axis((0..self.axes.len()).map(|k| shown(k, rates.most(k)))),
+            positions: rates.rows.iter().map(row).collect(),
+        }
     }
+}
+
+/// A number that is one.
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
 }
 
 /// Why there is no bound.

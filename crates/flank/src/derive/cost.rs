@@ -1,25 +1,14 @@
-//! `flank derive --cost`
-
-use std::fmt::Write;
+//! How many operations the equations of a point take.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_expr::{Cost, Expr};
+use flank_expr::Expr;
 use flank_solver::System;
-use serde_json::{Value, json};
 
-/// How often each of the three stages is done.
-const STAGES: [&str; 3] = ["per spec", "per motion value", "per point"];
+use crate::derive::result::{Operations, SurfaceCost};
 
-/// Operations of residuals with Jacobian at a point of a surface.
-pub(crate) struct SurfaceCost<'j> {
-    name: &'j str,
-    residuals: usize,
-    stages: [Cost; 3],
-}
-
-impl<'j> SurfaceCost<'j> {
+impl SurfaceCost {
     /// None if no points are asked for.
-    pub(crate) fn of(job: &Job<'_>, surface: &'j GeneratedSurface<'_>) -> Option<SurfaceCost<'j>> {
+    pub(super) fn of(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Option<SurfaceCost> {
         let sample = surface.sample.as_ref()?;
         let parts = &surface.surface;
         let graph = sample.coordinates[0].value.graph();
@@ -37,45 +26,12 @@ impl<'j> SurfaceCost<'j> {
         let bound = graph.substitute(&residuals, &job.bindings());
         let system = System::new(&bound, &parts.unknowns, &targets).ok()?;
         let costs = system.tape().cost(&stages.collect::<Vec<usize>>());
-        Some(SurfaceCost { name: &surface.name, residuals: residuals.len(), stages: [of_spec, costs[1], costs[2]] })
-    }
-
-    /// A table: a line for each stage.
-    pub(crate) fn text(&self) -> String {
-        let n = self.residuals;
-        let mut out = format!("surface {}: {n} equations with their {n} x {n} Jacobian\n", self.name);
-        let _ = writeln!(
-            out,
-            "  {:<17} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6}",
-            "", "+ -", "*", "/", "sqrt", "sincos", "other"
-        );
-        for (stage, cost) in STAGES.iter().zip(&self.stages) {
-            let Cost { additions, multiplications, divisions, roots, sincos, others } = cost;
-            let _ = writeln!(
-                out,
-                "  {stage:<17} {additions:>6} {multiplications:>6} {divisions:>6} {roots:>6} {sincos:>7} {others:>6}"
-            );
-        }
-        out
-    }
-
-    pub(crate) fn json(&self) -> Value {
-        let stage = |cost: &Cost| {
-            json!({
-                "additions": cost.additions,
-                "multiplications": cost.multiplications,
-                "divisions": cost.divisions,
-                "square_roots": cost.roots,
-                "sincos": cost.sincos,
-                "others": cost.others,
-            })
-        };
-        json!({
-            "name": self.name,
-            "equations": self.residuals,
-            "per_spec": stage(&self.stages[0]),
-            "per_motion_value": stage(&self.stages[1]),
-            "per_point": stage(&self.stages[2]),
+        Some(SurfaceCost {
+            name: surface.name.clone(),
+            equations: residuals.len(),
+            per_spec: Operations::from(&of_spec),
+            per_motion_value: Operations::from(&costs[1]),
+            per_point: Operations::from(&costs[2]),
         })
     }
 }

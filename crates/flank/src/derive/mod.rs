@@ -1,6 +1,7 @@
 //! `flank derive`
 
-pub(crate) mod cost;
+mod cost;
+pub(crate) mod result;
 
 use std::path::Path;
 
@@ -8,13 +9,12 @@ use flank_chain_dsl::{Job, derivation, equations};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Graph, Style};
 use flank_solver::Explicit;
-use serde_json::{Value, json};
 
 use crate::convert::{self, Conversion};
-use crate::derive::cost::SurfaceCost;
-use crate::project::answer::Answer;
-use crate::project::failure::{self, Failure};
+use crate::derive::result::{CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost};
+use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::{self, NotDone};
 use crate::project::requests::{DeriveRequest, Session};
 use crate::project::spec;
 
@@ -22,7 +22,7 @@ use crate::project::spec;
 ///
 /// # Errors
 /// What is wrong with the specs, or why there is no closed form.
-pub fn derive(request: &DeriveRequest, monitor: &dyn Monitor) -> Result<Answer, Failure> {
+pub fn derive(request: &DeriveRequest, monitor: &dyn Monitor) -> Result<DeriveResult, Failure> {
     let graph = Graph::new();
     if let Some(to) = &request.to {
         return carried(&graph, to, (request, monitor));
@@ -31,8 +31,8 @@ pub fn derive(request: &DeriveRequest, monitor: &dyn Monitor) -> Result<Answer, 
     if request.cost {
         return cost(&jobs);
     }
-    let pages = jobs.iter().map(|job| (job.name.as_str(), derivation(job, style(request))));
-    Ok(shown(&pages.collect::<Vec<_>>(), String::new(), request))
+    let page = |job: &Job<'_>| DerivationPage { job: job.name.clone(), page: derivation(job, style(request)) };
+    Ok(shown(jobs.iter().map(page).collect(), Vec::new(), request))
 }
 
 fn style(request: &DeriveRequest) -> Style {
@@ -40,19 +40,20 @@ fn style(request: &DeriveRequest) -> Style {
 }
 
 /// The page of each job, with what was not solved on the way.
-fn shown(pages: &[(&str, String)], not_done: String, request: &DeriveRequest) -> Answer {
-    let style = if request.latex { "latex" } else { "text" };
-    let jobs: Vec<Value> = pages.iter().map(|(job, page)| json!({ "job": job, "page": page })).collect();
-    let document = json!({ "schema": "flank.derivation/2", "style": style, "jobs": jobs, "not_done": failure::not_done(&not_done) });
-    let text = pages.iter().map(|(_, page)| page.as_str()).collect();
-    Answer { text, document, notes: String::new(), not_done }
+fn shown(jobs: Vec<DerivationPage>, not_done: Vec<NotDone>, request: &DeriveRequest) -> DeriveResult {
+    let style = if request.latex { FormulaStyle::Latex } else { FormulaStyle::Text };
+    DeriveResult::Derivation(Derivation { style, jobs, not_done })
 }
 
 /// Postures from which the elbow of a closed form is taken.
 const POSITIONS: u32 = 101;
 
 /// The axes of another machine in closed form.
-fn carried(graph: &Graph, to: &Path, (request, monitor): (&DeriveRequest, &dyn Monitor)) -> Result<Answer, Failure> {
+fn carried(
+    graph: &Graph,
+    to: &Path,
+    (request, monitor): (&DeriveRequest, &dyn Monitor),
+) -> Result<DeriveResult, Failure> {
     let session = Session::new(request.onto.evaluator, monitor);
     let carry = |job: &Job<'_>, target: &Job<'_>| {
         let carried = Conversion::new(graph, job, target, (&request.onto, session), POSITIONS)?;
@@ -60,14 +61,14 @@ fn carried(graph: &Graph, to: &Path, (request, monitor): (&DeriveRequest, &dyn M
         let unsolved = carried.source.unsolved.clone();
         let axes = match carried.failures() {
             told if told.is_empty() => carried.explicit(true),
-            told => Err(told.trim_end().to_string()),
+            told => Err(not_done::lines(&told).trim_end().to_string()),
         };
-        let axes = axes.map_err(|reason| format!("{unsolved}{reason}"))?;
+        let axes = axes.map_err(|reason| format!("{}{reason}", not_done::lines(&unsolved)))?;
         Ok((explicit_page(job, &carried, &axes, style(request)), unsolved))
     };
     let (_, job, target) = convert::compiled(graph, &request.jobs, to, monitor)?;
     let (page, unsolved) = carry(&job, &target).map_err(|reason: String| Failure::from(reason).unsolved())?;
-    Ok(shown(&[(&job.name, page)], unsolved, request))
+    Ok(shown(vec![DerivationPage { job: job.name.clone(), page }], unsolved, request))
 }
 
 /// The given vectors, then the axes from them.
@@ -99,19 +100,17 @@ fn explicit_page<'g>(job: &Job<'g>, carried: &Conversion<'_, 'g>, explicit: &Exp
 }
 
 /// How many operations the points of each sampled surface take.
-fn cost(jobs: &[Job<'_>]) -> Result<Answer, Failure> {
-    let (mut all, mut text): (Vec<Value>, String) = (Vec::new(), String::new());
-    for job in jobs {
-        let costs: Vec<SurfaceCost<'_>> =
+fn cost(jobs: &[Job<'_>]) -> Result<DeriveResult, Failure> {
+    let of = |job: &Job<'_>| {
+        let surfaces: Vec<SurfaceCost> =
             job.surfaces.iter().filter_map(|surface| SurfaceCost::of(job, surface)).collect();
-        if costs.is_empty() {
-            return Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into());
+        match surfaces.is_empty() {
+            true => {
+                Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into())
+            }
+            false => Ok(JobCost { job: job.name.clone(), surfaces }),
         }
-        let surfaces: Vec<Value> = costs.iter().map(SurfaceCost::json).collect();
-        all.push(json!({ "job": job.name, "surfaces": surfaces }));
-        text += &format!("job {}\n", job.name);
-        costs.iter().for_each(|cost| text += &format!("\n{}", cost.text()));
-    }
-    let document = json!({ "schema": "flank.cost/2", "jobs": all });
-    Ok(Answer { text, document, notes: String::new(), not_done: String::new() })
+    };
+    let jobs = jobs.iter().map(of).collect::<Result<_, Failure>>()?;
+    Ok(DeriveResult::Cost(CostTable { jobs }))
 }

@@ -4,9 +4,9 @@ use flank_chain_dsl::Job;
 use flank_draw::{PictureOptions, field_maps, topography};
 use flank_export::Dataset;
 
+use super::result::PlotResult;
 use super::{Drawing, options, told, with_origin, write};
 use crate::compare::deviation::{self, DeviationMap};
-use crate::project::answer::Answer;
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::requests::{PlotRequest, Session};
@@ -39,14 +39,14 @@ pub(super) fn plot(
     from: &str,
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<Answer, String> {
+) -> Result<PlotResult, String> {
     let surface = deviation::find(jobs, &request.surface[0])?;
     let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, session)?;
     let asked = if request.what.is_empty() { &KINDS[..] } else { &request.what };
     let drawings: Vec<(PlotKind, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, request, origin, &options(request)))).collect();
     let written = write(&drawings, &surface.whole_name(), (request, session), origin)?;
-    Ok(told(&surface.job.name, &written, measured.missing(), request))
+    Ok(told(&surface.job.name, written, measured.missing(), request))
 }
 
 fn draw(

@@ -4,6 +4,7 @@ mod comparison;
 mod machine;
 mod maps;
 mod motion;
+pub(crate) mod result;
 mod section;
 mod subject;
 mod tool;
@@ -12,22 +13,22 @@ use flank_chain_dsl::Job;
 use flank_draw::{Picture, PictureOptions};
 use flank_export::{Dataset, Header};
 use flank_expr::Graph;
-use serde_json::json;
 
 use crate::compare::deviation;
-use crate::project::answer::Answer;
 use crate::project::choices::PlotKind;
-use crate::project::failure::{self, Failure};
+use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::NotDone;
 use crate::project::requests::{PlotRequest, Session};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve;
 use crate::solve::cut;
-use crate::solve::table::{self, aligned};
+use crate::solve::table;
 use crate::solve::travel;
+use result::{PlotResult, WrittenPicture};
 pub(crate) use subject::Subject;
 
 /// Without `--what` the first of these that fit are drawn, and no more than so many.
@@ -50,13 +51,6 @@ pub(crate) struct Drawing {
     pub(crate) shows: String,
 }
 
-/// A picture with its files.
-struct Written {
-    what: PlotKind,
-    shows: String,
-    files: Vec<String>,
-}
-
 /// Why a kind of picture cannot be drawn.
 pub(crate) type Unfit = String;
 
@@ -64,7 +58,7 @@ pub(crate) type Unfit = String;
 ///
 /// # Errors
 /// What is wrong with the spec; what does not go together, or does not fit the job; that a file cannot be written.
-pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(PlotResult)) -> Result<(), Failure> {
     if !request.of.is_empty() && !request.what.contains(&PlotKind::Sensitivity) {
         return Err(Failure::Request("--of names what `sensitivity` shows, and that is not among --what".to_string()));
     }
@@ -92,7 +86,7 @@ fn plot_jobs(
     jobs: &[Job<'_>],
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<Vec<Answer>, String> {
+) -> Result<Vec<PlotResult>, String> {
     let named = request.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
@@ -117,10 +111,10 @@ fn plot_jobs(
         let drawings = drawings(&subject, request)
             .map_err(|(what, why)| solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request)))?;
         let written = write(&drawings, &job.name, (request, session), origin)?;
-        let not_done = table::failures(job, &subject.solved)
-            + &cut::unknown(&subject.solved)
-            + &travel::beyond(job, &subject.solved);
-        Ok(told(&job.name, &written, not_done, request))
+        let mut not_done = table::failures(job, &subject.solved);
+        not_done.extend(cut::unknown(&subject.solved));
+        not_done.extend(travel::beyond(job, &subject.solved));
+        Ok(told(&job.name, written, not_done, request))
     };
     meant.iter().map(plot).collect()
 }
@@ -198,7 +192,7 @@ fn write(
     stem: &str,
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<Vec<Written>, String> {
+) -> Result<Vec<WrittenPicture>, String> {
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     let mut written = Vec::new();
     for (what, drawing) in drawings {
@@ -207,24 +201,14 @@ fn write(
             folder.picture_as(&format!("{stem}.{}", what.name()), &drawing.picture, *format)?;
         }
         let files = folder.written[before..].to_vec();
-        written.push(Written { what: *what, shows: drawing.shows.clone(), files });
+        written.push(WrittenPicture { what: *what, shows: drawing.shows.clone(), files });
     }
     folder.finish()?;
     Ok(written)
 }
 
 /// What was written, with what was not done.
-fn told(job: &str, written: &[Written], not_done: String, request: &PlotRequest) -> Answer {
-    let spec = shown_path(request.jobs.file());
-    let pictures: Vec<serde_json::Value> =
-        written.iter().map(|one| json!({ "what": one.what.name(), "shows": one.shows, "files": one.files })).collect();
+fn told(job: &str, pictures: Vec<WrittenPicture>, not_done: Vec<NotDone>, request: &PlotRequest) -> PlotResult {
     let (width, height) = request.size;
-    let document = json!({
-        "schema": "flank.plot/2", "job": job, "spec": spec, "width": width, "height": height, "pictures": pictures,
-        "not_done": failure::not_done(&not_done),
-    });
-    let rows: Vec<[String; 3]> =
-        written.iter().map(|one| [one.what.name().to_string(), one.shows.clone(), one.files.join(", ")]).collect();
-    let text = format!("job {job} ({spec})\n\n{}", aligned(&rows, ""));
-    Answer { text, document, notes: String::new(), not_done }
+    PlotResult { job: job.to_string(), spec: shown_path(request.jobs.file()), width, height, pictures, not_done }
 }

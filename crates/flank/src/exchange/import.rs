@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use flank_chain_dsl::{Files, Sources, read_other_file};
 use roxmltree::{Document, Node, ParsingOptions};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::{templates, xml_cost};
@@ -53,14 +54,15 @@ pub enum Coefficients {
     Polynomial,
 }
 
-/// A job made of a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+/// A job made of a machine summary, of `flank import`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.import/2")]
 pub struct Imported {
-    /// The file, as it was named, with forward slashes.
+    /// The REXS file, as it was given, with forward slashes.
     pub file: String,
-    /// The name of the job.
+    /// Its name.
     pub job: String,
-    /// The job in the language.
+    /// Of the job's file.
     pub text: String,
     /// What is doubtful about the file.
     #[serde(skip)]

@@ -9,6 +9,7 @@ use flank_chain_dsl::{FileId, closest, compile_file};
 use flank_export::{FileSet, WriteError, make_folder};
 use flank_expr::Graph;
 use include_dir::{Dir, include_dir};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::changes::{Changes, Given};
@@ -19,8 +20,9 @@ use crate::project::shown_path;
 /// The library as it was when the program was built.
 static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 
-/// What the library has to start from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+/// The jobs of the library that one can start from, of `flank new` without a name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.templates/2")]
 pub struct TemplateList {
     /// The jobs that stand alone in their file, by name.
     pub templates: Vec<Template>,
@@ -29,7 +31,7 @@ pub struct TemplateList {
 }
 
 /// A job to start from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Template {
     /// Its name.
     pub name: String,
@@ -38,7 +40,7 @@ pub struct Template {
 }
 
 /// A file of the library with several jobs.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Together {
     /// Its path in the repository.
     pub file: String,
@@ -79,14 +81,15 @@ pub struct TemplateParameter {
     pub default: String,
 }
 
-/// A job that was made.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+/// A job made of one in the library, of `flank new`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.new/2")]
 pub struct JobFromTemplate {
     /// Its name.
     pub job: String,
     /// Its file.
     pub spec: String,
-    /// All files that were written, its own first.
+    /// Files written, in their order: its own first.
     pub files: Vec<String>,
 }
 

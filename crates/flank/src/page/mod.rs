@@ -3,6 +3,7 @@
 mod functions;
 mod machines;
 mod parameters;
+pub(crate) mod result;
 mod surfaces;
 mod thin;
 mod tools;
@@ -11,12 +12,12 @@ use flank_chain_dsl::{Job, RangedVariable};
 use flank_draw::{PageMotion, Scene};
 use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
-use serde_json::{Value, json};
 
-use crate::project::answer::Answer;
-use crate::project::failure::{Failure, not_done};
+use crate::page::result::ViewResult;
+use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::Session;
 use crate::project::requests::ViewRequest;
 use crate::project::spec;
@@ -39,7 +40,7 @@ const BEYOND: f64 = 0.15;
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
-pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(ViewResult)) -> Result<(), Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
@@ -55,23 +56,22 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(A
         let tally = tally(&solved, &mut dataset.patches);
         let mut not_done = table::failures(job, &solved);
         let written = if tally.solved == 0 {
-            not_done += &format!("no page: job `{}` has no point to show\n", job.name);
+            let message = format!("no page: job `{}` has no point to show", job.name);
+            not_done.push(NotDone::new(NotDoneKind::NoPage, &job.name, message));
             None
         } else {
             Some(write(&graph, job, &solved, &dataset, (request, &origin, monitor))?)
         };
-        let text = written.as_ref().map_or_else(String::new, |written| written.text(job, &tally));
-        let document = as_json(job, &tally, written.as_ref(), &not_done);
-        each(Answer { text, document, notes: String::new(), not_done });
+        each(ViewResult {
+            job: job.name.clone(),
+            asked: tally.asked,
+            solved: tally.solved,
+            bytes: written.as_ref().map(|page| page.bytes),
+            files: written.into_iter().map(|page| page.file).collect(),
+            not_done,
+        });
     }
     Ok(())
-}
-
-fn as_json(job: &Job<'_>, tally: &Tally, written: Option<&Written>, told: &str) -> Value {
-    json!({
-        "schema": "flank.view/2", "job": job.name, "asked": tally.asked, "solved": tally.solved,
-        "files": written.iter().map(|page| &page.file).collect::<Vec<_>>(), "bytes": written.map(|page| page.bytes), "not_done": not_done(told),
-    })
 }
 
 /// Of all points of the surfaces, however few of them the page shows, and of the lines on them; the patches of surfaces come first and
@@ -187,12 +187,5 @@ fn page_motion(motion: &RangedVariable<'_>, solved: &[Solved<'_, '_>]) -> PageMo
         limits: [motion.low, motion.high],
         start: start.unwrap_or(0.5 * (motion.low + motion.high)),
         is_count: motion.is_count,
-    }
-}
-
-impl Written {
-    fn text(&self, job: &Job<'_>, tally: &Tally) -> String {
-        let kilobytes = self.bytes.div_ceil(1000);
-        format!("job {}: {} of {} points\nwrote {}, {kilobytes} kB\n", job.name, tally.solved, tally.asked, self.file)
     }
 }

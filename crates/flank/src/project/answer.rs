@@ -1,23 +1,29 @@
-//! What becomes of an operation.
+//! What all results of operations have in common.
 
-use serde_json::Value;
+use std::fmt::Display;
 
-/// What an operation has to say of one job, or of all that was asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
-    /// For people.
-    pub text: String,
-    /// For programs: a document with its `schema`, what was not done among it.
-    pub document: Value,
+use serde::Serialize;
+
+use crate::project::not_done::{self, NotDone};
+
+/// The result of an operation on jobs. Its [`Display`] is the text for people, its serialisation a document with its `schema`
+/// ([`schema`](crate::schema) has what it says).
+pub trait Answer: Display + Serialize + Send + Sync + 'static {
+    /// What was asked for and not done; empty if everything was.
+    fn not_done(&self) -> &[NotDone];
+
     /// What is to be known beside it, in whole lines.
-    pub notes: String,
-    /// What was asked for and not done, and why, in whole lines; empty if everything was.
-    pub not_done: String,
-}
+    fn notes(&self) -> &str {
+        ""
+    }
 
-impl Answer {
     /// Whether everything was done that was asked for.
-    pub fn is_complete(&self) -> bool {
-        self.not_done.is_empty()
+    fn is_complete(&self) -> bool {
+        self.not_done().is_empty()
+    }
+
+    /// What was not done as people read it, in whole lines.
+    fn not_done_text(&self) -> String {
+        not_done::lines(self.not_done())
     }
 }

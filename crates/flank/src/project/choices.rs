@@ -4,6 +4,8 @@ use std::path::Path;
 
 use flank_export::Dialect;
 use flank_expr::Language;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// A format of files with points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +66,8 @@ impl ReportFormat {
 }
 
 /// A kind of picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum PlotKind {
     /// All surfaces in space, with axis, frame and dimensions.
     Surface,

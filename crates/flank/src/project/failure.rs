@@ -1,7 +1,6 @@
 //! Why an operation did not do what it was asked for.
 
 use flank_export::{FileError, FolderError};
-use serde_json::{Value, json};
 
 use crate::project::findings::Findings;
 
@@ -41,28 +40,5 @@ impl Failure {
             Failure::Input(reason) => Failure::Unsolved(reason),
             other => other,
         }
-    }
-}
-
-/// What was asked for and not done as messages: one for each line that is not indented.
-pub(crate) fn not_done(told: &str) -> Value {
-    let mut messages: Vec<String> = Vec::new();
-    for line in told.lines() {
-        match messages.last_mut() {
-            Some(last) if line.starts_with(' ') => *last += &format!("\n{line}"),
-            _ => messages.push(line.to_string()),
-        }
-    }
-    json!(messages)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indented_lines_belong_to_their_message() {
-        assert_eq!(not_done("a: 1\n  of b\n  of c\nd\n"), json!(["a: 1\n  of b\n  of c", "d"]));
-        assert_eq!(not_done(""), json!([]));
     }
 }

@@ -1,6 +1,7 @@
 //! What is found in the texts of a spec, as data.
 
 use flank_chain_dsl::{Diagnostic, Sources, Span, render};
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use crate::project::shown_path;
@@ -13,7 +14,7 @@ pub struct Findings {
 }
 
 /// How bad a finding is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Nothing can be derived from the text.
@@ -23,9 +24,9 @@ pub enum Severity {
 }
 
 /// One finding.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Finding {
-    /// `E0301`; each code has a page ([`error_page`](crate::error_page)).
+    /// Such as E0301; `flank explain` has a page about each.
     pub code: &'static str,
     /// Error or warning.
     pub severity: Severity,
@@ -33,14 +34,14 @@ pub struct Finding {
     pub message: String,
     /// Where it is.
     pub place: Place,
-    /// Other places that belong to it.
+    /// Further places that it speaks of.
     pub notes: Vec<Note>,
-    /// A way out.
+    /// What to write instead.
     pub help: Option<String>,
 }
 
 /// Another place that belongs to a finding.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Note {
     /// Where it is.
     pub place: Place,
@@ -49,7 +50,7 @@ pub struct Note {
 }
 
 /// A place in a text.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Place {
     /// The file, as it was named, with forward slashes.
     pub file: String,

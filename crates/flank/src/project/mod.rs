@@ -6,6 +6,8 @@ pub(crate) mod failure;
 pub(crate) mod files;
 pub(crate) mod findings;
 pub(crate) mod monitor;
+pub(crate) mod not_done;
+pub(crate) mod quantity;
 pub(crate) mod requests;
 pub(crate) mod spec;
 pub(crate) mod units;

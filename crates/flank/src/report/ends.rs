@@ -2,9 +2,9 @@
 
 use flank_chain_dsl::Dimension;
 use flank_draw::{Block, Column, ReportSection, Tone};
-use serde_json::{Value, json};
 
 use super::Findings;
+use super::result::ReportedLine;
 use crate::project::units;
 use crate::solve::limits::Line;
 use crate::solve::secondary;
@@ -69,9 +69,9 @@ fn lines(found: &[&Line<'_, '_>]) -> Block {
         before = &line.surface.name;
         let several = if line.several > 1 { format!("; the longest of {}", line.several) } else { String::new() };
         let points = format!("{} points along {}{several}", line.summary.solved(), line.along);
-        let reached = line.row().reached();
+        let reached = line.told().ranges_reached;
         let ends = |k: usize| {
-            let ends = reached[k].ends.map(|(low, high)| [low, high].map(|x| units::digits(Dimension::LENGTH, x, 4)));
+            let ends = reached[k].ends().map(|(low, high)| [low, high].map(|x| units::digits(Dimension::LENGTH, x, 4)));
             ends.map_or(String::new(), |[low, high]| if low == high { low } else { format!("{low} .. {high}") })
         };
         rows.push(vec![name, kind(line), points, ends(0), ends(1)]);
@@ -109,14 +109,13 @@ fn kind(line: &Line<'_, '_>) -> String {
     }
 }
 
-pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
-    let entry = |line: &Line<'_, '_>| {
-        let mut told = line.row().json();
-        told.insert("surface".to_string(), json!(line.surface.name));
-        told.insert("kind".to_string(), json!(line.kind));
-        told.insert("along".to_string(), json!(line.along));
-        told.insert("several".to_string(), json!(line.several));
-        Value::Object(told)
+pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<ReportedLine> {
+    let entry = |line: &Line<'_, '_>| ReportedLine {
+        summary: line.told(),
+        surface: line.surface.name.clone(),
+        kind: line.kind,
+        along: line.along.clone(),
+        several: line.several,
     };
     findings.lines.iter().map(entry).collect()
 }

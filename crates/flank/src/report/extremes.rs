@@ -3,9 +3,9 @@
 use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_draw::{Block, Column, ReportSection};
 use flank_export::{Values, fixed};
-use serde_json::{Value, json};
 
 use super::Findings;
+use super::result::ExtremeCurvature;
 use crate::project::units;
 use crate::solve::table::Solved;
 
@@ -88,16 +88,16 @@ fn coordinates(findings: &Findings<'_, '_>) -> Block {
     for solved in findings.solved() {
         let mut name = solved.surface.name.clone();
         // radius and z come first
-        let reached = solved.row().reached();
+        let reached = solved.told().ranges_reached;
         let sought = [None; 2].into_iter().chain(solved.surface.unknowns.iter().map(Some));
         for (reached, sought) in reached.iter().zip(sought) {
-            let Some((low, high)) = reached.ends else { continue };
+            let Some((low, high)) = reached.ends() else { continue };
             rows.push(vec![
                 std::mem::take(&mut name),
                 reached.name.clone(),
                 units::digits(Dimension::NUMBER, low, 4),
                 units::digits(Dimension::NUMBER, high, 4),
-                reached.unit.to_string(),
+                reached.unit.symbol().to_string(),
                 sought.map_or(String::new(), range),
             ]);
         }
@@ -111,13 +111,11 @@ fn range(of: &RangedVariable<'_>) -> String {
 }
 
 /// The extreme curvatures of a surface.
-pub(super) fn json(solved: &Solved<'_, '_>) -> Value {
+pub(super) fn told(solved: &Solved<'_, '_>) -> Vec<ExtremeCurvature> {
     let entry = |bend: Bend| {
         let [i, j] = solved.place(bend.at);
-        json!({
-            "name": bend.field, "unit": "1/mm", "value": bend.value, "i": i, "j": j,
-            "position": solved.points[bend.at].position,
-        })
+        let position = solved.points[bend.at].position;
+        ExtremeCurvature { name: bend.field, unit: "1/mm", value: bend.value, i, j, position }
     };
     bends(solved).into_iter().map(entry).collect()
 }

@@ -3,6 +3,7 @@
 use flank_draw::{Block, Column, ReportSection};
 
 use super::Findings;
+use crate::solve::result::ParameterInfluence;
 use crate::solve::table::Solved;
 
 /// Parameters of each surface that are listed.
@@ -30,10 +31,11 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
 }
 
 fn rows(solved: &Solved<'_, '_>) -> Vec<Vec<String>> {
-    let ranked = solved.sensitivity.as_ref().map_or(Vec::new(), |sensitivity| sensitivity.rows());
+    let ranked = solved.sensitivity.as_ref().map_or(Vec::new(), |sensitivity| sensitivity.table().parameters);
     let mut name = solved.surface.name.clone();
-    let row = |[parameter, _, _, _, change, rms, largest]: [String; 7]| {
+    let row = |influence: &ParameterInfluence| {
+        let [parameter, _, _, _, change, rms, largest] = influence.cells();
         vec![std::mem::take(&mut name), parameter, change, rms, largest]
     };
-    ranked.into_iter().take(SHOWN).map(row).collect()
+    ranked.iter().take(SHOWN).map(row).collect()
 }

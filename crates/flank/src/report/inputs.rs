@@ -3,9 +3,10 @@
 use flank_chain_dsl::{Dimension, Parameter, RangedVariable, ValueSource};
 use flank_draw::{Block, Column, ReportSection};
 use flank_export::fixed;
-use serde_json::{Value, json};
 
 use super::Findings;
+use super::result::{Input, InputSource, PassedMotion};
+use crate::project::quantity::UnitSymbol;
 use crate::project::units;
 use crate::solve::travel;
 
@@ -165,34 +166,45 @@ fn number(dimension: Dimension, value: f64) -> String {
     format!("{}{power}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
 
-pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
+pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<Input> {
     let entry = |parameter: &Parameter<'_>| {
         let (low, high) = parameter.range.unzip();
         let shown = |value: f64| units::shown(parameter.dimension, value);
-        let (by, definition) = match &parameter.given_by {
-            ValueSource::Definition(name) => ("definition", Some(name)),
-            ValueSource::Job => ("job", None),
-            ValueSource::Caller => ("caller", None),
+        let (given_by, definition) = match &parameter.given_by {
+            ValueSource::Definition(name) => (InputSource::Definition, Some(name.clone())),
+            ValueSource::Job => (InputSource::Job, None),
+            ValueSource::Caller => (InputSource::Caller, None),
         };
-        json!({
-            "name": parameter.name, "written": written(findings, parameter), "value": shown(parameter.value),
-            "unit": unit(parameter.dimension), "low": low.map(shown), "high": high.map(shown), "is_count": parameter.is_count,
-            "given_by": by, "definition": definition, "meaning": joined(&parameter.doc),
-        })
+        Input {
+            name: parameter.name.clone(),
+            written: written(findings, parameter),
+            value: shown(parameter.value),
+            unit: unit(parameter.dimension),
+            low: low.map(shown),
+            high: high.map(shown),
+            is_count: parameter.is_count,
+            given_by,
+            definition,
+            meaning: joined(&parameter.doc),
+        }
     };
     findings.job.parameters.iter().map(entry).collect()
 }
 
-pub(super) fn motions_json(findings: &Findings<'_, '_>) -> Value {
+pub(super) fn motions_told(findings: &Findings<'_, '_>) -> Vec<PassedMotion> {
     let reached = travel::reached(findings.job, findings.solved());
     let entry = |motion: &RangedVariable<'_>| {
         let found = reached.iter().find(|(variable, _)| *variable == motion.variable).map(|(_, range)| range);
         let shown = |value: f64| units::shown(motion.dimension, value);
-        json!({
-            "name": motion.name, "unit": units::symbol(motion.dimension), "is_count": motion.is_count,
-            "low": shown(motion.low), "high": shown(motion.high),
-            "passed_low": found.map(|range| shown(range.low)), "passed_high": found.map(|range| shown(range.high)),
-        })
+        PassedMotion {
+            name: motion.name.clone(),
+            unit: UnitSymbol::of(motion.dimension),
+            is_count: motion.is_count,
+            low: shown(motion.low),
+            high: shown(motion.high),
+            passed_low: found.map(|range| shown(range.low)),
+            passed_high: found.map(|range| shown(range.high)),
+        }
     };
     findings.job.motions.iter().map(entry).collect()
 }

@@ -3,10 +3,11 @@
 use flank_chain_dsl::{Axis, Dimension, Frame, LawSource, Machine, described};
 use flank_draw::{Block, Column, ReportSection};
 use flank_expr::{Expr, Style};
-use serde_json::{Value, json};
 
+use super::result::{AxisKind, AxisSource, BuiltAxis, BuiltFrame, BuiltMachine};
 use super::{Findings, pictures};
 use crate::project::choices::PlotKind;
+use crate::project::quantity::{Travel, UnitSymbol};
 use crate::project::units;
 use crate::solve::travel::Run;
 
@@ -152,29 +153,42 @@ fn chains(findings: &Findings<'_, '_>) -> Block {
     Block::Table("Chains: each frame is seen from the one on its left".to_string(), columns, rows)
 }
 
-pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
+pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<BuiltMachine> {
     let machine = |machine: &Machine<'_>| {
-        let frame = |frame: &Frame<'_>| {
-            let parent = frame.parent.map(|at| machine.frames[at].name.clone());
-            json!({ "name": frame.name, "parent": parent, "transforms": transforms(frame) })
+        let frame = |frame: &Frame<'_>| BuiltFrame {
+            name: frame.name.clone(),
+            parent: frame.parent.map(|at| machine.frames[at].name.clone()),
+            transforms: transforms(frame),
         };
-        let axes: Vec<Value> = runs(findings, machine).map(|run| axis_json(findings, run)).collect();
-        json!({
-            "name": machine.name, "definition": machine.definition,
-            "frames": machine.frames.iter().map(frame).collect::<Vec<_>>(), "axes": axes,
-        })
+        BuiltMachine {
+            name: machine.name.clone(),
+            definition: machine.definition.clone(),
+            frames: machine.frames.iter().map(frame).collect(),
+            axes: runs(findings, machine).map(|run| axis_told(findings, run)).collect(),
+        }
     };
     findings.job.machines.iter().map(machine).collect()
 }
 
-fn axis_json(findings: &Findings<'_, '_>, run: &Run<'_, '_>) -> Value {
+fn axis_told(findings: &Findings<'_, '_>, run: &Run<'_, '_>) -> BuiltAxis {
     let axis = run.axis;
     let shown = |value: f64| units::shown(axis.dimension, value);
-    let travel = axis.travel.map(|(low, high)| json!({ "low": shown(low), "high": shown(high) }));
-    json!({
-        "name": axis.name, "address": axis.word.address, "kind": kind(axis), "source": source(axis), "law": text(axis.law), "law_with_values": with_values(findings, axis),
-        "unit": units::symbol(axis.dimension),
-        "low": run.over.map(|range| shown(range.low)), "high": run.over.map(|range| shown(range.high)),
-        "travel": travel, "beyond": run.is_beyond(),
-    })
+    BuiltAxis {
+        name: axis.name.clone(),
+        address: axis.word.address.clone(),
+        kind: if units::is_angle(axis.dimension) { AxisKind::Rotary } else { AxisKind::Linear },
+        source: match axis.source {
+            LawSource::Driven => AxisSource::Driven,
+            LawSource::Fixed => AxisSource::Fixed,
+            LawSource::Coupled => AxisSource::Coupled,
+            LawSource::Free => AxisSource::Free,
+        },
+        law: text(axis.law),
+        law_with_values: with_values(findings, axis),
+        unit: UnitSymbol::of(axis.dimension),
+        low: run.over.map(|range| shown(range.low)),
+        high: run.over.map(|range| shown(range.high)),
+        travel: axis.travel.map(|travel| Travel::new(axis.dimension, travel)),
+        beyond: run.is_beyond(),
+    }
 }

@@ -7,22 +7,22 @@ mod influences;
 mod inputs;
 mod machines;
 mod pictures;
+pub(crate) mod result;
 mod results;
 mod target;
 mod unchecked;
 
 use flank_chain_dsl::{Job, Sources};
-use flank_draw::{Block, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_draw::{Block, Figure, PictureOptions, Report as Document, ReportSection, Tone};
 use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
-use serde_json::{Value, json};
 
 use crate::draw::{self, Drawing, Subject};
-use crate::project::answer::Answer;
 use crate::project::choices::PlotKind;
-use crate::project::failure::{Failure, not_done};
+use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::not_done::NotDone;
 use crate::project::requests::{ReportRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -35,13 +35,18 @@ use crate::solve::stream;
 use crate::solve::table::{self, Solved};
 use crate::solve::travel::{self, Run};
 use crate::solve::{self, SolveOptions};
+use result::{NotChecked, ReportResult, ReportedPicture};
 use target::Target;
 
 /// Writes all that is known of jobs, a page each. `each` is given what is to be said of each job.
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
-pub fn report(request: &ReportRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+pub fn report(
+    request: &ReportRequest,
+    monitor: &dyn Monitor,
+    each: &mut dyn FnMut(ReportResult),
+) -> Result<(), Failure> {
     Target::check(request)?;
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
@@ -52,8 +57,7 @@ pub fn report(request: &ReportRequest, monitor: &dyn Monitor, each: &mut dyn FnM
         let findings = Findings::of(job, &compilation.sources, &origin, (request, monitor))?;
         let document = findings.document();
         let written = target.write(&findings, &document, monitor)?;
-        let (text, document) = (findings.told(&written), findings.json(&document, &written));
-        each(Answer { text, document, notes: String::new(), not_done: findings.failures() });
+        each(findings.result(&document, written));
     }
     Ok(())
 }
@@ -128,14 +132,15 @@ impl<'j, 'g> Findings<'j, 'g> {
         &self.subject.solved
     }
 
-    /// What was asked for and not found; empty if nothing.
-    fn failures(&self) -> String {
+    /// What was asked for and not found.
+    fn failures(&self) -> Vec<NotDone> {
         let solved = self.solved();
-        table::failures(self.job, solved)
-            + &cut::unknown(solved)
-            + &certify::failed(solved)
-            + &travel::beyond(self.job, solved)
-            + &step::missed(&self.faces, self.request.step.unwrap_or_default())
+        let mut all = table::failures(self.job, solved);
+        all.extend(cut::unknown(solved));
+        all.extend(certify::failed(solved));
+        all.extend(travel::beyond(self.job, solved));
+        all.extend(step::missed(&self.faces, self.request.step.unwrap_or_default()));
+        all
     }
 
     /// Points that were asked for, and of them those that were solved.
@@ -203,31 +208,39 @@ impl<'j, 'g> Findings<'j, 'g> {
         if undercut > 0 {
             more.push(format!("{undercut} points are cut away by the tool that generates them (undercut)"));
         }
-        more.extend(travel::beyond(self.job, self.solved()).lines().map(str::to_string));
-        more.extend(required::text(self.solved()).lines().filter(|line| !line.starts_with(' ')).map(str::to_string));
+        more.extend(travel::beyond(self.job, self.solved()).into_iter().map(|axis| axis.message));
+        more.extend(required::missed(self.solved()).iter().map(|missed| missed.headline().to_string()));
         Block::Notice(if is_good { Tone::Good } else { Tone::Bad }, text, more)
     }
 
-    fn json(&self, document: &Document, written: &[String]) -> Value {
+    fn result(&self, document: &Document, files: Vec<String>) -> ReportResult {
         let header = &self.header;
         let unchecked = unchecked::of(self);
-        let [asked, found] = self.counts();
-        let pictures: Vec<Value> =
-            document.figures().map(|figure| json!({ "name": figure.name, "shows": figure.caption })).collect();
-        json!({
-            "schema": "flank.report/2", "job": self.job.name, "doc": self.job.doc, "spec": header.spec,
-            "spec_hash": header.spec_hash, "program": header.program, "command": conventions::command(self),
-            "date": self.request.date, "tolerance": TOLERANCE, "asked": asked, "solved": found,
-            "undercut": ends::undercut_count(self),
-            "inputs": inputs::json(self), "motions": inputs::motions_json(self), "machines": machines::json(self),
-            "surfaces": results::json(self), "lines": ends::json(self), "faces": step::json(&self.faces), "pictures": pictures,
-            "not_checked": { "of_this_job": unchecked.of_job, "by_no_report": unchecked.always },
-            "conventions": conventions::sentences(self), "files": written, "not_done": not_done(&self.failures()),
-        })
-    }
-
-    fn told(&self, written: &[String]) -> String {
-        let [asked, found] = self.counts();
-        format!("job {}: {found} of {asked} points\nwrote {}\n", self.job.name, written.join(", "))
+        let [asked, solved] = self.counts();
+        let picture = |figure: &Figure| ReportedPicture { name: figure.name.clone(), shows: figure.caption.clone() };
+        ReportResult {
+            job: self.job.name.clone(),
+            doc: self.job.doc.clone(),
+            spec: header.spec.clone(),
+            spec_hash: header.spec_hash.clone(),
+            program: header.program.clone(),
+            command: conventions::command(self),
+            date: self.request.date.clone(),
+            tolerance: TOLERANCE,
+            asked,
+            solved,
+            undercut: ends::undercut_count(self),
+            inputs: inputs::told(self),
+            motions: inputs::motions_told(self),
+            machines: machines::told(self),
+            surfaces: results::told(self),
+            lines: ends::told(self),
+            faces: step::results(&self.faces),
+            pictures: document.figures().map(picture).collect(),
+            not_checked: NotChecked { of_this_job: unchecked.of_job, by_no_report: unchecked.always },
+            conventions: conventions::sentences(self),
+            files,
+            not_done: self.failures(),
+        }
     }
 }

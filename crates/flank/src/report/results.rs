@@ -3,16 +3,18 @@
 use flank_chain_dsl::{GeneratedSurface, Process};
 use flank_draw::{Block, Column, ReportSection, Tone};
 use flank_export::Face;
-use serde_json::{Value, json};
 
 use super::Findings;
-use crate::project::units;
+use super::result::{GeneratingProcess, ReportedSurface, SampledGrid};
+use crate::project::not_done;
+use crate::project::quantity::NamedValue;
 use crate::solve::branches;
 use crate::solve::certify;
 use crate::solve::reasons;
 use crate::solve::required;
+use crate::solve::result::Certified;
 use crate::solve::step::Smooth;
-use crate::solve::table::{self, Solved};
+use crate::solve::table::Solved;
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
     let mut blocks = vec![surfaces(findings)];
@@ -77,7 +79,7 @@ fn missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Option<Block
 
 fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let told = reasons::counted(findings.job, solved);
-    let branches = branches::ambiguous(std::slice::from_ref(solved));
+    let branches = not_done::lines(&branches::ambiguous(std::slice::from_ref(solved)));
     told.into_iter().chain(branches.lines().map(|line| line.trim().to_string())).collect()
 }
 
@@ -111,8 +113,8 @@ fn roots(findings: &Findings<'_, '_>) -> Block {
 
 fn certificates(findings: &Findings<'_, '_>) -> Option<Block> {
     let row = |solved: &Solved<'_, '_>| {
-        let (count, largest) = certify::proven(solved)?;
-        let largest = largest.map_or("\u{2013}".to_string(), |radius| format!("{radius:.1e}"));
+        let Certified { points: count, radius } = certify::proven(solved)?;
+        let largest = radius.map_or("\u{2013}".to_string(), |radius| format!("{radius:.1e}"));
         let open = solved.summary.solved() - count;
         Some(vec![solved.surface.name.clone(), count.to_string(), open.to_string(), largest])
     };
@@ -157,7 +159,7 @@ fn faces(findings: &Findings<'_, '_>) -> Option<Block> {
 /// What the samples require of their points, and where it does not hold.
 fn requirements(findings: &Findings<'_, '_>) -> Option<Block> {
     let limits = findings.solved().iter().flat_map(|solved| &solved.sample.limits).count();
-    let broken = required::text(findings.solved());
+    let broken = not_done::lines(&required::missed(findings.solved()));
     match (limits, broken.is_empty()) {
         (0, _) => None,
         (count, true) => {
@@ -172,31 +174,30 @@ fn requirements(findings: &Findings<'_, '_>) -> Option<Block> {
     }
 }
 
-/// What `flank solve --json` tells of a surface, and how it was made.
-pub(super) fn json(findings: &Findings<'_, '_>) -> Value {
+/// What `flank solve` tells of each surface, and how it was made.
+pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<ReportedSurface> {
     let entry = |solved: &Solved<'_, '_>| {
-        let mut told = table::surface_json(solved);
-        let surface = solved.surface;
-        let certified = certify::proven(solved).map(|(points, radius)| json!({ "points": points, "radius": radius }));
-        let path: Vec<&str> = surface.generation.path.iter().map(|(frame, _)| frame.as_str()).collect();
-        told["process"] = json!(process(surface.generation.process));
-        told["tool"] = json!(surface.generation.tool_name);
-        told["chain"] = json!(path);
-        told["grid"] = json!({ "counts": solved.sample.counts, "labels": solved.sample.labels });
-        told["anchor"] = json!(anchor(solved));
-        told["reasons"] = json!(reasons::counted(findings.job, solved));
-        told["certified"] = json!(certified);
-        told["curvature"] = super::extremes::json(solved);
-        told
+        let generation = &solved.surface.generation;
+        ReportedSurface {
+            solved: solved.result(),
+            process: match generation.process {
+                Process::Envelope => GeneratingProcess::Envelope,
+                Process::Sweep => GeneratingProcess::Sweep,
+                Process::Move => GeneratingProcess::Copy,
+            },
+            tool: generation.tool_name.clone(),
+            chain: generation.path.iter().map(|(frame, _)| frame.clone()).collect(),
+            grid: SampledGrid { counts: solved.sample.counts, labels: solved.sample.labels.clone() },
+            anchor: anchor(solved),
+            reasons: reasons::counted(findings.job, solved),
+            certified: certify::proven(solved),
+            curvature: super::extremes::told(solved),
+        }
     };
     findings.solved().iter().map(entry).collect()
 }
 
-fn anchor(solved: &Solved<'_, '_>) -> Vec<Value> {
-    let entry = |k: usize| {
-        let of = &solved.sample.coordinates[k];
-        let value = units::shown(of.dimension, solved.effort.anchor[k]);
-        json!({ "name": of.name, "unit": units::symbol(of.dimension), "value": value })
-    };
-    [0, 1].map(entry).to_vec()
+fn anchor(solved: &Solved<'_, '_>) -> Vec<NamedValue> {
+    let coordinates = solved.sample.coordinates.iter().zip(solved.effort.anchor);
+    coordinates.map(|(of, value)| NamedValue::new(&of.name, of.dimension, value)).collect()
 }

@@ -62,8 +62,9 @@ fn not_certified(findings: &Findings<'_, '_>) -> Option<String> {
     if !findings.is_certified {
         return Some("The points are not certified: --certify proves each of them.".to_string());
     }
-    let is_open =
-        |solved: &Solved<'_, '_>| certify::proven(solved).is_some_and(|(count, _)| count < solved.summary.solved());
+    let is_open = |solved: &Solved<'_, '_>| {
+        certify::proven(solved).is_some_and(|certified| certified.points < solved.summary.solved())
+    };
     those(findings, is_open).map(|names| format!("Some solved points could not be certified, on {names}."))
 }
 

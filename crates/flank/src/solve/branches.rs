@@ -6,17 +6,19 @@ use flank_chain_dsl::{Coordinate, Dimension, GeneratedSurface, RangedVariable};
 use flank_export::fixed;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
-use serde_json::{Value, json};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::quantity::{Extent, NamedValue};
 use crate::project::units;
 use crate::solve::keep::{self, Keep};
+use crate::solve::result::{BranchPoint, BranchSearch, OpenRanges};
 use crate::solve::table::Solved;
 
 /// Of values in messages.
 const DECIMALS: usize = 4;
 
-/// The branches of each surface whose ranges hold several that qualify, with what would select each; empty if none does.
-pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> String {
+/// The branches of each surface whose ranges hold several that qualify, with what would select each.
+pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
     let refused = |solved: &&Solved<'_, '_>| solved.summary.count(Outcome::Ambiguous) > 0;
     let told = |solved: &Solved<'_, '_>| {
         let places = &solved.effort.places;
@@ -35,7 +37,7 @@ fn proposed(solved: &Solved<'_, '_>) -> Vec<Keep> {
 }
 
 /// The branches of a surface at a place, with what would select each.
-pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], at: &str) -> String {
+pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], at: &str) -> NotDone {
     let keeps = keep::proposed(&surface.unknowns, branches, &[]);
     listed_with(surface, branches, &keeps, at, |_| String::new())
 }
@@ -47,7 +49,7 @@ fn listed_with(
     keeps: &[Keep],
     at: &str,
     place: impl Fn(usize) -> String,
-) -> String {
+) -> NotDone {
     let (name, unknowns) = (&surface.name, &surface.unknowns);
     let mut out = format!("ambiguous: the ranges of {name} hold {} branches at {at}\n", branches.len());
     for (number, branch) in branches.iter().enumerate() {
@@ -64,7 +66,7 @@ fn listed_with(
         "  which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges. All are of the same tool: where it leaves \
          parts of several on the work, as with run-out, make a surface of each and `trim` them by each other"
     );
-    out
+    NotDone::new(NotDoneKind::Ambiguous, name, out)
 }
 
 /// The branches that the sample's `keep` does not take, where it takes none, with the values that it looks at, and what it takes:
@@ -215,34 +217,32 @@ fn what_decides(solved: &Solved<'_, '_>) -> String {
 }
 
 /// The branches of a surface at the place where they were looked for, and what is not excluded there.
-pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+pub(crate) fn search(solved: &Solved<'_, '_>) -> BranchSearch {
     let unknowns = &solved.surface.unknowns;
-    let range = |of: &RangedVariable<'_>, low: f64, high: f64| {
-        let [low, high] = [low, high].map(|x| units::shown(of.dimension, x));
-        json!({ "name": of.name, "unit": units::symbol(of.dimension), "low": low, "high": high })
-    };
     let keeps = proposed(solved);
     let branch = |branch: &SurfacePoint, keep: Option<&Keep>| {
         let values = unknowns.iter().zip(&branch.unknowns);
-        let values: Vec<Value> = values
-            .map(|(of, x)| json!({ "name": of.name, "unit": units::symbol(of.dimension), "value": units::shown(of.dimension, *x) }))
-            .collect();
-        json!({ "unknowns": values, "position": branch.position, "keep": keep.map(Keep::json) })
+        BranchPoint {
+            unknowns: values.map(|(of, x)| NamedValue::new(&of.name, of.dimension, *x)).collect(),
+            position: branch.position,
+            keep: keep.map(Keep::extent),
+        }
     };
     let found = solved.branches.iter().enumerate().map(|(number, root)| branch(root, keeps.get(number)));
     let elsewhere = solved.elsewhere.iter();
     let elsewhere = elsewhere.map(|(root, beside)| branch(root, selecting(solved, root, beside.as_ref()).as_ref()));
     let sides = |ranges: &[Range]| {
-        unknowns.iter().zip(ranges).map(|(of, side)| range(of, side.low, side.high)).collect::<Vec<Value>>()
+        let sides = unknowns.iter().zip(ranges);
+        sides.map(|(of, side)| Extent::new(&of.name, of.dimension, Some((side.low, side.high)))).collect()
     };
     let undecided = solved.effort.undecided.iter();
-    let undecided = undecided.map(|doubt| json!({ "ranges": sides(&doubt.ranges), "why": why(doubt.why) }));
-    json!({
-        "boxes": solved.effort.boxes,
-        "found": found.collect::<Vec<Value>>(),
-        "undecided": undecided.collect::<Vec<Value>>(),
-        "elsewhere": elsewhere.collect::<Vec<Value>>(),
-    })
+    let undecided = undecided.map(|doubt| OpenRanges { ranges: sides(&doubt.ranges), why: why(doubt.why) });
+    BranchSearch {
+        boxes: solved.effort.boxes,
+        found: found.collect(),
+        undecided: undecided.collect(),
+        elsewhere: elsewhere.collect(),
+    }
 }
 
 /// The place at which branches were looked for.

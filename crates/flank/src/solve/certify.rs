@@ -1,10 +1,10 @@
 //! `flank solve --certify`: proofs that points are where they are said to be.
 
-use std::fmt::Write;
-
 use flank_export::{Field, Values};
 use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::solve::result::Certified;
 use crate::solve::table::Solved;
 
 /// The radius of each solved point of a surface, in mm; `None` where nothing could be proven.
@@ -28,24 +28,14 @@ pub(crate) fn field(radii: &[Option<f64>]) -> Field {
 }
 
 /// How many points of a surface are certified, and the largest radius, mm; `None` if that was not asked for.
-pub(crate) fn proven(solved: &Solved<'_, '_>) -> Option<(usize, Option<f64>)> {
+pub(crate) fn proven(solved: &Solved<'_, '_>) -> Option<Certified> {
     let radii = solved.radii.as_ref()?.iter().copied().flatten();
-    Some((radii.clone().count(), radii.reduce(f64::max)))
+    Some(Certified { points: radii.clone().count(), radius: radii.reduce(f64::max) })
 }
 
-/// The largest radius of each surface that was certified; empty if none was.
-pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
-    for (solved, (count, largest)) in solved.iter().filter_map(|solved| Some((solved, proven(solved)?))) {
-        let largest = largest.map_or(String::new(), |radius| format!(", each within {radius:.1e} mm"));
-        let _ = writeln!(out, "certified: {count} points of {}{largest}", solved.surface.name);
-    }
-    if out.is_empty() { out } else { format!("\n{out}") }
-}
-
-/// The solved points that could not be certified, by row and column, from 0; empty if all could.
-pub(crate) fn failed(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
+/// The solved points that could not be certified, by row and column, from 0.
+pub(crate) fn failed(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+    let mut all = Vec::new();
     for (solved, radii) in solved.iter().filter_map(|solved| Some((solved, solved.radii.as_ref()?))) {
         let columns = solved.sample.counts[1];
         let open = |(index, (point, radius)): (usize, (&SurfacePoint, &Option<f64>))| {
@@ -55,8 +45,9 @@ pub(crate) fn failed(solved: &[Solved<'_, '_>]) -> String {
         let open: Vec<String> = solved.points.iter().zip(radii).enumerate().filter_map(open).collect();
         if !open.is_empty() {
             let (name, count) = (&solved.surface.name, open.len());
-            let _ = writeln!(out, "not certified: {count} points of {name} (row, column): {}", open.join(" "));
+            let message = format!("not certified: {count} points of {name} (row, column): {}", open.join(" "));
+            all.push(NotDone::new(NotDoneKind::NotCertified, name, message));
         }
     }
-    out
+    all
 }

@@ -6,10 +6,11 @@ use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Values};
 use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
-use serde_json::{Value, json};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::requests::Session;
 use crate::solve::ranges;
+use crate::solve::result::CutHeights;
 use crate::solve::table::Solved;
 
 /// What the numbers are, for pictures.
@@ -86,21 +87,17 @@ impl Cut {
         }
     }
 
-    fn json(&self) -> Value {
+    pub(crate) fn heights(&self) -> CutHeights {
         let Tally { asked, unreached, undecided } = self.tally();
-        json!({ "by": self.by, "known": asked - unreached - undecided, "unreached": unreached, "undecided": undecided })
+        CutHeights { by: self.by.clone(), known: asked - unreached - undecided, unreached, undecided }
     }
 }
 
-/// The same for a summary in JSON; `null` if the job does not ask for it.
-pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
-    solved.cut.as_ref().map_or(Value::Null, Cut::json)
-}
-
-/// At how many points it is not known what is left, and why; empty if there are none.
-pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
+/// At how many points it is not known what is left, and why.
+pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+    let mut all = Vec::new();
     for solved in solved {
+        let mut out = String::new();
         let Some(cut) = &solved.cut else { continue };
         let Tally { asked, unreached, undecided } = cut.tally();
         let (missing, name) = (unreached + undecided, &solved.surface.name);
@@ -117,8 +114,9 @@ pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> String {
                 "  {undecided}: undecided, an edge that may be the lowest could not be followed, or too many would have to be tried"
             );
         }
+        all.push(NotDone::new(NotDoneKind::HeightUnknown, name, out));
     }
-    out
+    all
 }
 
 /// A map of what is left on each surface that is cut, named by the surface.

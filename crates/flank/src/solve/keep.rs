@@ -2,8 +2,8 @@
 
 use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_solver::SurfacePoint;
-use serde_json::{Value, json};
 
+use crate::project::quantity::Extent;
 use crate::project::units;
 
 /// Of values in messages.
@@ -37,9 +37,8 @@ impl Keep {
         format!("keep {}: {} .. {}", self.of, value(self.low), value(self.high))
     }
 
-    pub(crate) fn json(&self) -> Value {
-        let [low, high] = [self.low, self.high].map(|x| units::shown(self.dimension, x));
-        json!({ "name": self.of, "unit": units::symbol(self.dimension), "low": low, "high": high })
+    pub(crate) fn extent(&self) -> Extent {
+        Extent::new(&self.of, self.dimension, Some((self.low, self.high)))
     }
 }
 

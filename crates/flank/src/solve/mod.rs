@@ -10,6 +10,7 @@ pub(crate) mod limits;
 pub(crate) mod reach;
 pub(crate) mod reasons;
 pub(crate) mod required;
+pub(crate) mod result;
 pub(crate) mod secondary;
 pub(crate) mod sensitivity;
 pub(crate) mod starts;
@@ -30,13 +31,13 @@ use flank_solver::{CutBy, GridReport, Range, Solution, SurfacePoint, SurfaceProb
 
 use self::cut::Cut;
 use self::limits::Line;
+use self::result::{LineResult, SolveResult};
 use self::secondary::Positions;
 use self::sensitivity::Sensitivity;
 use self::step::Smooth;
 use self::stream::{Kept, Streamed};
 use self::summary::Summary;
-use self::table::{Solved, Table};
-use crate::project::answer::Answer;
+use self::table::Solved;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -44,12 +45,13 @@ use crate::project::requests::{JobSelection, Session, SolveRequest};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
+use crate::project::units;
 
 /// Solves the surfaces of jobs, and writes their points and a picture. `each` is given what is to be said of each job.
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
-pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(Answer)) -> Result<(), Failure> {
+pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(SolveResult)) -> Result<(), Failure> {
     let start = Instant::now();
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
@@ -73,7 +75,7 @@ fn solved_job(
     (request, origin): (&SolveRequest, &Origin),
     wanted: SolveOptions<'_>,
     start: Instant,
-) -> Result<Answer, Failure> {
+) -> Result<SolveResult, Failure> {
     stream::check_kept(job, &job.surfaces, wanted)?;
     let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
     let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
@@ -87,22 +89,31 @@ fn solved_job(
     let faces: Vec<Smooth> = tolerance
         .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
         .collect();
-    let written = write_files(&dataset, &solved, &faces, (&job.name, wanted.session), (request, origin))?;
-    let not_done = table::failures(job, &solved)
-        + &cut::unknown(&solved)
-        + &certify::failed(&solved)
-        + &travel::beyond(job, &solved)
-        + &step::missed(&faces, request.step.unwrap_or_default());
-    let spec = shown_path(request.jobs.file());
-    let table = Table { job, spec, solved: &solved, lines: &lines, faces: &faces, written, since: start };
-    let notes = format!("{}\n", table.time())
+    let files = write_files(&dataset, &solved, &faces, (&job.name, wanted.session), (request, origin))?;
+    drop(dataset);
+    let mut not_done = table::failures(job, &solved);
+    not_done.extend(cut::unknown(&solved));
+    not_done.extend(certify::failed(&solved));
+    not_done.extend(travel::beyond(job, &solved));
+    not_done.extend(step::missed(&faces, request.step.unwrap_or_default()));
+    let points: usize = solved.iter().map(|solved| solved.summary.asked).sum();
+    let notes = format!("{} in {:.0} ms\n", units::counted(points, "point"), start.elapsed().as_secs_f64() * 1e3)
         + &branches::begun(&solved)
         + &branches::undecided(&solved)
         + &branches::elsewhere(&solved)
         + &limits::untold(&lines)
         + &step::told(&faces)
         + &secondary::given_up(&solved);
-    Ok(Answer { text: table.text(), document: table.json(&not_done), notes, not_done })
+    Ok(SolveResult {
+        job: job.name.clone(),
+        spec: shown_path(request.jobs.file()),
+        surfaces: solved.iter().map(Solved::result_with_points).collect(),
+        lines: lines.iter().map(|line| LineResult::new(line)).collect(),
+        faces: step::results(&faces),
+        files,
+        not_done,
+        notes,
+    })
 }
 
 /// The jobs that ask for points; of the others it is told that they do not.
@@ -230,7 +241,7 @@ impl<'g> Found<'_, 'g> {
         let is_ambiguous = self.points.iter().any(|point| point.outcome == flank_solver::Outcome::Ambiguous);
         is_ambiguous.then(|| {
             let at = branches::place(&sample.coordinates, self.effort.anchor);
-            branches::listed(surface, &self.problem.points(&self.effort.branches), &at).trim_end().to_string()
+            branches::listed(surface, &self.problem.points(&self.effort.branches), &at).message
         })
     }
 }

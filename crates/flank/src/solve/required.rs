@@ -3,10 +3,12 @@
 use flank_chain_dsl::PointRequirement;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::Outcome;
-use serde_json::{Value, json};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::quantity::UnitSymbol;
 use crate::project::units;
 use crate::solve::reasons;
+use crate::solve::result::MissedRequirement;
 use crate::solve::summary::Places;
 use crate::solve::table::Solved;
 
@@ -43,8 +45,8 @@ fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j PointRequirement<'g>) -
     (found.places.count > 0).then_some(found)
 }
 
-/// The messages of all that does not hold; empty if everything does.
-pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
+/// All that does not hold.
+pub(crate) fn missed(all: &[Solved<'_, '_>]) -> Vec<NotDone> {
     let of_surface = |solved: &Solved<'_, '_>| {
         let line = |broken: &Broken<'_, '_>| {
             let of = &broken.limit.of;
@@ -52,31 +54,36 @@ pub(crate) fn text(all: &[Solved<'_, '_>]) -> String {
             let [low, high, least, most] =
                 [low, high, broken.ends[0], broken.ends[1]].map(|x| units::digits(of.dimension, x, 4));
             let unit = units::symbol(of.dimension);
-            format!(
+            let name = &solved.surface.name;
+            let message = format!(
                 "not as required: {} of {} points of {}: {}\n  {}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
                 broken.places.count,
                 solved.points.len(),
-                solved.surface.name,
+                name,
                 broken.limit.message,
                 of.name,
                 reasons::whereabouts(solved, &broken.places),
-            )
-            .trim_end()
-            .to_string()
-                + "\n"
+            );
+            NotDone::new(NotDoneKind::NotAsRequired, name, message)
         };
-        broken(solved).iter().map(line).collect::<String>()
+        broken(solved).iter().map(line).collect::<Vec<NotDone>>()
     };
-    all.iter().map(of_surface).collect()
+    all.iter().flat_map(of_surface).collect()
 }
 
 /// The same as data.
-pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
+pub(crate) fn told(solved: &Solved<'_, '_>) -> Vec<MissedRequirement> {
     let entry = |broken: Broken<'_, '_>| {
         let of = &broken.limit.of;
-        let [least, most] = broken.ends.map(|x| units::digits(of.dimension, x, 4));
-        json!({ "message": broken.limit.message, "name": of.name, "unit": units::symbol(of.dimension),
-            "points": broken.places.count, "low": least, "high": most })
+        let [low, high] = broken.ends.map(|x| Some(units::shown(of.dimension, x)).filter(|x| x.is_finite()));
+        MissedRequirement {
+            message: broken.limit.message.clone(),
+            name: of.name.clone(),
+            unit: UnitSymbol::of(of.dimension),
+            points: broken.places.count,
+            low,
+            high,
+        }
     };
     broken(solved).into_iter().map(entry).collect()
 }

@@ -3,10 +3,10 @@
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, ToolShape};
 use flank_expr::geometry::Surface;
 use flank_solver::{Judged, Range, SecondaryCutting, SurfacePoint, Unseen};
-use serde_json::{Value, json};
 
 use crate::project::units;
 use crate::solve::ranges;
+use crate::solve::result::ToolPositions;
 use crate::solve::table::Solved;
 
 /// Which positions of its tool the points of a surface were held against, and what was found.
@@ -83,6 +83,15 @@ impl Positions {
         }
     }
 
+    /// The same as data.
+    pub(crate) fn told(&self) -> ToolPositions {
+        let deepest = match self {
+            Positions::Seen(judged) => judged.deepest.iter().map(|(_, depth)| *depth).reduce(f64::max),
+            Positions::Unseen(_) => None,
+        };
+        ToolPositions { not_looked_at: self.unseen(), deepest }
+    }
+
     /// How deep the deepest of the points that a surface's tool cuts away lies in the steel, mm, as far as that was seen.
     fn deepest(&self, by: usize) -> Option<f64> {
         let Positions::Seen(judged) = self else { return None };
@@ -114,13 +123,4 @@ pub(crate) fn given_up(solved: &[Solved<'_, '_>]) -> String {
         format!("note: whether the tool cuts points of {name} away in another position was not looked at: {what}\n")
     });
     told.collect()
-}
-
-/// Which positions the points of a surface were held against, as data.
-pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
-    let deepest = match &solved.positions {
-        Positions::Seen(judged) => judged.deepest.iter().map(|(_, depth)| *depth).reduce(f64::max),
-        Positions::Unseen(_) => None,
-    };
-    json!({ "not_looked_at": solved.positions.unseen(), "deepest": deepest })
 }

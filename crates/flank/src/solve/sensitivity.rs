@@ -7,10 +7,10 @@ use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Known, Values};
 use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
 use rayon::prelude::*;
-use serde_json::{Value, json};
 
 use crate::project::units;
-use crate::solve::table::{Solved, aligned};
+use crate::solve::result::{ParameterInfluence, SensitivityTable, UsualChange};
+use crate::solve::table::Solved;
 
 /// Points that threads share out at once: of no more all influences are held.
 const TOGETHER: usize = 4096;
@@ -122,18 +122,16 @@ impl Influence {
         (format!("{size:.2e}").parse().unwrap_or(size), unit)
     }
 
-    fn usual_change_text(&self) -> String {
+    fn told(&self) -> ParameterInfluence {
         let (size, unit) = self.shown_usual_change();
-        format!("{size} {unit}").trim_end().to_string()
-    }
-
-    fn json(&self) -> Value {
-        let (size, unit) = self.shown_usual_change();
-        let [rms, largest] = [self.rms, self.largest].map(|um| self.by_usual_change(um));
-        json!({
-            "name": self.parameter, "unit": self.unit, "rms": self.rms, "largest": self.largest,
-            "usual_change": { "size": size, "unit": unit, "rms_um": rms, "largest_um": largest },
-        })
+        let [rms_um, largest_um] = [self.rms, self.largest].map(|um| self.by_usual_change(um));
+        ParameterInfluence {
+            name: self.parameter.clone(),
+            unit: self.unit.clone(),
+            rms: self.rms,
+            largest: self.largest,
+            usual_change: UsualChange { size, unit, rms_um, largest_um },
+        }
     }
 }
 
@@ -176,17 +174,6 @@ impl Sensitivity {
         ranked
     }
 
-    /// Of each of them: its name, root of the mean square and largest normal displacement, the unit of these; its usual change, and
-    /// how far that moves the surface, in um: root of the mean square, and largest.
-    pub(crate) fn rows(&self) -> Vec<[String; 7]> {
-        let row = |one: &Influence| {
-            let [rms, largest] = [one.rms, one.largest].map(micrometres);
-            let [by_rms, by_largest] = [one.rms, one.largest].map(|um| micrometres(one.by_usual_change(um)));
-            [one.parameter.clone(), rms, largest, one.unit.clone(), one.usual_change_text(), by_rms, by_largest]
-        };
-        self.ranked().into_iter().map(|(_, one)| row(one)).collect()
-    }
-
     /// The largest normal displacement by a parameter, mm per mm, radian or 1 of it; `None` for counts.
     pub(crate) fn most(&self, parameter: &str) -> Option<f64> {
         let of = self.influences.iter().find(|one| one.parameter == parameter)?;
@@ -208,47 +195,14 @@ impl Sensitivity {
         self.influences.iter().filter(|one| self.points > 0 && !one.moves()).map(|one| one.parameter.as_str()).collect()
     }
 
-    fn json(&self) -> Value {
-        let ranked: Vec<Value> = self.ranked().iter().map(|(_, one)| one.json()).collect();
-        let (points, idle) = (self.points, self.idle());
-        json!({ "points": points, "parameters": ranked, "no_influence": idle, "counts": self.counts })
-    }
-}
-
-/// Tables of all surfaces, ranked; empty if nobody has asked for them.
-pub(crate) fn text(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
-    for solved in solved {
-        let Some(sensitivity) = &solved.sensitivity else { continue };
-        let name = &solved.surface.name;
-        if sensitivity.points == 0 {
-            out += &format!("\n{name}: no point is solved, so it cannot be said what moves it\n");
-            continue;
-        }
-        let head = ["parameter", "rms", "largest", "normal displacement in", "usual change", "rms um", "largest um"];
-        let mut rows = vec![head.map(String::from)];
-        rows.extend(sensitivity.rows());
-        out += &format!("\n{name} moves, over {} points, with\n{}", sensitivity.points, aligned(&rows, "<>><<>>"));
-        let idle = sensitivity.idle();
-        if !idle.is_empty() {
-            let of = sensitivity.influences.len();
-            out += &format!("  no influence, {} of {of}: {}\n", idle.len(), idle.join(", "));
-        }
-        if !sensitivity.counts.is_empty() {
-            out += &format!("  counts, which do not change by little: {}\n", sensitivity.counts.join(", "));
+    pub(crate) fn table(&self) -> SensitivityTable {
+        SensitivityTable {
+            points: self.points,
+            parameters: self.ranked().iter().map(|(_, one)| one.told()).collect(),
+            no_influence: self.idle().into_iter().map(str::to_string).collect(),
+            counts: self.counts.clone(),
         }
     }
-    out
-}
-
-/// Four digits behind the point, fewer where there would be only zeros.
-fn micrometres(um: f64) -> String {
-    if um < 1e-3 { format!("{um:.1e}") } else { format!("{um:.4}") }
-}
-
-/// The same for a summary in JSON; `null` if nobody has asked for it.
-pub(crate) fn json(solved: &Solved<'_, '_>) -> Value {
-    solved.sensitivity.as_ref().map_or(Value::Null, Sensitivity::json)
 }
 
 /// A picture of each surface: maps of the parameters that move it most. Named by the surface.

@@ -1,11 +1,10 @@
 //! Surfaces as smooth faces of a STEP file, through as many points as it takes.
 
-use std::fmt::Write;
-
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
-use serde_json::{Value, json};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::solve::result::SmoothFace;
 use crate::solve::table::Solved;
 use crate::solve::{self, SolveOptions};
 
@@ -95,30 +94,32 @@ pub(crate) fn told(faces: &[Smooth]) -> String {
 }
 
 /// The same as data.
-pub(crate) fn json(faces: &[Smooth]) -> Value {
+pub(crate) fn results(faces: &[Smooth]) -> Vec<SmoothFace> {
     let entry = |smooth: &Smooth| {
         let face = smooth.face.as_ref();
         let off = face.and_then(|face| face.deviation);
-        json!({
-            "surface": smooth.name, "counts": face.map(Face::counts), "left_out": face.map(|face| face.left_out),
-            "deviation": off.map(|off| off.largest), "measured": off.map(|off| off.points),
-            "not_measured": off.map(|off| off.missing), "is_exact_enough": smooth.is_exact_enough,
-        })
+        SmoothFace {
+            surface: smooth.name.clone(),
+            counts: face.map(Face::counts),
+            left_out: face.map(|face| face.left_out),
+            deviation: off.map(|off| off.largest),
+            measured: off.map(|off| off.points),
+            not_measured: off.map(|off| off.missing),
+            is_exact_enough: smooth.is_exact_enough,
+        }
     };
     faces.iter().map(entry).collect()
 }
 
 /// Which faces are not there, or not as exact as asked for.
-pub(crate) fn missed(faces: &[Smooth], tolerance: f64) -> String {
-    let mut out = String::new();
-    for smooth in faces.iter().filter(|smooth| !smooth.is_exact_enough) {
+pub(crate) fn missed(faces: &[Smooth], tolerance: f64) -> Vec<NotDone> {
+    let missed = |smooth: &Smooth| {
         let name = &smooth.name;
-        let _ = match smooth.face {
-            Some(_) => {
-                writeln!(out, "the STEP file's face of `{name}` is not shown to be within {} um", 1e3 * tolerance)
-            }
-            None => writeln!(out, "`{name}` has no face for a STEP file: no two rows and columns of it are solved"),
+        let message = match smooth.face {
+            Some(_) => format!("the STEP file's face of `{name}` is not shown to be within {} um", 1e3 * tolerance),
+            None => format!("`{name}` has no face for a STEP file: no two rows and columns of it are solved"),
         };
-    }
-    out
+        NotDone::new(NotDoneKind::FaceInexact, name, message)
+    };
+    faces.iter().filter(|smooth| !smooth.is_exact_enough).map(missed).collect()
 }

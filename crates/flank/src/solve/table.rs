@@ -1,28 +1,23 @@
 //! What `flank solve` tells of its work.
 
-use std::fmt::Write;
-use std::time::Instant;
-
-use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_export::{Field, fixed};
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
+use flank_export::Field;
 use flank_expr::Expr;
 use flank_solver::{GridReport, SurfacePoint};
-use serde_json::{Map, Value, json};
 
-use crate::project::failure::not_done;
-use crate::project::units;
+use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::quantity::Extent;
 use crate::solve::branches;
 use crate::solve::certify;
-use crate::solve::cut;
 use crate::solve::cut::Cut;
 use crate::solve::fields;
 use crate::solve::limits::Line;
 use crate::solve::reach::Needed;
 use crate::solve::reasons;
 use crate::solve::required;
-use crate::solve::secondary::{self, Positions};
-use crate::solve::sensitivity::{self, Sensitivity};
-use crate::solve::step::{self, Smooth};
+use crate::solve::result::{PointArrays, PointSummary, SurfaceResult};
+use crate::solve::secondary::Positions;
+use crate::solve::sensitivity::Sensitivity;
 use crate::solve::stream::Streamed;
 use crate::solve::summary::{Ends, Summary};
 
@@ -62,105 +57,6 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) cut: Option<Cut>,
 }
 
-/// A job's surfaces.
-pub(crate) struct Table<'a, 'j, 'g> {
-    pub(crate) job: &'a Job<'g>,
-    pub(crate) spec: String,
-    pub(crate) solved: &'a [Solved<'j, 'g>],
-    pub(crate) lines: &'a [&'a Line<'j, 'g>],
-    /// Of a STEP file, if one was asked for.
-    pub(crate) faces: &'a [Smooth],
-    pub(crate) written: Vec<String>,
-    pub(crate) since: Instant,
-}
-
-/// Something that was reached: its name, unit, smallest and largest value.
-pub(crate) struct Reached {
-    pub(crate) name: String,
-    pub(crate) unit: &'static str,
-    pub(crate) ends: Option<(f64, f64)>,
-}
-
-/// One row of the table, whatever it is of.
-#[derive(Clone, Copy)]
-pub(crate) struct Row<'a, 'g> {
-    pub(crate) name: &'a str,
-    surface: &'a GeneratedSurface<'g>,
-    summary: &'a Summary,
-}
-
-impl Row<'_, '_> {
-    /// Radius and z in the work's frame, then the unknowns.
-    pub(crate) fn reached(&self) -> Vec<Reached> {
-        let length = |name: &str, ends: Ends| Reached { name: name.to_string(), unit: "mm", ends: ends.0 };
-        let mut all = vec![length("rho", self.summary.rho), length("z", self.summary.z)];
-        for (unknown, ends) in self.surface.unknowns.iter().zip(&self.summary.unknowns) {
-            let shown = |x: f64| units::shown(unknown.dimension, x);
-            all.push(Reached {
-                name: unknown.name.clone(),
-                unit: units::symbol(unknown.dimension),
-                ends: ends.0.map(|(low, high)| (shown(low), shown(high))),
-            });
-        }
-        all
-    }
-
-    /// Cells of the table, two ranges to a line.
-    fn cells(&self) -> Vec<[String; 5]> {
-        let residual = self.summary.worst_residual.map_or("-".to_string(), |worst| format!("{worst:.1e}"));
-        let solved = self.summary.solved();
-        let mut first = [self.name.to_string(), self.summary.asked.to_string(), solved.to_string(), residual];
-        if solved == 0 {
-            let [name, asked, found, worst] = first;
-            return vec![[name, asked, found, worst, none(self.surface, self.summary)]];
-        }
-        let reached = self.reached();
-        let lines = reached.chunks(2).map(|pair| {
-            let reached: Vec<String> = pair.iter().map(Reached::text).collect();
-            let [name, asked, found, worst] = std::mem::take(&mut first);
-            [name, asked, found, worst, reached.join("   ")]
-        });
-        lines.collect()
-    }
-
-    pub(crate) fn json(&self) -> Map<String, Value> {
-        let reached: Vec<Value> = self
-            .reached()
-            .iter()
-            .map(|reached| {
-                let (low, high) = reached.ends.unzip();
-                json!({ "name": reached.name, "unit": reached.unit, "low": low, "high": high })
-            })
-            .collect();
-        let entries = [
-            ("name", json!(self.name)),
-            ("frame", json!(self.surface.frame)),
-            ("asked", json!(self.summary.asked)),
-            ("solved", json!(self.summary.solved())),
-            ("outcomes", json!(self.summary.outcomes)),
-            ("worst_residual", json!(self.summary.worst_residual)),
-            ("ranges_reached", json!(reached)),
-        ];
-        entries.map(|(key, value)| (key.to_string(), value)).into_iter().collect()
-    }
-}
-
-/// What has become of points none of which is solved.
-fn none(surface: &GeneratedSurface<'_>, summary: &Summary) -> String {
-    let outcomes: Vec<(&&str, &usize)> = summary.outcomes.iter().collect();
-    let by = reasons::outside(surface, summary);
-    match outcomes[..] {
-        [] | [(&"out_of_range", _)] => {
-            format!("none within the ranges{}", by.map_or(String::new(), |by| format!(": outside, {by}")))
-        }
-        [(word, _)] => format!("none: {word}"),
-        _ => {
-            let each: Vec<String> = outcomes.iter().map(|(word, count)| format!("{count} {word}")).collect();
-            format!("none: {}{}", each.join(", "), by.map_or(String::new(), |by| format!("; {by}")))
-        }
-    }
-}
-
 impl<'g> Solved<'_, 'g> {
     /// Rows and columns of its points.
     pub(crate) fn counts(&self) -> [usize; 2] {
@@ -173,73 +69,76 @@ impl<'g> Solved<'_, 'g> {
         [self.lines[0][at / columns], self.lines[1][at % columns]]
     }
 
-    pub(crate) fn row(&self) -> Row<'_, 'g> {
-        Row { name: &self.surface.name, surface: self.surface, summary: &self.summary }
-    }
-}
-
-impl<'g> Line<'_, 'g> {
-    pub(crate) fn row(&self) -> Row<'_, 'g> {
-        Row { name: &self.name, surface: self.surface, summary: &self.summary }
-    }
-}
-
-impl Table<'_, '_, '_> {
-    pub(crate) fn text(&self) -> String {
-        let mut out = format!("job {} ({})\n\n", self.job.name, self.spec);
-        let mut rows = vec![["surface", "asked", "solved", "worst residual", "ranges reached"].map(String::from)];
-        let all = self.solved.iter().map(Solved::row).chain(self.lines.iter().map(|line| line.row()));
-        rows.extend(all.flat_map(|row| row.cells()));
-        out.push_str(&aligned(&rows, "<>>>"));
-        out.push_str(&fields::text(self.solved));
-        out.push_str(&sensitivity::text(self.solved));
-        out.push_str(&certify::text(self.solved));
-        let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
-        out
+    /// Its points, counted.
+    pub(crate) fn told(&self) -> PointSummary {
+        summary(&self.surface.name, self.surface, &self.summary)
     }
 
-    /// What differs from run to run.
-    pub(crate) fn time(&self) -> String {
-        let points: usize = self.solved.iter().map(|solved| solved.summary.asked).sum();
-        format!("{} in {:.0} ms", units::counted(points, "point"), self.since.elapsed().as_secs_f64() * 1e3)
-    }
-
-    /// With what was not done, as told.
-    pub(crate) fn json(&self, told: &str) -> Value {
-        let surfaces: Vec<Value> = self.solved.iter().map(surface_json).collect();
-        json!({
-            "schema": "flank.solve/3",
-            "job": self.job.name,
-            "spec": self.spec,
-            "surfaces": surfaces,
-            "lines": self.lines.iter().map(|line| line.row().json()).collect::<Vec<_>>(),
-            "faces": step::json(self.faces),
-            "files": self.written,
-            "not_done": not_done(told),
-        })
-    }
-}
-
-/// What was not done of points: branches that nothing chooses between, requirements that do not hold, points that are not solved;
-/// empty if all is well.
-pub(crate) fn failures(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
-    branches::ambiguous(solved) + &required::text(solved) + &unsolved(job, solved)
-}
-
-/// What was asked for and not solved, in words; empty if nothing.
-fn unsolved(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
-    for solved in solved {
-        let asked = solved.summary.asked;
-        let missing = asked - solved.summary.solved();
-        if missing > 0 {
-            let _ = writeln!(out, "not solved: {missing} of {asked} points of {}", solved.surface.name);
-            reasons::counted(job, solved).iter().for_each(|reason| {
-                let _ = writeln!(out, "  {reason}");
-            });
+    /// What is told of it, without its points.
+    pub(crate) fn result(&self) -> SurfaceResult {
+        SurfaceResult {
+            summary: self.told(),
+            evaluations: self.effort.evaluations,
+            fields: fields::extents(self),
+            cut: self.cut.as_ref().map(Cut::heights),
+            sensitivity: self.sensitivity.as_ref().map(Sensitivity::table),
+            branches: branches::search(self),
+            tool_positions: self.positions.told(),
+            not_as_required: required::told(self),
+            certified: certify::proven(self),
+            points: PointArrays::default(),
         }
     }
-    out
+
+    /// The same with all points, unless there are too many to keep.
+    pub(crate) fn result_with_points(&self) -> SurfaceResult {
+        let points = match &self.streamed {
+            Some(_) => PointArrays::default(),
+            None => PointArrays::new(self.counts(), self.surface.unknowns.len(), &self.points),
+        };
+        SurfaceResult { points, ..self.result() }
+    }
+}
+
+impl Line<'_, '_> {
+    /// Its points, counted.
+    pub(crate) fn told(&self) -> PointSummary {
+        summary(&self.name, self.surface, &self.summary)
+    }
+}
+
+/// Radius and z in the work's frame, then the unknowns.
+fn summary(name: &str, surface: &GeneratedSurface<'_>, of: &Summary) -> PointSummary {
+    let length = |name: &str, ends: Ends| Extent::new(name, Dimension::LENGTH, ends.0);
+    let unknowns = surface.unknowns.iter().zip(&of.unknowns);
+    let unknowns = unknowns.map(|(unknown, ends)| Extent::new(&unknown.name, unknown.dimension, ends.0));
+    PointSummary {
+        name: name.to_string(),
+        frame: surface.frame.clone(),
+        asked: of.asked,
+        solved: of.solved(),
+        outcomes: of.outcomes.clone(),
+        worst_residual: of.worst_residual,
+        ranges_reached: [length("rho", of.rho), length("z", of.z)].into_iter().chain(unknowns).collect(),
+        outside: reasons::outside(surface, of),
+    }
+}
+
+/// What was not done of points: branches that nothing chooses between, requirements that do not hold, points that are not solved.
+pub(crate) fn failures(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+    let unsolved = solved.iter().filter_map(|solved| unsolved(job, solved));
+    branches::ambiguous(solved).into_iter().chain(required::missed(solved)).chain(unsolved).collect()
+}
+
+/// How many points of a surface were asked for and not solved, and why.
+fn unsolved(job: &Job<'_>, solved: &Solved<'_, '_>) -> Option<NotDone> {
+    let (asked, name) = (solved.summary.asked, &solved.surface.name);
+    let missing = asked - solved.summary.solved();
+    (missing > 0).then(|| {
+        let reasons: String = reasons::counted(job, solved).iter().map(|reason| format!("\n  {reason}")).collect();
+        let message = format!("not solved: {missing} of {asked} points of {name}{reasons}");
+        NotDone::new(NotDoneKind::NotSolved, name, message)
+    })
 }
 
 /// Rows with their cells below each other, all to the left but those whose place in `sides` holds a `>`.
@@ -251,29 +150,4 @@ pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> Stri
     };
     let line = |row: &[String; N]| (0..N).map(|k| cell(k, &row[k])).collect::<String>();
     rows.iter().map(|row| line(row).trim_end().to_string() + "\n").collect()
-}
-
-impl Reached {
-    fn text(&self) -> String {
-        match self.ends {
-            Some((low, high)) => {
-                let [low, high] = [low, high].map(|x| fixed(x, 4));
-                format!("{} {low} .. {high} {}", self.name, self.unit).trim_end().to_string()
-            }
-            None => self.name.clone(),
-        }
-    }
-}
-
-/// All that is told of a surface as data.
-pub(crate) fn surface_json(solved: &Solved<'_, '_>) -> Value {
-    let mut entries = solved.row().json();
-    entries.insert("evaluations".to_string(), json!(solved.effort.evaluations));
-    entries.insert("fields".to_string(), fields::json(solved));
-    entries.insert("cut".to_string(), cut::json(solved));
-    entries.insert("sensitivity".to_string(), sensitivity::json(solved));
-    entries.insert("branches".to_string(), branches::json(solved));
-    entries.insert("positions".to_string(), secondary::json(solved));
-    entries.insert("not_as_required".to_string(), required::json(solved));
-    Value::Object(entries)
 }

@@ -1,12 +1,12 @@
 //! How far axes go while the surfaces are made, and which leave their travel.
 
 use std::collections::HashMap;
-use std::fmt::Write;
 
 use flank_chain_dsl::{Axis, Job};
 use flank_expr::{Expr, VariableId};
 use flank_solver::{Range, extent};
 
+use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::units;
 use crate::solve::table::Solved;
 
@@ -49,21 +49,21 @@ impl<'j> Run<'j, '_> {
     }
 }
 
-/// One line for each axis that moves beyond its travel over the motions that the solved points need; empty if none does.
-pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
+/// Each axis that moves beyond its travel over the motions that the solved points need.
+pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+    let mut all = Vec::new();
     for run in runs(job, solved).iter().filter(|run| run.is_beyond() == Some(true)) {
         let (Some(found), Some((low, high))) = (run.over, run.axis.travel) else { continue };
         let unit = units::symbol(run.axis.dimension);
         let [from, to, low, high] =
             [found.low, found.high, low, high].map(|value| units::digits(run.axis.dimension, value, 4));
-        let _ = writeln!(
-            out,
-            "beyond its travel: axis {} runs from {from} to {to} {unit}, its travel is {low} to {high} {unit}",
-            run.name()
+        let name = run.name();
+        let message = format!(
+            "beyond its travel: axis {name} runs from {from} to {to} {unit}, its travel is {low} to {high} {unit}"
         );
+        all.push(NotDone::new(NotDoneKind::BeyondTravel, &name, message));
     }
-    out
+    all
 }
 
 /// The motions with the ranges that the solved points of all surfaces need.

@@ -1,0 +1,145 @@
+//! What `flank deviation` found.
+
+use std::fmt;
+
+use flank_export::fixed;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::project::answer::Answer;
+use crate::project::not_done::NotDone;
+
+/// How far one surface, or measured points, lie off a surface of the same body, of `flank deviation`: um along the normal of the latter, plus is material.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.deviation/1")]
+pub struct DeviationResult {
+    /// Null where measured points are held against `from`.
+    pub surface: Option<String>,
+    /// The job of that surface.
+    #[serde(skip)]
+    pub job: Option<String>,
+    /// Of the surface.
+    pub frame: Option<String>,
+    /// The file of measured points.
+    pub measured: Option<String>,
+    /// The surface that it is held against.
+    pub from: String,
+    /// The job of the surface that it is held against.
+    #[serde(skip)]
+    pub from_job: String,
+    /// Laid onto `frame`.
+    pub from_frame: String,
+    /// Points.
+    pub asked: usize,
+    /// Points at which the deviation is known.
+    pub known: usize,
+    /// About z: until both meet in the middle of the grid, or the measured points lie nearest; null where they do not meet.
+    pub turn_deg: Option<f64>,
+    /// Whether that was done.
+    pub turned: bool,
+    /// The same on the circle through the middle of the grid.
+    pub turn_mm: Option<f64>,
+    /// The smallest; null where nothing is known.
+    pub lowest_um: Option<f64>,
+    /// The largest.
+    pub highest_um: Option<f64>,
+    /// Root of the mean square.
+    pub rms_um: Option<f64>,
+    /// In the middle of the grid.
+    pub middle_um: Option<f64>,
+    /// Along the rows and the columns of the grid: the plane and the parabolas that fit best; null where they are not known.
+    pub directions: [Option<EaseOffDirection>; 2],
+    /// The twist that fits best.
+    pub bias_um: Option<f64>,
+    /// Files written, in their order.
+    pub files: Vec<String>,
+    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    pub not_done: Vec<NotDone>,
+    #[serde(skip)]
+    pub(super) notes: String,
+    #[serde(skip)]
+    pub(super) counts: [usize; 2],
+    #[serde(skip)]
+    pub(super) positions: Vec<[f64; 3]>,
+    #[serde(skip)]
+    pub(super) deviations: Vec<f64>,
+}
+
+/// Ease-off in one direction of a grid.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct EaseOffDirection {
+    /// `from -> to`.
+    pub direction: String,
+    /// Rise over the grid.
+    pub slope_um: f64,
+    /// The same as an angle; null where its length is not known.
+    pub slope_arcmin: Option<f64>,
+    /// Of the parabola that fits best.
+    pub crowning_um: f64,
+}
+
+impl DeviationResult {
+    /// Rows and columns of the grid.
+    pub fn counts(&self) -> [usize; 2] {
+        self.counts
+    }
+
+    /// The points of the surface that it is held against, in its frame, mm, row by row.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// The deviation at each of them, um; NaN where it is not known.
+    pub fn deviations(&self) -> &[f64] {
+        &self.deviations
+    }
+
+    /// What is held against the other: the surface with its job, or the file.
+    fn held(&self) -> String {
+        match (&self.job, &self.surface, &self.frame) {
+            (Some(job), Some(surface), Some(frame)) => format!("{job}.{surface} ({frame})"),
+            _ => self.measured.clone().unwrap_or_default(),
+        }
+    }
+}
+
+impl Answer for DeviationResult {
+    fn not_done(&self) -> &[NotDone] {
+        &self.not_done
+    }
+
+    fn notes(&self) -> &str {
+        &self.notes
+    }
+}
+
+impl fmt::Display for DeviationResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let um = |value: f64| fixed(value, 3);
+        let DeviationResult { from, from_job, from_frame, asked, known, .. } = self;
+        writeln!(
+            f,
+            "deviation of {} from {from_job}.{from} ({from_frame}), um along the normal of the latter, plus is material\n",
+            self.held()
+        )?;
+        writeln!(f, "  points       {known} of {asked}")?;
+        if let (Some(turn), Some(way)) = (self.turn_deg, self.turn_mm) {
+            let done = if self.turned { "" } else { " (not done)" };
+            let [turn, way] = [turn, way].map(|value| fixed(value, 6));
+            writeln!(f, "  turn about z {turn} deg, {way} mm on the circle through the middle{done}")?;
+        }
+        if let (Some(low), Some(high), Some(rms)) = (self.lowest_um, self.highest_um, self.rms_um) {
+            let middle = self.middle_um.map_or(String::new(), |middle| format!(", in the middle {}", um(middle)));
+            writeln!(f, "  range        {} .. {} um, rms {}{middle}", um(low), um(high), um(rms))?;
+        }
+        for of in self.directions.iter().flatten() {
+            let angle = of.slope_arcmin.map_or(String::new(), |angle| format!(" ({} arcmin)", um(angle)));
+            let [slope, crowning] = [of.slope_um, of.crowning_um].map(um);
+            writeln!(f, "  {:12} slope {slope} um{angle}, crowning {crowning} um", of.direction)?;
+        }
+        if let Some(bias) = self.bias_um {
+            writeln!(f, "  bias         {} um", um(bias))?;
+        }
+        writeln!(f, "\nwrote {}", self.files.join(", "))
+    }
+}
