@@ -47,7 +47,10 @@ fn an_unsolved_point_has_a_status_and_no_number() {
     patch.points[0].unknowns = vec![4.0];
     let (_, records) = read(&text_of(&dataset("job", vec![patch.clone()])));
     let told = "out_of_range, as the test wants it";
-    assert_eq!(&records[0].iter().collect::<Vec<_>>()[3..], ["", "", "", "", "", "", "", "", "0.25", "out_of_range", told]);
+    assert_eq!(
+        &records[0].iter().collect::<Vec<_>>()[3..],
+        ["", "", "", "", "", "", "", "", "0.25", "out_of_range", told]
+    );
     assert_eq!(&records[12 * 15 + 7][12], "singular");
     let empty = records.iter().filter(|record| record[3].is_empty()).count();
     assert_eq!(empty, patch.points.iter().filter(|point| !point.is_solved()).count());
