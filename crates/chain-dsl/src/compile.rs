@@ -169,7 +169,7 @@ fn compile<'g>(
     let mut jobs = Vec::new();
     for (file, written) in &items.jobs {
         context.begin_item();
-        if written.statements.len() > limits::JOB_STATEMENTS.most {
+        if written.statements.iter().map(ast::JobStatement::size).sum::<usize>() > limits::JOB_STATEMENTS.most {
             context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
             continue;
         }

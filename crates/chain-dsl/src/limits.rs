@@ -96,7 +96,7 @@ limits! {
         "put several transforms into one frame: `frame a in b = rotate_x(A) translate_y(Y)`";
     AXES = 256, Pieces, "axes of a machine, and of all machines of a job",
         "more than {} axes", "what never moves is a `param` or a `let`, not an axis";
-    JOB_STATEMENTS = 4_000, Pieces, "statements of a job",
+    JOB_STATEMENTS = 4_000, Pieces, "statements of a job; one about several things counts for each",
         "a job of more than {} statements",
         "split it into several jobs, or take what they share into machines, tools and functions";
     MOTIONS = 32, Pieces, "motions of a job",

@@ -197,7 +197,7 @@ impl Used {
                 }
                 JobStatement::Mount { frame, .. } => self.path(frame),
                 JobStatement::Motion(motion) => self.range(&motion.range),
-                JobStatement::Drive(drive) => self.expression(&drive.value),
+                JobStatement::Drive(drive) => drive.values.iter().for_each(|value| self.expression(value)),
                 JobStatement::Surface(surface) => {
                     self.path(&surface.frame);
                     self.expression(&surface.value);

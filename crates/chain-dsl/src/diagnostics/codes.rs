@@ -80,6 +80,7 @@ codes! {
     CyclicCouple      = "E0511" Error "axes follow each other in a circle";
     Trim              = "E0512" Error "a surface cannot be trimmed by this one";
     Cut               = "E0513" Error "a surface cannot be cut by these edges";
+    UnevenLists       = "E0514" Error "two lists that belong together are not of one length";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";

@@ -7,15 +7,28 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::model::{Axis, LawSource, Machine};
-use crate::syntax::ast;
+use crate::syntax::ast::{self, ExpressionKind};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::Dimension;
 
-use super::Builder;
+use super::{Builder, are_even};
 
 impl<'g> Builder<'_, 'g> {
-    pub(super) fn drive(&mut self, context: &mut Context<'g>, drive: &ast::Assignment) {
-        let Some((machine, member)) = self.machine_member(context, &drive.target, "an axis") else {
+    pub(super) fn drive(&mut self, context: &mut Context<'g>, drive: &ast::Drive) {
+        let axes = (["axis", "axes"], drive.targets.iter().map(|target| target.span).collect());
+        let laws = (["law", "laws"], drive.values.iter().map(|value| value.span).collect());
+        let is_broken = drive.values.iter().any(|value| value.kind == ExpressionKind::Error);
+        if !is_broken {
+            are_even(context, axes, laws, "write as many laws as axes: `drive m.X, m.Z = 20 mm, feed`");
+        }
+        for (k, target) in drive.targets.iter().enumerate() {
+            self.drive_axis(context, target, drive.values.get(k));
+        }
+    }
+
+    /// Gives an axis its law, which may be missing (and that is reported).
+    fn drive_axis(&mut self, context: &mut Context<'g>, target: &ast::Path, law: Option<&ast::Expression>) {
+        let Some((machine, member)) = self.machine_member(context, target, "an axis") else {
             (0..self.machines.len()).for_each(|machine| self.lose_law(machine));
             return;
         };
@@ -29,23 +42,21 @@ impl<'g> Builder<'_, 'g> {
         if let Some((_, kind, span)) = &axis.law {
             let how = if *kind == LawKind::Fix { "fixed" } else { "coupled" };
             let message = format!("{what} is {how} by its machine and cannot be driven");
-            context.report(
-                Diagnostic::new(Code::DrivenTwice, drive.target.span, message).note(*span, format!("{how} here")),
-            );
+            context.report(Diagnostic::new(Code::DrivenTwice, target.span, message).note(*span, format!("{how} here")));
             self.lose_law(machine);
             return;
         }
-        let value = axis.dimension.and_then(|dimension| context.scalar(&drive.value, &self.scope, dimension, &what));
+        let value =
+            axis.dimension.zip(law).and_then(|(dimension, law)| context.scalar(law, &self.scope, dimension, &what));
         let key = (machine, member.node.clone());
         if let Some((_, first)) = self.drives.get(&key) {
             let message = format!("{what} is driven twice");
-            let diagnostic =
-                Diagnostic::new(Code::DrivenTwice, drive.target.span, message).note(*first, "first driven here");
+            let diagnostic = Diagnostic::new(Code::DrivenTwice, target.span, message).note(*first, "first driven here");
             context.report(diagnostic.help("an axis has one law: take one away, or drive it with the sum of both"));
             self.lose_law(machine);
             return;
         }
-        self.drives.insert(key, (value, drive.target.span));
+        self.drives.insert(key, (value, target.span));
     }
 
     /// A law that gives no axis its motion: an axis without one was perhaps meant, and is no second mistake.

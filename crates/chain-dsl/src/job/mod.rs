@@ -206,7 +206,7 @@ impl<'g> Builder<'_, 'g> {
             }
             JobStatement::Machine(instance) => self.machine(context, instance),
             JobStatement::Tool(instance) => self.tool(context, instance),
-            JobStatement::Surface(surface) => self.define(context, &surface.name),
+            JobStatement::Surface(surface) => surface.names.iter().for_each(|name| self.define(context, name)),
             JobStatement::Require(required) => requirement::check(context, required, &self.scope, None),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
@@ -332,12 +332,11 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn mount(&mut self, context: &mut Context<'g>, name: &Name, frame: &ast::Path, job: &ast::Job) {
-        let surfaces = job.statements.iter().filter_map(|statement| match statement {
-            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
+        let tools = job.statements.iter().filter_map(|statement| match statement {
             JobStatement::Tool(tool) => Some(tool.name.node.as_str()),
             _ => None,
         });
-        let mountable: Vec<&str> = surfaces.collect();
+        let mountable: Vec<&str> = tools.chain(declared(job)).collect();
         if !mountable.contains(&name.node.as_str()) {
             context.unknown(name, "tool", mountable.into_iter());
             self.lost_mounts += 1;
@@ -353,4 +352,29 @@ impl<'g> Builder<'_, 'g> {
         }
         self.mounts.insert(name.node.clone(), (place, name.span));
     }
+}
+
+/// The names of the surfaces of a job.
+fn declared(job: &ast::Job) -> impl Iterator<Item = &str> {
+    let surfaces = job.statements.iter().filter_map(|statement| match statement {
+        JobStatement::Surface(surface) => Some(&surface.names),
+        _ => None,
+    });
+    surfaces.flatten().map(|name| name.node.as_str())
+}
+
+/// What one element and several of a list are called, and where they stand.
+type Listed = ([&'static str; 2], Vec<Span>);
+
+/// Whether two lists have an element for each of the other; the first that has none is reported.
+fn are_even(context: &mut Context<'_>, first: Listed, second: Listed, help: &str) -> bool {
+    let (longer, shorter) = if first.1.len() > second.1.len() { (first, second) } else { (second, first) };
+    let Some(lonely) = longer.1.get(shorter.1.len()) else { return true };
+    let counted = |([one, several], places): &Listed| match places.len() {
+        1 => format!("1 {one}"),
+        count => format!("{count} {several}"),
+    };
+    let message = format!("{} for {}", counted(&longer), counted(&shorter));
+    context.report(Diagnostic::new(Code::UnevenLists, *lonely, message).help(help));
+    false
 }

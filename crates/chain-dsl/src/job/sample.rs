@@ -32,13 +32,13 @@ pub(crate) fn check_unknown(context: &mut Context<'_>, name: &Name, what: &str) 
 /// The grid that a `sample` statement asks for, the branch that it keeps to, and what it requires of the points.
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
-    written: &ast::Sample,
+    (path, written): (&ast::Path, &ast::Sample),
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
 ) -> Option<Sample<'g>> {
     let keep: Vec<_> = written.keeps.iter().map(|keep| kept(context, keep, surface, scope)).collect();
     let limits: Vec<_> = written.limits.iter().map(|limit| limited(context, limit, surface, scope)).collect();
-    let grid = grid(context, written, surface, scope)?;
+    let grid = grid(context, (path, written), surface, scope)?;
     let (keep, limits) = (keep.into_iter().collect::<Option<_>>()?, limits.into_iter().collect::<Option<_>>()?);
     Some(Sample { keep, limits, ..grid })
 }
@@ -66,7 +66,7 @@ fn limited<'g>(
 
 fn grid<'g>(
     context: &mut Context<'g>,
-    written: &ast::Sample,
+    (path, written): (&ast::Path, &ast::Sample),
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
 ) -> Option<Sample<'g>> {
@@ -87,12 +87,12 @@ fn grid<'g>(
         CORNERS.contains(&entry.key.node.as_str()) || ["lengthwise", "profilewise"].contains(&entry.key.node.as_str())
     };
     if written.entries.iter().any(is_outline) {
-        return outline(context, written, surface, scope);
+        return outline(context, (path, written), surface, scope);
     }
     let [rows, columns] = written.entries.as_slice() else {
         let message = format!("a sample takes two coordinates, this one has {}", written.entries.len());
         let help = "for example `sample flank { z: -5 mm .. 5 mm by 11, rho: 48 mm .. 52 mm by 9 }`";
-        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     };
     let row_coordinate = coordinate(context, (&rows.key, rows.definition.as_ref()), surface, scope);
@@ -101,7 +101,7 @@ fn grid<'g>(
     let row_values = values(context, rows, scope, row_coordinate.dimension);
     let column_values = values(context, columns, scope, column_coordinate.dimension);
     let ((row_values, row_ends), (column_values, column_ends)) = (row_values?, column_values?);
-    check_size(context, written, row_values.len(), column_values.len())?;
+    check_size(context, path, row_values.len(), column_values.len())?;
     let counts = [row_values.len(), column_values.len()];
     let grid = SampleGrid::Values([row_values, column_values]);
     let [row_middle, column_middle] = grid.middle(counts);
@@ -238,19 +238,19 @@ pub fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
     (0..count).map(|k| between(share(k)).max(low.min(high)).min(low.max(high))).collect()
 }
 
-fn check_size(context: &mut Context<'_>, written: &ast::Sample, rows: usize, columns: usize) -> Option<()> {
+fn check_size(context: &mut Context<'_>, path: &ast::Path, rows: usize, columns: usize) -> Option<()> {
     context.sample_points = context.sample_points.saturating_add(rows.saturating_mul(columns));
     if context.sample_points <= limits::SAMPLE_POINTS.most {
         return Some(());
     }
-    context.report(limits::SAMPLE_POINTS.exceeded(written.surface.span));
+    context.report(limits::SAMPLE_POINTS.exceeded(path.span));
     None
 }
 
 /// The flank of a blank between four corners `[z, rho]`, divided evenly from root to tip and from toe to heel.
 fn outline<'g>(
     context: &mut Context<'g>,
-    written: &ast::Sample,
+    (path, written): (&ast::Path, &ast::Sample),
     surface: &GeneratedSurface<'g>,
     scope: &Scope<'g>,
 ) -> Option<Sample<'g>> {
@@ -280,16 +280,16 @@ fn outline<'g>(
         let verb = if missing.len() == 1 { "is" } else { "are" };
         let message = format!("an outline has four corners: {} {verb} missing", quoted(&missing));
         let help = "a corner is `[z, rho]`: `toe_root: [92 mm, 25.7 mm]`";
-        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     }
     let (Some((profile, profile_ends)), Some((length, length_ends))) = (profile, length) else {
         let message = "an outline is divided twice: `profilewise` from root to tip, `lengthwise` from toe to heel";
         let help = "give both as shares: `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
-        context.report(Diagnostic::new(Code::SampleShape, written.surface.span, message).help(help));
+        context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     };
-    check_size(context, written, profile.len(), length.len())?;
+    check_size(context, path, profile.len(), length.len())?;
     let [toe_root, heel_root, toe_tip, heel_tip] = corners;
     let corners = [toe_root?, heel_root?, toe_tip?, heel_tip?];
     Some(Sample {

@@ -5,17 +5,17 @@ use flank_expr::geometry::{Chain, Step, Surface};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Span;
+use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
 use crate::limits;
 use crate::model::{GeneratedSurface, Generation, Process, RangedVariable, ToolShape, path};
-use crate::syntax::ast::{self, Expression, ExpressionKind, JobStatement};
+use crate::syntax::ast::{self, Expression, ExpressionKind};
 use crate::values::context::{Context, quoted};
 use crate::values::value::Value;
 
 use super::available::{Available, joined, which_piece};
 use super::independence::check_independence;
-use super::{Builder, FrameRef, sweep};
+use super::{Builder, FrameRef, are_even, declared, sweep};
 
 /// The ways to make a surface, by the names of their functions.
 const PROCESSES: [(&str, Process); 3] =
@@ -23,7 +23,7 @@ const PROCESSES: [(&str, Process); 3] =
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn surface(&mut self, context: &mut Context<'g>, written: &ast::GeneratedSurface) {
-        if !context.step(written.name.span) {
+        if !context.spend(written.names.len(), written.value.span) {
             return;
         }
         let frame = self.frame(context, &written.frame);
@@ -38,10 +38,16 @@ impl<'g> Builder<'_, 'g> {
         let Some((_, process)) = PROCESSES.iter().find(|(name, _)| *name == call.function.node) else {
             return context.unknown(&call.function, "way to make a surface", PROCESSES.iter().map(|(name, _)| *name));
         };
-        let Some((tool, motions)) = self.process_arguments(context, call) else { return };
-        let (Some(frame), Some(available)) = (frame, self.available(context, tool)) else { return };
-        for piece in available {
-            let _ = self.piece(context, written, (call, *process), frame, piece, &motions);
+        let Some((tools, motions)) = self.process_arguments(context, call) else { return };
+        let names = (["name", "names"], written.names.iter().map(|name| name.span).collect());
+        let made_from = (["surface", "surfaces"], tools.iter().map(|tool| tool.span).collect());
+        let help =
+            "write as many names as surfaces: `surface left, right in m.work = envelope(c.left, c.right, over: roll)`";
+        let (Some(frame), true) = (frame, are_even(context, names, made_from, help)) else { return };
+        for (name, tool) in written.names.iter().zip(tools) {
+            for piece in self.available(context, tool).into_iter().flatten() {
+                let _ = self.piece(context, (name, written), (call, *process), frame, piece, &motions);
+            }
         }
     }
 
@@ -49,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
     fn piece(
         &mut self,
         context: &mut Context<'g>,
-        written: &ast::GeneratedSurface,
+        (name, written): (&Name, &ast::GeneratedSurface),
         (call, process): (&ast::Call, Process),
         frame: FrameRef,
         available: Available<'g>,
@@ -93,7 +99,7 @@ impl<'g> Builder<'_, 'g> {
             driven,
             motions: over,
         };
-        let name = &written.name.node;
+        let name = &name.node;
         let surface = GeneratedSurface {
             name: available.piece.map_or_else(|| name.clone(), |piece| format!("{name}.{piece}")),
             doc: written.doc.clone(),
@@ -109,19 +115,19 @@ impl<'g> Builder<'_, 'g> {
         Some(())
     }
 
-    /// The tool's surface and the motions of `envelope(tool.surface, over: [motion, …])`, `sweep`, `move`.
+    /// The tools' surfaces and the motions of `envelope(tool.surface, …, over: [motion, …])`, `sweep`, `move`.
     fn process_arguments<'p>(
         &self,
         context: &mut Context<'g>,
         call: &'p ast::Call,
-    ) -> Option<(&'p ast::Path, Vec<(RangedVariable<'g>, Span)>)> {
+    ) -> Option<(Vec<&'p ast::Path>, Vec<(RangedVariable<'g>, Span)>)> {
         let process = call.function.node.as_str();
-        let mut tool = None;
+        let mut tools = Vec::new();
         let mut motions = Vec::new();
         for argument in &call.arguments {
             match (&argument.name, &argument.value.kind) {
                 (_, ExpressionKind::Error) => return None,
-                (None, ExpressionKind::Path(path)) if tool.is_none() => tool = Some(path),
+                (None, ExpressionKind::Path(path)) => tools.push(path),
                 (Some(name), _) if name.node == "over" => {
                     let each: Vec<&Expression> = match &argument.value.kind {
                         ExpressionKind::Vector(parts) => parts.iter().collect(),
@@ -142,11 +148,12 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
         }
-        if tool.is_none() {
+        if tools.is_empty() {
             let message = format!("`{process}` takes a surface of a tool: `{process}(c.flank, over: roll)`");
             context.report(Diagnostic::new(Code::WrongArguments, call.span, message));
+            return None;
         }
-        tool.map(|tool| (tool, motions))
+        Some((tools, motions))
     }
 
     fn motion(&self, context: &mut Context<'g>, written: &Expression) -> Option<RangedVariable<'g>> {
@@ -277,15 +284,21 @@ impl<'g> Builder<'_, 'g> {
     }
 
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
-        let Some(index) = self.finished(context, &written.surface, job) else { return };
+        for path in &written.surfaces {
+            self.sample_surface(context, path, written, job);
+        }
+    }
+
+    fn sample_surface(&mut self, context: &mut Context<'g>, path: &ast::Path, written: &ast::Sample, job: &ast::Job) {
+        let Some(index) = self.finished(context, path, job) else { return };
         if self.surfaces[index].0.sample.is_some() {
             let message = format!("`{}` is sampled twice", self.surfaces[index].0.name);
-            context.report(Diagnostic::new(Code::DuplicateName, written.surface.span, message));
+            context.report(Diagnostic::new(Code::DuplicateName, path.span, message));
             return;
         }
         let surface = &self.surfaces[index].0;
-        let sample = sample::build(context, written, surface, &self.scope);
-        let sample = sample.filter(|sample| check_independence(context, surface, sample, written.surface.span));
+        let sample = sample::build(context, (path, written), surface, &self.scope);
+        let sample = sample.filter(|sample| check_independence(context, surface, sample, path.span));
         self.surfaces[index].0.sample = sample;
     }
 }
@@ -299,11 +312,7 @@ impl<'g> Builder<'_, 'g> {
         if found.is_some() {
             return found;
         }
-        let declared = job.statements.iter().filter_map(|statement| match statement {
-            JobStatement::Surface(surface) => Some(surface.name.node.as_str()),
-            _ => None,
-        });
-        let declared: Vec<&str> = declared.collect();
+        let declared: Vec<&str> = declared(job).collect();
         let pieces = self.pieces_of(&name.node);
         match rest {
             _ if !declared.contains(&name.node.as_str()) => context.unknown(name, "surface", declared.into_iter()),

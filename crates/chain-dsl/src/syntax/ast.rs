@@ -338,9 +338,9 @@ pub enum JobStatement {
     },
     /// `motion roll : angle in a .. b`
     Motion(Parameter),
-    /// `drive m.X = …`
-    Drive(Assignment),
-    /// `surface name in m.work = …`
+    /// `drive m.X, m.Z = …, …`
+    Drive(Drive),
+    /// `surface name, other in m.work = …`
     Surface(GeneratedSurface),
     /// `trim flank by fillet`
     Trim {
@@ -356,7 +356,7 @@ pub enum JobStatement {
         /// The sweep of the edges that cut it.
         by: Path,
     },
-    /// `sample name { … }`
+    /// `sample name, other { … }`
     Sample(Sample),
     /// `require a < b, "…"`
     Require(Requirement),
@@ -382,25 +382,46 @@ pub struct Instance {
     pub settings: Vec<Argument>,
 }
 
-/// `surface name in frame = value`
+impl JobStatement {
+    /// How many statements about one thing each it stands for.
+    pub(crate) fn size(&self) -> usize {
+        match self {
+            JobStatement::Drive(drive) => drive.targets.len().max(drive.values.len()),
+            JobStatement::Surface(surface) => surface.names.len(),
+            JobStatement::Sample(sample) => sample.surfaces.len(),
+            _ => 1,
+        }
+    }
+}
+
+/// `drive target, target = value, value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// The axes.
+    pub targets: Vec<Path>,
+    /// Their laws, in the same order.
+    pub values: Vec<Expression>,
+}
+
+/// `surface name, name in frame = value`
 #[derive(Clone, Debug, PartialEq)]
 pub struct GeneratedSurface {
     /// `///` lines above it.
     pub doc: Vec<String>,
-    /// Its name.
-    pub name: Name,
-    /// The frame it is given in.
+    /// The names, one for each surface that it is made from.
+    pub names: Vec<Name>,
+    /// The frame that they are given in.
     pub frame: Path,
-    /// `envelope(c.flank, over: roll)`
+    /// `envelope(c.flank, c.fillet, over: roll)`
     pub value: Expression,
 }
 
-/// `sample name { key: values … }`
+/// `sample name, name { key: values … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// The surface, perhaps a piece of it.
-    pub surface: Path,
-    /// What is asked for, in order.
+    /// The surfaces, perhaps pieces of them.
+    pub surfaces: Vec<Path>,
+    /// What is asked for of each, in order.
     pub entries: Vec<SampleEntry>,
     /// Which branch is meant.
     pub keeps: Vec<Keep>,

@@ -49,7 +49,7 @@ pub(crate) enum Kind {
     Conditional,
     /// Factors of a dimension, with their signs.
     Dimension,
-    /// The transforms of a frame.
+    /// The transforms of a frame; names or values in a row, with their commas.
     Steps,
 }
 
@@ -101,7 +101,8 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
         Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
-        Rule::drive | Rule::surface | Rule::trim | Rule::cut | Rule::sample => Kind::Statement,
+        Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
+        Rule::trim | Rule::cut => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::keep => Kind::Element,
@@ -115,10 +116,13 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         _ if pair.clone().into_inner().next().is_none() => return parts.push(Part::leaf(Kind::Token, &pair)),
         _ => Kind::Statement,
     };
-    let is_sample = pair.as_rule() == Rule::sample;
+    let rule = pair.as_rule();
     let mut inner = inner(pair);
+    if matches!(rule, Rule::drive | Rule::surface | Rule::sample) {
+        inner = rows(inner);
+    }
     if matches!(kind, Kind::Block | Kind::Statement) {
-        inner = listed(inner, if is_sample { ("{", "}") } else { ("(", ")") });
+        inner = listed(inner, if rule == Rule::sample { ("{", "}") } else { ("(", ")") });
     }
     match <[Part; 1]>::try_from(inner) {
         Ok([only]) if matches!(kind, Kind::Joined | Kind::Element) => parts.push(only),
@@ -147,6 +151,28 @@ fn listed<'t>(mut parts: Vec<Part<'t>>, (open, close): (&str, &str)) -> Vec<Part
         parts.insert(from, list);
     }
     parts
+}
+
+/// Makes one part of what stands in a row with commas between.
+fn rows(parts: Vec<Part<'_>>) -> Vec<Part<'_>> {
+    let braces = parts.iter().position(|part| part.is("{")).unwrap_or(parts.len());
+    let mut rows: Vec<Part> = Vec::new();
+    let mut parts = parts.into_iter();
+    let mut listed = parts.by_ref().take(braces).peekable();
+    while let Some(first) = listed.next() {
+        let mut row = vec![first];
+        while let Some(comma) = listed.next_if(|part| part.is(",")) {
+            let before = row.pop().into_iter().chain([comma]).collect();
+            row.push(Part::node(Kind::Element, before));
+            row.extend(listed.next());
+        }
+        match <[Part; 1]>::try_from(row) {
+            Ok([only]) => rows.push(only),
+            Err(row) => rows.push(Part::node(Kind::Steps, row)),
+        }
+    }
+    rows.extend(parts);
+    rows
 }
 
 fn function(pair: Pair<'_, Rule>) -> Part<'_> {

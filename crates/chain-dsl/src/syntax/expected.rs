@@ -15,7 +15,9 @@ pub(super) struct Before<'t> {
     pub(super) last: &'t str,
     /// Whether that one is a name.
     pub(super) name: bool,
-    /// Whether a parenthesis is open.
+    /// Whether a bracket is open.
+    pub(super) in_brackets: bool,
+    /// Whether the last one is a parenthesis.
     pub(super) in_parentheses: bool,
 }
 
@@ -28,6 +30,10 @@ pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
     }
     if rules.contains(&Rule::infix) || rules.contains(&Rule::EOI) {
         rules.retain(|rule| *rule != Rule::open_paren);
+    }
+    // that a list may go on is no news to whoever forgot what follows it
+    if rules.iter().any(|rule| matches!(rule, Rule::kw_in | Rule::equals | Rule::open_brace)) {
+        rules.retain(|rule| *rule != Rule::comma);
     }
     const OPTIONAL: [Rule; 5] = [Rule::EOI, Rule::infix, Rule::dimension_operator, Rule::let_statement, Rule::kw_let];
     if rules.iter().any(|rule| !OPTIONAL.contains(rule)) {
@@ -112,6 +118,8 @@ fn name(before: &Before<'_>) -> String {
         _ if first => format!("the name of the {}", noun(before.statement)),
         (_, ".") => "a name".to_owned(),
         ("surface", "in") | (_, "on") => path(before).to_owned(),
+        ("drive", _) => path(before).to_owned(),
+        ("surface" | "sample", ",") if !before.in_brackets => "the name of the surface".to_owned(),
         ("frame", "in") => "the frame that it hangs on".to_owned(),
         ("frame", _) => TRANSFORM.to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),

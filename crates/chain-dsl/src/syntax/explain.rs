@@ -167,6 +167,7 @@ impl<'s> Mistake<'s> {
             statement: self.scan.say(self.range.start),
             last: self.before(),
             name: self.scan.is_name(last),
+            in_brackets: open.is_some(),
             in_parentheses: open.is_some_and(|open| self.scan.say(open) == "("),
         }
     }

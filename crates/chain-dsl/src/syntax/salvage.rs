@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::diagnostics::source::{Name, Span, Spanned};
 
 use super::ast::{
-    Argument, Assignment, Axis, AxisKind, Body, Dimension, Expression, ExpressionKind, Frame, Function,
+    Argument, Assignment, Axis, AxisKind, Body, Dimension, Drive, Expression, ExpressionKind, Frame, Function,
     GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, NcWord, Param, Parameter, Path, Sample,
     SampleEntry, SampleValues, Segment, Side, SurfaceParameter, ToolStatement, Type,
 };
@@ -50,10 +50,10 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "tool" => JobStatement::Tool(piece.instance(name)),
         "mount" => JobStatement::Mount { tool: name, frame: piece.path_after("on") },
         "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
-        "drive" => JobStatement::Drive(piece.assignment()),
+        "drive" => JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }),
         "surface" => JobStatement::Surface(GeneratedSurface {
             doc: piece.doc(),
-            name,
+            names: piece.names(),
             frame: piece.path_after("in"),
             value: piece.error(),
         }),
@@ -238,6 +238,26 @@ impl Piece<'_> {
         Path { segments, span }
     }
 
+    /// The paths behind the first word, with commas between them.
+    fn paths(&self) -> Vec<Path> {
+        let mut paths = vec![self.path(self.range.start + 1)];
+        let mut index = self.range.start + 1;
+        while index < self.range.end && (self.scan.is_name(index) || matches!(self.scan.say(index), "." | ",")) {
+            index += 1;
+            if self.scan.say(index - 1) == "," && index < self.range.end && self.scan.is_name(index) {
+                paths.push(self.path(index));
+            }
+        }
+        paths
+    }
+
+    /// The names behind the first word, or the first word itself where the two are swapped.
+    fn names(&self) -> Vec<Name> {
+        let behind = self.paths().into_iter().filter_map(|path| path.segments.into_iter().next());
+        let names: Vec<Name> = behind.filter(|name| !name.node.is_empty()).collect();
+        if names.is_empty() { self.defined().into_iter().collect() } else { names }
+    }
+
     fn instance(&self, name: Name) -> Instance {
         let index = self.find("=").unwrap_or(self.range.start + 1) + 1;
         let named = index < self.range.end && self.scan.is_name(index);
@@ -248,9 +268,14 @@ impl Piece<'_> {
     }
 
     fn sample(&self) -> Sample {
-        let surface = self.path(self.range.start + 1);
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
-        Sample { surface, entries: vec![entry], keeps: Vec::new(), limits: Vec::new(), span: self.span() }
+        Sample {
+            surfaces: self.paths(),
+            entries: vec![entry],
+            keeps: Vec::new(),
+            limits: Vec::new(),
+            span: self.span(),
+        }
     }
 
     /// The names right after the first opening parenthesis and after each comma on its level.

@@ -339,12 +339,18 @@ impl Writer {
                 self.parameter();
             }
             6 => {
-                self.all(&["drive", "m.cradle", "="]);
+                self.put("drive");
+                let more = self.row(|it: &mut Writer| it.put("m.cradle"));
+                self.put("=");
                 self.value();
+                for _ in 0..more {
+                    self.put(",");
+                    self.value();
+                }
             }
             7 => {
                 self.put("surface");
-                self.name();
+                self.row(Self::name);
                 self.all(&["in", "m.work", "="]);
                 self.call(2);
             }
@@ -358,6 +364,17 @@ impl Writer {
             9 => self.requirement(),
             _ => self.sample(),
         }
+    }
+
+    /// One or several with commas between them; how many after the first.
+    fn row(&mut self, put: impl Fn(&mut Self)) -> usize {
+        put(self);
+        let more = self.random.of(&[0, 0, 1, 3]);
+        for _ in 0..more {
+            self.put(",");
+            put(self);
+        }
+        more
     }
 
     fn instance(&mut self) {
@@ -381,7 +398,7 @@ impl Writer {
 
     fn sample(&mut self) {
         self.put("sample");
-        self.name();
+        self.row(Self::name);
         self.put("{");
         for _ in 0..self.random.below(4) {
             self.name();

@@ -241,6 +241,16 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
             ),
             limits::POWER,
         ),
+        (
+            "a long list of samples",
+            small_job(&format!("sample {} {{ z: 0 mm }}", vec!["s"; 20_000].join(", "))),
+            limits::JOB_STATEMENTS,
+        ),
+        (
+            "long lists of axes and laws",
+            small_job(&format!("drive {} = {}", vec!["m.C"; 10_000].join(", "), vec!["turn"; 10_000].join(", "))),
+            limits::JOB_STATEMENTS,
+        ),
         ("a power of a length by name", format!("fn f(x: {}) = x", ["length^99"; 1_000].join(" * ")), limits::POWER),
         ("a long job", small_job(&lines(20_000, |k| format!("let a{k} = {k}"))), limits::JOB_STATEMENTS),
         ("thousands of jobs' errors", lines(20_000, |k| format!("job j{k} {{ machine m = m{k} }}")), limits::MISTAKES),

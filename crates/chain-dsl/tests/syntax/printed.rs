@@ -98,16 +98,24 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Tool(it) => instance("tool", it),
         JobStatement::Mount { tool, frame } => format!("mount {} {}", tool.node, path(frame)),
         JobStatement::Motion(it) => format!("motion {}", parameter(it)),
-        JobStatement::Drive(it) => assignment("drive", it),
+        JobStatement::Drive(it) => {
+            format!("drive {} {}", listed(&it.targets, path), listed(&it.values, expression))
+        }
         JobStatement::Surface(it) => {
-            format!("{}surface {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
+            format!(
+                "{}surface {} in {} {}",
+                doc(&it.doc),
+                listed(&it.names, |it| it.node.clone()),
+                path(&it.frame),
+                expression(&it.value)
+            )
         }
         JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
         JobStatement::Cut { surface, by } => format!("cut {} {}", path(surface), path(by)),
         JobStatement::Require(it) => requirement(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
-            format!("sample {} {}", path(&it.surface), entries.join(", "))
+            format!("sample {} {}", listed(&it.surfaces, path), entries.join(", "))
         }
     }
 }
@@ -144,6 +152,10 @@ fn let_statement(it: &Let) -> String {
 
 fn assignment(word: &str, it: &Assignment) -> String {
     format!("{word} {} {}", path(&it.target), expression(&it.value))
+}
+
+fn listed<T>(items: &[T], shown: impl Fn(&T) -> String) -> String {
+    items.iter().map(shown).collect::<Vec<_>>().join(", ")
 }
 
 fn instance(word: &str, it: &Instance) -> String {

@@ -172,5 +172,5 @@ fn nothing_around_a_mistake_is_lost() {
     }
     let (file, _) = read(&text.replace("job everything {", "job everything"));
     let Some(Item::Job(job)) = file.items.last() else { panic!("the job is lost") };
-    assert_eq!(job.statements.len(), 16);
+    assert_eq!(job.statements.len(), 19);
 }

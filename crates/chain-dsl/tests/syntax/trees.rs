@@ -148,12 +148,15 @@ fn everything() {
       mount c m.slide
       motion /The roll./ roll: angle in start..30_deg
       drive m.X (* ratio roll)
+      drive m.Y, m.A 0_mm, [roll 2]
       surface concave in m.bed (envelope! c.flank over: roll)
+      surface left, right, both in m.bed (sweep! c.left c.right.edge over: roll)
       trim concave convex
       cut concave blades
       require (and (> ratio 1) (not (== start 0_deg))) "this rolls the wrong way"
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
       sample concave.edge z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
+      sample left, right.edge u: 3
       let curve (table! "profile.csv")
       let choice (if (or (>= ratio 1) (< ratio 0.5)) "a" (if (!= ratio 0) "b" "c"))
     "#);

@@ -7,8 +7,8 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
-    Argument, Assignment, Axis, AxisKind, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep, Let,
-    MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample, SampleEntry,
+    Argument, Assignment, Axis, AxisKind, Drive, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep,
+    Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample, SampleEntry,
     SampleValues, ToolStatement,
 };
 use super::super::grammar::Rule;
@@ -51,7 +51,7 @@ impl Build<'_> {
             Rule::tool_instance => JobStatement::Tool(self.instance(pair)),
             Rule::mount => self.mount(pair),
             Rule::motion => JobStatement::Motion(self.motion(pair)),
-            Rule::drive => JobStatement::Drive(self.assignment(pair)),
+            Rule::drive => JobStatement::Drive(self.drive(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => {
                 let [surface, by] = self.two_surfaces(pair);
@@ -123,14 +123,17 @@ impl Build<'_> {
 
     fn assignment(&mut self, pair: Pair<'_, Rule>) -> Assignment {
         let mut parts = Parts::of(pair);
-        let target = match parts.optional(Rule::path) {
-            Some(path) => self.path(path),
-            None => {
-                let name = self.name(parts.required(Rule::name));
-                Path { span: name.span, segments: vec![name] }
-            }
-        };
+        let name = self.name(parts.required(Rule::name));
+        let target = Path { span: name.span, segments: vec![name] };
         Assignment { target, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn drive(&mut self, pair: Pair<'_, Rule>) -> Drive {
+        let mut parts = Parts::of(pair);
+        Drive {
+            targets: parts.all(Rule::path).into_iter().map(|path| self.path(path)).collect(),
+            values: parts.all(Rule::expression).into_iter().map(|value| self.expression(value)).collect(),
+        }
     }
 
     fn instance(&mut self, pair: Pair<'_, Rule>) -> Instance {
@@ -185,7 +188,7 @@ impl Build<'_> {
         let mut parts = Parts::of(pair);
         GeneratedSurface {
             doc,
-            name: self.name(parts.required(Rule::name)),
+            names: parts.all(Rule::name).into_iter().map(|name| self.name(name)).collect(),
             frame: self.path(parts.required(Rule::path)),
             value: self.expression(parts.required(Rule::expression)),
         }
@@ -194,7 +197,7 @@ impl Build<'_> {
     fn sample(&mut self, pair: Pair<'_, Rule>) -> Sample {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let surface = self.path(parts.required(Rule::path));
+        let surfaces = parts.all(Rule::path).into_iter().map(|path| self.path(path)).collect();
         let (mut entries, mut keeps, mut limits) = (Vec::new(), Vec::new(), Vec::new());
         let mut end = None;
         let asked = [Rule::entry, Rule::keep, Rule::limit];
@@ -208,7 +211,7 @@ impl Build<'_> {
                 _ => entries.push(self.entry(pair)),
             }
         }
-        Sample { surface, entries, keeps, limits, span }
+        Sample { surfaces, entries, keeps, limits, span }
     }
 
     /// Asks for a comma or a new line between two entries of a sample.
