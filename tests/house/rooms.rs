@@ -115,3 +115,20 @@ fn the_command_line_is_thin() {
     let lines: usize = sources(&repository("crates/cli/src")).iter().map(|path| text(path).lines().count()).sum();
     assert!(lines <= MOST_LINES, "{lines} lines");
 }
+
+/// Only a shell knows how its users spell options: the libraries name the fields of requests.
+#[test]
+fn libraries_name_no_flag() {
+    let is_flag = |line: &str| {
+        line.match_indices("--").any(|(at, _)| line[at + 2..].starts_with(|letter: char| letter.is_ascii_lowercase()))
+    };
+    for folder in BELOW {
+        for path in sources(&repository(&format!("crates/{folder}/src"))) {
+            let code = code(&path);
+            let before_tests = code.split("#[cfg(test)]").next().unwrap_or_default();
+            if let Some(line) = before_tests.lines().find(|line| is_flag(line)) {
+                panic!("{}: {line}", path.display());
+            }
+        }
+    }
+}

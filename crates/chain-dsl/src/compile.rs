@@ -108,7 +108,7 @@ impl<'g> Compilation<'g> {
         let file = self.sources.file(main).path.display().to_string().replace('\\', "/");
         match wanted {
             Some(wanted) if !known.is_empty() => {
-                let asked = self.sources.add("--job", wanted);
+                let asked = self.sources.add("option `job`", wanted);
                 let span = Span { file: asked, start: 0, end: wanted.len() as u32 };
                 let message = format!("there is no job `{wanted}` in {file}");
                 let mut diagnostic = Diagnostic::new(Code::NoJob, span, message);
@@ -356,7 +356,10 @@ impl OuterValues {
                 Some(inner) if is_own(given) => {
                     let message =
                         format!("`{given}` is `{inner}` of job `{0}`, and `{inner}` of what it calls `{0}`", job.name);
-                    let help = format!("the second is `{}.{given}`, the first is `{inner}` with `--job {0}`", job.name);
+                    let help = format!(
+                        "the second is `{}.{given}`, the first is `{inner}` with the option `job {0}`",
+                        job.name
+                    );
                     return context.report(Diagnostic::new(Code::DuplicateName, name.span, message).help(help));
                 }
                 Some(_) => return,
@@ -378,7 +381,7 @@ fn read_overrides(context: &mut Context<'_>, sources: &mut Sources, given: &[(St
     for (name, value) in given {
         let text = format!("{name}={value}");
         let start = name.len() as u32 + 1;
-        let file = sources.add("--set", text);
+        let file = sources.add("option `set`", text);
         let (expression, diagnostics) = parse_expression(&sources.file(file).text, file, start);
         diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
         outer.values.insert(name.clone(), expression);

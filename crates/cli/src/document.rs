@@ -3,11 +3,26 @@
 use flank::{Finding, Schema, schema_of};
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::Value;
+
+use crate::spelling::with_flags;
 
 /// A result as it is printed.
 pub(crate) fn text(result: &impl Serialize) -> String {
-    let document = serde_json::to_value(result).expect("results have keys that are texts");
+    let mut document = serde_json::to_value(result).expect("results have keys that are texts");
+    if let Some(messages) = document.get_mut("not_done") {
+        spell(messages);
+    }
     format!("{document:#}\n")
+}
+
+/// All messages in a part of a document with flags for the library's options.
+fn spell(part: &mut Value) {
+    match part {
+        Value::String(message) => *message = with_flags(message),
+        Value::Array(parts) => parts.iter_mut().for_each(spell),
+        _ => {}
+    }
 }
 
 /// The schemas of all documents that the program prints or writes, by name.

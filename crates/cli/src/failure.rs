@@ -3,6 +3,7 @@
 use flank::{Finding, Findings};
 
 use crate::document::{self, FailureDocument};
+use crate::spelling::with_flags;
 use crate::{Ending, eprint, print};
 
 /// What ends a command early.
@@ -60,14 +61,25 @@ impl From<flank::Failure> for Failure {
                 ending: Ending::Wrong,
                 text: findings_in_full(&findings),
                 message: counted(findings.counts()),
-                findings: findings.list(),
+                findings: findings.list().into_iter().map(spelled).collect(),
             },
-            flank::Failure::Request(reason) => Failure::of_usage(reason),
-            flank::Failure::Unsolved(reason) => Failure { ending: Ending::Unsolved, ..Failure::from(reason) },
+            flank::Failure::Request(reason) => Failure::of_usage(with_flags(&reason)),
+            flank::Failure::Unsolved(reason) => {
+                Failure { ending: Ending::Unsolved, ..Failure::from(with_flags(&reason)) }
+            }
             flank::Failure::Folder(error) => format!("{error}; name another folder with --out").into(),
-            other => other.to_string().into(),
+            other => with_flags(&other.to_string()).into(),
         }
     }
+}
+
+/// With flags for the library's options, in words and in the names of what was given with one.
+fn spelled(mut finding: Finding) -> Finding {
+    let places = finding.notes.iter_mut().map(|note| &mut note.place).chain([&mut finding.place]);
+    places.for_each(|place| place.file = with_flags(&place.file));
+    finding.message = with_flags(&finding.message);
+    finding.help = finding.help.map(|help| with_flags(&help));
+    finding
 }
 
 /// Findings with the source underlined, their number, and where to read more about the first error; empty without any.
@@ -75,7 +87,7 @@ pub(crate) fn findings_in_full(findings: &Findings) -> String {
     if findings.is_empty() {
         return String::new();
     }
-    let mut out = format!("{}{}\n", findings.rendered(true), counted(findings.counts()));
+    let mut out = format!("{}{}\n", with_flags(&findings.rendered(true)), counted(findings.counts()));
     if let Some(first) = findings.list().iter().find(|finding| finding.severity == flank::Severity::Error) {
         out += &format!("`flank explain {}` tells more\n", first.code);
     }

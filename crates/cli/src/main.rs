@@ -8,6 +8,7 @@ mod failure;
 mod memory;
 mod progress;
 mod spec;
+mod spelling;
 mod threads;
 
 use std::process::ExitCode;

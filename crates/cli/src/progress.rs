@@ -9,6 +9,7 @@ use flank::{Findings, Monitor, Work};
 
 use crate::eprint;
 use crate::failure::findings_in_full;
+use crate::spelling::with_flags;
 
 /// What takes no longer says nothing.
 const QUIET: Duration = Duration::from_secs(1);
@@ -56,7 +57,11 @@ impl Monitor for Terminal {
     }
 
     fn note(&self, lines: &str) {
-        eprint(lines);
+        eprint(&with_flags(lines));
+    }
+
+    fn spelled(&self, message: &str) -> String {
+        with_flags(message)
     }
 
     fn warn(&self, findings: &Findings) {

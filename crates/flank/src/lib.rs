@@ -4,7 +4,8 @@
 //! takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
 //! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
 //! whose schema [`schemas`] has, its `Display` a text for people, and what was not done stands in it ([`Answer::not_done`]). What is wrong
-//! with a spec comes as [`Findings`], data with a code and a place.
+//! with a spec comes as [`Findings`], data with a code and a place. Messages name the fields of requests as "option `no_align`", or with a
+//! value as "option `set teeth=25`", so that a shell can spell them its way.
 //!
 //! ```
 //! use std::sync::Arc;

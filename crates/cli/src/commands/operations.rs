@@ -5,6 +5,7 @@ use flank::{Answer, Failure as Refused, Monitor};
 use crate::arguments::{Convert, Derive, Deviation, Measure, Plot, Report, Solve, View};
 use crate::failure::Failure;
 use crate::progress::Terminal;
+use crate::spelling::with_flags;
 use crate::{Ending, document, eprint, print};
 
 /// Prints each result as it comes.
@@ -14,10 +15,10 @@ fn told<A: Answer>(
 ) -> Result<Ending, Failure> {
     let mut ending = Ending::Done;
     operation(&Terminal, &mut |answer| {
-        print(&if as_document { document::text(&answer) } else { answer.to_string() });
-        eprint(answer.notes());
+        print(&if as_document { document::text(&answer) } else { with_flags(&answer.to_string()) });
+        eprint(&with_flags(answer.notes()));
         if !answer.is_complete() {
-            eprint(&answer.not_done_text());
+            eprint(&with_flags(&answer.not_done_text()));
             ending = Ending::Unsolved;
         }
     })?;

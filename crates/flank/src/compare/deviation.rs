@@ -105,13 +105,13 @@ enum Second<'a> {
 pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<DeviationResult, Failure> {
     let start = Instant::now();
     if request.measured.is_none() && request.margin.is_some() {
-        let message = "--margin says where the points of --measured lie; with --reference they are those of its sample"
+        let message = "option `margin` says where the points of option `measured` lie; with option `reference` they are those of its sample"
             .to_string();
         return Err(Failure::Request(message));
     }
     if request.measured.is_none() && (request.rows.is_some() || request.columns.is_some()) {
         let message =
-            "--rows and --columns are those of --measured; with --reference the points are those of its sample"
+            "option `rows` and option `columns` are those of option `measured`; with option `reference` the points are those of its sample"
                 .to_string();
         return Err(Failure::Request(message));
     }
@@ -119,8 +119,10 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
         (Some(file), _) => Second::DeviationMap(file),
         (None, Some(name)) => Second::Surface(name),
         (None, None) => {
-            let message =
-                format!("say what `{}` is held against: --reference SURFACE or --measured FILE", request.surface);
+            let message = format!(
+                "say what `{}` is held against: option `reference SURFACE` or option `measured FILE`",
+                request.surface
+            );
             return Err(Failure::Request(message));
         }
     };
@@ -266,7 +268,7 @@ fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> NotDone {
         of.map(|of| of.whole_name())
     };
     let [point, near] = ends;
-    let way_out = "`--no-align` does without the turn that brings both to meet there";
+    let way_out = "the option `no_align` does without the turn that brings both to meet there";
     let message = match (point, near) {
         (Some(point), _) if point != Outcome::Solved => {
             format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}", point.word())

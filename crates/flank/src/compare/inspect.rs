@@ -54,7 +54,7 @@ pub(crate) fn inspect<'j, 'g>(
         let [rows, columns] = counts;
         return Err(format!(
             "{shown}: row {row}, column {column} lies {off:.4} mm beside its nominal point, and half the way to the next one is {half:.4} mm: \
-             is this a grid of {rows} rows and {columns} columns (--rows, --columns) with this --margin, and are x, y, z in the frame {}?",
+             is this a grid of {rows} rows and {columns} columns (option `rows`, option `columns`) with this option `margin`, and are x, y, z in the frame {}?",
             of.surface.frame
         )
         .into());
@@ -81,7 +81,11 @@ fn counts(named: [usize; 2], request: &DeviationRequest) -> Result<[usize; 2], S
     let [rows, columns] =
         [(request.rows, named[0], "rows"), (request.columns, named[1], "columns")].map(|(said, named, what)| {
             let said = said.map_or(named, |said| said as usize);
-            if said < named { Err(format!("{named} {what} are named, more than --{what} {said}")) } else { Ok(said) }
+            if said < named {
+                Err(format!("{named} {what} are named, more than option `{what} {said}`"))
+            } else {
+                Ok(said)
+            }
         });
     Ok([rows?, columns?])
 }

@@ -62,7 +62,7 @@ fn check_positions(request: &ConvertRequest) -> Result<(), Failure> {
     if request.nc.is_empty() || request.positions > 1 {
         return Ok(());
     }
-    let message = "an NC program moves from position to position: --nc needs --positions 2 or more";
+    let message = "an NC program moves from position to position: option `nc` needs option `positions 2` or more";
     Err(Failure::Request(message.to_string()))
 }
 
@@ -74,7 +74,7 @@ fn check_fit_alone(request: &ConvertRequest) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Request(format!(
-        "--fit looks for settings, and of them there are no files: leave out {}, and ask for it when the settings have their values",
+        "option `fit` looks for settings, and of them there are no files: leave out {}, and ask for it when the settings have their values",
         dropped.join(", ")
     )))
 }
@@ -89,7 +89,7 @@ fn check_settings_alone(plan: &Plan<'_, '_>, request: &ConvertRequest) -> Result
     }
     Err(Failure::from(format!(
         "settings of {} are looked for, because {} has no value, and of them there are no files: leave out {}, and ask for it when \
-         the settings have their values: --set {}=…",
+         the settings have their values: option `set {}=…`",
         plan.machine.name,
         first.name,
         dropped.join(", "),
@@ -118,7 +118,7 @@ pub(crate) fn compiled<'g>(
         _ => {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
             let names = names.join(" or ");
-            Err(format!("the file holds several jobs, and one is carried over at a time: --job {names}").into())
+            Err(format!("the file holds several jobs, and one is carried over at a time: option `job` {names}").into())
         }
     }
 }
@@ -161,14 +161,14 @@ fn without_series(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Opt
     let motions: Vec<&str> = carried.source.motions.iter().map(|motion| motion.name.as_str()).collect();
     let (asked, why) = match motions[..] {
         [one] => (
-            request.tolerance.iter().map(|_| "--tolerance").collect(),
+            request.tolerance.iter().map(|_| "option `tolerance`").collect(),
             format!("the axes have no power series in the middle of {one}, where they are singular"),
         ),
         _ => (
             request.of_a_motion(),
             format!(
                 "the job runs over {}, each by itself, and files, polynomials, programs and rates go along one motion; without these \
-                 options the axes are printed, and with --json all positions",
+                 options the axes are printed, and the document has all positions",
                 motions.join(" and ")
             ),
         ),
@@ -219,8 +219,8 @@ impl<'t, 'g> Plan<'t, 'g> {
         let chosen = Chosen::of(job, onto.surface.as_deref())?;
         let machine = &target.machines[0];
         let [work, tool] = [
-            frame(machine, &chosen.work, onto.work_frame.as_deref(), "--work-frame")?,
-            frame(machine, &chosen.tool, onto.tool_frame.as_deref(), "--tool-frame")?,
+            frame(machine, &chosen.work, onto.work_frame.as_deref(), "option `work_frame`")?,
+            frame(machine, &chosen.tool, onto.tool_frame.as_deref(), "option `tool_frame`")?,
         ];
         let chain = machine.chain(graph, &work, &tool).expect("both frames are the machine's");
         let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
@@ -372,7 +372,7 @@ impl<'j, 'g> Conversion<'j, 'g> {
     ) -> Result<Conversion<'j, 'g>, String> {
         let plan = Plan::of(graph, job, target, onto, &[])?;
         match plan.settings.first() {
-            Some(open) => Err(format!("{} has no value: --set {}=…", open.name, open.name)),
+            Some(open) => Err(format!("{} has no value: option `set {}=…`", open.name, open.name)),
             None => Conversion::on(plan.solved(session)?, positions, session),
         }
     }

@@ -33,7 +33,7 @@ impl Rates {
         let Some(rows) = rows else { return Ok(None) };
         if !rows.iter().flatten().flatten().all(|rate| rate.is_finite()) {
             return Err(format!(
-                "in {seconds:e} s (--time) the axes would be faster than numbers go: say the seconds that the motion takes"
+                "in {seconds:e} s (option `time`) the axes would be faster than numbers go: say the seconds that the motion takes"
             ));
         }
         Ok(Some(Rates { seconds, rows }))

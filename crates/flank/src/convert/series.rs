@@ -83,9 +83,9 @@ impl Series {
         let tolerance = tolerance.filter(|_| !self.meets)?;
         let Some((order, least)) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
             let why = if source.flanks.is_empty() {
-                "the points tell where a face of the tool touches the flank, and this tool is an edge; say the order (--order)"
+                "the points tell where a face of the tool touches the flank, and this tool is an edge; say the order (option `order`)"
             } else {
-                "the points of the flank tell, and none is sampled and solved; add a `sample`, or say the order (--order)"
+                "the points of the flank tell, and none is sampled and solved; add a `sample`, or say the order (option `order`)"
             };
             return not_reached(format!(
                 "not reached: no order is known to keep the flank within {:.3e} um: {why}",
@@ -96,7 +96,7 @@ impl Series {
             "nearer than rounding lets it: ask for a larger tolerance"
         } else {
             "the series do not reach the ends of the motion: carry over a shorter part of it, with a sample of less of the flank, or \
-             take the positions or the exact form (--emit-form exact) instead of polynomials"
+             take the positions or the exact form (option `emit_form exact`) instead of polynomials"
         };
         not_reached(format!(
             "not reached: no order up to {HIGHEST} keeps the flank within {:.3e} um; order {order} comes nearest, {:.3e} um; {why}",

@@ -48,8 +48,8 @@ pub(super) fn wanted<'t, 'g>(
         let can: Vec<String> =
             matter.iter().filter(|setting| !setting.is_count).map(|setting| short(setting)).collect();
         return Err(match &can[..] {
-            [] => format!("--fit {name}: {reason}; {machine} has no setting that can be looked for"),
-            can => format!("--fit {name}: {reason}; {machine} can be set by {}", can.join(", ")),
+            [] => format!("option `fit {name}`: {reason}; {machine} has no setting that can be looked for"),
+            can => format!("option `fit {name}`: {reason}; {machine} can be set by {}", can.join(", ")),
         });
     }
     let has_value = |setting: &RangedVariable<'g>| target.parameters.iter().any(|p| p.variable == setting.variable);
@@ -58,7 +58,7 @@ pub(super) fn wanted<'t, 'g>(
     let wanted: Vec<&RangedVariable<'g>> =
         target.settings.iter().filter(|s| is_asked(s) || (!has_value(s) && matters(s))).collect();
     match wanted.iter().find(|setting| setting.is_count) {
-        Some(count) => Err(format!("{} has no value: --set {}=…", count.name, count.name)),
+        Some(count) => Err(format!("{} has no value: option `set {}=…`", count.name, count.name)),
         None => Ok(wanted),
     }
 }
@@ -203,7 +203,7 @@ impl Found<'_, '_, '_> {
             let more: Vec<String> = more.map(short).collect();
             let others = match more.is_empty() {
                 true => format!("{name} has no others"),
-                false => format!("perhaps with others: --fit {}", more.join(" or ")),
+                false => format!("perhaps with others: option `fit` {}", more.join(" or ")),
             };
             let message =
                 format!("not reached: no values of these settings were found that make all poses on {name}; {others}");

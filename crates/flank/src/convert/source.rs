@@ -78,14 +78,14 @@ impl<'j, 'g> Chosen<'j, 'g> {
         let all: Vec<&GeneratedSurface<'g>> = job.surfaces.iter().collect();
         let Some(first) = all.iter().find(named) else {
             let names: Vec<&str> = all.iter().map(|surface| surface.name.as_str()).collect();
-            return Err(format!("{} has no such surface: --surface {}", job.name, names.join(" or ")));
+            return Err(format!("{} has no such surface: option `surface` {}", job.name, names.join(" or ")));
         };
         let is_one_of_several = all.iter().any(|surface| path(surface) != path(first));
         if asked.is_none()
             && let Some(other) = all.iter().find(|surface| path(surface) != path(first))
         {
             return Err(format!(
-                "{} has several tools: {} is made in {} and {} in {}; say which is carried over: --surface {}",
+                "{} has several tools: {} is made in {} and {} in {}; say which is carried over: option `surface {}`",
                 job.name, first.name, first.frame, other.name, other.frame, first.name
             ));
         }

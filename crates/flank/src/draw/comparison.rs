@@ -19,13 +19,14 @@ const KINDS: [PlotKind; 2] = [PlotKind::Deviation, PlotKind::Topography];
 /// In words, if the request do not compare two surfaces.
 pub(super) fn check(request: &PlotRequest) -> Result<(), Failure> {
     if request.surface.len() != 1 {
-        let message = "--reference holds one surface against another one: name one with --surface";
+        let message = "option `reference` holds one surface against another one: name one with option `surface`";
         return Err(Failure::Request(message.to_string()));
     }
     match request.what.iter().find(|what| !KINDS.contains(what)) {
         Some(other) => {
             let (other, kinds) = (other.name(), KINDS.map(PlotKind::name).join(", "));
-            let message = format!("--what {other} does not compare surfaces\nwhat fits with --reference: {kinds}");
+            let message =
+                format!("option `what {other}` does not compare surfaces\nwhat fits with option `reference`: {kinds}");
             Err(Failure::Request(message))
         }
         None => Ok(()),

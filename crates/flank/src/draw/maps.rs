@@ -42,7 +42,7 @@ impl Shown {
     fn note(&self, note: &str) -> String {
         match self.fields.len().saturating_sub(MOST) {
             0 => note.to_string(),
-            more => format!("{note} {} not shown: choose with --surface.", counted(more, "more map")),
+            more => format!("{note} {} not shown: choose by surface.", counted(more, "more map")),
         }
     }
 
@@ -108,7 +108,7 @@ pub(super) fn sensitivity(
     of: &[String],
     options: &PictureOptions,
 ) -> Result<Drawing, Unfit> {
-    let known = subject.first().sensitivity.as_ref().ok_or("it is asked for with --what sensitivity")?;
+    let known = subject.first().sensitivity.as_ref().ok_or("it is asked for with option `what sensitivity`")?;
     let before = subject.first().fields.len();
     let parameters: Vec<&str> = known.parameters().collect();
     let place = |name: &String| {

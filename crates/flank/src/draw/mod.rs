@@ -31,7 +31,7 @@ use crate::solve::travel;
 use result::{PlotResult, WrittenPicture};
 pub(crate) use subject::Subject;
 
-/// Without `--what` the first of these that fit are drawn, and no more than so many.
+/// Unless kinds are named, the first of these that fit are drawn, and no more than so many.
 const DEFAULTS: [PlotKind; 6] = [
     PlotKind::Left,
     PlotKind::Surface,
@@ -43,7 +43,7 @@ const DEFAULTS: [PlotKind; 6] = [
 const MOST_DEFAULTS: usize = 3;
 
 /// What a deviation is of.
-const SECOND: &str = "takes a second surface: --surface NAME --reference OTHER";
+const SECOND: &str = "takes a second surface: option `surface NAME` option `reference OTHER`";
 
 /// A picture, and what it shows in a few words.
 pub(crate) struct Drawing {
@@ -60,12 +60,14 @@ pub(crate) type Unfit = String;
 /// What is wrong with the spec; what does not go together, or does not fit the job; that a file cannot be written.
 pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(PlotResult)) -> Result<(), Failure> {
     if !request.of.is_empty() && !request.what.contains(&PlotKind::Sensitivity) {
-        return Err(Failure::Request("--of names what `sensitivity` shows, and that is not among --what".to_string()));
+        return Err(Failure::Request(
+            "option `of` names what `sensitivity` shows, and that is not among option `what`".to_string(),
+        ));
     }
     match &request.reference {
         Some(_) => comparison::check(request)?,
         None if request.what.contains(&PlotKind::Deviation) => {
-            let message = format!("--what deviation {SECOND}");
+            let message = format!("option `what deviation` {SECOND}");
             return Err(Failure::Request(message));
         }
         None => {}
@@ -170,7 +172,12 @@ pub(crate) fn draw(
 fn unfit(subject: &Subject<'_, '_>, what: PlotKind, why: &str, request: &PlotRequest) -> String {
     let others = PlotKind::ALL.iter().filter(|other| draw(subject, **other, &request.of, options(request)).is_ok());
     let others: Vec<String> = others.map(|other| other.name().to_string()).collect();
-    format!("--what {} does not fit job {}: {why}\nwhat fits: {}", what.name(), subject.job.name, others.join(", "))
+    format!(
+        "option `what {}` does not fit job {}: {why}\nwhat fits: {}",
+        what.name(),
+        subject.job.name,
+        others.join(", ")
+    )
 }
 
 fn counted(count: usize, of: &str) -> String {

@@ -168,7 +168,7 @@ impl<'a> Folder<'a> {
         if self.origin.holds(&path) {
             let path = shown_path(&path);
             return Err(format!(
-                "`{path}` is what this command reads and would be written over: name another folder with --out"
+                "`{path}` is what this command reads and would be written over: name another folder with option `out`"
             ));
         }
         self.files.write(&path, content).map_err(|error| error.to_string())?;
@@ -190,7 +190,7 @@ pub fn write_texts(folder: &Path, texts: &[(String, String)]) -> Result<Vec<Stri
 
 /// Makes the folder that is asked for, or one in it.
 pub(crate) fn made(folder: &Path) -> Result<(), String> {
-    make_folder(folder).map_err(|error| format!("{error}; name another folder with --out"))
+    make_folder(folder).map_err(|error| format!("{error}; name another folder with option `out`"))
 }
 
 /// What lies in each frame, with the name of its file: the frame is part of it where there are several.

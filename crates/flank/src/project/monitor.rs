@@ -17,6 +17,12 @@ pub trait Monitor: Sync {
         let _ = lines;
     }
 
+    /// A message that goes into a file, with its options as the file's readers spell them. Messages of this library name the fields of
+    /// requests as "option `no_align`", or with a value as "option `set teeth=25`".
+    fn spelled(&self, message: &str) -> String {
+        message.to_string()
+    }
+
     /// Warnings of a spec that is right.
     fn warn(&self, findings: &Findings) {
         let _ = findings;

@@ -47,7 +47,7 @@ impl JobSelection {
             self.set.iter().enumerate().find(|(k, (name, _))| self.set[..*k].iter().any(|(known, _)| known == name));
         match twice {
             Some((_, (name, _))) => {
-                Err(Failure::Request(format!("`--set {name}=…` is given twice: leave one of them out")))
+                Err(Failure::Request(format!("the option `set {name}=…` is given twice: leave one of them out")))
             }
             None => Ok(()),
         }
@@ -338,13 +338,13 @@ impl ConvertRequest {
     /// What is asked for that there is only of a motion, not of settings.
     pub(crate) fn of_a_motion(&self) -> Vec<&'static str> {
         let asked = [
-            (self.order.is_some(), "--order"),
-            (self.tolerance.is_some(), "--tolerance"),
-            (self.out.is_some(), "--out"),
-            (!self.format.is_empty(), "--format"),
-            (!self.nc.is_empty(), "--nc"),
-            (self.time.is_some(), "--time"),
-            (!self.emit.is_empty(), "--emit"),
+            (self.order.is_some(), "option `order`"),
+            (self.tolerance.is_some(), "option `tolerance`"),
+            (self.out.is_some(), "option `out`"),
+            (!self.format.is_empty(), "option `format`"),
+            (!self.nc.is_empty(), "option `nc`"),
+            (self.time.is_some(), "option `time`"),
+            (!self.emit.is_empty(), "option `emit`"),
         ];
         asked.into_iter().filter_map(|(is_asked, name)| is_asked.then_some(name)).collect()
     }

@@ -65,7 +65,7 @@ fn set_in_several(which: &JobSelection, jobs: &[Job<'_>]) -> String {
         let changed: Vec<&str> = changed.map(|job| job.name.as_str()).collect();
         if let [first, _, ..] = changed[..] {
             out += &format!(
-                "note: `--set {name}` changes {} jobs: {}; `--set {first}.{name}=…` changes one\n",
+                "note: the option `set {name}` changes {} jobs: {}; the option `set {first}.{name}=…` changes one\n",
                 changed.len(),
                 changed.join(", ")
             );

@@ -40,18 +40,19 @@ pub(super) fn sentences(findings: &Findings<'_, '_>) -> Vec<String> {
     of_files.into_iter().chain(own.map(str::to_string)).collect()
 }
 
-/// The command that makes this page again, without where to.
+/// What makes this page again, as words of a shell, without where to.
 pub(super) fn command(findings: &Findings<'_, '_>) -> String {
     let which = &findings.request.jobs;
     let mut words = vec!["flank".to_string(), "report".to_string(), shown_path(which.file())];
-    words.extend(["--job".to_string(), findings.job.name.clone()]);
+    let option = |name: &str| findings.spelled(&format!("option `{name}`"));
+    words.extend([option("job"), findings.job.name.clone()]);
     for (name, value) in which.set_in(&[findings.job]) {
-        words.extend(["--set".to_string(), format!("{name}={value}")]);
+        words.extend([option("set"), format!("{name}={value}")]);
     }
-    words.extend(findings.is_certified.then(|| "--certify".to_string()));
-    words.extend(findings.request.step.map(|tolerance| format!("--step={tolerance}mm")));
+    words.extend(findings.is_certified.then(|| option("certify")));
+    words.extend(findings.request.step.map(|tolerance| option(&format!("step={tolerance}mm"))));
     if let Some(date) = &findings.request.date {
-        words.extend(["--date".to_string(), date.clone()]);
+        words.extend([option("date"), date.clone()]);
     }
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
 }

@@ -104,9 +104,9 @@ fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<
         let giver = match parameter.given_by {
             ValueSource::Definition(_) => "default",
             ValueSource::Job => "job",
-            ValueSource::Caller => "--set",
+            ValueSource::Caller => "option `set`",
         };
-        cells.push(giver.to_string());
+        cells.push(findings.spelled(giver));
         cells.extend(has_docs.then(|| joined(&parameter.doc)));
         cells
     };

@@ -68,6 +68,7 @@ struct Findings<'j, 'g> {
     sources: &'j Sources,
     origin: &'j Origin,
     request: &'j ReportRequest,
+    monitor: &'j dyn Monitor,
     header: Header,
     subject: Subject<'j, 'g>,
     /// Where surfaces and contact end.
@@ -118,6 +119,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             sources,
             origin,
             request,
+            monitor,
             header,
             subject,
             lines,
@@ -126,6 +128,11 @@ impl<'j, 'g> Findings<'j, 'g> {
             faces,
             is_certified: request.certify,
         })
+    }
+
+    /// A message with its options as readers of the page spell them.
+    fn spelled(&self, message: &str) -> String {
+        self.monitor.spelled(message)
     }
 
     fn solved(&self) -> &[Solved<'j, 'g>] {

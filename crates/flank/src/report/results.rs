@@ -78,9 +78,13 @@ fn missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Option<Block
 }
 
 fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    let told = reasons::counted(findings.job, solved);
+    let told = reasons_told(findings, solved);
     let branches = not_done::lines(&branches::ambiguous(std::slice::from_ref(solved)));
     told.into_iter().chain(branches.lines().map(|line| line.trim().to_string())).collect()
+}
+
+fn reasons_told(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
+    reasons::counted(findings.job, solved).iter().map(|reason| findings.spelled(reason)).collect()
 }
 
 /// Which roots there are where each surface was begun.
@@ -189,7 +193,7 @@ pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<ReportedSurface> {
             chain: generation.path.iter().map(|(frame, _)| frame.clone()).collect(),
             grid: SampledGrid { counts: solved.sample.counts, labels: solved.sample.labels.clone() },
             anchor: anchor(solved),
-            reasons: reasons::counted(findings.job, solved),
+            reasons: reasons_told(findings, solved),
             certified: certify::proven(solved),
             curvature: super::extremes::told(solved),
         }

@@ -28,7 +28,8 @@ impl Target {
         let format = ReportFormat::of(out);
         match request.format.iter().find(|other| format.is_some_and(|format| **other != format)) {
             Some(other) => {
-                let message = format!("{} cannot hold {}: name a folder with --out", out.display(), extension(*other));
+                let message =
+                    format!("{} cannot hold {}: name a folder with option `out`", out.display(), extension(*other));
                 Err(Failure::Request(message))
             }
             None => Ok(()),
@@ -47,7 +48,7 @@ impl Target {
             let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
             let names = names.join(", ");
             return Err(format!(
-                "{} can hold one job of {names}: choose it with --job, or name a folder",
+                "{} can hold one job of {names}: choose it with option `job`, or name a folder",
                 out.display()
             ));
         }

@@ -60,7 +60,7 @@ fn not_sampled(findings: &Findings<'_, '_>) -> Option<String> {
 
 fn not_certified(findings: &Findings<'_, '_>) -> Option<String> {
     if !findings.is_certified {
-        return Some("The points are not certified: --certify proves each of them.".to_string());
+        return Some(findings.spelled("The points are not certified: option `certify` proves each of them."));
     }
     let is_open = |solved: &Solved<'_, '_>| {
         certify::proven(solved).is_some_and(|certified| certified.points < solved.summary.solved())

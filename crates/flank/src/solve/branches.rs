@@ -209,7 +209,7 @@ fn what_decides(solved: &Solved<'_, '_>) -> String {
         _ => format!("a narrower range of {}, ", open.join(" or ")),
     };
     let more = if solved.effort.undecided.iter().any(|doubt| doubt.why == Doubt::Budget) {
-        format!(" or a longer search, `--boxes {}`,", 10 * solved.effort.boxes.max(1))
+        format!(" or a longer search, the option `boxes {}`,", 10 * solved.effort.boxes.max(1))
     } else {
         String::new()
     };

@@ -52,7 +52,7 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let least = summary.least_residual;
     let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
     // the others may end where the surface turns back
-    let ends = if summary.solved() > 0 { "; `--limits` shows where the surface ends" } else { "" };
+    let ends = if summary.solved() > 0 { "; the option `limits` shows where the surface ends" } else { "" };
     tell(
         summary.count(Outcome::NotConverged { iterations: 0 }),
         format!("not converged{near}: no point of this branch was found there{ends}"),

@@ -314,12 +314,16 @@ impl PointArrays {
             residuals: points.iter().map(|point| point.residual).collect(),
         };
         for point in points {
-            // of a point that is not there nothing is known but why
-            let is_there = matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_) | Outcome::Undecided);
-            all.positions.push(if is_there { point.position } else { [f64::NAN; 3] });
-            all.normals.push(if is_there { point.normal } else { [f64::NAN; 3] });
-            let known = point.unknowns.iter().copied().filter(|_| is_there).chain(std::iter::repeat(f64::NAN));
-            all.unknowns.extend(known.take(unknowns));
+            if matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_) | Outcome::Undecided) {
+                all.positions.push(point.position);
+                all.normals.push(point.normal);
+                all.unknowns.extend_from_slice(&point.unknowns);
+            } else {
+                // of a point that is not there nothing is known but why
+                all.positions.push([f64::NAN; 3]);
+                all.normals.push([f64::NAN; 3]);
+                all.unknowns.resize(all.unknowns.len() + unknowns, f64::NAN);
+            }
         }
         all
     }

@@ -64,7 +64,7 @@ pub(crate) fn check_kept<'s, 'g: 's>(
             let of_shown = bytes_of_point(job, surface, sample, shown);
             count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_shown
         };
-        let flag = || (wanted.geometry && !wanted.of_shown).then(|| "--geometry".to_string());
+        let flag = || (wanted.geometry && !wanted.of_shown).then(|| "option `geometry`".to_string());
         needed = needed.or(all_needed.or_else(flag).filter(|_| count > KEPT));
     }
     if bytes <= MOST_BYTES {
@@ -132,7 +132,7 @@ fn needs_all(
     let between = between.map(|(word, by)| format!("`{word} {} by {}`", surface.name, job.surfaces[by].name));
     let required = sample.limits.first().map(|limit| format!("what its sample requires of `{}`", limit.of.name));
     let of_each = |is_given: bool| is_given && !wanted.of_shown;
-    let flags = [(of_each(wanted.sensitivity), "--sensitivity"), (wanted.certificates, "--certify")];
+    let flags = [(of_each(wanted.sensitivity), "option `sensitivity`"), (wanted.certificates, "option `certify`")];
     let flag = flags.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
     between.or(required).or(wanted.together.or(flag).map(str::to_string))
 }
