@@ -198,14 +198,15 @@ pub(crate) fn measure<'j, 'g>(
     [surface, from]: [Named<'j, 'g>; 2],
     no_align: bool,
     session: Session,
-) -> Result<DeviationMap<'j, 'g>, String> {
+) -> Result<DeviationMap<'j, 'g>, Failure> {
     let of = &from.surface.name;
     let sample = from.surface.sample.as_ref().ok_or(format!(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
     ))?;
-    let _working = session.begin(format!("solving {} and {}", surface.surface.name, from.surface.name));
+    let _working = session.begin(format!("solving {} and {}", surface.surface.name, from.surface.name))?;
     let counts = sample.counts;
     let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), session);
+    session.check()?;
     let starts = Starts::beside(surface.surface, (sample, &points));
     let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
     let held = &surface.surface.surface;
@@ -482,7 +483,12 @@ impl DeviationMap<'_, '_> {
         format!("{} from {}", self.held.whole_name(), self.from.whole_name())
     }
 
-    fn write(&self, request: &DeviationRequest, origin: &Origin, monitor: &dyn Monitor) -> Result<Vec<String>, String> {
+    fn write(
+        &self,
+        request: &DeviationRequest,
+        origin: &Origin,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<String>, Failure> {
         let dataset = self.dataset(&request.jobs, origin);
         let mut folder = Folder::at(&request.out, origin, monitor)?;
         let map = || field_maps(&dataset, &self.title(), &[(0, 0)], &self.note(), &PictureOptions::default());

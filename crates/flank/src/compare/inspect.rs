@@ -39,7 +39,7 @@ pub(crate) fn inspect<'j, 'g>(
     let placed = Placed::new(of.job, of.surface, request.margins(), session)?;
     let [profile, length] = placed.shares(counts);
     let sample = placed.sample(&profile, &length);
-    let nominal = placed.solved(&sample);
+    let nominal = placed.solved(&sample)?;
     let mut positions = vec![None; nominal.len()];
     for reading in &readings {
         let at = reading.row * counts[1] + reading.column;
@@ -47,7 +47,7 @@ pub(crate) fn inspect<'j, 'g>(
     }
     let inspection = Inspection::new(&of.surface.surface, solve::ranges(of.surface), &of.job.bindings())
         .expect("a job without errors leaves nothing unbound");
-    let _working = session.begin(format!("holding {shown} against {}", of.surface.name));
+    let _working = session.begin(format!("holding {shown} against {}", of.surface.name))?;
     let turn = inspection.best_turn(&positions, &nominal);
     if let Some((at, off, half)) = misplaced(&positions, &nominal, counts, turn.unwrap_or(0.0)) {
         let [row, column] = [at / counts[1] + 1, at % counts[1] + 1];

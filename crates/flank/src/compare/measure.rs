@@ -120,17 +120,19 @@ impl<'j, 'g> Placed<'j, 'g> {
         [0, 1].map(|k| within(self.margins[k], counts[k]))
     }
 
-    pub(crate) fn solved(&self, sample: &Sample<'g>) -> Vec<SurfacePoint> {
-        let _working = self.session.begin(format!("solving {}", self.surface.name));
-        solve::points(self.job, self.surface, sample, wanted(self.session)).points
+    /// # Errors
+    /// If the work is cancelled.
+    pub(crate) fn solved(&self, sample: &Sample<'g>) -> Result<Vec<SurfacePoint>, Failure> {
+        let _working = self.session.begin(format!("solving {}", self.surface.name))?;
+        Ok(solve::points(self.job, self.surface, sample, wanted(self.session)).points)
     }
 
-    fn part(&self, counts: [usize; 2]) -> Patch {
+    fn part(&self, counts: [usize; 2]) -> Result<Patch, Failure> {
         let [profile, length] = self.shares(counts);
         let sample = self.sample(&profile, &length);
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: sample.counts[k] });
-        let points = self.solved(&sample);
-        solve::patch(self.job, &self.surface.name, self.surface, axes, &points)
+        let points = self.solved(&sample)?;
+        Ok(solve::patch(self.job, &self.surface.name, self.surface, axes, &points))
     }
 }
 
@@ -175,14 +177,14 @@ fn flank<'g>(
     (request, session): (&MeasureRequest, Session<'_>),
 ) -> Result<NominalFlank, Failure> {
     let placed = Placed::new(job, surface, request.margins(), session)?;
-    let grid = placed.part([request.rows as usize, request.columns as usize]);
+    let grid = placed.part([request.rows as usize, request.columns as usize])?;
     let hand = Hand::of(&grid);
     let mut parts = vec![(Part::Grid, grid)];
     if let Some(count) = request.lines {
         let count = count as usize;
-        parts.extend([(Part::Profile, placed.part([count, 1])), (Part::Lead, placed.part([1, count]))]);
+        parts.extend([(Part::Profile, placed.part([count, 1])?), (Part::Lead, placed.part([1, count])?)]);
     }
-    parts.push((Part::Middle, placed.part([1, 1])));
+    parts.push((Part::Middle, placed.part([1, 1])?));
     Ok(NominalFlank { hand, ends: placed.ends, parts })
 }
 

@@ -8,6 +8,7 @@ use super::Conversion;
 use super::blocks::Blocks;
 use super::table::{Named, Table};
 use crate::project::choices::EmitForm;
+use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::requests::{ConvertRequest, Session};
 use crate::project::spec::Origin;
@@ -29,7 +30,7 @@ pub(super) fn write(
     carried: &Conversion<'_, '_>,
     header: Header,
     (request, origin, session): (&ConvertRequest, &Origin, Session<'_>),
-) -> Result<Vec<String>, String> {
+) -> Result<Vec<String>, Failure> {
     let source = &carried.source;
     // two tools of one job do not write over each other's files
     let own = if source.is_one_of_several { format!("_{}", source.surfaces[0]) } else { String::new() };

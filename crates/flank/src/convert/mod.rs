@@ -129,12 +129,12 @@ fn carry<'g>(
     target: Target<'_, 'g>,
     origin: &Origin,
     (request, session): (&ConvertRequest, Session<'_>),
-) -> Result<AxisMotion, String> {
+) -> Result<AxisMotion, Failure> {
     let jobs = [job, target.job];
     let carried = Conversion::on(target, request.positions, session)?;
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
-    let working = session.begin(format!("polynomials and their proof on {}", carried.machine.name));
+    let working = session.begin(format!("polynomials and their proof on {}", carried.machine.name))?;
     let series = is_followed.then(|| Series::of(&carried, request)).flatten();
     drop(working);
     match &series {
@@ -240,7 +240,7 @@ impl<'t, 'g> Plan<'t, 'g> {
     ///
     /// # Errors
     /// In words, if there are too many of them.
-    fn solved(self, session: Session<'_>) -> Result<Target<'t, 'g>, String> {
+    fn solved(self, session: Session<'_>) -> Result<Target<'t, 'g>, Failure> {
         let Plan { job, machine, chosen, chain, free, settings, bindings } = self;
         let source = Source::of(chosen, session)?;
         let axes = free.iter().map(|axis| target_axis(axis)).collect();
@@ -369,16 +369,16 @@ impl<'j, 'g> Conversion<'j, 'g> {
         target: &'j Job<'g>,
         (onto, session): (&Onto, Session<'j>),
         positions: u32,
-    ) -> Result<Conversion<'j, 'g>, String> {
+    ) -> Result<Conversion<'j, 'g>, Failure> {
         let plan = Plan::of(graph, job, target, onto, &[])?;
         match plan.settings.first() {
-            Some(open) => Err(format!("{} has no value: option `set {}=…`", open.name, open.name)),
+            Some(open) => Err(format!("{} has no value: option `set {}=…`", open.name, open.name).into()),
             None => Conversion::on(plan.solved(session)?, positions, session),
         }
     }
 
-    fn on(mut target: Target<'j, 'g>, positions: u32, session: Session<'_>) -> Result<Conversion<'j, 'g>, String> {
-        let _working = session.begin(format!("following the tool on {}", target.machine.name));
+    fn on(mut target: Target<'j, 'g>, positions: u32, session: Session<'_>) -> Result<Conversion<'j, 'g>, Failure> {
+        let _working = session.begin(format!("following the tool on {}", target.machine.name))?;
         let positions = target.source.positions(positions as usize);
         let (problem, line) = target.postures(&positions)?;
         let Target { source, machine, free, chain, bindings, .. } = target;

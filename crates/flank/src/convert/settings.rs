@@ -12,6 +12,7 @@ use flank_solver::{
 use super::Target;
 use super::result::{FittedPosition, FoundSetting, FoundSettings};
 use super::source::{Flank, Source};
+use crate::project::failure::Failure;
 use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::quantity::UnitSymbol;
 use crate::project::requests::{ConvertRequest, Session};
@@ -78,7 +79,7 @@ pub(super) fn find(
     job: &Job<'_>,
     target: &Target<'_, '_>,
     (request, session): (&ConvertRequest, Session<'_>),
-) -> Result<FoundSettings, String> {
+) -> Result<FoundSettings, Failure> {
     let Target { source, settings, .. } = target;
     let positions = source.positions(request.positions as usize);
     let unknown: Vec<UnknownSetting<'_>> = settings.iter().map(|setting| unknown(target.job, setting)).collect();
@@ -91,7 +92,7 @@ pub(super) fn find(
         Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),
         _ => positions.clone(),
     };
-    let _working = session.begin(format!("looking for settings of {}", target.machine.name));
+    let _working = session.begin(format!("looking for settings of {}", target.machine.name))?;
     let fit = problem.fit(&some);
     let deviation = source.flanks.iter().filter_map(|flank| deviation(&problem, source, flank, &fit, &some));
     let deviation = deviation.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))));

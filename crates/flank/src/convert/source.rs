@@ -5,6 +5,7 @@ use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
+use crate::project::failure::Failure;
 use crate::project::not_done::NotDone;
 use crate::project::requests::Session;
 use crate::project::units;
@@ -112,7 +113,7 @@ impl<'j, 'g> Source<'j, 'g> {
     ///
     /// # Errors
     /// In words, if a surface has more points than can be carried over.
-    pub(super) fn of(chosen: Chosen<'j, 'g>, session: Session) -> Result<Source<'j, 'g>, String> {
+    pub(super) fn of(chosen: Chosen<'j, 'g>, session: Session) -> Result<Source<'j, 'g>, Failure> {
         let Chosen { job, work, tool, mates, is_one_of_several, motions } = chosen;
         let wanted = SolveOptions {
             geometry: false,
@@ -124,7 +125,7 @@ impl<'j, 'g> Source<'j, 'g> {
         };
         stream::check_kept(job, mates.iter().copied(), wanted)?;
         let made: Vec<Made<'j, 'g>> =
-            mates.iter().map(|&surface| made(job, surface, wanted)).collect::<Result<_, String>>()?;
+            mates.iter().map(|&surface| made(job, surface, wanted)).collect::<Result<_, Failure>>()?;
         let needed: Vec<Range> = motions.iter().map(|motion| reached(motion, &made)).collect();
         let unsolved = made.iter().flat_map(|made| made.told.iter().cloned()).collect();
         let count = made.len();
@@ -214,7 +215,7 @@ fn made<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     wanted: SolveOptions,
-) -> Result<Made<'j, 'g>, String> {
+) -> Result<Made<'j, 'g>, Failure> {
     let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
         return Ok(Made { surface, points: Vec::new(), told: Vec::new() });
     };

@@ -55,7 +55,7 @@ fn carried(
     (request, monitor): (&DeriveRequest, &dyn Monitor),
 ) -> Result<DeriveResult, Failure> {
     let session = Session::new(request.onto.evaluator, monitor);
-    let carry = |job: &Job<'_>, target: &Job<'_>| {
+    let carry = |job: &Job<'_>, target: &Job<'_>| -> Result<_, Failure> {
         let carried = Conversion::new(graph, job, target, (&request.onto, session), POSITIONS)?;
         // the postures that tell which elbow is meant lie as far as points are solved
         let unsolved = carried.source.unsolved.clone();
@@ -67,7 +67,7 @@ fn carried(
         Ok((explicit_page(job, &carried, &axes, style(request)), unsolved))
     };
     let (_, job, target) = convert::compiled(graph, &request.jobs, to, monitor)?;
-    let (page, unsolved) = carry(&job, &target).map_err(|reason: String| Failure::from(reason).unsolved())?;
+    let (page, unsolved) = carry(&job, &target).map_err(Failure::unsolved)?;
     Ok(shown(vec![DerivationPage { job: job.name.clone(), page }], unsolved, request))
 }
 

@@ -40,7 +40,7 @@ pub(super) fn plot(
     from: &str,
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<PlotResult, String> {
+) -> Result<PlotResult, Failure> {
     let surface = deviation::find(jobs, &request.surface[0])?;
     let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, session)?;
     let asked = if request.what.is_empty() { &KINDS[..] } else { &request.what };

@@ -88,13 +88,13 @@ fn plot_jobs(
     jobs: &[Job<'_>],
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<Vec<PlotResult>, String> {
+) -> Result<Vec<PlotResult>, Failure> {
     let named = request.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
     {
         let [first, other] = [first, other].map(deviation::Named::whole_name);
-        return Err(format!("`{first}` and `{other}` belong to different jobs; draw them one after the other"));
+        return Err(format!("`{first}` and `{other}` belong to different jobs; draw them one after the other").into());
     }
     let is_meant = |job: &&Job<'_>| match named.first() {
         Some(of) => of.job.name == job.name,
@@ -102,16 +102,18 @@ fn plot_jobs(
     };
     let meant: Vec<&Job<'_>> = jobs.iter().filter(is_meant).collect();
     if meant.is_empty() {
-        return Err("no job asks for points: add a `sample` for one of its surfaces".to_string());
+        return Err("no job asks for points: add a `sample` for one of its surfaces".to_string().into());
     }
-    let plot = |job: &&Job<'_>| {
+    let plot = |job: &&Job<'_>| -> Result<PlotResult, Failure> {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
         let header = with_origin(solve::header(&[job], &request.jobs, origin), request);
         let solved = |kinds: &[PlotKind]| Subject::new(job, &names, header.clone(), kinds, session);
         let subject = solved(&request.what)?;
+        session.check()?;
         // what fits is known of what is solved with all that pictures show
-        let drawings = drawings(&subject, request)
-            .map_err(|(what, why)| solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request)))?;
+        let drawings = drawings(&subject, request).map_err(|(what, why)| {
+            solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request).into())
+        })?;
         let written = write(&drawings, &job.name, (request, session), origin)?;
         let mut not_done = table::failures(job, &subject.solved);
         not_done.extend(cut::unknown(&subject.solved));
@@ -199,7 +201,7 @@ fn write(
     stem: &str,
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
-) -> Result<Vec<WrittenPicture>, String> {
+) -> Result<Vec<WrittenPicture>, Failure> {
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     let mut written = Vec::new();
     for (what, drawing) in drawings {

@@ -6,6 +6,7 @@ use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::choices::PlotKind;
+use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::solve::stream;
 use crate::solve::table::Solved;
@@ -34,7 +35,7 @@ impl<'j, 'g> Subject<'j, 'g> {
         header: Header,
         kinds: &[PlotKind],
         session: Session<'j>,
-    ) -> Result<Subject<'j, 'g>, String> {
+    ) -> Result<Subject<'j, 'g>, Failure> {
         let mapped = mapped(job, names);
         let wanted = SolveOptions {
             geometry: kinds.contains(&PlotKind::Curvature) || kinds.is_empty(),
@@ -50,8 +51,8 @@ impl<'j, 'g> Subject<'j, 'g> {
             let points_only = SolveOptions { geometry: false, sensitivity: false, ..wanted };
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
-        let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, _>>()?;
-        Subject::of(job, solved, names, header)
+        let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, Failure>>()?;
+        Ok(Subject::of(job, solved, names, header)?)
     }
 
     /// Of surfaces that are solved; all of them if none is named.

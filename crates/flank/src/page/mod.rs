@@ -107,7 +107,7 @@ fn write<'g>(
     solved: &[Solved<'_, 'g>],
     dataset: &Dataset,
     (request, origin, monitor): (&ViewRequest, &Origin, &dyn Monitor),
-) -> Result<Written, String> {
+) -> Result<Written, Failure> {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
     let mut scene = scene(graph, job, solved);

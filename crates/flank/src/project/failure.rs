@@ -22,6 +22,9 @@ pub enum Failure {
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Whoever follows the work has cancelled it ([`Monitor::is_cancelled`](crate::Monitor::is_cancelled)). No file got its name.
+    #[error("cancelled")]
+    Cancelled,
     /// A folder cannot be made.
     #[error(transparent)]
     Folder(#[from] FolderError),

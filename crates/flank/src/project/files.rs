@@ -12,6 +12,7 @@ use flank_export::{
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::requests::check;
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 
@@ -28,19 +29,20 @@ pub(crate) struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     /// The folder, made if it is not there.
-    pub(crate) fn at(path: &'a Path, origin: &'a Origin, monitor: &'a dyn Monitor) -> Result<Folder<'a>, String> {
-        made(path)?;
+    pub(crate) fn at(path: &'a Path, origin: &'a Origin, monitor: &'a dyn Monitor) -> Result<Folder<'a>, Failure> {
+        make_folder(path)?;
         Ok(Folder { path, origin, files: FileSet::default(), monitor, written: Vec::new() })
     }
 
     /// Gives all files their names, and tells them.
-    pub(crate) fn finish(self) -> Result<Vec<String>, String> {
-        self.files.finish().map_err(|error| error.to_string())?;
+    pub(crate) fn finish(self) -> Result<Vec<String>, Failure> {
+        check(self.monitor)?;
+        self.files.finish()?;
         Ok(self.written)
     }
 
     /// The points in the formats that are asked for. A mesh has one origin: of surfaces in several frames there is one for each.
-    pub(crate) fn data(&mut self, name: &str, surfaces: &Surfaces<'_>, formats: &[PointFormat]) -> Result<(), String> {
+    pub(crate) fn data(&mut self, name: &str, surfaces: &Surfaces<'_>, formats: &[PointFormat]) -> Result<(), Failure> {
         let meshes = by_frame(name, surfaces.list.iter().map(|surface| (surface.outline().frame.as_str(), *surface)));
         let meshes: Vec<(String, Surfaces<'_>)> =
             meshes.into_iter().map(|(name, list)| (name, Surfaces { header: surfaces.header, list })).collect();
@@ -57,7 +59,7 @@ impl<'a> Folder<'a> {
         Ok(())
     }
 
-    fn mesh(&mut self, name: &str, surfaces: &Surfaces<'_>, format: PointFormat) -> Result<(), String> {
+    fn mesh(&mut self, name: &str, surfaces: &Surfaces<'_>, format: PointFormat) -> Result<(), Failure> {
         // a file of triangles says nothing where there are none
         let is_line =
             surfaces.list.iter().map(|surface| surface.outline()).all(|of| of.rows.count.min(of.columns.count) < 2);
@@ -76,7 +78,7 @@ impl<'a> Folder<'a> {
     }
 
     /// Smooth faces, a file for each frame as of meshes.
-    pub(crate) fn step(&mut self, name: &str, header: &Header, faces: &[&Face]) -> Result<(), String> {
+    pub(crate) fn step(&mut self, name: &str, header: &Header, faces: &[&Face]) -> Result<(), Failure> {
         let files = by_frame(name, faces.iter().map(|face| (face.frame(), *face)));
         files
             .iter()
@@ -84,7 +86,7 @@ impl<'a> Folder<'a> {
     }
 
     /// A picture as PNG and SVG.
-    pub(crate) fn picture(&mut self, name: &str, drawn: &Picture) -> Result<(), String> {
+    pub(crate) fn picture(&mut self, name: &str, drawn: &Picture) -> Result<(), Failure> {
         self.picture_as(name, drawn, PictureFormat::Png)?;
         self.picture_as(name, drawn, PictureFormat::Svg)
     }
@@ -94,8 +96,8 @@ impl<'a> Folder<'a> {
         &mut self,
         name: &str,
         drawn: Option<&Picture>,
-        meanwhile: impl FnOnce(&mut Self) -> Result<(), String>,
-    ) -> Result<(), String> {
+        meanwhile: impl FnOnce(&mut Self) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let Some(drawn) = drawn else { return meanwhile(self) };
         let mut png = None;
         let svg = rayon::in_place_scope(|scope| {
@@ -109,7 +111,7 @@ impl<'a> Folder<'a> {
     }
 
     /// A picture in one format.
-    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), String> {
+    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), Failure> {
         match format {
             PictureFormat::Png => {
                 let png = drawn.png().map_err(|error| error.to_string())?;
@@ -120,7 +122,7 @@ impl<'a> Folder<'a> {
     }
 
     /// Axis positions over a motion.
-    pub(crate) fn motion(&mut self, name: &str, motion: &MotionTable, format: TableFormat) -> Result<(), String> {
+    pub(crate) fn motion(&mut self, name: &str, motion: &MotionTable, format: TableFormat) -> Result<(), Failure> {
         match format {
             TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_motion_csv(motion, out)),
             TableFormat::Json => self.write(&format!("{name}.json"), |out| write_motion_json(motion, out)),
@@ -128,7 +130,7 @@ impl<'a> Folder<'a> {
     }
 
     /// Nominal points for a measuring machine.
-    pub(crate) fn grid(&mut self, name: &str, grid: &MeasuringGrid, format: TableFormat) -> Result<(), String> {
+    pub(crate) fn grid(&mut self, name: &str, grid: &MeasuringGrid, format: TableFormat) -> Result<(), Failure> {
         match format {
             TableFormat::Csv => self.write(&format!("{name}.csv"), |out| write_grid_csv(grid, out)),
             TableFormat::Json => self.write(&format!("{name}.json"), |out| write_grid_json(grid, out)),
@@ -136,7 +138,7 @@ impl<'a> Folder<'a> {
     }
 
     /// A program that runs the motion in a number of seconds.
-    pub(crate) fn nc(&mut self, name: &str, motion: &MotionTable, to: Dialect, seconds: f64) -> Result<(), String> {
+    pub(crate) fn nc(&mut self, name: &str, motion: &MotionTable, to: Dialect, seconds: f64) -> Result<(), Failure> {
         let extension = match to {
             Dialect::Fanuc => "nc",
             Dialect::Siemens840D => "mpf",
@@ -146,12 +148,12 @@ impl<'a> Folder<'a> {
     }
 
     /// A page to look at.
-    pub(crate) fn page(&mut self, name: &str, dataset: &Dataset, scene: &Scene) -> Result<(), String> {
+    pub(crate) fn page(&mut self, name: &str, dataset: &Dataset, scene: &Scene) -> Result<(), Failure> {
         self.write(&format!("{name}.html"), |out| write_page(dataset, scene, out))
     }
 
     /// A document to read.
-    pub(crate) fn report(&mut self, name: &str, report: &Report, format: ReportFormat) -> Result<(), String> {
+    pub(crate) fn report(&mut self, name: &str, report: &Report, format: ReportFormat) -> Result<(), Failure> {
         match format {
             ReportFormat::Html => self.write(name, |out| write_report_html(report, out)),
             ReportFormat::Md => self.write(name, |out| write_report_markdown(report, out)),
@@ -159,19 +161,27 @@ impl<'a> Folder<'a> {
     }
 
     /// Any text.
-    pub(crate) fn text(&mut self, name: &str, text: &str) -> Result<(), String> {
+    pub(crate) fn text(&mut self, name: &str, text: &str) -> Result<(), Failure> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
-    fn write(&mut self, name: &str, content: impl Fn(&mut dyn Target) -> Result<(), WriteError>) -> Result<(), String> {
+    fn write(
+        &mut self,
+        name: &str,
+        content: impl Fn(&mut dyn Target) -> Result<(), WriteError>,
+    ) -> Result<(), Failure> {
         let path = self.path.join(name);
         if self.origin.holds(&path) {
             let path = shown_path(&path);
-            return Err(format!(
+            return Err(Failure::Input(format!(
                 "`{path}` is what this command reads and would be written over: name another folder with option `out`"
-            ));
+            )));
         }
-        self.files.write(&path, content).map_err(|error| error.to_string())?;
+        check(self.monitor)?;
+        let written = self.files.write(&path, content);
+        // what stood in its way may be that
+        check(self.monitor)?;
+        written?;
         self.written.push(shown_path(&path));
         Ok(())
     }
@@ -185,12 +195,7 @@ pub fn write_texts(folder: &Path, texts: &[(String, String)]) -> Result<Vec<Stri
     let origin = Origin::default();
     let mut folder = Folder::at(folder, &origin, &Unwatched)?;
     texts.iter().try_for_each(|(name, text)| folder.text(name, text))?;
-    Ok(folder.finish()?)
-}
-
-/// Makes the folder that is asked for, or one in it.
-pub(crate) fn made(folder: &Path) -> Result<(), String> {
-    make_folder(folder).map_err(|error| format!("{error}; name another folder with option `out`"))
+    folder.finish()
 }
 
 /// What lies in each frame, with the name of its file: the frame is part of it where there are several.

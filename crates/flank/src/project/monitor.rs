@@ -2,7 +2,8 @@
 
 use crate::project::findings::Findings;
 
-/// Follows an operation: hears how far long work is, what is to be known beside its result, and what is doubtful in a spec.
+/// Follows an operation: hears how far long work is, what is to be known beside its result, and what is doubtful in a spec; and may
+/// cancel it.
 ///
 /// Operations call it from one thread.
 pub trait Monitor: Sync {
@@ -10,6 +11,12 @@ pub trait Monitor: Sync {
     fn begin(&self, what: String) -> Box<dyn Work> {
         let _ = what;
         Box::new(Unseen)
+    }
+
+    /// Whether the operation is to end. It looks between pieces of its work (surfaces, bands of rows, pictures, files), and ends with
+    /// [`Failure::Cancelled`](crate::Failure::Cancelled); the files of a job stay as they were.
+    fn is_cancelled(&self) -> bool {
+        false
     }
 
     /// Something to know that is neither a result nor a failure, in whole lines.

@@ -105,9 +105,25 @@ impl<'m> Session<'m> {
     }
 
     /// Long work begins.
-    pub(crate) fn begin(self, what: String) -> Box<dyn Work> {
-        self.monitor.begin(what)
+    ///
+    /// # Errors
+    /// If all work is cancelled.
+    pub(crate) fn begin(self, what: String) -> Result<Box<dyn Work>, Failure> {
+        self.check()?;
+        Ok(self.monitor.begin(what))
     }
+
+    /// # Errors
+    /// If all work is cancelled.
+    pub(crate) fn check(self) -> Result<(), Failure> {
+        check(self.monitor)
+    }
+}
+
+/// # Errors
+/// If whoever follows the work has cancelled it.
+pub(crate) fn check(monitor: &dyn Monitor) -> Result<(), Failure> {
+    if monitor.is_cancelled() { Err(Failure::Cancelled) } else { Ok(()) }
 }
 
 /// Points of surfaces.

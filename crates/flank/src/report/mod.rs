@@ -23,7 +23,7 @@ use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::not_done::NotDone;
-use crate::project::requests::{ReportRequest, Session};
+use crate::project::requests::{ReportRequest, Session, check};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::certify;
@@ -56,6 +56,7 @@ pub fn report(
     for job in jobs {
         let findings = Findings::of(job, &compilation.sources, &origin, (request, monitor))?;
         let document = findings.document();
+        check(monitor)?;
         let written = target.write(&findings, &document, monitor)?;
         each(findings.result(&document, written));
     }
@@ -87,7 +88,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         sources: &'j Sources,
         origin: &'j Origin,
         (request, monitor): (&'j ReportRequest, &'j dyn Monitor),
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Failure> {
         let wanted = SolveOptions {
             geometry: true,
             sensitivity: true,
@@ -99,7 +100,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let mut solved: Vec<Solved<'j, 'g>> = solved.collect::<Result<_, _>>()?;
-        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.session);
+        let mut lines = limits::lines(job, solved.iter().map(|solved| solved.surface), wanted.session)?;
         lines
             .extend(solved.iter_mut().flat_map(|solved| solved.trims.drain(..)).filter(|line| !line.points.is_empty()));
         // those of a surface one after the other
@@ -107,7 +108,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         lines.sort_by_key(place);
         let bare = SolveOptions { geometry: false, sensitivity: false, certificates: false, ..wanted };
         let smooth = |tolerance| solved.iter().map(move |solved| step::smooth(job, solved, tolerance, bare));
-        let faces = request.step.into_iter().flat_map(smooth).collect();
+        let faces = request.step.into_iter().flat_map(smooth).collect::<Result<_, Failure>>()?;
         let runs = travel::runs(job, &solved);
         let header = solve::header(&[job], &request.jobs, origin);
         // the page says once where all its pictures come from

@@ -63,7 +63,7 @@ impl Target {
         findings: &Findings<'_, '_>,
         document: &Document,
         monitor: &dyn Monitor,
-    ) -> Result<Vec<String>, String> {
+    ) -> Result<Vec<String>, Failure> {
         let job = &findings.job.name;
         let mut folder = Folder::at(&self.folder, findings.origin, monitor)?;
         let faces: Vec<&Face> = findings.faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();

@@ -6,6 +6,7 @@ use flank_expr::Expr;
 use flank_solver::{GridReport, SurfacePoint, SurfaceProblem};
 use rayon::prelude::*;
 
+use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::solve;
 use crate::solve::reach;
@@ -58,19 +59,23 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
 
 /// Both lines of each surface that points are asked of; none of a surface without an equation of meshing. All threads look for them,
 /// each for one line.
+///
+/// # Errors
+/// If the work is cancelled.
 pub(crate) fn lines<'j, 'g: 'j>(
     job: &Job<'g>,
     surfaces: impl IntoIterator<Item = &'j GeneratedSurface<'g>>,
     session: Session,
-) -> Vec<Line<'j, 'g>> {
+) -> Result<Vec<Line<'j, 'g>>, Failure> {
     let sought: Vec<Sought<'j, 'g>> = surfaces.into_iter().flat_map(sought).collect();
-    let Some(one) = sought.first() else { return Vec::new() };
+    let Some(one) = sought.first() else { return Ok(Vec::new()) };
     let others = sought.iter().any(|other| other.surface.name != one.surface.name);
     let _working =
-        session.begin(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }));
+        session.begin(format!("looking for the limits of {}{}", one.surface.name, if others { ", …" } else { "" }))?;
     // along the coordinate that follows the line farther: it may run across the other one
     let mut lines = look(job, &sought, 0, session);
     let is_open = |line: &Line<'_, '_>| line.summary.solved() < line.points.len();
+    session.check()?;
     let open: Vec<usize> = (0..lines.len()).filter(|at| is_open(&lines[*at])).collect();
     let again: Vec<Sought<'j, 'g>> = open.iter().map(|at| sought[*at]).collect();
     for (at, second) in open.into_iter().zip(look(job, &again, 1, session)) {
@@ -78,7 +83,7 @@ pub(crate) fn lines<'j, 'g: 'j>(
             lines[at] = second;
         }
     }
-    lines
+    Ok(lines)
 }
 
 /// A line that is looked for: where a quantity is zero.

@@ -80,7 +80,7 @@ fn solved_job(
     let solved = job.surfaces.iter().filter_map(|surface| solve_surface(job, surface, wanted));
     let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
     let limited = job.surfaces.iter().filter(|_| request.limits);
-    let limits = limits::lines(job, limited, wanted.session);
+    let limits = limits::lines(job, limited, wanted.session)?;
     // a trim that takes nothing has no line
     let trims = solved.iter().flat_map(|solved| &solved.trims).filter(|line| !line.points.is_empty());
     let lines: Vec<&Line<'_, '_>> = limits.iter().chain(trims).collect();
@@ -88,7 +88,7 @@ fn solved_job(
     let tolerance = request.step.iter();
     let faces: Vec<Smooth> = tolerance
         .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
-        .collect();
+        .collect::<Result<_, Failure>>()?;
     let files = write_files(&dataset, &solved, &faces, (&job.name, wanted.session), (request, origin))?;
     drop(dataset);
     let mut not_done = table::failures(job, &solved);
@@ -149,14 +149,17 @@ pub(crate) fn solve_surface<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
     wanted: SolveOptions<'j>,
-) -> Option<Result<Solved<'j, 'g>, String>> {
+) -> Option<Result<Solved<'j, 'g>, Failure>> {
     let sample = surface.sample.as_ref()?;
     match stream::is_streamed(job, surface, sample, wanted) {
-        Ok(true) => return Some(Ok(in_bands(job, surface, sample, wanted))),
+        Ok(true) => return Some(in_bands(job, surface, sample, wanted)),
         Ok(false) => {}
-        Err(reason) => return Some(Err(reason)),
+        Err(reason) => return Some(Err(reason.into())),
     }
-    let _working = wanted.session.begin(format!("solving {}", surface.name));
+    let _working = match wanted.session.begin(format!("solving {}", surface.name)) {
+        Ok(working) => working,
+        Err(cancelled) => return Some(Err(cancelled)),
+    };
     let Found { problem, points, effort, trims, positions } = points(job, surface, sample, wanted);
     let branches = problem.points(&effort.branches);
     let elsewhere = elsewhere(&problem, &effort);
@@ -200,11 +203,11 @@ fn in_bands<'j, 'g>(
     surface: &'j GeneratedSurface<'g>,
     sample: &'j Sample<'g>,
     wanted: SolveOptions<'j>,
-) -> Solved<'j, 'g> {
+) -> Result<Solved<'j, 'g>, Failure> {
     let mut streamed = Streamed::new(job, surface, sample, wanted.session);
-    let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown);
+    let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown)?;
     let is_of_drawn = wanted.geometry && wanted.of_shown;
-    Solved {
+    Ok(Solved {
         surface,
         sample,
         bindings: job.bindings(),
@@ -223,7 +226,7 @@ fn in_bands<'j, 'g>(
         trims: Vec::new(),
         positions: secondary::STREAMED,
         cut: None,
-    }
+    })
 }
 
 /// The points of a sample, with what it took to find them.
@@ -400,7 +403,7 @@ fn write_files(
     faces: &[Smooth],
     (name, session): (&str, Session<'_>),
     (request, origin): (&SolveRequest, &Origin),
-) -> Result<Vec<String>, String> {
+) -> Result<Vec<String>, Failure> {
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));

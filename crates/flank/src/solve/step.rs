@@ -3,6 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
 
+use crate::project::failure::Failure;
 use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::solve::result::SmoothFace;
 use crate::solve::table::Solved;
@@ -23,9 +24,14 @@ pub(crate) struct Smooth {
 
 /// The face of a surface, through its sampled points (some of very many) or, where that leaves it off by more than `tolerance` (mm),
 /// through grids with twice the rows and columns.
-pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64, wanted: SolveOptions) -> Smooth {
+pub(crate) fn smooth<'g>(
+    job: &Job<'g>,
+    solved: &Solved<'_, 'g>,
+    tolerance: f64,
+    wanted: SolveOptions,
+) -> Result<Smooth, Failure> {
     let surface = solved.surface;
-    let working = wanted.session.begin(format!("making a smooth face of {}", surface.name));
+    let working = wanted.session.begin(format!("making a smooth face of {}", surface.name))?;
     let (mut sample, mut coarse) = match thinned(solved.sample) {
         Some(thin) => {
             let points = solve::points(job, surface, &thin, wanted).points;
@@ -37,6 +43,7 @@ pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64,
     let mut best = Smooth { face: None, name: surface.name.clone(), is_exact_enough: false };
     while let Some(face) = Face::through(&coarse) {
         let Some(finer) = finer(&sample) else { break };
+        wanted.session.check()?;
         sample = finer;
         working.reached(&|| format!("{} x {} points", sample.counts[0], sample.counts[1]));
         let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample, wanted).points);
@@ -53,7 +60,7 @@ pub(crate) fn smooth<'g>(job: &Job<'g>, solved: &Solved<'_, 'g>, tolerance: f64,
             break;
         }
     }
-    best
+    Ok(best)
 }
 
 fn patch<'g>(

@@ -6,6 +6,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Banded, Field, Patch, Point, Taker, WriteError};
 use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
+use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::solve::geometry::{self, Described, TOGETHER};
 use crate::solve::summary::Summary;
@@ -33,6 +34,23 @@ pub(crate) struct Streamed<'j, 'g> {
     problem: SurfaceProblem,
     outline: Patch,
     session: Session<'j>,
+}
+
+/// Whoever follows the work has cancelled it.
+#[derive(Debug, thiserror::Error)]
+#[error("cancelled")]
+struct Cancelled;
+
+impl From<Cancelled> for Failure {
+    fn from(_: Cancelled) -> Failure {
+        Failure::Cancelled
+    }
+}
+
+impl From<Cancelled> for WriteError {
+    fn from(cancelled: Cancelled) -> WriteError {
+        WriteError::Refused(Box::new(cancelled))
+    }
 }
 
 /// What is kept of its points.
@@ -162,14 +180,17 @@ impl<'j, 'g> Streamed<'j, 'g> {
     }
 
     /// Looks at all points; where they are `described`, files show what each is like.
-    pub(crate) fn look(&mut self, described: bool) -> Kept {
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub(crate) fn look(&mut self, described: bool) -> Result<Kept, Failure> {
         let counts = self.sample.counts;
         let step = counts.map(|count| count.div_ceil(DRAWN).max(1));
         let mut summary = Summary::new(self.surface.unknowns.len(), counts);
         let mut drawn = Vec::new();
         let all = counts[0] * counts[1];
         let mut described = described.then(|| Described::new(self.job, self.surface, self.sample, all));
-        let looked = self.solve(|band| {
+        let effort = self.solve(|band| -> Result<(), Failure> {
             for first in (0..band.len()).step_by(TOGETHER) {
                 let numbers = first..band.len().min(first + TOGETHER);
                 let points: Vec<SurfacePoint> = numbers.clone().map(|number| band.point(number)).collect();
@@ -182,11 +203,10 @@ impl<'j, 'g> Streamed<'j, 'g> {
                     }
                 }
             }
-            Ok::<_, std::convert::Infallible>(())
-        });
-        let Ok(effort) = looked;
+            Ok(())
+        })?;
         self.outline.fields = described.map_or(Vec::new(), Described::fields);
-        Kept { summary, effort, drawn }
+        Ok(Kept { summary, effort, drawn })
     }
 
     /// What is known of each of its points.
@@ -198,11 +218,13 @@ impl<'j, 'g> Streamed<'j, 'g> {
         &self.problem
     }
 
-    fn solve<E>(&self, mut each: impl FnMut(&Band<'_>) -> Result<(), E>) -> Result<GridReport, E> {
-        let working = self.session.begin(format!("solving {}", self.surface.name));
+    fn solve<E: From<Cancelled>>(&self, mut each: impl FnMut(&Band<'_>) -> Result<(), E>) -> Result<GridReport, E> {
+        let begun = self.session.begin(format!("solving {}", self.surface.name));
+        let working = begun.map_err(|_| Cancelled)?;
         let target = |row: usize, column: usize| self.sample.grid.at(row, column);
         self.problem.in_bands(target, self.sample.counts, None, |band| {
             each(band)?;
+            self.session.check().map_err(|_| Cancelled)?;
             working.reached(&|| format!("{} of {} rows", band.rows().end, self.sample.counts[0]));
             Ok(())
         })
@@ -217,7 +239,7 @@ impl Banded for Streamed<'_, '_> {
     fn bands(&self, take: Taker<'_>) -> Result<(), WriteError> {
         let columns = self.sample.counts[1];
         let at_once = (HANDED_OVER / columns.max(1)).max(1) * columns;
-        let taken = self.solve(|band| {
+        let taken = self.solve(|band| -> Result<(), WriteError> {
             for first in (0..band.len()).step_by(at_once.max(1)) {
                 let numbers = first..band.len().min(first + at_once);
                 let points: Vec<Point> =
