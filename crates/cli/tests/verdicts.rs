@@ -252,3 +252,18 @@ job wheel {
     assert!(low < at && at < high, "{other}");
     assert!(told.contains(&format!("keep {}: ", keep["name"].as_str().expect("a name"))), "{told}");
 }
+
+/// With a table that stands still no edge of the hob comes back to where the ideal edges were: what is left is undecided everywhere, which
+/// a few points tell, and no point is searched for thousands of edges.
+#[test]
+fn a_search_without_prospect_ends() {
+    let folder = folder("prospect");
+    let hob = self_contained(&["hobbing/real_hob"]);
+    let turning = hob.lines().find(|line| line.trim_start().starts_with("drive r.C =")).expect("the table turns");
+    let spec = written(&folder, "still.chain", &hob.replace(turning, "    drive r.C = 0 rad"));
+    let run = flank(&["solve", &spec, "--no-picture", "--out", folder.to_str().expect("a plain path")]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    let told = text(&run.stderr);
+    assert!(told.contains("not known what is left: 40000 of 40000 points of lower_flank"), "{told}");
+    assert!(told.contains("too many would have to be tried"), "{told}");
+}

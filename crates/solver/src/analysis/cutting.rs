@@ -18,6 +18,11 @@ const TILE: usize = 128;
 const SAFETY: f64 = 2.0;
 /// Edges that are tried for one point before it is left undecided.
 const MOST_EDGES: usize = 4096;
+/// The same where the search has no prospect: where points that are spread over the surface take more than [`PROSPECT`] each on average.
+const FEW_EDGES: usize = 4;
+/// What it takes to bring an edge to pass a point in lanes counts once, what it takes one by one so often.
+const CAREFULLY: u64 = 20;
+const PROSPECT: u64 = 100;
 /// Points at which real edges are compared with ideal ones, and the edges of each: the nearest ones.
 const PROBES: usize = 16;
 const PROBED_EDGES: usize = 256;
@@ -113,15 +118,23 @@ impl CuttingEdges {
         let size = solved.flat_map(|point| point.position).fold(1.0, |size: f64, x| size.max(x.abs()));
         let wide = self.real.wide(size);
         let differing = if self.same { 0.0 } else { self.differing(points, size) };
-        let tiles = points.par_chunks(TILE).map(|tile| self.tile(tile, &wide, differing));
+        let most = self.most_edges(points, &wide, differing);
+        let tiles = points.par_chunks(TILE).map(|tile| self.tile(tile, &wide, (differing, most)).0);
         tiles.collect::<Vec<_>>().into_iter().flatten().collect()
+    }
+
+    /// How many edges are tried for a point, by what it takes at some points all over the surface.
+    fn most_edges(&self, points: &[SurfacePoint], wide: &[Range; 3], differing: f64) -> usize {
+        let probes: Vec<SurfacePoint> = probes(points).into_iter().cloned().collect();
+        let effort = |probe: &SurfacePoint| self.tile(std::slice::from_ref(probe), wide, (differing, MOST_EDGES)).1;
+        let all: u64 = probes.par_iter().map(effort).sum();
+        if all > PROSPECT * probes.len() as u64 { FEW_EDGES } else { MOST_EDGES }
     }
 
     /// How much the heights of real edges over a point differ among each other from those of the ideal edges with the
     /// same counts; the most of some points all over the surface.
     fn differing(&self, points: &[SurfacePoint], size: f64) -> f64 {
-        let solved: Vec<&SurfacePoint> = points.iter().filter(|point| point.outcome == Outcome::Solved).collect();
-        let probes: Vec<&SurfacePoint> = solved.iter().copied().step_by(solved.len().div_ceil(PROBES).max(1)).collect();
+        let probes = probes(points);
         let spread = |point: &&SurfacePoint| {
             let guide = Guide::at(self, &mut ScalarEvaluator::new(&self.guide), point)?;
             let near = guide.nearest(&self.counts, PROBED_EDGES);
@@ -140,7 +153,13 @@ impl CuttingEdges {
         probes.par_iter().filter_map(spread).collect::<Vec<f64>>().into_iter().fold(0.0, f64::max)
     }
 
-    fn tile(&self, points: &[SurfacePoint], wide: &[Range; 3], differing: f64) -> Vec<Option<ScallopHeight>> {
+    /// What is left at some points, with so many edges tried for each at the most; and what that took.
+    fn tile(
+        &self,
+        points: &[SurfacePoint],
+        wide: &[Range; 3],
+        (differing, most): (f64, usize),
+    ) -> (Vec<Option<ScallopHeight>>, u64) {
         let mut guide = ScalarEvaluator::new(&self.guide);
         let mut passing = Passing::new(&self.real, wide);
         let is_solved = |point: &&SurfacePoint| point.outcome == Outcome::Solved;
@@ -152,7 +171,7 @@ impl CuttingEdges {
             let asked: Vec<(&mut Search, usize)> = open
                 .map(|search| {
                     let from = passes.len();
-                    passes.extend(search.next(&self.counts));
+                    passes.extend(search.next(&self.counts, most));
                     let count = passes.len() - from;
                     (search, count)
                 })
@@ -167,8 +186,16 @@ impl CuttingEdges {
             }
         }
         let mut found = searches.into_iter().map(|search| search.map_or(ScallopHeight::Undecided, Search::end));
-        points.iter().map(|point| is_solved(&point).then(|| found.next().unwrap_or(ScallopHeight::Undecided))).collect()
+        let mut end = || found.next().unwrap_or(ScallopHeight::Undecided);
+        let left = points.iter().map(|point| is_solved(&point).then(&mut end)).collect();
+        (left, passing.effort)
     }
+}
+
+/// Points spread over a surface.
+fn probes(points: &[SurfacePoint]) -> Vec<&SurfacePoint> {
+    let solved: Vec<&SurfacePoint> = points.iter().filter(|point| point.outcome == Outcome::Solved).collect();
+    solved.iter().copied().step_by(solved.len().div_ceil(PROBES).max(1)).collect()
 }
 
 impl Edges {
@@ -291,6 +318,8 @@ struct Passing<'e> {
     newton: LaneNewton<'e>,
     evaluation: Evaluation<'e>,
     wide: &'e [Range; 3],
+    /// Edges that were brought to pass, those one by one [`CAREFULLY`] times.
+    effort: u64,
 }
 
 impl<'e> Passing<'e> {
@@ -301,6 +330,7 @@ impl<'e> Passing<'e> {
             newton: LaneNewton::new(&edges.system, wide),
             evaluation: edges.system.evaluation(&vec![0.0; parameters]),
             wide,
+            effort: 0,
         }
     }
 
@@ -311,6 +341,7 @@ impl<'e> Passing<'e> {
                 self.newton.put(lane, pass.start.iter().copied(), &pass.parameters);
             }
             self.newton.run(&[true; LANES][..block.len()], true);
+            self.effort += block.len() as u64;
             for (lane, pass) in block.iter().enumerate() {
                 let root = self.newton.is_root(lane).then(|| [0, 1, 2].map(|k| self.newton.input(k)[lane]));
                 let root = root.or_else(|| self.carefully(pass));
@@ -321,6 +352,7 @@ impl<'e> Passing<'e> {
     }
 
     fn carefully(&mut self, pass: &Pass) -> Option<[f64; 3]> {
+        self.effort += CAREFULLY;
         self.evaluation.set_parameters(&pass.parameters);
         let solution = solve_with(&mut self.evaluation, self.wide, &pass.start);
         solution.is_root().then(|| [0, 1, 2].map(|k| solution.unknowns[k]))
@@ -362,8 +394,8 @@ impl Search {
     }
 
     /// The edges of the next round.
-    fn next(&mut self, ranges: &[Range]) -> Vec<Pass> {
-        let Some(places) = self.guide.near.within(self.level, ranges, MOST_EDGES) else {
+    fn next(&mut self, ranges: &[Range], most: usize) -> Vec<Pass> {
+        let Some(places) = self.guide.near.within(self.level, ranges, most) else {
             self.left = Some(ScallopHeight::Undecided);
             return Vec::new();
         };
@@ -427,7 +459,7 @@ mod tests {
     /// What becomes of a search if each edge becomes the same.
     fn end(mut search: Search, counts: Range, passed: fn() -> Passed) -> ScallopHeight {
         while search.left.is_none() {
-            let passes = search.next(&[counts]);
+            let passes = search.next(&[counts], MOST_EDGES);
             search.learn(passes.iter().map(|pass| (pass, passed())), 0.0);
         }
         search.end()

@@ -8,7 +8,8 @@ use crate::analysis::secondary::net::Seen;
 use crate::equations::solution::{CutBy, Outcome};
 use crate::surface::points::SurfacePoint;
 
-/// Of a grid with no more points than this, each is judged: between lines that are far apart a whole piece may be cut away.
+/// Of a grid with no more points than this each is judged, where there is one motion: between lines that are far apart a whole piece may
+/// be cut away. With several motions, of which one runs at a time, a point's way is many times as long.
 const FEW: usize = 1024;
 /// Parts into which rows and columns are divided first.
 const PARTS: usize = 8;
@@ -148,7 +149,7 @@ struct Spread<'p, 'c> {
 
 impl Spread<'_, '_> {
     fn all(&mut self) {
-        if self.points.len() <= FEW {
+        if self.points.len() <= FEW && self.judge.values.len() == 1 {
             (0..self.points.len()).for_each(|at| {
                 self.known(at);
             });
