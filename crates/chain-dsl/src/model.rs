@@ -191,6 +191,8 @@ pub struct GeneratedSurface<'g> {
     /// The sweep of the numbered edges that really cut it, as an index into the surfaces of the job: over the same motions, one
     /// and counts.
     pub cut_by: Option<usize>,
+    /// Of one more sample of a surface, with a name of its own: that surface, as an index into the surfaces of the job.
+    pub sample_of: Option<usize>,
     /// The points that are asked for.
     pub sample: Option<Sample<'g>>,
 }

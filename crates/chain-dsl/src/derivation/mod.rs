@@ -19,7 +19,8 @@ pub fn derivation(job: &Job<'_>, style: Style) -> String {
     job.doc.iter().for_each(|line| page.text(line));
     page.parameters(job);
     job.machines.iter().for_each(|machine| page.machine(machine));
-    job.surfaces.iter().for_each(|surface| page.surface(surface, job));
+    let made = job.surfaces.iter().filter(|surface| surface.sample_of.is_none());
+    made.for_each(|surface| page.surface(surface, job));
     page.finish()
 }
 

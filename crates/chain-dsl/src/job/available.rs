@@ -57,19 +57,19 @@ impl<'g> Builder<'_, 'g> {
         if self.surfaces.iter().any(|(surface, _)| is_of(&surface.name, &owner.node)) {
             return self.earlier(context, path);
         }
-        if let Some(index) = self.tools.iter().position(|(tool, _)| tool.node == owner.node) {
+        if let Some(index) = self.tools.iter().position(|(tool, ..)| tool.node == owner.node) {
             return self.of_tool(context, path, index);
         }
         let is_known = self.names.contains_key(&owner.node);
         match path.segments.len() {
             1 if !is_known || self.scope.contains_key(&owner.node) => {
                 let known = self.surfaces.iter().map(|(surface, _)| surface.name.as_str());
-                let known = known.chain(self.tools.iter().map(|(tool, _)| tool.node.as_str()));
+                let known = known.chain(self.tools.iter().map(|(tool, ..)| tool.node.as_str()));
                 context.unknown(owner, "surface", known);
             }
             1 => {}
             _ if !is_known => {
-                context.unknown(owner, "tool", self.tools.iter().map(|(tool, _)| tool.node.as_str()));
+                context.unknown(owner, "tool", self.tools.iter().map(|(tool, ..)| tool.node.as_str()));
             }
             _ if !self.is_broken_machine(owner) => {
                 let message = format!("`{}` is not a tool", owner.node);
@@ -108,7 +108,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// A surface of a tool: `t.side` with all its pieces, or `t.side.flank`.
     fn of_tool(&mut self, context: &mut Context<'g>, path: &ast::Path, index: usize) -> Option<Vec<Available<'g>>> {
-        let (owner, built) = (&path.segments[0], &self.tools[index].1);
+        let (owner, built) = (&path.segments[0], &self.tools[index].2);
         let Some(member) = path.segments.get(1) else {
             let surfaces: Vec<String> =
                 built.surfaces.iter().map(|surface| format!("{}.{}", owner.node, surface.name)).collect();

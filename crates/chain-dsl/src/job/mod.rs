@@ -10,6 +10,7 @@ mod sliding;
 mod surfaces;
 mod sweep;
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -23,7 +24,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
-use crate::model::{GeneratedSurface, Job, Machine, Parameter, RangedVariable};
+use crate::model::{GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, ValueSource, within};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
 use crate::values::value::{Scope, Value};
@@ -33,6 +34,13 @@ pub(crate) struct Definitions<'a> {
     pub(crate) machines: &'a Machines,
     pub(crate) tools: &'a Tools,
     pub(crate) overrides: &'a Overrides,
+}
+
+/// An earlier machine or tool of the job.
+struct Original<'b, 'g> {
+    name: &'b Name,
+    definition: &'b String,
+    parameters: &'b [Parameter<'g>],
 }
 
 /// A frame of a machine of the job.
@@ -45,7 +53,7 @@ struct Builder<'a, 'g> {
     /// The job's own.
     parameters: Vec<Parameter<'g>>,
     machines: Vec<(Name, String, Built<'g>)>,
-    tools: Vec<(Name, BuiltTool<'g>)>,
+    tools: Vec<(Name, String, BuiltTool<'g>)>,
     motions: Vec<RangedVariable<'g>>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
@@ -57,6 +65,8 @@ struct Builder<'a, 'g> {
     /// Machines with an axis that has no law, or a frame without a transform of its own (which has been reported).
     unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
+    /// Samples with a name of their own, with the surface that each is of.
+    named_samples: Vec<(Name, usize, Sample<'g>)>,
     /// What the surfaces of the job are made from and over: `c.outside.blade`, `roll`.
     named: Vec<Vec<String>>,
     /// Whether axes without a law are free.
@@ -80,6 +90,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             laws: Vec::new(),
             unsettled: HashSet::new(),
             surfaces: Vec::new(),
+            named_samples: Vec::new(),
             named: Vec::new(),
             stands_alone,
         }
@@ -144,6 +155,7 @@ pub(crate) fn build<'g>(
             _ => {}
         }
     }
+    builder.add_named_samples(context);
     // a job whose name could not be read has been reported
     let is_whole = !job.name.node.is_empty();
     if is_whole && !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
@@ -162,7 +174,7 @@ impl<'g> Builder<'_, 'g> {
             parameters.extend(built.parameters);
             settings.extend(built.settings);
         }
-        for (_, built) in self.tools {
+        for (_, _, built) in self.tools {
             parameters.extend(built.parameters);
         }
         // a setting comes after the job parameters that it is made of, and those were made first
@@ -211,16 +223,27 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }
-            | JobStatement::Cut { .. }
-            | JobStatement::Sample(_) => {}
+            | JobStatement::Cut { .. } => {}
+            JobStatement::Sample(sample) => {
+                sample
+                    .surfaces
+                    .iter()
+                    .filter_map(|sampled| sampled.name.as_ref())
+                    .for_each(|name| self.define(context, name));
+            }
         }
     }
 
     fn machine(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
         self.define(context, &instance.name);
         let machines = self.definitions.machines;
+        let own = self.machines.iter().find(|(name, ..)| name.node == instance.definition.node);
+        let own = own.map(|(name, definition, built)| Original { name, definition, parameters: &built.parameters });
+        let Some(instance) = self.resolved(context, instance, own) else { return };
+        let instance = instance.as_ref();
         let Some(definition) = machines.get(&instance.definition.node) else {
-            context.unknown_item(&instance.definition, "machine", machines.keys().map(String::as_str));
+            let known = machines.keys().chain(self.machines.iter().map(|(name, ..)| &name.node));
+            context.unknown_item(&instance.definition, "machine", known.map(String::as_str));
             return;
         };
         let Some(flat) = machine::flatten(context, machines, definition) else {
@@ -243,8 +266,13 @@ impl<'g> Builder<'_, 'g> {
     fn tool(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
         self.define(context, &instance.name);
         let tools = self.definitions.tools;
+        let own = self.tools.iter().find(|(name, ..)| name.node == instance.definition.node);
+        let own = own.map(|(name, definition, built)| Original { name, definition, parameters: &built.parameters });
+        let Some(instance) = self.resolved(context, instance, own) else { return };
+        let instance = instance.as_ref();
         let Some(definition) = tools.get(&instance.definition.node) else {
-            context.unknown_item(&instance.definition, "tool", tools.keys().map(String::as_str));
+            let known = tools.keys().chain(self.tools.iter().map(|(name, ..)| &name.node));
+            context.unknown_item(&instance.definition, "tool", known.map(String::as_str));
             return;
         };
         let source = self.source(instance);
@@ -258,7 +286,49 @@ impl<'g> Builder<'_, 'g> {
         };
         let built = tool::build(context, definition, source, self.definitions.overrides, &wanted);
         self.expose(&instance.name, &built.scope);
-        self.tools.push((instance.name.clone(), built));
+        self.tools.push((instance.name.clone(), definition.name.node.clone(), built));
+    }
+
+    /// What a machine or tool is one of; one that is an earlier one of the job again (`tool d = c(radius: 3 mm)`) has that one's
+    /// values where it has none of its own. Nothing if the earlier one could not be built, which has been reported.
+    fn resolved<'i>(
+        &self,
+        context: &mut Context<'g>,
+        instance: &'i ast::Instance,
+        original: Option<Original<'_, 'g>>,
+    ) -> Option<Cow<'i, ast::Instance>> {
+        let Some(original) = original else {
+            let earlier = &instance.definition;
+            let is_definition = self.definitions.machines.contains_key(&earlier.node)
+                || self.definitions.tools.contains_key(&earlier.node);
+            let is_lost = !is_definition
+                && earlier.node != instance.name.node
+                && self.names.contains_key(&earlier.node)
+                && self.is_broken_machine(earlier);
+            return (!is_lost).then_some(Cow::Borrowed(instance));
+        };
+        let mut settings = instance.settings.clone();
+        let own: HashSet<&str> =
+            instance.settings.iter().filter_map(|it| Some(it.name.as_ref()?.node.as_str())).collect();
+        let place = instance.definition.span;
+        let is_broken = |(name, value): (&String, &Value<'g>)| {
+            matches!(value, Value::Poison) && within(name, &original.name.node).is_some()
+        };
+        if !context.spend(self.scope.len(), place) || self.scope.iter().any(is_broken) {
+            return None;
+        }
+        let is_given = |parameter: &&Parameter<'g>| !matches!(parameter.given_by, ValueSource::Definition(_));
+        for parameter in original.parameters.iter().filter(is_given) {
+            let Some(inner) = within(&parameter.name, &original.name.node).filter(|inner| !own.contains(inner)) else {
+                continue;
+            };
+            let named = |node: &str| Name { node: node.to_string(), span: place };
+            let path = ast::Path { segments: vec![named(&original.name.node), named(inner)], span: place };
+            let value = ast::Expression { kind: ExpressionKind::Path(path), span: place };
+            settings.push(ast::Argument { name: Some(named(inner)), value });
+        }
+        let definition = Name { node: original.definition.clone(), span: place };
+        Some(Cow::Owned(ast::Instance { name: instance.name.clone(), definition, settings }))
     }
 
     fn source<'s>(&'s self, instance: &'s ast::Instance) -> Source<'s, 'g> {
@@ -317,7 +387,7 @@ impl<'g> Builder<'_, 'g> {
     /// True for a name that stands for something that could not be built (which has been reported).
     fn is_broken_machine(&self, name: &Name) -> bool {
         !self.scope.contains_key(&name.node)
-            && !self.tools.iter().any(|(tool, _)| tool.node == name.node)
+            && !self.tools.iter().any(|(tool, ..)| tool.node == name.node)
             && !self.surfaces.iter().any(|(surface, _)| available::is_of(&surface.name, &name.node))
     }
 
@@ -346,7 +416,9 @@ impl<'g> Builder<'_, 'g> {
         if let Some((_, first)) = self.mounts.get(&name.node) {
             let message = format!("`{}` is mounted twice", name.node);
             let first = *first;
-            context.report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here"));
+            let help = format!("a tool on a second frame has a second name: `tool other = {}`", name.node);
+            context
+                .report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here").help(help));
             self.lost_mounts += 1;
             return;
         }

@@ -9,7 +9,7 @@ use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
 use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
 use crate::values::context::{Context, quoted};
-use crate::values::dimension::Dimension;
+use crate::values::dimension::{Dimension, shown};
 use crate::values::value::{Scope, Value};
 
 /// Corners of a flank in the axial section.
@@ -207,10 +207,7 @@ fn values<'g>(
 ) -> Option<(Vec<f64>, [Expr<'g>; 2])> {
     let what = format!("`{}`", entry.key.node);
     match &entry.values {
-        SampleValues::Value(value) => {
-            let expr = context.scalar(value, scope, dimension, &what)?;
-            Some((vec![context.require_constant(expr, value.span, &what)?], [expr; 2]))
-        }
+        SampleValues::Value(written) => listed(context, written, scope, dimension, &what),
         SampleValues::Range(range, by) => {
             let ends = context.ends(range, scope, dimension, &what);
             let count = context.scalar(by, scope, Dimension::NUMBER, "the number of points");
@@ -229,6 +226,49 @@ fn values<'g>(
             Some((spaced(ends, count as usize), written))
         }
     }
+}
+
+/// One value, or those of a vector, which run one way.
+fn listed<'g>(
+    context: &mut Context<'g>,
+    written: &Expression,
+    scope: &Scope<'g>,
+    dimension: Dimension,
+    what: &str,
+) -> Option<(Vec<f64>, [Expr<'g>; 2])> {
+    let found = match context.evaluate(written, scope) {
+        Value::Vector(parts) => parts,
+        one => vec![one],
+    };
+    let mut exprs = Vec::new();
+    let mut values: Vec<f64> = Vec::new();
+    for (value, place) in found.iter().zip(written.parts(found.len())) {
+        let expr = context.require(value, dimension, place.span, what)?;
+        let value = context.require_constant(expr, place.span, what)?;
+        let runs_on = match values[..] {
+            [] => true,
+            [first] => value != first,
+            [first, second, ..] => {
+                (value > values[values.len() - 1]) == (second > first) && value != values[values.len() - 1]
+            }
+        };
+        if !runs_on {
+            let [value, last] = [value, values[values.len() - 1]].map(|value| shown(value, dimension));
+            let message = format!("the values of {what} run one way, and {value} stands behind {last}");
+            let help = "put them in order, each once";
+            context.report(Diagnostic::new(Code::SampleShape, place.span, message).help(help));
+            return None;
+        }
+        exprs.push(expr);
+        values.push(value);
+    }
+    let (Some(first), Some(last)) = (exprs.first(), exprs.last()) else {
+        let message = format!("{what} has no values");
+        let help = "list them, or give a range: `z: -5 mm .. 5 mm by 11`";
+        context.report(Diagnostic::new(Code::SampleShape, written.span, message).help(help));
+        return None;
+    };
+    Some((values, [*first, *last]))
 }
 
 /// `count` values evenly from end to end, both included, none beyond them; a single one is the middle.

@@ -48,7 +48,7 @@ impl<'g> Builder<'_, 'g> {
     /// The values of all variables after those parameters that do not follow from others have changed a little.
     fn changed_values(&self, context: &Context<'g>) -> Vec<f64> {
         let of_machines = self.machines.iter().flat_map(|(_, _, built)| &built.parameters);
-        let of_tools = self.tools.iter().flat_map(|(_, built)| &built.parameters);
+        let of_tools = self.tools.iter().flat_map(|(_, _, built)| &built.parameters);
         let mut parameters: Vec<&Parameter<'g>> = self.parameters.iter().chain(of_machines).chain(of_tools).collect();
         parameters.sort_by_key(|parameter| parameter.variable.as_variable());
         let mut values = context.values().to_vec();

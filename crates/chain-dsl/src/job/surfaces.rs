@@ -109,6 +109,7 @@ impl<'g> Builder<'_, 'g> {
             unknowns,
             trimmed_by: Vec::new(),
             cut_by: None,
+            sample_of: None,
             sample: None,
         };
         self.surfaces.push((surface, frame));
@@ -284,22 +285,42 @@ impl<'g> Builder<'_, 'g> {
     }
 
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
-        for path in &written.surfaces {
-            self.sample_surface(context, path, written, job);
+        for sampled in &written.surfaces {
+            self.sample_surface(context, sampled, written, job);
         }
     }
 
-    fn sample_surface(&mut self, context: &mut Context<'g>, path: &ast::Path, written: &ast::Sample, job: &ast::Job) {
+    fn sample_surface(&mut self, context: &mut Context<'g>, of: &ast::Sampled, written: &ast::Sample, job: &ast::Job) {
+        let path = &of.surface;
         let Some(index) = self.finished(context, path, job) else { return };
-        if self.surfaces[index].0.sample.is_some() {
+        if of.name.is_none() && self.surfaces[index].0.sample.is_some() {
             let message = format!("`{}` is sampled twice", self.surfaces[index].0.name);
-            context.report(Diagnostic::new(Code::DuplicateName, path.span, message));
+            let help = format!("give one of the samples a name of its own: `sample {} as name {{ … }}`", joined(path));
+            context.report(Diagnostic::new(Code::DuplicateName, path.span, message).help(help));
             return;
         }
         let surface = &self.surfaces[index].0;
         let sample = sample::build(context, (path, written), surface, &self.scope);
         let sample = sample.filter(|sample| check_independence(context, surface, sample, path.span));
-        self.surfaces[index].0.sample = sample;
+        match (&of.name, sample) {
+            (Some(name), Some(sample)) => self.named_samples.push((name.clone(), index, sample)),
+            (None, sample) => self.surfaces[index].0.sample = sample,
+            (Some(_), None) => {}
+        }
+    }
+
+    /// A sample with a name of its own is the surface once more, trimmed and cut alike.
+    pub(super) fn add_named_samples(&mut self, context: &mut Context<'g>) {
+        for (name, index, sample) in std::mem::take(&mut self.named_samples) {
+            let (surface, frame) = &self.surfaces[index];
+            let steps: usize = surface.generation.path.iter().map(|(_, steps)| steps.len() + 1).sum();
+            if !context.spend(steps, name.span) {
+                return;
+            }
+            let again =
+                GeneratedSurface { name: name.node, sample: Some(sample), sample_of: Some(index), ..surface.clone() };
+            self.surfaces.push((again, *frame));
+        }
     }
 }
 

@@ -416,11 +416,11 @@ pub struct GeneratedSurface {
     pub value: Expression,
 }
 
-/// `sample name, name { key: values … }`
+/// `sample name, name as other { key: values … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// The surfaces, perhaps pieces of them.
-    pub surfaces: Vec<Path>,
+    pub surfaces: Vec<Sampled>,
     /// What is asked for of each, in order.
     pub entries: Vec<SampleEntry>,
     /// Which branch is meant.
@@ -431,7 +431,16 @@ pub struct Sample {
     pub span: Span,
 }
 
-/// `key: a .. b by n`, or `key: value`
+/// `name`, or `name as other` for one more sample of a surface
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    /// The surface, perhaps a piece of it.
+    pub surface: Path,
+    /// What it is called with this sample.
+    pub name: Option<Name>,
+}
+
+/// `key: a .. b by n`, `key: [a, b]`, or `key: value`
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleEntry {
     /// A coordinate (`z`, `rho`), an unknown, a corner of the outline, or the name of a coordinate defined here.
@@ -468,7 +477,7 @@ pub struct PointRequirement {
 pub enum SampleValues {
     /// `a .. b by n`
     Range(Range, Expression),
-    /// One value or vector.
+    /// One value, or a vector: several values, or a point.
     Value(Expression),
 }
 

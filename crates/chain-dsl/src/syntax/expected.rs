@@ -33,7 +33,7 @@ pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
     }
     // that a list may go on is no news to whoever forgot what follows it
     if rules.iter().any(|rule| matches!(rule, Rule::kw_in | Rule::equals | Rule::open_brace)) {
-        rules.retain(|rule| *rule != Rule::comma);
+        rules.retain(|rule| !matches!(rule, Rule::comma | Rule::kw_as));
     }
     const OPTIONAL: [Rule; 5] = [Rule::EOI, Rule::infix, Rule::dimension_operator, Rule::let_statement, Rule::kw_let];
     if rules.iter().any(|rule| !OPTIONAL.contains(rule)) {
@@ -119,6 +119,7 @@ fn name(before: &Before<'_>) -> String {
         (_, ".") => "a name".to_owned(),
         ("surface", "in") | (_, "on") => path(before).to_owned(),
         ("drive", _) => path(before).to_owned(),
+        ("sample", "as") => "the name of the sample".to_owned(),
         ("surface" | "sample", ",") if !before.in_brackets => "the name of the surface".to_owned(),
         ("frame", "in") => "the frame that it hangs on".to_owned(),
         ("frame", _) => TRANSFORM.to_owned(),
@@ -201,6 +202,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_job => "job",
         Rule::kw_on => "on",
         Rule::kw_along => "along",
+        Rule::kw_as => "as",
         Rule::kw_in => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",

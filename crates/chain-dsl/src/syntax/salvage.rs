@@ -7,7 +7,7 @@ use crate::diagnostics::source::{Name, Span, Spanned};
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Drive, Expression, ExpressionKind, Frame, Function,
     GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, NcWord, Param, Parameter, Path, Sample,
-    SampleEntry, SampleValues, Segment, Side, SurfaceParameter, ToolStatement, Type,
+    SampleEntry, SampleValues, Sampled, Segment, Side, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -270,7 +270,7 @@ impl Piece<'_> {
     fn sample(&self) -> Sample {
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
         Sample {
-            surfaces: self.paths(),
+            surfaces: self.paths().into_iter().map(|surface| Sampled { surface, name: None }).collect(),
             entries: vec![entry],
             keeps: Vec::new(),
             limits: Vec::new(),

@@ -398,7 +398,13 @@ impl Writer {
 
     fn sample(&mut self) {
         self.put("sample");
-        self.row(Self::name);
+        self.row(|it: &mut Writer| {
+            it.name();
+            if it.random.one_in(4) {
+                it.put("as");
+                it.name();
+            }
+        });
         self.put("{");
         for _ in 0..self.random.below(4) {
             self.name();

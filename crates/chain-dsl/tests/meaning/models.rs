@@ -346,3 +346,61 @@ fn nc_words_name_and_count_axes() {
     assert_eq!(words(0), [slide.clone(), spindle.clone(), word("A", true, 0.0, None)]);
     assert_eq!(words(1), [slide, spindle, word("B1", false, -std::f64::consts::FRAC_PI_2, Some(4))]);
 }
+
+/// Two of a kind, the second with one value changed, and a surface sampled twice.
+const AGAIN: &str = "
+    job j {
+        param reach : length = 4 mm
+        machine m = lathe(height: reach)
+        machine n = m(height: 2 * reach)
+        tool a = ball(radius: reach)
+        tool b = a
+        tool c = b(radius: 6 mm)
+        mount a on m.slide
+        mount b on n.slide
+        mount c on m.slide
+        motion turn : angle in 0 deg .. 90 deg
+        drive m.C, m.Z, n.C, n.Z = turn, 0 mm, turn, 1 mm
+        surface one, three in m.work = envelope(a.face, c.face, over: turn)
+        surface two in n.work = envelope(b.face, over: turn)
+        trim one by three
+        sample one, one as its_row { turn: [10 deg, 12 deg, 80 deg], u: 1 deg .. 2 deg by 3 }
+    }";
+
+#[test]
+fn a_machine_or_tool_again_has_the_values_of_the_first_but_for_its_own() {
+    let value = |overrides: &[(&str, &str)], name: &str| {
+        let graph = Graph::new();
+        let set: Vec<_> = overrides.iter().map(|(name, value)| ((*name).to_string(), (*value).to_string())).collect();
+        let compilation = compile_text(&graph, "text", &format!("{AGAIN}{}", super::LIBRARY), &set);
+        assert!(!compilation.has_errors(), "{:?}", compilation.diagnostics);
+        let job = &compilation.jobs[0];
+        job.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.value)
+    };
+    assert_eq!(value(&[], "b.radius"), Some(4.0));
+    assert_eq!(value(&[], "c.radius"), Some(6.0));
+    assert_eq!(value(&[], "n.height"), Some(8.0));
+    // it follows the first, also where the value comes from outside
+    assert_eq!(value(&[("a.radius", "5 mm")], "b.radius"), Some(5.0));
+    assert_eq!(value(&[("b.radius", "5 mm")], "a.radius"), Some(4.0));
+    assert_eq!(value(&[("a.radius", "5 mm")], "c.radius"), Some(6.0));
+}
+
+#[test]
+fn a_sample_with_a_name_of_its_own_is_the_surface_once_more() {
+    let graph = Graph::new();
+    let compilation = compiled(&graph, AGAIN);
+    let surfaces = &compilation.jobs[0].surfaces;
+    let names: Vec<&str> = surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    assert_eq!(names, ["one", "three", "two", "its_row"]);
+    assert_eq!((surfaces[3].sample_of, &surfaces[3].trimmed_by), (Some(0), &vec![1]));
+    for surface in [&surfaces[0], &surfaces[3]] {
+        let sample = surface.sample.as_ref().expect("a sample");
+        assert_eq!(sample.counts, [3, 3]);
+        let rows: Vec<f64> = (0..3).map(|row| sample.grid.at(row, 0)[0].to_degrees()).collect();
+        assert!(rows.iter().zip([10.0, 12.0, 80.0]).all(|(row, wanted)| (row - wanted).abs() < 1e-12), "{rows:?}");
+    }
+    // its equations are those of the surface, which the derivation has once
+    let page = derivation(&compilation.jobs[0], Style::Text);
+    assert!(page.contains("one") && !page.contains("its_row"), "{page}");
+}

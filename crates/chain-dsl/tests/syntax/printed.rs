@@ -115,7 +115,7 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Require(it) => requirement(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
-            format!("sample {} {}", listed(&it.surfaces, path), entries.join(", "))
+            format!("sample {} {}", listed(&it.surfaces, sampled), entries.join(", "))
         }
     }
 }
@@ -152,6 +152,11 @@ fn let_statement(it: &Let) -> String {
 
 fn assignment(word: &str, it: &Assignment) -> String {
     format!("{word} {} {}", path(&it.target), expression(&it.value))
+}
+
+fn sampled(it: &Sampled) -> String {
+    let name = it.name.as_ref().map_or(String::new(), |name| format!(" as {}", named(name)));
+    format!("{}{name}", path(&it.surface))
 }
 
 fn listed<T>(items: &[T], shown: impl Fn(&T) -> String) -> String {

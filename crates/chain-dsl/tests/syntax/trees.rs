@@ -156,7 +156,7 @@ fn everything() {
       require (and (> ratio 1) (not (== start 0_deg))) "this rolls the wrong way"
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
       sample concave.edge z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
-      sample left, right.edge u: 3
+      sample left, right.edge as root_row, as as as u: [3 4]
       let curve (table! "profile.csv")
       let choice (if (or (>= ratio 1) (< ratio 0.5)) "a" (if (!= ratio 0) "b" "c"))
     "#);

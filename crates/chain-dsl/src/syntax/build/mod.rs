@@ -173,6 +173,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_trim
             | kw_cut
             | kw_sample
+            | kw_as
             | kw_keep
             | kw_in
             | kw_by

@@ -9,7 +9,7 @@ use crate::diagnostics::source::{Name, Span};
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Drive, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep,
     Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample, SampleEntry,
-    SampleValues, ToolStatement,
+    SampleValues, Sampled, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -197,7 +197,7 @@ impl Build<'_> {
     fn sample(&mut self, pair: Pair<'_, Rule>) -> Sample {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let surfaces = parts.all(Rule::path).into_iter().map(|path| self.path(path)).collect();
+        let surfaces = parts.all(Rule::sampled).into_iter().map(|pair| self.sampled(pair)).collect();
         let (mut entries, mut keeps, mut limits) = (Vec::new(), Vec::new(), Vec::new());
         let mut end = None;
         let asked = [Rule::entry, Rule::keep, Rule::limit];
@@ -212,6 +212,12 @@ impl Build<'_> {
             }
         }
         Sample { surfaces, entries, keeps, limits, span }
+    }
+
+    fn sampled(&mut self, pair: Pair<'_, Rule>) -> Sampled {
+        let mut parts = Parts::of(pair);
+        let surface = self.path(parts.required(Rule::path));
+        Sampled { surface, name: parts.optional(Rule::name).map(|name| self.name(name)) }
     }
 
     /// Asks for a comma or a new line between two entries of a sample.
