@@ -78,7 +78,8 @@ pub use page::result::ViewResult;
 pub use page::view;
 pub use project::answer::Answer;
 pub use project::choices::{
-    EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
+    Choice, EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
+    UnknownChoice,
 };
 pub use project::failure::Failure;
 pub use project::files::write_texts;

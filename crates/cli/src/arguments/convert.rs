@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use flank::{EmitForm, FunctionLanguage, NcDialect, TableFormat};
 
+use super::choice::names;
 use super::{EvaluatorArguments, JobArguments, count, folder, length};
 
 #[derive(Args, Debug)]
@@ -43,19 +45,19 @@ pub(crate) struct Convert {
     #[arg(long, value_name = "DIR", value_parser = folder())]
     pub(crate) out: Option<PathBuf>,
     /// Files with positions and polynomials: csv, json, or both with a comma; csv otherwise
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_parser = names::<TableFormat>(), value_delimiter = ',')]
     pub(crate) format: Vec<TableFormat>,
     /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
-    #[arg(long, value_enum, value_delimiter = ',', requires = "time")]
+    #[arg(long, value_parser = names::<NcDialect>(), value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
     /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) time: Option<f64>,
     /// Write a function of the motion that returns the axes and their first derivatives: c, rust, javascript
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) emit: Vec<EmitLanguage>,
+    #[arg(long, value_parser = names::<FunctionLanguage>(), value_delimiter = ',')]
+    pub(crate) emit: Vec<FunctionLanguage>,
     /// What the function computes: the polynomials, or the exact axes in closed form
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "polynomials", requires = "emit")]
+    #[arg(long, value_parser = names::<EmitForm>(), value_delimiter = ',', default_value = "polynomials", requires = "emit")]
     pub(crate) emit_form: Vec<EmitForm>,
     /// Print everything as JSON
     #[arg(long)]
@@ -76,34 +78,6 @@ pub(crate) struct Onto {
     pub(crate) work_frame: Option<String>,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TableFormat {
-    Csv,
-    Json,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum NcDialect {
-    Fanuc,
-    Siemens,
-    #[value(name = "linuxcnc")]
-    LinuxCnc,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EmitLanguage {
-    C,
-    Rust,
-    #[value(name = "javascript")]
-    JavaScript,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EmitForm {
-    Polynomials,
-    Exact,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

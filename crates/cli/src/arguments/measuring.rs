@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use flank::{PointFormat, TableFormat};
 
-use super::{EvaluatorArguments, Format, JobArguments, TableFormat, count, folder};
+use super::choice::{described, names};
+use super::{EvaluatorArguments, JobArguments, count, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -37,7 +39,7 @@ pub(crate) struct Measure {
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// csv, json, or both with a comma
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
+    #[arg(long, value_parser = names::<TableFormat>(), value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<TableFormat>,
     /// Print as JSON what the files hold
     #[arg(long)]
@@ -103,8 +105,8 @@ pub(crate) struct Deviation {
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Files with the points, several with commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
-    pub(crate) format: Vec<Format>,
+    #[arg(long, value_parser = described::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<PointFormat>,
     /// Write no picture (otherwise a PNG and an SVG)
     #[arg(long)]
     pub(crate) no_picture: bool,

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod choice;
 mod convert;
 mod measuring;
 mod plot;
@@ -11,16 +12,17 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf, is_separator};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use flank::{Code, EvaluatorOptions, JobSelection};
+use clap::{Args, Parser, Subcommand};
+use flank::{Code, Coefficients, EvaluatorOptions, JobSelection, PointFormat, Signs};
 
 use crate::failure::Failure;
 use crate::spec;
+use choice::{described, names};
 
-pub(crate) use convert::{Convert, Onto, TableFormat};
+pub(crate) use convert::{Convert, Onto};
 pub(crate) use measuring::{Deviation, Measure};
-pub(crate) use plot::{PictureFormat, Plot, PlotKind};
-pub(crate) use report::{Report, ReportFormat};
+pub(crate) use plot::Plot;
+pub(crate) use report::Report;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -212,8 +214,8 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Files with the points, several with commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv")]
-    pub(crate) format: Vec<Format>,
+    #[arg(long, value_parser = described::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<PointFormat>,
     #[command(flatten)]
     pub(crate) faces: Faces,
     /// Also find where each surface turns back (the singular line of undercut) and where the tool's contact ends
@@ -238,25 +240,6 @@ pub(crate) struct Solve {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// All points with all that is known of them
-    Csv,
-    /// The same, with a schema
-    Json,
-    /// The columns of the CSV file as a Parquet table
-    Parquet,
-    /// Triangles, single precision
-    Stl,
-    /// Triangles with normals
-    Obj,
-    /// Triangles with their unit, packed
-    #[value(name = "3mf")]
-    ThreeMf,
-    /// Triangles with all that is known of their points, for ParaView
-    Vtp,
 }
 
 /// The smooth faces of a STEP file.
@@ -388,10 +371,10 @@ pub(crate) struct Import {
     /// The REXS file
     pub(crate) file: PathBuf,
     /// In which frames the file's signs are
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = names::<Signs>())]
     pub(crate) signs: Signs,
     /// What the coefficients of motions are: of powers of the roll (polynomial), or to be divided by the factorials (taylor)
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = names::<Coefficients>())]
     pub(crate) coefficients: Option<Coefficients>,
     /// The bevel_gear_manufacturing_settings, where the file holds several
     #[arg(long, value_name = "ID")]
@@ -411,19 +394,6 @@ pub(crate) struct Import {
     /// Print the job within JSON
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Signs {
-    Frames,
-    LeftHandPinion,
-    RightHandGear,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Coefficients {
-    Taylor,
-    Polynomial,
 }
 
 #[derive(Args, Debug)]

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use flank::{PictureFormat, PlotKind};
 
+use super::choice::{described, names};
 use super::{EvaluatorArguments, JobArguments, folder};
 
 #[derive(Args, Debug)]
@@ -22,7 +24,7 @@ pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) which: JobArguments,
     /// What is drawn, several with commas
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_parser = described::<PlotKind>(), value_delimiter = ',')]
     pub(crate) what: Vec<PlotKind>,
     /// The surfaces that pictures show, several with commas; otherwise maps show the first that is sampled
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
@@ -37,7 +39,7 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// png, svg, or both with a comma
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "png,svg")]
+    #[arg(long, value_parser = names::<PictureFormat>(), value_delimiter = ',', default_value = "png,svg")]
     pub(crate) format: Vec<PictureFormat>,
     /// Pixels across and down; lines and letters grow with them
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", value_parser = pixels)]
@@ -50,39 +52,6 @@ pub(crate) struct Plot {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PictureFormat {
-    Png,
-    Svg,
-}
-
-/// A kind of picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlotKind {
-    /// All surfaces in space, with axis, frame and dimensions
-    Surface,
-    /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the plane that fits best
-    Topography,
-    /// Maps of the principal curvatures, their product and their mean
-    Curvature,
-    /// Maps of how far parameters and settings move the surface
-    Sensitivity,
-    /// A map of how far a surface lies off the one of --reference
-    Deviation,
-    /// A map of what single edges leave
-    Left,
-    /// A map of what the solved equations leave
-    Residual,
-    /// Lines on which the motions have equal values
-    ContactLines,
-    /// A section through the tooth space, with the tool where it touches
-    Section,
-    /// The machine as a kinematic diagram
-    Machine,
-    /// Positions of the axes over the motions
-    Motion,
 }
 
 /// Pixels across and down.

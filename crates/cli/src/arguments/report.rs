@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use flank::ReportFormat;
 
+use super::choice::described;
 use super::{EvaluatorArguments, Faces, JobArguments, no_file};
 
 #[derive(Args, Debug)]
@@ -24,7 +26,7 @@ pub(crate) struct Report {
     #[arg(long, value_name = "PATH", default_value = "build", value_parser = page_or_folder())]
     pub(crate) out: PathBuf,
     /// html, md, or both with a comma; html, or what the file of --out is, without it
-    #[arg(long, value_enum, value_delimiter = ',')]
+    #[arg(long, value_parser = described::<ReportFormat>(), value_delimiter = ',')]
     pub(crate) format: Vec<ReportFormat>,
     /// Prove of each point that exactly one root lies near it, and state how near
     #[arg(long)]
@@ -41,15 +43,6 @@ pub(crate) struct Report {
     pub(crate) evaluator: EvaluatorArguments,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ReportFormat {
-    /// One page with its pictures in it
-    Html,
-    /// Markdown with its pictures beside it
-    Md,
-}
-
 fn page_or_folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new()
-        .try_map(|path| if flank::ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
+    PathBufValueParser::new().try_map(|path| if ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
 }

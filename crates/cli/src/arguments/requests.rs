@@ -5,49 +5,15 @@ use flank::{
     ViewRequest,
 };
 
-use super::convert::{EmitForm, EmitLanguage, NcDialect};
-use super::{
-    Convert, Derive, Deviation, Format, Measure, Onto, PictureFormat, Plot, PlotKind, Report, ReportFormat, Solve,
-    TableFormat, View,
-};
+use super::{Convert, Derive, Deviation, Measure, Onto, Plot, Report, Solve, View};
 use crate::failure::Failure;
-
-/// The library's kinds, which say the same.
-macro_rules! same {
-    ($($own:ident => $theirs:ident { $($kind:ident),* })*) => {
-        $(impl From<$own> for flank::$theirs {
-            fn from(kind: $own) -> flank::$theirs {
-                match kind {
-                    $($own::$kind => flank::$theirs::$kind),*
-                }
-            }
-        })*
-    };
-}
-
-same! {
-    Format => PointFormat { Csv, Json, Parquet, Stl, Obj, ThreeMf, Vtp }
-    PictureFormat => PictureFormat { Png, Svg }
-    TableFormat => TableFormat { Csv, Json }
-    ReportFormat => ReportFormat { Html, Md }
-    PlotKind => PlotKind {
-        Surface, Topography, Curvature, Sensitivity, Deviation, Left, Residual, ContactLines, Section, Machine, Motion
-    }
-    NcDialect => NcDialect { Fanuc, Siemens, LinuxCnc }
-    EmitLanguage => FunctionLanguage { C, Rust, JavaScript }
-    EmitForm => EmitForm { Polynomials, Exact }
-}
-
-fn all<A: Copy + Into<B>, B>(kinds: &[A]) -> Vec<B> {
-    kinds.iter().map(|kind| (*kind).into()).collect()
-}
 
 impl Solve {
     pub(crate) fn request(&self) -> Result<SolveRequest, Failure> {
         Ok(SolveRequest {
             jobs: self.which.jobs()?,
             out: self.out.clone(),
-            format: all(&self.format),
+            format: self.format.clone(),
             step: self.faces.step,
             limits: self.limits,
             no_picture: self.no_picture,
@@ -63,12 +29,12 @@ impl Plot {
     pub(crate) fn request(&self) -> Result<PlotRequest, Failure> {
         Ok(PlotRequest {
             jobs: self.which.jobs()?,
-            what: all(&self.what),
+            what: self.what.clone(),
             surface: self.surface.clone(),
             reference: self.reference.clone(),
             of: self.of.clone(),
             out: self.out.clone(),
-            format: all(&self.format),
+            format: self.format.clone(),
             size: self.size,
             no_origin: self.no_origin,
             evaluator: self.evaluator.evaluator(),
@@ -81,7 +47,7 @@ impl Report {
         Ok(ReportRequest {
             jobs: self.which.jobs()?,
             out: self.out.clone(),
-            format: all(&self.format),
+            format: self.format.clone(),
             certify: self.certify,
             step: self.faces.step,
             date: self.date.clone(),
@@ -108,7 +74,7 @@ impl Deviation {
             margin: self.margin.margin,
             no_align: self.no_align,
             out: self.out.clone(),
-            format: all(&self.format),
+            format: self.format.clone(),
             no_picture: self.no_picture,
             evaluator: self.evaluator.evaluator(),
         })
@@ -125,7 +91,7 @@ impl Measure {
             margin: self.margin.margin,
             lines: self.lines,
             out: self.out.clone(),
-            format: all(&self.format),
+            format: self.format.clone(),
             evaluator: self.evaluator.evaluator(),
         })
     }
@@ -153,11 +119,11 @@ impl Convert {
             order: self.order,
             tolerance: self.tolerance,
             out: self.out.clone(),
-            format: all(&self.format),
-            nc: all(&self.nc),
+            format: self.format.clone(),
+            nc: self.nc.clone(),
             time: self.time,
-            emit: all(&self.emit),
-            emit_form: all(&self.emit_form),
+            emit: self.emit.clone(),
+            emit_form: self.emit_form.clone(),
         })
     }
 }

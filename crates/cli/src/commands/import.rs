@@ -2,22 +2,15 @@
 
 use flank::{Disk, ImportRequest, import};
 
-use crate::arguments::{Coefficients, Import, Signs};
+use crate::arguments::Import;
 use crate::failure::Failure;
 use crate::{Ending, document, eprint, print};
 
 pub(crate) fn run(arguments: &Import) -> Result<Ending, Failure> {
     let request = ImportRequest {
         file: arguments.file.clone(),
-        signs: match arguments.signs {
-            Signs::Frames => flank::Signs::Frames,
-            Signs::LeftHandPinion => flank::Signs::LeftHandPinion,
-            Signs::RightHandGear => flank::Signs::RightHandGear,
-        },
-        coefficients: arguments.coefficients.map(|coefficients| match coefficients {
-            Coefficients::Taylor => flank::Coefficients::Taylor,
-            Coefficients::Polynomial => flank::Coefficients::Polynomial,
-        }),
+        signs: arguments.signs,
+        coefficients: arguments.coefficients,
         settings: arguments.settings.clone(),
         outside: arguments.outside.clone(),
         inside: arguments.inside.clone(),

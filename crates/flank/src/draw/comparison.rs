@@ -7,7 +7,7 @@ use flank_export::Dataset;
 use super::result::PlotResult;
 use super::{Drawing, options, told, with_origin, write};
 use crate::compare::deviation::{self, DeviationMap};
-use crate::project::choices::PlotKind;
+use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::requests::{PlotRequest, Session};
 use crate::project::spec::Origin;

@@ -15,7 +15,7 @@ use flank_export::{Dataset, Header};
 use flank_expr::Graph;
 
 use crate::compare::deviation;
-use crate::project::choices::PlotKind;
+use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -112,7 +112,7 @@ fn plot_jobs(
         session.check()?;
         // what fits is known of what is solved with all that pictures show
         let drawings = drawings(&subject, request).map_err(|(what, why)| {
-            solved(&PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request).into())
+            solved(PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request).into())
         })?;
         let written = write(&drawings, &job.name, (request, session), origin)?;
         let mut not_done = table::failures(job, &subject.solved);

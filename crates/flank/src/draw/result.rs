@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::choices::PlotKind;
+use crate::project::choices::{Choice, PlotKind};
 use crate::project::not_done::NotDone;
 use crate::solve::table::aligned;
 

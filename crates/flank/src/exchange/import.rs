@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::{templates, xml_cost};
+use crate::project::choices::choices;
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
 use crate::project::shown_path;
@@ -34,24 +35,26 @@ pub struct ImportRequest {
     pub library: String,
 }
 
-/// In which frames the signs of a file are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Signs {
-    /// As they are in the file, taken for those of the frames of `cradle_generator`.
-    Frames,
-    /// Of machine summaries: tilt, swivel and cradle angle of a left-hand pinion are reversed.
-    LeftHandPinion,
-    /// Of machine summaries: tilt and work offset of a right-hand gear are reversed.
-    RightHandGear,
+choices! {
+    /// In which frames the signs of a file are.
+    Signs {
+        /// As they are in the file, taken for those of the frames of `cradle_generator`.
+        Frames = "frames",
+        /// Of machine summaries: tilt, swivel and cradle angle of a left-hand pinion are reversed.
+        LeftHandPinion = "left-hand-pinion",
+        /// Of machine summaries: tilt and work offset of a right-hand gear are reversed.
+        RightHandGear = "right-hand-gear",
+    }
 }
 
-/// What coefficients of motions are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coefficients {
-    /// To be divided by the factorials.
-    Taylor,
-    /// Of powers of the roll.
-    Polynomial,
+choices! {
+    /// What coefficients of motions are.
+    Coefficients {
+        /// To be divided by the factorials.
+        Taylor = "taylor",
+        /// Of powers of the roll.
+        Polynomial = "polynomial",
+    }
 }
 
 /// A job made of a machine summary, of `flank import`.

@@ -1,4 +1,4 @@
-//! Kinds of files, pictures and functions.
+//! Kinds of files, pictures and functions, each with the name that shells and documents have for it.
 
 use std::path::Path;
 
@@ -7,50 +7,118 @@ use flank_expr::Language;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// A format of files with points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PointFormat {
-    /// All points with all that is known of them.
-    Csv,
-    /// The same, with a schema.
-    Json,
-    /// The columns of the CSV file as a Parquet table.
-    Parquet,
-    /// Triangles, single precision.
-    Stl,
-    /// Triangles with normals.
-    Obj,
-    /// Triangles with their unit, packed.
-    ThreeMf,
-    /// Triangles with all that is known of their points.
-    Vtp,
+/// A kind among some that have names: what a shell offers its users comes from [`Choice::ALL`]. Each has `FromStr` too.
+pub trait Choice: Copy + Send + Sync + 'static {
+    /// All of them, in the order in which they are offered.
+    const ALL: &'static [Self];
+
+    /// As users write it.
+    fn name(self) -> &'static str;
+
+    /// What it is, in a few words.
+    fn about(self) -> &'static str;
 }
 
-/// A format of pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureFormat {
-    /// Pixels.
-    Png,
-    /// Lines and letters.
-    Svg,
+/// There is no kind of a name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no `{name}`; there is: {known}")]
+pub struct UnknownChoice {
+    name: String,
+    known: String,
 }
 
-/// A format of tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TableFormat {
-    /// Comma-separated.
-    Csv,
-    /// With a schema.
-    Json,
+/// The kind of a name.
+pub(crate) fn named<C: Choice>(name: &str) -> Result<C, UnknownChoice> {
+    let known = || C::ALL.iter().map(|kind| kind.name()).collect::<Vec<&str>>().join(", ");
+    let found = C::ALL.iter().copied().find(|kind| kind.name() == name);
+    found.ok_or_else(|| UnknownChoice { name: name.to_string(), known: known() })
 }
 
-/// A format of reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReportFormat {
-    /// One page with its pictures in it.
-    Html,
-    /// Markdown with its pictures beside it.
-    Md,
+/// An enum with names for its kinds; what is said of a kind is its doc comment.
+macro_rules! choices {
+    ($(#[$meta:meta])* $choice:ident { $(#[doc = $about:literal] $kind:ident = $name:literal,)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $choice {
+            $(#[doc = $about] $kind,)*
+        }
+
+        impl $crate::project::choices::Choice for $choice {
+            const ALL: &'static [$choice] = &[$($choice::$kind),*];
+
+            fn name(self) -> &'static str {
+                match self {
+                    $($choice::$kind => $name,)*
+                }
+            }
+
+            fn about(self) -> &'static str {
+                let about = match self {
+                    $($choice::$kind => $about,)*
+                };
+                about.trim().trim_end_matches('.')
+            }
+        }
+
+        impl std::str::FromStr for $choice {
+            type Err = $crate::project::choices::UnknownChoice;
+
+            fn from_str(name: &str) -> Result<$choice, Self::Err> {
+                $crate::project::choices::named(name)
+            }
+        }
+    };
+}
+pub(crate) use choices;
+
+choices! {
+    /// A format of files with points.
+    PointFormat {
+        /// All points with all that is known of them.
+        Csv = "csv",
+        /// The same, with a schema.
+        Json = "json",
+        /// The columns of the CSV file as a Parquet table.
+        Parquet = "parquet",
+        /// Triangles, single precision.
+        Stl = "stl",
+        /// Triangles with normals.
+        Obj = "obj",
+        /// Triangles with their unit, packed.
+        ThreeMf = "3mf",
+        /// Triangles with all that is known of their points, for ParaView.
+        Vtp = "vtp",
+    }
+}
+
+choices! {
+    /// A format of pictures.
+    PictureFormat {
+        /// Pixels.
+        Png = "png",
+        /// Lines and letters.
+        Svg = "svg",
+    }
+}
+
+choices! {
+    /// A format of tables.
+    TableFormat {
+        /// Comma-separated.
+        Csv = "csv",
+        /// With a schema.
+        Json = "json",
+    }
+}
+
+choices! {
+    /// A format of reports.
+    ReportFormat {
+        /// One page with its pictures in it.
+        Html = "html",
+        /// Markdown with its pictures beside it.
+        Md = "md",
+    }
 }
 
 impl ReportFormat {
@@ -65,97 +133,68 @@ impl ReportFormat {
     }
 }
 
-/// A kind of picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum PlotKind {
-    /// All surfaces in space, with axis, frame and dimensions.
-    Surface,
-    /// Heights above the flank's measuring grid.
-    Topography,
-    /// Maps of the principal curvatures, their product and their mean.
-    Curvature,
-    /// Maps of how far parameters and settings move the surface.
-    Sensitivity,
-    /// A map of how far a surface lies off another one.
-    Deviation,
-    /// A map of what single edges leave.
-    Left,
-    /// A map of what the solved equations leave.
-    Residual,
-    /// Lines on which the motions have equal values.
-    ContactLines,
-    /// A section through the tooth space, with the tool where it touches.
-    Section,
-    /// The machine as a kinematic diagram.
-    Machine,
-    /// Positions of the axes over the motions.
-    Motion,
-}
-
-impl PlotKind {
-    /// All kinds.
-    pub const ALL: [PlotKind; 11] = [
-        PlotKind::Surface,
-        PlotKind::Topography,
-        PlotKind::Curvature,
-        PlotKind::Sensitivity,
-        PlotKind::Deviation,
-        PlotKind::Left,
-        PlotKind::Residual,
-        PlotKind::ContactLines,
-        PlotKind::Section,
-        PlotKind::Machine,
-        PlotKind::Motion,
-    ];
-
-    /// As files and documents call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            PlotKind::Surface => "surface",
-            PlotKind::Topography => "topography",
-            PlotKind::Curvature => "curvature",
-            PlotKind::Sensitivity => "sensitivity",
-            PlotKind::Deviation => "deviation",
-            PlotKind::Left => "left",
-            PlotKind::Residual => "residual",
-            PlotKind::ContactLines => "contact-lines",
-            PlotKind::Section => "section",
-            PlotKind::Machine => "machine",
-            PlotKind::Motion => "motion",
-        }
+choices! {
+    /// A kind of picture.
+    #[derive(Serialize, JsonSchema)]
+    #[serde(rename_all = "kebab-case")]
+    PlotKind {
+        /// All surfaces in space, with axis, frame and dimensions.
+        Surface = "surface",
+        /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the plane that fits best.
+        Topography = "topography",
+        /// Maps of the principal curvatures, their product and their mean.
+        Curvature = "curvature",
+        /// Maps of how far parameters and settings move the surface.
+        Sensitivity = "sensitivity",
+        /// A map of how far a surface lies off another one.
+        Deviation = "deviation",
+        /// A map of what single edges leave.
+        Left = "left",
+        /// A map of what the solved equations leave.
+        Residual = "residual",
+        /// Lines on which the motions have equal values.
+        ContactLines = "contact-lines",
+        /// A section through the tooth space, with the tool where it touches.
+        Section = "section",
+        /// The machine as a kinematic diagram.
+        Machine = "machine",
+        /// Positions of the axes over the motions.
+        Motion = "motion",
     }
 }
 
-/// A control that NC programs are written for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NcDialect {
-    /// Fanuc.
-    Fanuc,
-    /// Siemens 840D.
-    Siemens,
-    /// LinuxCNC.
-    LinuxCnc,
+choices! {
+    /// A control that NC programs are written for.
+    NcDialect {
+        /// Fanuc.
+        Fanuc = "fanuc",
+        /// Siemens 840D.
+        Siemens = "siemens",
+        /// LinuxCNC.
+        LinuxCnc = "linuxcnc",
+    }
 }
 
-/// A language that functions are written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FunctionLanguage {
-    /// C.
-    C,
-    /// Rust.
-    Rust,
-    /// JavaScript.
-    JavaScript,
+choices! {
+    /// A language that functions are written in.
+    FunctionLanguage {
+        /// C.
+        C = "c",
+        /// Rust.
+        Rust = "rust",
+        /// JavaScript.
+        JavaScript = "javascript",
+    }
 }
 
-/// What functions of a motion compute.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EmitForm {
-    /// The polynomials.
-    Polynomials,
-    /// The exact axes in closed form.
-    Exact,
+choices! {
+    /// What functions of a motion compute.
+    EmitForm {
+        /// The polynomials.
+        Polynomials = "polynomials",
+        /// The exact axes in closed form.
+        Exact = "exact",
+    }
 }
 
 impl From<NcDialect> for Dialect {
@@ -185,5 +224,20 @@ impl FunctionLanguage {
             FunctionLanguage::Rust => "rs",
             FunctionLanguage::JavaScript => "mjs",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_found_by_their_names() {
+        for kind in PlotKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(*kind));
+            assert_eq!(serde_json::to_value(kind).expect("a text"), kind.name(), "documents have the same name");
+        }
+        let unknown = "pdf".parse::<PictureFormat>().expect_err("there is none");
+        assert_eq!(unknown.to_string(), "there is no `pdf`; there is: png, svg");
     }
 }

@@ -4,7 +4,7 @@ use flank_draw::{Block, Figure, PictureOptions, ReportSection};
 
 use super::Findings;
 use crate::draw::{self, Drawing};
-use crate::project::choices::PlotKind;
+use crate::project::choices::{Choice, PlotKind};
 
 /// The pictures that matter for the job, without those that stand elsewhere on the page.
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {

@@ -7,7 +7,7 @@ use flank_draw::Report as Document;
 use flank_export::Face;
 
 use super::Findings;
-use crate::project::choices::{PictureFormat, ReportFormat};
+use crate::project::choices::{Choice, PictureFormat, ReportFormat};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -29,7 +29,7 @@ impl Target {
         match request.format.iter().find(|other| format.is_some_and(|format| **other != format)) {
             Some(other) => {
                 let message =
-                    format!("{} cannot hold {}: name a folder with option `out`", out.display(), extension(*other));
+                    format!("{} cannot hold {}: name a folder with option `out`", out.display(), other.name());
                 Err(Failure::Request(message))
             }
             None => Ok(()),
@@ -71,7 +71,7 @@ impl Target {
             folder.step(job, &findings.header, &faces)?;
         }
         for format in &self.formats {
-            let name = self.file.clone().unwrap_or_else(|| format!("{job}.report.{}", extension(*format)));
+            let name = self.file.clone().unwrap_or_else(|| format!("{job}.report.{}", format.name()));
             if *format == ReportFormat::Md {
                 for figure in document.figures() {
                     folder.picture_as(&figure.name, &figure.picture, PictureFormat::Svg)?;
@@ -80,12 +80,5 @@ impl Target {
             folder.report(&name, document, *format)?;
         }
         folder.finish()
-    }
-}
-
-fn extension(format: ReportFormat) -> &'static str {
-    match format {
-        ReportFormat::Html => "html",
-        ReportFormat::Md => "md",
     }
 }
