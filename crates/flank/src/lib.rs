@@ -1,7 +1,7 @@
 //! Tooth surfaces of any machine: the library that the command line `flank` stands on.
 //!
-//! A [`Project`] is a spec with the files that it uses. What works on the text alone takes one: [`check`], [`lay_out`]. What works on jobs
-//! takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
+//! A [`Project`] is a spec with the files that it uses, a [`Job`] one job of it with its values and all its texts ([`Project::job`]). What
+//! works on the text alone takes a project: [`check`], [`lay_out`]. What works on jobs takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
 //! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
 //! whose schema [`schemas`] has, its `Display` a text for people, and what was not done stands in it ([`Answer::not_done`]). What is wrong
 //! with a spec comes as [`Findings`], data with a code and a place. Messages name the fields of requests as "option `no_align`", or with a
@@ -23,10 +23,11 @@
 //! ```no_run
 //! use std::sync::Arc;
 //!
-//! use flank::{Answer, Disk, JobSelection, Project, SolveRequest, Unwatched, solve};
+//! use flank::{Answer, Disk, Project, SolveRequest, Unwatched, solve};
 //!
-//! let spec = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
-//! let request = SolveRequest { no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
+//! let project = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
+//! let job = project.job("helical_gear", &[("teeth".to_string(), "37".to_string())])?;
+//! let request = SolveRequest { no_picture: true, ..SolveRequest::of(&job) };
 //! solve(&request, &Unwatched, &mut |solved| {
 //!     for surface in &solved.surfaces {
 //!         let highest = surface.positions().iter().map(|[_, _, z]| *z).fold(f64::MIN, f64::max);
@@ -84,6 +85,7 @@ pub use project::choices::{
 pub use project::failure::Failure;
 pub use project::files::write_texts;
 pub use project::findings::{Finding, Findings, Note, Place, Severity};
+pub use project::job::{Job, JobParameter, JobSurface};
 pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::not_done::{NotDone, NotDoneKind};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
@@ -108,6 +110,7 @@ pub use solve::solve;
 const _: () = {
     const fn is_shared<T: Send + Sync + 'static>() {}
     is_shared::<Project>();
+    is_shared::<Job>();
     is_shared::<JobSelection>();
     is_shared::<SolveRequest>();
     is_shared::<PlotRequest>();

@@ -5,6 +5,7 @@ pub(crate) mod choices;
 pub(crate) mod failure;
 pub(crate) mod files;
 pub(crate) mod findings;
+pub(crate) mod job;
 pub(crate) mod monitor;
 pub(crate) mod not_done;
 pub(crate) mod quantity;

@@ -13,7 +13,7 @@ use crate::project::choices::{
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
 
-/// Which jobs of a spec, with which values.
+/// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
 pub struct JobSelection {
     /// The spec.
@@ -152,10 +152,10 @@ pub struct SolveRequest {
 }
 
 impl SolveRequest {
-    /// Points as CSV and a picture, in the folder `build`.
-    pub fn of(jobs: JobSelection) -> SolveRequest {
+    /// Points as CSV and a picture, in the folder `build`; of a [`Job`](crate::Job), or of some in a spec.
+    pub fn of(jobs: impl Into<JobSelection>) -> SolveRequest {
         SolveRequest {
-            jobs,
+            jobs: jobs.into(),
             out: "build".into(),
             format: vec![PointFormat::Csv],
             step: None,

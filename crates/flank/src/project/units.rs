@@ -30,6 +30,15 @@ pub(crate) fn inside(dimension: Dimension) -> String {
     if below.is_empty() { above } else { format!("{above}/{below}") }
 }
 
+/// The unit that values are shown in, whatever it is; empty for a number.
+pub(crate) fn whole_symbol(dimension: Dimension) -> String {
+    match inside(dimension) {
+        unit if unit == "1" => String::new(),
+        unit if symbol(dimension).is_empty() => unit,
+        _ => symbol(dimension).to_string(),
+    }
+}
+
 /// A value in that unit.
 pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
     if is_angle(dimension) { value.to_degrees() } else { value }

@@ -55,13 +55,13 @@ fn blocks(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Vec<Blo
 fn by_unit(parameters: &[&Parameter<'_>]) -> Vec<(String, String)> {
     let mut units: Vec<String> = Vec::new();
     for parameter in parameters {
-        let unit = unit(parameter.dimension);
+        let unit = units::whole_symbol(parameter.dimension);
         if !units.contains(&unit) {
             units.push(unit);
         }
     }
     let of_unit = |of: String| {
-        let names = parameters.iter().filter(|parameter| unit(parameter.dimension) == of);
+        let names = parameters.iter().filter(|parameter| units::whole_symbol(parameter.dimension) == of);
         let names: Vec<&str> = names.map(|parameter| parameter.name.as_str()).collect();
         (format!("0 {of} by default").replace("  ", " "), names.join(", "))
     };
@@ -98,7 +98,7 @@ fn table(findings: &Findings<'_, '_>, caption: String, parameters: &[&Parameter<
             parameter.name.clone(),
             written(findings, parameter),
             number(parameter.dimension, parameter.value),
-            unit(parameter.dimension),
+            units::whole_symbol(parameter.dimension),
         ];
         cells.extend(has_ranges.then_some(range));
         let giver = match parameter.given_by {
@@ -122,7 +122,7 @@ fn motions(findings: &Findings<'_, '_>) -> Block {
             let [low, high] = [range.low, range.high].map(|end| units::digits(motion.dimension, end, 4));
             format!("{low} .. {high}")
         });
-        let unit = if motion.is_count { "whole numbers".to_string() } else { unit(motion.dimension) };
+        let unit = if motion.is_count { "whole numbers".to_string() } else { units::whole_symbol(motion.dimension) };
         vec![motion.name.clone(), format!("{} .. {}", show(motion.low), show(motion.high)), needed, unit]
     };
     let columns = vec![
@@ -142,15 +142,6 @@ fn written(findings: &Findings<'_, '_>, parameter: &Parameter<'_>) -> String {
 
 fn joined(doc: &[String]) -> String {
     doc.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
-}
-
-/// The unit that values are shown in; nothing for a number.
-fn unit(dimension: Dimension) -> String {
-    match units::inside(dimension) {
-        unit if unit == "1" => String::new(),
-        unit if units::symbol(dimension).is_empty() => unit,
-        _ => units::symbol(dimension).to_string(),
-    }
 }
 
 /// Six digits behind the point, without zeros at the end; what is small has a power of ten.
@@ -179,7 +170,7 @@ pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<Input> {
             name: parameter.name.clone(),
             written: written(findings, parameter),
             value: shown(parameter.value),
-            unit: unit(parameter.dimension),
+            unit: units::whole_symbol(parameter.dimension),
             low: low.map(shown),
             high: high.map(shown),
             is_count: parameter.is_count,

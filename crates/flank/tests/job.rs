@@ -1,0 +1,93 @@
+//! A job holds its texts and its values, and goes from thread to thread.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use flank::{Answer, Disk, Failure, Files, JobSelection, Project, SolveRequest, SolveResult, Status, Unwatched, solve};
+
+/// The disk, with a count of what is read from it.
+#[derive(Debug, Default)]
+struct Counted(AtomicUsize);
+
+impl Files for Counted {
+    fn real_path(&self, path: &Path) -> std::io::Result<PathBuf> {
+        Disk.real_path(path)
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        Disk.exists(path)
+    }
+
+    fn read(&self, real: &Path, most: usize) -> std::io::Result<String> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Disk.read(real, most)
+    }
+}
+
+fn project(files: Arc<dyn Files>) -> Project {
+    Project::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/hobbing/helical_gear.chain"), files)
+}
+
+fn solved(jobs: JobSelection, folder: &str) -> SolveResult {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    let request = SolveRequest { out, no_picture: true, ..SolveRequest::of(jobs) };
+    let mut all = Vec::new();
+    solve(&request, &Unwatched, &mut |one| all.push(one)).expect("it is solved");
+    all.remove(0)
+}
+
+#[test]
+fn a_job_needs_its_files_no_more() {
+    let files = Arc::new(Counted::default());
+    let set = [("teeth".to_string(), "31".to_string())];
+    let job = project(files.clone()).job("helical_gear", &set).expect("it is right");
+    let read = files.0.load(Ordering::Relaxed);
+    assert!(read > 1, "it uses other files");
+    let teeth = job.parameters().iter().find(|parameter| parameter.name == "teeth").expect("it has teeth");
+    assert!(teeth.value == 31.0 && teeth.is_count && teeth.unit.is_empty(), "{teeth:?}");
+    let elsewhere = job.clone();
+    let by_job = std::thread::spawn(move || solved((&elsewhere).into(), "job_thread")).join().expect("it ends");
+    assert_eq!(files.0.load(Ordering::Relaxed), read, "nothing is read again");
+
+    let by_files =
+        solved(JobSelection { set: set.to_vec(), ..JobSelection::all(project(Arc::new(Disk))) }, "job_files");
+    assert_eq!(by_job.surfaces.len(), by_files.surfaces.len());
+    for (one, other) in by_job.surfaces.iter().zip(&by_files.surfaces) {
+        assert_eq!((one.positions(), one.unknowns()), (other.positions(), other.unknowns()));
+    }
+}
+
+/// Arrays lie side by side, point by point.
+#[test]
+fn points_come_as_slices() {
+    let job = project(Arc::new(Disk)).job("helical_gear", &[]).expect("it is right");
+    let result = solved((&job).into(), "job_slices");
+    assert!(result.is_complete());
+    for (of, surface) in job.surfaces().iter().filter(|surface| surface.counts.is_some()).zip(&result.surfaces) {
+        let [rows, columns] = surface.counts();
+        assert_eq!(Some([rows, columns]), of.counts);
+        let count = rows * columns;
+        assert_eq!([surface.positions().len(), surface.normals().len()], [count; 2]);
+        assert_eq!([surface.statuses().len(), surface.residuals().len()], [count; 2]);
+        assert_eq!(surface.unknowns().len(), count * surface.unknown_names().count());
+        let found = surface.statuses().iter().filter(|status| **status == Status::Solved).count();
+        assert_eq!(found, surface.summary.solved);
+        for normal in surface.normals() {
+            let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // the sum of three rounded squares
+            assert!((length - 1.0).abs() < 1e-14, "{length}");
+        }
+    }
+}
+
+#[test]
+fn there_is_no_other_job() {
+    let project = project(Arc::new(Disk));
+    let Err(Failure::Findings(findings)) = project.job("helical_gaer", &[]) else { panic!("there is none") };
+    assert_eq!(findings.list()[0].place.text, "helical_gaer");
+    let wrong = [("teeth".to_string(), "many".to_string())];
+    assert!(matches!(project.job("helical_gear", &wrong), Err(Failure::Findings(_))));
+    let twice = ["30", "31"].map(|value| ("teeth".to_string(), value.to_string()));
+    assert!(matches!(project.job("helical_gear", &twice), Err(Failure::Request(_))));
+}
