@@ -295,8 +295,11 @@ fn hostile() -> String {
     spec.replace("/// The rack's tip", &format!("/// {evil}\n/// The rack's tip"))
         .replace("/// x; from 0.4151", &format!("/// {evil} x; from 0.4151"))
         .replace(
-            "sample flank_plus  {",
-            &format!("sample flank_plus  {{\n require wide = x: 0 mm .. 0.001 mm, \"{}\"\n", evil.replace('"', "'")),
+            "sample flank_plus, flank_minus {",
+            &format!(
+                "sample flank_plus, flank_minus {{\n require wide = x: 0 mm .. 0.001 mm, \"{}\"\n",
+                evil.replace('"', "'")
+            ),
         )
 }
 
