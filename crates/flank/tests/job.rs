@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use flank::{Answer, Disk, Failure, Files, JobSelection, Project, SolveRequest, SolveResult, Status, Unwatched, solve};
+use flank::{
+    Answer, Disk, Failure, Files, JobSelection, NotDoneKind, Project, SolveRequest, SolveResult, Status, Unwatched,
+    solve,
+};
 
 /// The disk, with a count of what is read from it.
 #[derive(Debug, Default)]
@@ -79,6 +82,38 @@ fn points_come_as_slices() {
             assert!((length - 1.0).abs() < 1e-14, "{length}");
         }
     }
+}
+
+/// What was not done says what kind of thing it is and of what.
+#[test]
+fn what_is_not_done_is_data() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/hobbing/undercut_gear.chain");
+    let job = Project::open(file, Arc::new(Disk)).job("undercut_gear", &[]).expect("it is right");
+    let result = solved((&job).into(), "job_undercut");
+    assert!(!result.not_done.is_empty());
+    for missing in &result.not_done {
+        assert_eq!(missing.kind, NotDoneKind::NotSolved, "{missing}");
+        let surface = result.surfaces.iter().find(|one| Some(&one.summary.name) == missing.of.as_ref());
+        let surface = surface.expect("it is one of the surfaces");
+        assert!(surface.summary.solved < surface.summary.asked);
+        let there = surface.statuses().iter().zip(surface.positions());
+        for (status, position) in there.filter(|(status, _)| **status == Status::OutOfRange) {
+            assert!(position.iter().all(|x| x.is_nan()), "{status:?}");
+        }
+    }
+    assert_eq!(result.not_done_text().matches("not solved: ").count(), result.not_done.len());
+}
+
+/// The points of a surface that has too many to keep are in the files alone.
+#[test]
+fn a_streamed_surface_keeps_no_points() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/spiral_bevel.chain");
+    let set = ["rows", "columns"].map(|name| (name.to_string(), "300".to_string()));
+    let job = Project::open(file, Arc::new(Disk)).job("flank", &set).expect("it is right");
+    let result = solved((&job).into(), "job_streamed");
+    let surface = &result.surfaces[0];
+    assert!(surface.is_streamed() && surface.positions().is_empty() && surface.unknowns().is_empty());
+    assert_eq!(surface.summary.asked, 90_000);
 }
 
 #[test]
