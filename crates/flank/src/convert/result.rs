@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use flank_export::fixed;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::not_done::NotDone;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
+use crate::solve::table::aligned;
 
 /// A job on another machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -169,8 +171,12 @@ pub struct FoundSettings {
     pub deviation_um: Option<f64>,
     /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
+    /// What is carried over, and whereto.
     #[serde(skip)]
-    pub(super) text: String,
+    pub title: String,
+    /// The axes of the machine, in the order of the positions.
+    #[serde(skip)]
+    pub axes: Vec<NamedUnit>,
 }
 
 /// A setting that was looked for.
@@ -206,9 +212,36 @@ impl Answer for ConvertResult {
 
 impl fmt::Display for ConvertResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ConvertResult::Motion(motion) => &motion.text,
-            ConvertResult::Settings(settings) => &settings.text,
-        })
+        match self {
+            ConvertResult::Motion(motion) => f.write_str(&motion.text),
+            ConvertResult::Settings(settings) => settings.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for FoundSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = |value: f64, decimals: usize, unit: UnitSymbol| {
+            format!("{} {}", fixed(value, decimals), unit.symbol()).trim_end().to_string()
+        };
+        let setting = |of: &FoundSetting| {
+            let told = if of.determined { "" } else { "the poses do not tell" };
+            [of.name.clone(), text(of.value, 9, of.unit), told.to_string()]
+        };
+        let axis = |(k, axis): (usize, &NamedUnit)| {
+            let values = self.positions.iter().map(|position| position.axes[k]);
+            let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+            [axis.name.clone(), text(low, 6, axis.unit), text(high, 6, axis.unit)]
+        };
+        let head = |cells: [&str; 3]| [cells.map(String::from)].into_iter();
+        let settings: Vec<_> = head(["setting", "value", ""]).chain(self.settings.iter().map(setting)).collect();
+        let axes: Vec<_> = head(["axis", "from", "to"]).chain(self.axes.iter().enumerate().map(axis)).collect();
+        write!(f, "{}\n\nsettings from {} positions\n\n", self.title, self.positions.len())?;
+        write!(f, "{}\n{}", aligned(&settings, "<><"), aligned(&axes, "<>>"))?;
+        writeln!(f, "\nof the poses {:.1e} mm and {:.1e} deg are left", self.displacement_mm, self.turn_deg)?;
+        match self.deviation_um {
+            Some(deviation) => writeln!(f, "the flank is then off by up to {deviation:.6} um"),
+            None => Ok(()),
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Settings of the target that are looked for: with which constants it makes the source's poses.
 
-use std::fmt::Write;
-
 use flank_chain_dsl::{Dimension, Job, RangedVariable};
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
@@ -14,11 +12,10 @@ use super::result::{FittedPosition, FoundSetting, FoundSettings};
 use super::source::{Flank, Source};
 use crate::project::failure::Failure;
 use crate::project::not_done::{NotDone, NotDoneKind};
-use crate::project::quantity::UnitSymbol;
+use crate::project::quantity::{NamedUnit, UnitSymbol};
 use crate::project::requests::{ConvertRequest, Session};
 use crate::project::shown_path;
 use crate::project::units;
-use crate::solve::table::aligned;
 
 /// Positions that the settings are found from; all others follow.
 const FITTED: usize = 21;
@@ -170,30 +167,6 @@ struct Found<'f, 't, 'g> {
 }
 
 impl Found<'_, '_, '_> {
-    fn text(&self) -> String {
-        let Found { target, fit, .. } = self;
-        let mut out = format!("{}\n\nsettings from {} positions\n\n", self.title, self.positions.len());
-        let mut rows = vec![["setting", "value", ""].map(String::from)];
-        for (k, (setting, value)) in target.settings.iter().zip(&fit.settings).enumerate() {
-            let told = if fit.undetermined.contains(&k) { "the poses do not tell" } else { "" };
-            rows.push([short(setting), units::text(setting.dimension, *value, 9), told.to_string()]);
-        }
-        out.push_str(&aligned(&rows, "<><"));
-        let mut rows = vec![["axis", "from", "to"].map(String::from)];
-        for (k, axis) in target.free.iter().enumerate() {
-            let values = fit.moving.iter().map(|moving| moving[k]);
-            let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
-            rows.push([axis.name.clone(), units::text(axis.dimension, low, 6), units::text(axis.dimension, high, 6)]);
-        }
-        let _ = write!(out, "\n{}", aligned(&rows, "<>>"));
-        let _ =
-            writeln!(out, "\nof the poses {:.1e} mm and {:.1e} deg are left", fit.displacement, fit.turn.to_degrees());
-        if let Some(deviation) = self.deviation {
-            let _ = writeln!(out, "the flank is then off by up to {:.6} um", deviation * 1e3);
-        }
-        out
-    }
-
     fn missed(&self) -> Vec<NotDone> {
         let Found { target, fit, .. } = self;
         let name = &target.machine.name;
@@ -246,7 +219,8 @@ impl Found<'_, '_, '_> {
             turn_deg: fit.turn.to_degrees(),
             deviation_um: self.deviation.map(|mm| mm * 1e3),
             not_done: self.missed(),
-            text: self.text(),
+            title: self.title.clone(),
+            axes: target.free.iter().map(|axis| NamedUnit::new(&axis.name, axis.dimension)).collect(),
         }
     }
 }

@@ -237,7 +237,7 @@ impl Table {
 
     /// With what the target cannot do.
     pub(super) fn result(self, not_done: Vec<NotDone>) -> AxisMotion {
-        let named = |named: &Named| NamedUnit { name: named.name.clone(), unit: UnitSymbol::of(named.dimension) };
+        let named = |named: &Named| NamedUnit::new(&named.name, named.dimension);
         let symmetries = self.symmetries.iter();
         AxisMotion {
             motions: self.motions.iter().map(named).collect(),

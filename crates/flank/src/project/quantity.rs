@@ -91,6 +91,12 @@ pub struct NamedUnit {
     pub unit: UnitSymbol,
 }
 
+impl NamedUnit {
+    pub(crate) fn new(name: &str, dimension: Dimension) -> NamedUnit {
+        NamedUnit { name: name.to_string(), unit: UnitSymbol::of(dimension) }
+    }
+}
+
 /// What an axis can do, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Travel {
