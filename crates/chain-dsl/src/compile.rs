@@ -10,10 +10,10 @@ use flank_expr::Graph;
 use crate::definitions::instance::{Overrides, Source};
 use crate::definitions::machine::{self, Machines};
 use crate::definitions::tool::{self, Tools};
-use crate::definitions::unused;
+use crate::definitions::{unused, variant};
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Name, Sources, Span};
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::job::{self, Definitions};
 use crate::limits;
 use crate::load::files::{Disk, Files};
@@ -167,8 +167,9 @@ fn compile<'g>(
     check_definitions(&mut context, &items);
     let main = files.last().map(|(id, _)| *id);
     let mut jobs = Vec::new();
-    for (file, written) in &items.jobs {
+    for JobItem { file, job: written, is_variant } in &items.jobs {
         context.begin_item();
+        let found = context.findings();
         if written.statements.iter().map(ast::JobStatement::size).sum::<usize>() > limits::JOB_STATEMENTS.most {
             context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
             continue;
@@ -178,8 +179,12 @@ fn compile<'g>(
         let is_meant = Some(*file) == main && wanted.is_none_or(|wanted| wanted == name);
         let own = if is_meant { overrides.of_job(name) } else { Overrides::new() };
         let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
-        let job = job::build(&mut context, written, &definitions, &sources.file(*file).path);
+        let job = job::build(&mut context, written, *is_variant, &definitions, &sources.file(*file).path);
         context.step(written.name.span);
+        if *is_variant {
+            let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
+            context.note_since(found, written.span, &note);
+        }
         if Some(*file) == main {
             jobs.push(job);
         }
@@ -238,7 +243,15 @@ fn standing<'g>(
 struct Items {
     machines: Machines,
     tools: Tools,
-    jobs: Vec<(FileId, ast::Job)>,
+    jobs: Vec<JobItem>,
+}
+
+/// A job, and the file that it stands in.
+struct JobItem {
+    file: FileId,
+    job: ast::Job,
+    /// Whether it is made from another one.
+    is_variant: bool,
 }
 
 impl Items {
@@ -278,7 +291,29 @@ impl Items {
             Item::Tool(tool) => {
                 self.tools.insert(tool.name.node.clone(), tool.clone());
             }
-            Item::Job(job) => self.jobs.push((file, job.clone())),
+            Item::Job(job) => self.jobs.push(JobItem { file, job: job.clone(), is_variant: false }),
+            Item::Variant(variant) => self.add_variant(context, file, variant),
+        }
+    }
+}
+
+impl Items {
+    fn add_variant(&mut self, context: &mut Context<'_>, file: FileId, variant: &ast::Variant) {
+        context.begin_item();
+        let parent = self.jobs.iter().find(|item| item.job.name.node == variant.parent.node);
+        let Some(parent) = parent else {
+            // the parser has reported a missing name, and a file that is not there may hold the job
+            if !variant.parent.node.is_empty() && !context.lacks_files && context.tells_more() {
+                let above = self.jobs.iter().map(|item| item.job.name.node.as_str());
+                let message = format!("there is no job `{}` above this one", variant.parent.node);
+                let mut diagnostic = Diagnostic::new(Code::UnknownName, variant.parent.span, message);
+                diagnostic.help = did_you_mean(&variant.parent.node, above);
+                context.report(diagnostic);
+            }
+            return;
+        };
+        if let Some(job) = variant::expanded(context, variant, &parent.job) {
+            self.jobs.push(JobItem { file, job, is_variant: true });
         }
     }
 }

@@ -9,3 +9,4 @@ pub(crate) mod requirement;
 pub(crate) mod tool;
 pub(crate) mod transforms;
 pub(crate) mod unused;
+pub(crate) mod variant;

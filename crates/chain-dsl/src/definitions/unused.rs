@@ -26,6 +26,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
     let jobs = || all.iter().filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
     let mut by_jobs = Used::default();
     jobs().for_each(|job| by_jobs.job(job));
+    all.iter().for_each(|item| by_jobs.variant(item));
     // machines extend each other and jobs read their parameters: whoever mentions the name may mean it
     let mut by_machines = Used::default();
     machines().for_each(|machine| by_machines.machine(machine));
@@ -69,7 +70,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                     }
                 }
             }
-            Item::Use(_) | Item::Function(_) => {}
+            Item::Use(_) | Item::Function(_) | Item::Variant(_) => {}
         }
     }
 }
@@ -182,6 +183,14 @@ impl Used {
                     }
                 }
             }
+        }
+    }
+
+    /// What a variant of a job puts in the place of something.
+    fn variant(&mut self, item: &Item) {
+        let Item::Variant(variant) = item else { return };
+        for change in &variant.changes {
+            self.expression(&change.value);
         }
     }
 

@@ -69,6 +69,8 @@ struct Builder<'a, 'g> {
     named_samples: Vec<(Name, usize, Sample<'g>)>,
     /// What the surfaces of the job are made from and over: `c.outside.blade`, `roll`.
     named: Vec<Vec<String>>,
+    /// Of a job that is a variant of another one: its name, where its values come from.
+    user: Option<Span>,
     /// Whether axes without a law are free.
     stands_alone: bool,
 }
@@ -92,6 +94,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             surfaces: Vec::new(),
             named_samples: Vec::new(),
             named: Vec::new(),
+            user: None,
             stands_alone,
         }
     }
@@ -115,10 +118,12 @@ pub(crate) fn standing<'g>(
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
     job: &ast::Job,
+    is_variant: bool,
     definitions: &Definitions<'_>,
     file: &Path,
 ) -> Job<'g> {
     let mut builder = Builder::new(definitions, false);
+    builder.user = is_variant.then_some(job.name.span);
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {
             surface.value.each(&mut |part| {
@@ -219,7 +224,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Machine(instance) => self.machine(context, instance),
             JobStatement::Tool(instance) => self.tool(context, instance),
             JobStatement::Surface(surface) => surface.names.iter().for_each(|name| self.define(context, name)),
-            JobStatement::Require(required) => requirement::check(context, required, &self.scope, None),
+            JobStatement::Require(required) => requirement::check(context, required, &self.scope, self.user),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }

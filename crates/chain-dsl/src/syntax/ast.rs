@@ -27,6 +27,8 @@ pub enum Item {
     Tool(Tool),
     /// `job name { … }`
     Job(Job),
+    /// `job name = other(setting: value)`
+    Variant(Variant),
 }
 
 impl Item {
@@ -38,6 +40,7 @@ impl Item {
             Item::Machine(machine) => Some(&machine.name),
             Item::Tool(tool) => Some(&tool.name),
             Item::Job(job) => Some(&job.name),
+            Item::Variant(variant) => Some(&variant.name),
         }
     }
 }
@@ -316,6 +319,28 @@ pub struct Job {
     pub statements: Vec<JobStatement>,
     /// From `job` to the closing brace.
     pub span: Span,
+}
+
+/// A job that is another one with values or parts changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The job that it is made from.
+    pub parent: Name,
+    /// What is changed.
+    pub changes: Vec<Change>,
+}
+
+/// `ratio: value`, `m.swivel: value`, `c: definition(setting: value)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// A parameter, a setting of a machine or tool, or a machine or tool.
+    pub target: Path,
+    /// What takes its place.
+    pub value: Expression,
 }
 
 /// A statement in a job.

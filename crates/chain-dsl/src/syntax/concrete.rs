@@ -99,16 +99,18 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
-        Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => Kind::Statement,
+        Rule::variant | Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => {
+            Kind::Statement
+        }
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
         Rule::trim | Rule::cut => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
-        Rule::argument | Rule::keep | Rule::sampled => Kind::Element,
-        Rule::arguments | Rule::settings | Rule::vector => Kind::List,
+        Rule::argument | Rule::keep | Rule::sampled | Rule::change => Kind::Element,
+        Rule::arguments | Rule::settings | Rule::changes | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
-        Rule::definition | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
+        Rule::definition | Rule::variant_of | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
         Rule::value_type | Rule::size => Kind::Joined,
         Rule::range => Kind::Operation,
         Rule::dimension => Kind::Dimension,

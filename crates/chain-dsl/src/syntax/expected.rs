@@ -126,7 +126,8 @@ fn name(before: &Before<'_>) -> String {
         (_, "extends") => "the machine that it extends".to_owned(),
         ("machine", "=") => "the name of a machine".to_owned(),
         ("tool", "=") => "the name of a tool".to_owned(),
-        ("machine" | "tool", _) => "a setting such as `radial: 70 mm`".to_owned(),
+        ("job", "=") => "the name of a job".to_owned(),
+        ("machine" | "tool" | "job", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("trim", "by") => "the name of the surface that cuts".to_owned(),
         ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
         ("surface", "along") => "the name of a profile".to_owned(),
@@ -141,6 +142,7 @@ fn name(before: &Before<'_>) -> String {
 fn path(before: &Before<'_>) -> &'static str {
     match before.statement {
         "drive" => "an axis such as `m.X`",
+        "job" => "a setting such as `radial: 70 mm`",
         "sample" | "trim" | "cut" => "the name of the surface",
         _ => "a frame such as `m.work`",
     }
@@ -149,7 +151,7 @@ fn path(before: &Before<'_>) -> &'static str {
 /// What a name before a colon or a brace is the name of.
 fn named<'t>(before: &Before<'t>) -> &'t str {
     match before.statement {
-        "machine" | "tool" if before.in_parentheses => "setting",
+        "machine" | "tool" | "job" if before.in_parentheses => "setting",
         "surface" | "fn" if before.in_parentheses => "parameter",
         "sample" if before.last != "sample" => "entry",
         statement => noun(statement),

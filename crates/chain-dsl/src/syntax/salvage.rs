@@ -102,10 +102,10 @@ pub(super) fn surface_head(scan: &Scan, range: Range<usize>) -> SurfaceParts {
     SurfaceParts { doc: piece.doc(), parameters, ..SurfaceParts::new(name) }
 }
 
-/// A function; nothing for a `use`.
+/// A function; nothing for a `use` or a variant of a job.
 pub(super) fn flat_item(scan: &Scan, word: &str, range: Range<usize>) -> Option<Item> {
     let piece = Piece { scan, range };
-    if word == "use" {
+    if word != "fn" {
         return None;
     }
     let firsts = piece.firsts_in_parentheses();

@@ -9,7 +9,7 @@ use flank_expr::{Expr, Graph};
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::diagnostics::spelling::closest;
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::limits;
 use crate::syntax::ast;
 use crate::values::dimension::Dimension;
@@ -150,6 +150,14 @@ impl<'g> Context<'g> {
         self.roles.push(role);
         self.values.push(value);
         variable
+    }
+
+    /// Adds a note to those findings, from a number of them on, that lie in a part of the text.
+    pub(crate) fn note_since(&mut self, first: usize, part: Span, note: &Note) {
+        let lies_there = |place: Span| place.file == part.file && part.start <= place.start && place.end <= part.end;
+        for diagnostic in self.diagnostics[first..].iter_mut().filter(|diagnostic| lies_there(diagnostic.span)) {
+            diagnostic.notes.push(note.clone());
+        }
     }
 
     /// The variables that expressions depend on.

@@ -109,7 +109,19 @@ impl Writer {
     }
 
     fn item(&mut self) {
-        match self.random.below(6) {
+        match self.random.below(7) {
+            6 => {
+                self.all(&["job", "again", "="]);
+                self.name();
+                self.text.push('(');
+                for _ in 0..self.random.below(4) {
+                    self.put("m.x");
+                    self.put(":");
+                    self.expression(2);
+                    self.put(",");
+                }
+                self.put(")");
+            }
             0 => self.all(&["use", "\"../a // b.chain\""]),
             1 => self.function(),
             2 => self.block(&["machine"], Writer::machine_statement),

@@ -404,3 +404,44 @@ fn a_sample_with_a_name_of_its_own_is_the_surface_once_more() {
     let page = derivation(&compilation.jobs[0], Style::Text);
     assert!(page.contains("one") && !page.contains("its_row"), "{page}");
 }
+
+#[test]
+fn a_job_may_be_another_one_with_values_and_parts_changed() {
+    let text = "
+        tool small { param radius : length = 1 mm
+            surface face(u: angle in -80 deg .. 80 deg, v: angle in -60 deg .. 60 deg) {
+                at = [20 mm - radius * cos(u) * cos(v), radius * cos(u) * sin(v), radius * sin(u)]
+                body towards [cos(u) * cos(v), -cos(u) * sin(v), -sin(u)]
+            }
+        }
+        /// The first.
+        job crowned {
+            param reach : length = 4 mm
+            machine m = lathe(height: reach)
+            tool b = ball(radius: 3 mm)
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C, m.Z = turn, 0 mm
+            surface s in m.work = envelope(b.face, over: turn)
+            sample s { turn: 10 deg .. 80 deg by 3, u: 1 deg .. 2 deg by 3 }
+        }
+        job plain = crowned(reach: 5 mm)
+        /// The third.
+        job higher = plain(m.height: 2 * reach, b: small(radius: reach / 5))";
+    let set = [("plain.b.radius".to_string(), "2 mm".to_string())];
+    let graph = Graph::new();
+    let compilation = compile_text(&graph, "text", &format!("{text}{}", super::LIBRARY), &set);
+    assert!(!compilation.has_errors(), "{:?}", compilation.diagnostics);
+    let told = compilation.jobs.iter().map(|job| {
+        let values = job.parameters.iter().map(|parameter| format!("{} {}", parameter.name, parameter.value));
+        (job.name.as_str(), job.doc.join(" "), values.collect::<Vec<_>>().join(", "))
+    });
+    let wanted = [
+        ("crowned", "The first.", "reach 4, m.height 4, b.radius 3"),
+        ("plain", "The first.", "reach 5, m.height 5, b.radius 2"),
+        ("higher", "The third.", "reach 5, m.height 10, b.radius 1"),
+    ];
+    let wanted = wanted.map(|(name, doc, values)| (name, doc.to_string(), values.to_string()));
+    assert_eq!(told.collect::<Vec<_>>(), wanted);
+    assert!(compilation.jobs.iter().all(|job| job.surfaces[0].sample.is_some()));
+}

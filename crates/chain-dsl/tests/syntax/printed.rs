@@ -22,6 +22,10 @@ fn item(item: &Item) -> Vec<String> {
             let head = format!("{}tool {}", doc(&tool.doc), tool.name.node);
             (head, tool.statements.iter().flat_map(tool_statement).collect())
         }
+        Item::Variant(it) => {
+            let changes = listed(&it.changes, |it| format!("{}: {}", path(&it.target), expression(&it.value)));
+            (format!("{}job {} = {}({changes})", doc(&it.doc), it.name.node, it.parent.node), Vec::new())
+        }
         Item::Job(job) => {
             let head = format!("{}job {}", doc(&job.doc), job.name.node);
             (head, job.statements.iter().map(job_statement).collect())

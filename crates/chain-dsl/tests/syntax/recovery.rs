@@ -171,6 +171,7 @@ fn nothing_around_a_mistake_is_lost() {
         assert_eq!(file.items.len(), read(text).0.items.len());
     }
     let (file, _) = read(&text.replace("job everything {", "job everything"));
-    let Some(Item::Job(job)) = file.items.last() else { panic!("the job is lost") };
+    let job = file.items.iter().find_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
+    let Some(job) = job else { panic!("the job is lost") };
     assert_eq!(job.statements.len(), 19);
 }

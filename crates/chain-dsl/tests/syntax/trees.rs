@@ -159,6 +159,8 @@ fn everything() {
       sample left, right.edge as root_row, as as as u: [3 4]
       let curve (table! "profile.csv")
       let choice (if (or (>= ratio 1) (< ratio 0.5)) "a" (if (!= ratio 0) "b" "c"))
+    /As it was./ job again = everything()
+    job slower = everything(ratio: (/ 1 2), m.feed: 3_mm*rev^-1, c: (other_cutter! radius: 3_mm))
     "#);
 }
 

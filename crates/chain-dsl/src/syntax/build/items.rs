@@ -4,7 +4,7 @@ use pest::iterators::Pair;
 
 use crate::diagnostics::source::{Name, Spanned};
 
-use super::super::ast::{Function, Item, Job, Let, Machine, Tool, Type};
+use super::super::ast::{Change, Function, Item, Job, Let, Machine, Tool, Type, Variant};
 use super::super::grammar::Rule;
 use super::{Build, Parts};
 
@@ -24,6 +24,7 @@ impl Build<'_> {
             Rule::machine => Item::Machine(self.machine(pair)),
             Rule::tool => Item::Tool(self.tool(pair)),
             Rule::job => Item::Job(self.job(pair)),
+            Rule::variant => Item::Variant(self.variant(pair)),
             _ => return None,
         })
     }
@@ -106,6 +107,24 @@ impl Build<'_> {
         let mut parts = pair.into_inner();
         let Head { doc, name, .. } = self.first_head(&mut parts);
         Job { doc, name, statements: parts.filter_map(|part| self.job_statement(part)).collect(), span }
+    }
+
+    fn variant(&mut self, pair: Pair<'_, Rule>) -> Variant {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let mut parts = Parts::of(parts.required(Rule::variant_of));
+        let parent = self.name(parts.required(Rule::name));
+        let changes = parts.optional(Rule::changes).map_or_else(Vec::new, |changes| {
+            Parts::of(changes).all(Rule::change).into_iter().map(|change| self.change(change)).collect()
+        });
+        Variant { doc, name, parent, changes }
+    }
+
+    fn change(&mut self, pair: Pair<'_, Rule>) -> Change {
+        let mut parts = Parts::of(pair);
+        let target = self.path(parts.required(Rule::path));
+        Change { target, value: self.expression(parts.required(Rule::expression)) }
     }
 
     fn first_head(&mut self, parts: &mut pest::iterators::Pairs<'_, Rule>) -> Head {

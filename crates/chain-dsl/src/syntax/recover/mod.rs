@@ -109,7 +109,8 @@ impl<'s> Recover<'s> {
 
     /// An item by its first word, which is misspelt in the text if it is not `strict`.
     fn item(&mut self, word: &'s str, strict: bool) {
-        if matches!(word, "use" | "fn") {
+        let is_variant = word == "job" && self.scan.say(self.at + 2) == "=";
+        if matches!(word, "use" | "fn") || is_variant {
             let end = pieces::flat_item_end(self.scan, self.at);
             let range = self.at..end;
             let parsed = if strict { self.piece(Rule::item_piece, range.clone()) } else { None };

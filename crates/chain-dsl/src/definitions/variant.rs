@@ -1,0 +1,93 @@
+//! A job that is another one with values or parts changed: `job plain = crowned(infeed: 0 mm, m.swivel: 3 deg, h: worn_hob)`.
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::syntax::ast::{Argument, Change, ExpressionKind, Instance, Job, JobStatement, Variant};
+use crate::values::context::{Context, did_you_mean};
+
+/// Bytes of a job that cost as much as a step of evaluation: a variant is a copy.
+const BYTES_A_STEP: u32 = 2;
+
+/// The job that a variant of an earlier one stands for; nothing if that would be too much, which is reported.
+pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Option<Job> {
+    let length = (parent.span.end - parent.span.start) / BYTES_A_STEP;
+    if !context.spend(length as usize, variant.name.span) {
+        return None;
+    }
+    let mut job = parent.clone();
+    job.name = variant.name.clone();
+    if !variant.doc.is_empty() {
+        job.doc = variant.doc.clone();
+    }
+    for (k, change) in variant.changes.iter().enumerate() {
+        let same = |earlier: &&Change| names(earlier).eq(names(change));
+        match variant.changes[..k].iter().find(same) {
+            Some(first) => {
+                let message = format!("`{}` is changed twice", names(change).collect::<Vec<_>>().join("."));
+                let twice = Diagnostic::new(Code::DuplicateName, change.target.span, message);
+                context.report(twice.note(first.target.span, "first here"));
+            }
+            None => drop(made(context, &mut job, change, &parent.name.node)),
+        }
+    }
+    Some(job)
+}
+
+fn names(change: &Change) -> impl Iterator<Item = &str> {
+    change.target.segments.iter().map(|segment| segment.node.as_str())
+}
+
+/// Makes one change; nothing if there is nothing to change, which is reported.
+fn made(context: &mut Context<'_>, job: &mut Job, change: &Change, parent: &str) -> Option<()> {
+    let (name, rest) = change.target.segments.split_first()?;
+    let known: Vec<String> = job.statements.iter().filter_map(changeable).map(str::to_string).collect();
+    let statement = job.statements.iter_mut().find(|statement| changeable(statement) == Some(&name.node));
+    match (statement, rest) {
+        (Some(JobStatement::Param(param)), []) => param.default = Some(change.value.clone()),
+        (Some(JobStatement::Machine(instance) | JobStatement::Tool(instance)), [setting]) => {
+            instance.settings.retain(|given| given.name.as_ref().is_none_or(|name| name.node != setting.node));
+            instance.settings.push(Argument { name: Some(setting.clone()), value: change.value.clone() });
+        }
+        (Some(JobStatement::Machine(instance) | JobStatement::Tool(instance)), []) => {
+            replace(context, instance, change)?;
+        }
+        (None, _) => {
+            let message = format!("job `{parent}` has no parameter, machine or tool `{}`", name.node);
+            let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
+            diagnostic.help = did_you_mean(&name.node, known.iter().map(String::as_str));
+            context.report(diagnostic);
+        }
+        _ => {
+            let message = format!("`{}` has no settings of its own", name.node);
+            let help = "change a parameter by its name, a setting as `m.swivel`";
+            context.report(Diagnostic::new(Code::WrongKind, change.target.span, message).help(help));
+        }
+    }
+    Some(())
+}
+
+/// The name of what a variant can change.
+fn changeable(statement: &JobStatement) -> Option<&str> {
+    match statement {
+        JobStatement::Param(param) => Some(&param.name.node),
+        JobStatement::Machine(instance) | JobStatement::Tool(instance) => Some(&instance.name.node),
+        _ => None,
+    }
+}
+
+/// Another machine or tool in the place of one.
+fn replace(context: &mut Context<'_>, instance: &mut Instance, change: &Change) -> Option<()> {
+    let (definition, settings) = match &change.value.kind {
+        ExpressionKind::Path(path) if path.segments.len() == 1 => (path.segments[0].clone(), Vec::new()),
+        ExpressionKind::Call(call) => (call.function.clone(), call.arguments.clone()),
+        ExpressionKind::Error => return None,
+        _ => {
+            let message = format!("`{}` is a machine or a tool", instance.name.node);
+            let help = format!("name another one: `{}: definition(setting: …)`", instance.name.node);
+            context.report(Diagnostic::new(Code::WrongKind, change.value.span, message).help(help));
+            return None;
+        }
+    };
+    (instance.definition, instance.settings) = (definition, settings);
+    Some(())
+}
