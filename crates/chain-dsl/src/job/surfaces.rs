@@ -21,6 +21,9 @@ use super::{Builder, FrameRef, are_even, declared, sweep};
 const PROCESSES: [(&str, Process); 3] =
     [("envelope", Process::Envelope), ("sweep", Process::Sweep), ("move", Process::Move)];
 
+/// The tools' surfaces, and the motions with their places.
+type ProcessArguments<'p, 'g> = (Vec<&'p ast::Path>, Vec<(RangedVariable<'g>, Span)>);
+
 impl<'g> Builder<'_, 'g> {
     pub(super) fn surface(&mut self, context: &mut Context<'g>, written: &ast::GeneratedSurface) {
         if !context.spend(written.names.len(), written.value.span) {
@@ -121,7 +124,7 @@ impl<'g> Builder<'_, 'g> {
         &self,
         context: &mut Context<'g>,
         call: &'p ast::Call,
-    ) -> Option<(Vec<&'p ast::Path>, Vec<(RangedVariable<'g>, Span)>)> {
+    ) -> Option<ProcessArguments<'p, 'g>> {
         let process = call.function.node.as_str();
         let mut tools = Vec::new();
         let mut motions = Vec::new();
