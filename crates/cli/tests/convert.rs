@@ -154,10 +154,11 @@ fn a_tolerance_without_solved_points_is_told() {
     let out = folder("convert-pointless");
     let (job, here) = pinion_in(&out);
     let unsampled = job.split("    sample concave {").next().expect("a job").to_string() + "}\n";
-    let kept = |line: &&str| !line.contains("envelope(") || line.contains("surface concave ");
+    let kept = |line: &&str| !line.contains("envelope(") || line.contains("surface concave,");
     let edge: String = unsampled.lines().filter(kept).map(|line| format!("{line}\n")).collect();
     let edge = edge
-        .replace("envelope(c.outside.blade, over: roll)", "sweep(k.edge, over: roll)")
+        .replace("surface concave, concave_fillet in", "surface concave in")
+        .replace("envelope(c.outside.blade, c.outside.edge, over: roll)", "sweep(k.edge, over: roll)")
         .replace("    mount c on m.cutter", "    mount c on m.cutter\n    tool k = knife()\n    mount k on m.cutter")
         + "tool knife { surface edge(u: length in 0 mm .. 3 mm) { at = [95 mm, 0 mm, u] body towards [1, 0, 0] } }\n";
     // far outside: no roll and no place on the blade reach it

@@ -412,7 +412,11 @@ fn bevel_gears_of_wrong_settings_are_told_as_such() {
         ("face_hobbed_pinion", &["m.sliding_base=3.4 mm"], roots),
         // the cutter of one flank reaches the other one
         ("hypoid_pinion", &["n.index=0 deg"], "225: cut away by what makes behind_concave"),
-        ("tilted_pinion", &["c.inside_point_radius=56 mm"], "cut away by what makes behind_concave"),
+        (
+            "tilted_pinion",
+            &["c.inside_point_radius=56 mm", "d.inside_point_radius=62.3 mm"],
+            "cut away by what makes behind_concave",
+        ),
         ("face_hobbed_pinion", &["n.spindle_start=313.7 deg"], "225: cut away by what makes behind_concave"),
         // the other side of the cutter
         (

@@ -18,7 +18,8 @@ const TILE: usize = 128;
 const SAFETY: f64 = 2.0;
 /// Edges that are tried for one point before it is left undecided.
 const MOST_EDGES: usize = 4096;
-/// The same where the search has no prospect: where points that are spread over the surface take more than [`PROSPECT`] each on average.
+/// The same where the search has no prospect: where most of some points that are spread over the surface stay undecided, and that takes
+/// more than [`PROSPECT`] at each.
 const FEW_EDGES: usize = 4;
 /// What it takes to bring an edge to pass a point in lanes counts once, what it takes one by one so often.
 const CAREFULLY: u64 = 20;
@@ -123,12 +124,15 @@ impl CuttingEdges {
         tiles.collect::<Vec<_>>().into_iter().flatten().collect()
     }
 
-    /// How many edges are tried for a point, by what it takes at some points all over the surface.
+    /// How many edges are tried for a point: few where most of some points all over the surface stay undecided after many.
     fn most_edges(&self, points: &[SurfacePoint], wide: &[Range; 3], differing: f64) -> usize {
         let probes: Vec<SurfacePoint> = probes(points).into_iter().cloned().collect();
-        let effort = |probe: &SurfacePoint| self.tile(std::slice::from_ref(probe), wide, (differing, MOST_EDGES)).1;
-        let all: u64 = probes.par_iter().map(effort).sum();
-        if all > PROSPECT * probes.len() as u64 { FEW_EDGES } else { MOST_EDGES }
+        let is_without_prospect = |probe: &&SurfacePoint| {
+            let (left, effort) = self.tile(std::slice::from_ref(*probe), wide, (differing, MOST_EDGES));
+            left[0] == Some(ScallopHeight::Undecided) && effort > PROSPECT
+        };
+        let without = probes.par_iter().filter(is_without_prospect).count();
+        if 2 * without > probes.len() { FEW_EDGES } else { MOST_EDGES }
     }
 
     /// How much the heights of real edges over a point differ among each other from those of the ideal edges with the
