@@ -49,7 +49,7 @@ pub(super) fn begins_item_in_job(scan: &Scan, index: usize) -> bool {
 /// One past the last token of the statement that begins at a token.
 pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
     let sample = scan.say(from) == "sample";
-    let named = if scan.say(from + 2) == "." { from + 4 } else { from + 2 };
+    let named = names_end(scan, from);
     let opened = (from + 1..=named).any(|index| scan.say(index) == "{");
     let lacks_brace = sample && !opened && scan.say(named + 1) == ":";
     let (mut braces, mut brackets) = (usize::from(lacks_brace), 0usize);
@@ -71,6 +71,18 @@ pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
         }
     }
     scan.tokens.len()
+}
+
+/// One past the names of a sample that begins at a token: `sample left, right.edge as root_row`.
+fn names_end(scan: &Scan, from: usize) -> usize {
+    let mut end = from + 2;
+    loop {
+        match scan.say(end) {
+            "." | "," => end += 2,
+            "as" if scan.say(end + 1) != ":" => end += 2,
+            _ => return end,
+        }
+    }
 }
 
 /// One past the last token of the segment of a profile that begins at a token.
