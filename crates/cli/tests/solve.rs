@@ -184,7 +184,7 @@ fn what_single_edges_leave_is_listed_written_and_drawn() {
     let run = solve("reach=1 deg");
     assert_eq!(run.status.code(), Some(3));
     let told = text(&run.stderr);
-    assert!(told.contains("not known what is left: 130 of 255 points of plane"), "{told}");
+    assert!(told.contains("what is left is unknown at 130 of 255 points of plane"), "{told}");
     assert!(told.contains("130: no edge of strokes passes there within its ranges"), "{told}");
 }
 

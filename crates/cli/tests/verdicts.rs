@@ -265,6 +265,6 @@ fn a_search_without_prospect_ends() {
     let run = flank(&["solve", &spec, "--no-picture", "--out", folder.to_str().expect("a plain path")]);
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
     let told = text(&run.stderr);
-    assert!(told.contains("not known what is left: 40000 of 40000 points of lower_flank"), "{told}");
+    assert!(told.contains("what is left is unknown at 40000 of 40000 points of lower_flank"), "{told}");
     assert!(told.contains("too many would have to be tried"), "{told}");
 }

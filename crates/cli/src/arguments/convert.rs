@@ -11,8 +11,8 @@ use super::{EvaluatorArguments, JobArguments, count, folder, length};
 #[derive(Args, Debug)]
 #[command(mut_arg("job", |job| job.help("The job that is carried over, where the file holds several")))]
 #[command(after_help = "\
-The tool stands to the work on the target machine as it does on the job's own, up to what the tool does not see: a cutter of
-revolution may turn about its axis.
+The target machine holds the tool to the work as the job's own machine does, up to motions that leave the tool unchanged: a
+cutter of revolution may turn about its axis.
 
 Examples:
   flank convert specs/bevel/pinion_19x62.chain --to specs/machines/free_form.chain

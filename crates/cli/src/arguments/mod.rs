@@ -398,7 +398,7 @@ pub(crate) struct Import {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Prints the files that changed. A file that does not parse is told so and stays as it is.
+Prints the files that changed. A file that does not parse is reported and stays as it is.
 
 Examples:
   flank fmt my_machine.chain

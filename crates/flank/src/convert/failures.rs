@@ -140,7 +140,7 @@ fn lost(carried: &Conversion<'_, '_>, is_singular: bool, near: &Posture, at: &[f
     if freedoms < FREEDOMS {
         let unseen = match freedoms - carried.free.len() {
             0 => String::new(),
-            slips => format!(" and {slips} of motions that the tool does not see"),
+            slips => format!(" and {slips} of motions that leave the tool unchanged"),
         };
         let told = format!(
             "a pose has {FREEDOMS} freedoms, and {name} has {} of axes{unseen}: no posture was found",

@@ -22,7 +22,7 @@ pub enum ConvertResult {
     Settings(FoundSettings),
 }
 
-/// The axes of another machine at which its tool stands to the work as on the job's own, of `flank convert`.
+/// The axis positions at which another machine holds its tool to the work as the job's own does, of `flank convert`.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "schema", rename = "flank.convert/2")]
 pub struct AxisMotion {

@@ -104,7 +104,7 @@ impl Table {
             let _ = writeln!(out, "that is all of it: the sampled points are all made at {at}");
         }
         for screw in &self.symmetries {
-            let _ = writeln!(out, "the tool does not see {}", unseen(screw));
+            let _ = writeln!(out, "the tool is unchanged by {}", unseen(screw));
         }
         let mut rows = vec![["axis", "from", "to", "travel"].map(String::from)];
         rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {

@@ -104,7 +104,7 @@ pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
         if missing == 0 {
             continue;
         }
-        let _ = writeln!(out, "not known what is left: {missing} of {asked} points of {name}");
+        let _ = writeln!(out, "what is left is unknown at {missing} of {asked} points of {name}");
         if unreached > 0 {
             let _ = writeln!(out, "  {unreached}: no edge of {} passes there within its ranges", cut.by);
         }
