@@ -6,6 +6,7 @@ mod support;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 use flank_chain_dsl::{Compilation, Job, compile_with_machine};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
@@ -215,13 +216,17 @@ fn linuxcnc_takes_no_orders_from_a_path() {
     assert!(!told[0].is_empty() && told.windows(2).all(|pair| pair[0].len() == pair[1].len()), "{told:?}");
 }
 
+/// The interpreter runs once at a time.
+static INTERPRETER: Mutex<()> = Mutex::new(());
+
 /// What the interpreter makes of a program.
 fn interpreted(folder: &Path, program: &Path) -> String {
+    let _alone = INTERPRETER.lock().unwrap_or_else(PoisonError::into_inner);
     let tools = support::written(folder, "tool.tbl", "T1 P1 D10.0 Z0.0 ;cutter\n");
     let variables = support::written(folder, "v.var", "5161 0\n5220 1\n");
     let arguments = ["-g", "-t", &tools, "-v", &variables, program.to_str().expect("a plain path")];
     let run = Command::new("rs274").args(arguments).current_dir(folder).output().expect("it is installed");
     let told = format!("{}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
-    assert!(run.status.success(), "{told}");
+    assert!(run.status.success(), "{}: {told}", run.status);
     told
 }
