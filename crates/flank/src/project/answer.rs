@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::project::not_done::{self, NotDone};
 
 /// The result of an operation on jobs. Its [`Display`] is the text for people, its serialisation a document with its `schema`
-/// ([`schema`](crate::schema) has what it says).
+/// ([`schema_of`](crate::schema_of) has what it says).
 pub trait Answer: Display + Serialize + Send + Sync + 'static {
     /// What was asked for and not done; empty if everything was.
     fn not_done(&self) -> &[NotDone];

@@ -101,7 +101,7 @@ pub enum Outcome {
     /// There is a root in the ranges, but it is no point of the finished work: its unknowns, position and normal are those of the
     /// surface that the tool generates.
     CutAway(CutBy),
-    /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`trim`](crate::analysis::trim).
+    /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`trim`](crate::trim).
     Undecided,
     /// There is a root, but one of the unknowns lies outside its range.
     Outside {
@@ -136,7 +136,7 @@ pub enum CutBy {
     /// The tool itself in another of its positions, by the piece of its surface that has this number for
     /// [`SecondaryCutting`](crate::SecondaryCutting).
     ItsToolElsewhere(usize),
-    /// Another surface, by the number that it has for [`trim`](crate::analysis::trim).
+    /// Another surface, by the number that it has for [`trim`](crate::trim).
     Other(usize),
 }
 
