@@ -61,7 +61,6 @@ mod files;
 mod measuring;
 mod motion;
 mod points;
-#[cfg(feature = "parquet")]
 pub mod shape;
 mod step;
 pub mod text;

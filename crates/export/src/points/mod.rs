@@ -10,6 +10,7 @@ pub(crate) mod json;
 pub(crate) mod json_layout;
 pub(crate) mod known;
 pub(crate) mod obj;
+#[cfg(feature = "parquet")]
 pub(crate) mod parquet;
 pub(crate) mod stl;
 pub(crate) mod tally;

@@ -73,11 +73,27 @@ mod tests {
     use flank_expr::Graph;
 
     use crate::continuation::choice::{Choice, Several};
+    use crate::continuation::field::Field;
     use crate::continuation::follow::solve_settled;
-    use crate::continuation::grid::Grid;
+    use crate::continuation::grid::{Grid, GridReport};
     use crate::equations::solution::{Outcome, Range};
     use crate::equations::system::System;
     use crate::roots::{MOST_BOXES, all_roots};
+
+    /// A grid whose branch is the only one.
+    fn solved(system: &System, ranges: &[Range], (targets, counts): (&[[f64; 2]], [usize; 2])) -> (Field, GridReport) {
+        let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(system, ranges, targets, MOST_BOXES);
+        let choice = Choice {
+            roots: &roots,
+            keep: None,
+            several: Several::Refuse,
+            most_boxes: MOST_BOXES,
+            reach: None,
+            periodic: &[],
+            planes: None,
+        };
+        solve_settled(Grid::new(system, ranges, (targets, counts), None), None, &choice)
+    }
 
     /// x³ + x = u with u = a + b, beyond x's range, a condition and where an extra number ends: each point is what bisection says.
     #[test]
@@ -93,18 +109,7 @@ mod tests {
         let counts = [90, 130];
         let target = |k: usize| [(k / counts[1]) as f64 / 25.0 - 2.0, (k % counts[1]) as f64 / 65.0 - 0.5];
         let targets: Vec<[f64; 2]> = (0..counts[0] * counts[1]).map(target).collect();
-        let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(&system, ranges, targets, MOST_BOXES);
-        let choice = Choice {
-            roots: &roots,
-            keep: None,
-            several: Several::Refuse,
-            most_boxes: MOST_BOXES,
-            reach: None,
-            periodic: &[],
-            planes: None,
-        };
-        let grid = Grid::new(&system, &ranges, (&targets, counts), None);
-        let (field, effort) = solve_settled(grid, None, &choice);
+        let (field, effort) = solved(&system, &ranges, (&targets, counts));
         for (k, [a, b]) in targets.iter().enumerate() {
             let expected = bisected(a + b);
             match field.outcome(k) {
@@ -151,18 +156,7 @@ mod tests {
             [-1.0 + 3.0 * i as f64 / 59.0 + aside, j as f64 / 74.0 - aside]
         };
         let targets: Vec<[f64; 2]> = (0..counts[0] * counts[1]).map(target).collect();
-        let roots = |ranges: &[Range], targets: &[f64; 2]| all_roots(&system, ranges, targets, MOST_BOXES);
-        let choice = Choice {
-            roots: &roots,
-            keep: None,
-            several: Several::Refuse,
-            most_boxes: MOST_BOXES,
-            reach: None,
-            periodic: &[],
-            planes: None,
-        };
-        let grid = Grid::new(&system, &ranges, (&targets, counts), None);
-        let (field, _) = solve_settled(grid, None, &choice);
+        let (field, _) = solved(&system, &ranges, (&targets, counts));
         for (k, [a, b]) in targets.iter().enumerate() {
             let expected = 1.0 / (a + b);
             match field.outcome(k) {
