@@ -265,6 +265,7 @@ pub(crate) fn points<'j, 'g>(
         trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.session))
     });
     let trims = trims.collect();
+    secondary::judge_trims(job, surface, &mut points, sample.counts);
     let positions = secondary::judge(job, surface, &mut points, sample.counts);
     Found { problem, points, effort, trims, positions }
 }

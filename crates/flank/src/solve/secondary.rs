@@ -54,6 +54,24 @@ pub(crate) fn judge<'g>(
     Positions::Seen(cutting.judge(points, counts))
 }
 
+/// Marks the points of a grid that the tools of the surfaces which trim it cut away in positions that generate nothing beside them: at the
+/// ends of their motions, say.
+pub(crate) fn judge_trims<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    points: &mut [SurfacePoint],
+    counts: [usize; 2],
+) {
+    for (number, by) in surface.trimmed_by.iter().map(|&by| &job.surfaces[by]).enumerate() {
+        let is_other = by.generation.process == Process::Envelope && !is_of_same_tool(surface, by);
+        let Some((shape, own)) = piece(by).filter(|_| is_other) else { continue };
+        let motions = (&by.generation.motions[..], ranges(by)[2..].to_vec());
+        let cutting = SecondaryCutting::new(&[(number, shape, own)], &by.generation.driven, motions, &job.bindings())
+            .expect("a job without errors leaves nothing unbound");
+        cutting.judge_of_another(points, counts, number);
+    }
+}
+
 /// The tool's surface with the ranges of its parameters; `None` where the tool is an edge, or generated itself.
 fn piece<'s, 'g>(surface: &'s GeneratedSurface<'g>) -> Option<(&'s Surface<'g>, [Range; 2])> {
     let ToolShape::Surface(shape) = &surface.generation.tool else { return None };

@@ -24,6 +24,8 @@ const TOUCHING: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct Intersection {
     system: System,
+    /// The first surface at two coordinates: of its Jacobian the determinant, which changes its sign where the surface folds over them.
+    own: System,
     ranges: Vec<Range>,
     first_unknowns: usize,
     /// Of the unknowns and the line: position, both normals, how far along the line, and its derivatives.
@@ -79,6 +81,7 @@ impl Intersection {
         let seeds = seeds(&second, &ranges[1])?;
         let line = ["from 1", "from 2", "direction 1", "direction 2"].map(|name| graph.variable(name));
         let across = graph.substitute(&coordinates, bindings);
+        let placed: Vec<Expr<'g>> = first.constraints.iter().chain(&across).copied().collect();
         let (x, y) = (across[0] - line[0], across[1] - line[1]);
         let along = x * line[2] + y * line[3];
         let apart = first.position - second.position;
@@ -97,6 +100,7 @@ impl Intersection {
                 &[],
                 &inputs,
             )?,
+            own: System::one_by_one(&placed, &first.unknowns, &[])?,
             ranges: ranges.concat(),
             first_unknowns: first.unknowns.len(),
             probe: Tape::new(&probe, &inputs)?,
@@ -105,7 +109,8 @@ impl Intersection {
     }
 
     /// The points at which the surfaces cross on a line, in the order along it: inside the ranges, of the part of both that
-    /// the tool leaves, and not where they only touch.
+    /// the tool leaves, and not where they only touch. Where the first surface folds over the coordinates, points beyond the fold lie in
+    /// another order along the line, and are none of these.
     ///
     /// They are looked for from unknowns of both (meetings on the line beside this one, say) and from points of the first
     /// surface near the line, each with the nearest known point of the second.
@@ -120,12 +125,25 @@ impl Intersection {
                 continue;
             }
             let meeting = self.meeting(&mut evaluation, &parameters, &solution);
-            if !meeting.only_touches() {
+            if !meeting.only_touches() && self.is_on_sheet(&meeting.first, near) {
                 found.push(meeting);
             }
         }
         found.sort_by(|a, b| a.along.total_cmp(&b.along));
         found
+    }
+
+    /// Whether no fold parts a point of the first surface from the nearest one of some that are known, if there are any.
+    fn is_on_sheet(&self, point: &SurfacePoint, known: &[&SurfacePoint]) -> bool {
+        let ranges = &self.ranges[..self.first_unknowns];
+        let far = |other: &&&SurfacePoint| distance(&point.unknowns, &other.unknowns, ranges);
+        let Some(nearest) = known.iter().min_by(|a, b| far(a).total_cmp(&far(b))) else { return true };
+        let mut evaluation = self.own.evaluation(&[]);
+        let [here, there] = [point, *nearest].map(|point| {
+            evaluation.at(&point.unknowns);
+            evaluation.determinant(ranges)
+        });
+        here * there >= 0.0
     }
 
     /// A root as a point of both surfaces.

@@ -13,9 +13,11 @@ use crate::roots::enclosure::eliminate;
 /// the whole of their ranges, the surface is a line there: of a flank of 100 mm the tenth part of a micrometre. Rounding leaves less than
 /// a thousandth of that, as roots are good to 1e-11.
 const COLLAPSED: f64 = 1e-6;
-/// Points that are looked at to see whether a sheet has tangent planes at all, at the most. Between bifurcations, over which no step
-/// leads, a sheet has them all over or nowhere, but for lines on which its determinant vanishes, too.
-const SAMPLED: usize = 7;
+/// Points that are looked at to see whether a sheet has tangent planes at all, at the most. Between bifurcations a sheet has them all over
+/// or nowhere, but for lines on which its determinant vanishes, too.
+const SAMPLED: usize = 24;
+/// Points of the largest grid all of which are looked at: where branches cross at a small angle, a step may have led from one to the other.
+const FEW: usize = 512;
 /// Points of the largest grid all of which are looked at where some are missing: a sheet may end at a branch that crosses it.
 const MOST_LOOKED_AT: usize = 4096;
 
@@ -101,10 +103,13 @@ impl TangentPlanes<'_> {
 
     /// Whether there is none at some of the points that are looked at first.
     pub(crate) fn are_missing(&self, field: &Field, points: ops::Range<usize>) -> bool {
-        let step = points.len().div_ceil(SAMPLED).max(1);
-        let spread = points.clone().step_by(step);
-        let mut first: Vec<usize> = spread.chain(field.without_determinant(points)).collect();
-        first.retain(|point| is_judged(field, *point));
+        let step = if points.len() <= FEW { 1 } else { points.len().div_ceil(SAMPLED) };
+        // of each part the first point that can be judged: a grid may lie outside the ranges but for a few
+        let end = points.end;
+        let parts = points.clone().step_by(step).map(|first| first..end.min(first + step));
+        let spread = parts.filter_map(|mut part| part.find(|point| is_judged(field, *point)));
+        let without = field.without_determinant(points).into_iter();
+        let first: Vec<usize> = spread.chain(without.filter(|point| is_judged(field, *point))).collect();
         let mut slopes = Slopes::new(self);
         first.chunks(LANES).any(|points| {
             slopes.look_at(field, points);

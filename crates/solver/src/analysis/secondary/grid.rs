@@ -44,6 +44,8 @@ struct Judge<'c> {
     /// For each motion the values that are looked at; if there is only one, the poses there.
     values: Vec<Vec<f64>>,
     fixed: Vec<Pose>,
+    /// Whether the tool generates the points: their last unknowns are its motions.
+    is_own: bool,
     looks: u64,
 }
 
@@ -57,6 +59,20 @@ impl SecondaryCutting {
     /// # Panics
     /// If there are not `counts[0] · counts[1]` points.
     pub fn judge(&self, points: &mut [SurfacePoint], counts: [usize; 2]) -> Judged {
+        self.judged(points, counts, None)
+    }
+
+    /// The same of points that another tool generates, by one that also cuts the work, along motions of its own: marked as
+    /// [`CutBy::Other`]`(number)`. Nothing is looked at if there are several motions.
+    ///
+    /// # Panics
+    /// As for [`SecondaryCutting::judge`].
+    pub fn judge_of_another(&self, points: &mut [SurfacePoint], counts: [usize; 2], number: usize) -> Judged {
+        if self.ranges.len() == 1 { self.judged(points, counts, Some(number)) } else { Judged::default() }
+    }
+
+    /// `of_another` is the number by which the tool is named if it does not generate the points.
+    fn judged(&self, points: &mut [SurfacePoint], counts: [usize; 2], of_another: Option<usize>) -> Judged {
         assert_eq!(points.len(), counts[0] * counts[1], "one point for each place of the grid");
         let mut judged = Judged::default();
         let is_solved = |point: &&SurfacePoint| point.outcome == Outcome::Solved;
@@ -66,13 +82,13 @@ impl SecondaryCutting {
         if self.ranges.is_empty() {
             return judged;
         }
-        let judge = Judge::new(self, middle);
+        let judge = Judge::new(self, middle, of_another.is_none());
         let mut spread = Spread { judge, points, counts, verdicts: vec![None; points.len()], is_spent: false };
         spread.all();
         let Spread { verdicts, is_spent, .. } = spread;
         for (point, verdict) in points.iter_mut().zip(verdicts) {
             let Some(Some(cut)) = verdict else { continue };
-            point.outcome = Outcome::CutAway(CutBy::ItsToolElsewhere(cut.by));
+            point.outcome = Outcome::CutAway(of_another.map_or(CutBy::ItsToolElsewhere(cut.by), CutBy::Other));
             match judged.deepest.iter_mut().find(|(by, _)| *by == cut.by) {
                 Some((_, depth)) => *depth = depth.max(cut.depth),
                 None => judged.deepest.push((cut.by, cut.depth)),
@@ -86,28 +102,36 @@ impl SecondaryCutting {
     }
 }
 
+impl SecondaryCutting {
+    /// The motions at which the tool generates a point; those in the middle of their ranges if it does not.
+    fn motions(&self, point: &SurfacePoint, is_own: bool) -> Vec<f64> {
+        let own = &point.unknowns[point.unknowns.len().saturating_sub(self.ranges.len())..];
+        if is_own { own.to_vec() } else { self.ranges.iter().map(|range| range.middle()).collect() }
+    }
+}
+
 impl<'c> Judge<'c> {
-    fn new(cutting: &'c SecondaryCutting, middle: &SurfacePoint) -> Judge<'c> {
+    fn new(cutting: &'c SecondaryCutting, middle: &SurfacePoint, is_own: bool) -> Judge<'c> {
         let mut poses = Poses::new(cutting);
         let count = cutting.ranges.len();
-        let motions = middle.unknowns[middle.unknowns.len() - count..].to_vec();
+        let motions = cutting.motions(middle, is_own);
         let position = Vector3::from(middle.position);
         let values: Vec<Vec<f64>> = (0..count).map(|k| poses.values(&motions, k, &position)).collect();
         let fixed =
             if count == 1 { values[0].iter().map(|value| poses.at(&[*value], 0)).collect() } else { Vec::new() };
         let seen = cutting.pieces.iter().map(|piece| piece.seen()).collect();
-        Judge { cutting, poses, seen, values, fixed, looks: 0 }
+        Judge { cutting, poses, seen, values, fixed, is_own, looks: 0 }
     }
 
     fn verdict(&mut self, point: &SurfacePoint) -> Verdict {
         let count = self.cutting.ranges.len();
-        let motions = &point.unknowns[point.unknowns.len() - count..];
+        let motions = self.cutting.motions(point, self.is_own);
         let position = Vector3::from(point.position);
         let mut deepest: Verdict = None;
         for running in 0..count {
-            let places = self.places(&position, motions, running);
+            let places = self.places(&position, &motions, running);
             for seen in &mut self.seen {
-                let motions = motions.to_vec();
+                let motions = motions.clone();
                 let mut way = Way { poses: &mut self.poses, seen, point: position, motions, running, looks: 0 };
                 let cut = way.cut(&places);
                 self.looks += 1 + way.looks;
@@ -117,7 +141,8 @@ impl<'c> Judge<'c> {
         deepest
     }
 
-    /// Where a point is in the tool's frame while one of the motions runs, and the others stay; one of the places is its own.
+    /// Where a point is in the tool's frame while one of the motions runs, and the others stay; one of the places is its own if the tool
+    /// generates it.
     fn places(&mut self, position: &Vector3<f64>, motions: &[f64], running: usize) -> Vec<Place> {
         let own = motions[running];
         let mut at = motions.to_vec();
@@ -128,6 +153,9 @@ impl<'c> Judge<'c> {
         };
         let values = self.values[running].iter().enumerate();
         let mut places: Vec<Place> = values.map(|(number, value)| place(number, *value)).collect();
+        if !self.is_own {
+            return places;
+        }
         let here = place(usize::MAX, own);
         let after = places.partition_point(|place| place.motion < own);
         match places.get_mut(after) {

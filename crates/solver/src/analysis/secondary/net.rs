@@ -13,6 +13,9 @@ const TURN: f64 = 0.4;
 const PROBES: usize = 7;
 /// Most cells in one direction; more of a surface would turn farther in each.
 const MOST_CELLS: usize = 192;
+/// A quadratic function that vanishes in the middle of a cell with its slopes is nowhere in the cell more than this many times what it is
+/// at the corners and halfway between them.
+const BETWEEN: f64 = 1.25;
 /// Cells that are looked at together.
 const BLOCK: usize = 8;
 /// The foot is found when the next step along the surface is shorter, mm: what it misses then is its square over the radius of
@@ -52,9 +55,23 @@ struct Cell {
     halves: [Vector3<f64>; 2],
     /// What tells the share of these halves in a vector.
     duals: [Vector3<f64>; 2],
+    /// The sine of the angle between the halves. By so much at most a point is nearer to the parallelogram than to the place in it whose
+    /// shares are the point's own, cut off at its sides.
+    skew: f64,
     /// How far the surface may be from the parallelogram of the halves.
     sagitta: f64,
     at: [f64; 2],
+}
+
+/// Position and tangents at a corner of a cell.
+#[derive(Clone, Copy)]
+struct Corner([Vector3<f64>; 3]);
+
+impl Corner {
+    /// The place halfway to the next corner along a parameter, of the cubic through both with their tangents.
+    fn halfway(&self, other: &Corner, along: usize, steps: [f64; 2]) -> Vector3<f64> {
+        0.5 * (self.0[0] + other.0[0]) + (self.0[1 + along] - other.0[1 + along]) * (0.125 * steps[along])
+    }
 }
 
 /// The least distance that a point may have from a piece, mm, and the parameters near which.
@@ -155,7 +172,8 @@ impl Piece {
                     continue;
                 }
                 let share = cell.duals.map(|dual| dual.dot(&from).clamp(-1.0, 1.0));
-                let least = (from - cell.halves[0] * share[0] - cell.halves[1] * share[1]).norm() - cell.sagitta;
+                let apart = (from - cell.halves[0] * share[0] - cell.halves[1] * share[1]).norm();
+                let least = cell.skew * apart - cell.sagitta;
                 if least < best.least {
                     let at = [0, 1].map(|k| cell.at[k] + 0.5 * share[k] * self.steps[k]);
                     best = Near { least, at };
@@ -232,7 +250,7 @@ impl Seen<'_> {
         for i in 0..=counts[0] {
             for j in 0..=counts[1] {
                 self.run(corner(i, j));
-                corners.push(self.vector(0));
+                corners.push(Corner([0, 2, 3].map(|k| self.vector(k))));
             }
         }
         let mut cells = Vec::new();
@@ -248,7 +266,7 @@ impl Seen<'_> {
     }
 
     /// A cell from its middle and its corners; nothing where the surface has no place or normal.
-    fn cell(&mut self, at: [f64; 2], steps: [f64; 2], corners: [Vector3<f64>; 4]) -> Option<Cell> {
+    fn cell(&mut self, at: [f64; 2], steps: [f64; 2], corners: [Corner; 4]) -> Option<Cell> {
         self.run(at);
         let center = self.vector(0);
         let halves = [0, 1].map(|k| self.vector(2 + k) * (0.5 * steps[k]));
@@ -256,12 +274,20 @@ impl Seen<'_> {
         let (aa, ab, bb) = (a.norm_squared(), a.dot(&b), b.norm_squared());
         let area = aa * bb - ab * ab;
         let duals = [(a * bb - b * ab) / area, (b * aa - a * ab) / area];
+        let [low_low, low_high, high_low, high_high] = &corners;
+        let halfway = [
+            (low_low.halfway(low_high, 1, steps), -a),
+            (high_low.halfway(high_high, 1, steps), a),
+            (low_low.halfway(high_low, 0, steps), -b),
+            (low_high.halfway(high_high, 0, steps), b),
+        ];
         let flat = [-a - b, b - a, a - b, a + b];
-        let sagitta =
-            corners.iter().zip(flat).map(|(corner, flat)| (corner - center - flat).norm()).fold(0.0, f64::max);
-        let radius = corners.iter().map(|corner| (corner - center).norm()).fold(0.0, f64::max) + sagitta;
+        let around = corners.iter().map(|corner| corner.0[0]).zip(flat).chain(halfway);
+        let sagitta = BETWEEN * around.map(|(place, flat)| (place - center - flat).norm()).fold(0.0, f64::max);
+        let radius = corners.iter().map(|corner| (corner.0[0] - center).norm()).fold(0.0, f64::max) + sagitta;
+        let skew = (area / (aa * bb)).sqrt();
         let is_whole = duals.iter().all(|dual| dual.iter().all(|x| x.is_finite())) && radius.is_finite();
-        is_whole.then_some(Cell { ball: Ball { center, radius }, halves, duals, sagitta, at })
+        is_whole.then_some(Cell { ball: Ball { center, radius }, halves, duals, skew, sagitta, at })
     }
 
     /// The foot of a point that Newton finds from a place.
