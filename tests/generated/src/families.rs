@@ -238,12 +238,14 @@ fn trimmed_rack(random: &mut Random) -> Parts {
         Range { low: PI, high: 1.5 * PI - rack.pressure }
     };
     let parts = [rack.flank(end), rack.tip(y, angles)];
-    let [(machine, shape, patch), other] = if random.one_in(2) {
+    let [(machine, shape, patch), (its_machine, its_shape, [across, along])] = if random.one_in(2) {
         parts
     } else {
         let [a, b] = parts;
         [b, a]
     };
+    // of a rack that is so long that none of its ends passes a point of the grid: a trim goes on beyond them
+    let other = (its_machine, its_shape, [across, along.wider_by(0.5).rounded()]);
     Parts { machine, shape, patch, trimmed_by: Some(other) }
 }
 

@@ -10,7 +10,7 @@ use crate::continuation::choice::{Choice, is_same_root};
 use crate::continuation::field::Field;
 use crate::continuation::grid::{Elsewhere, Followed, Grid, GridReport, extrapolated};
 use crate::continuation::reach::{back_into, is_within};
-use crate::equations::solution::{Outcome, Solution};
+use crate::equations::solution::{Outcome, Range, Solution};
 use crate::newton::batch::LaneNewton;
 use crate::newton::multistart::probe;
 use crate::newton::scalar::solve_with;
@@ -24,8 +24,11 @@ const MOST_REFINED: usize = 1024;
 const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 /// The same where points are missing.
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// How often starts are drawn at each place of a grid whose branch leaves the ranges.
-const OFTEN: usize = 3;
+/// How often starts are drawn for points all over a grid whose branch has an end or leaves the ranges: another branch may have so few
+/// points in the ranges that it is seen nowhere else.
+const DRAWN: usize = 2048;
+/// How often at the same point, at the most.
+const OFTEN: usize = 64;
 /// Points that are missing at which branches are looked for.
 const MISSING: usize = 16;
 /// Where a branch folds back, its unknowns change with the root of the distance from the fold. From the last solved point the other
@@ -50,7 +53,8 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
     }
     if followed.field.is_complete() {
         let field = &followed.field;
-        let points = if followed.is_beyond { places_beyond(grid, field, choice) } else { places(grid) };
+        let all: Vec<usize> = (0..field.len()).collect();
+        let points = if field.solved() < field.len() { all_over(&all) } else { places(grid) };
         grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, (field, points), choice);
         return followed;
     }
@@ -59,21 +63,25 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
     }
     let factors = [grid.rows, grid.columns].map(|count| FINE.div_ceil(count.max(2) - 1));
     if factors == [1, 1] || grid.targets.len() > MOST_REFINED {
-        return with_others(grid, followed, choice);
+        let points: Vec<usize> = (0..grid.targets.len()).collect();
+        return with_others(grid, &mut solvers.careful, (followed, &points), choice);
     }
     let (targets, counts) = refined(grid, factors);
     let mut fine = Grid::new(grid.system, grid.ranges, (&targets, counts), None);
     fine.is_careful = grid.is_careful;
     let found = follow_alone(&mut fine, solvers, None, choice);
-    let found = with_others(&mut fine, found, choice);
+    let same = |point: usize| {
+        let (i, j) = (point / grid.columns, point % grid.columns);
+        i * grid.factor(factors, 0) * counts[1] + j * grid.factor(factors, 1)
+    };
+    let points: Vec<usize> = (0..grid.targets.len()).map(same).collect();
+    let found = with_others(&mut fine, &mut solvers.careful, (found, &points), choice);
     let evaluations = grid.effort.evaluations;
     grid.effort = fine.effort;
     grid.effort.evaluations += evaluations;
     let counts_of_own = [grid.rows, grid.columns];
     let mut field = Field::new(found.field.ranges(), counts_of_own, grid.system.extra_count(), None);
-    for point in 0..grid.targets.len() {
-        let (i, j) = (point / grid.columns, point % grid.columns);
-        let same = i * grid.factor(factors, 0) * counts[1] + j * grid.factor(factors, 1);
+    for (point, same) in points.into_iter().enumerate() {
         field.copy(point, &found.field, same);
     }
     Followed { field, is_beyond: found.is_beyond }
@@ -104,9 +112,14 @@ fn refined(grid: &Grid<'_>, factors: [usize; 2]) -> (Vec<[f64; 2]>, [usize; 2]) 
     ((0..counts[0] * counts[1]).map(target).collect(), counts)
 }
 
-/// Of a grid that is not complete: branches at places spread over it and at points that are missing. If the branch that was followed
-/// has no point in the middle, and another one has points, too, nothing says which is meant.
-fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>) -> Followed {
+/// Of a grid that is not complete: branches at places spread over it, at points that are missing, and at those of its `points` that are
+/// asked for. If the branch that was followed has no point in the middle, and another one has points, too, nothing says which is meant.
+fn with_others(
+    grid: &mut Grid<'_>,
+    newton: &mut LaneNewton<'_>,
+    (mut followed, asked): (Followed, &[usize]),
+    choice: &Choice<'_>,
+) -> Followed {
     if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
         return followed;
     }
@@ -132,6 +145,14 @@ fn with_others(grid: &mut Grid<'_>, mut followed: Followed, choice: &Choice<'_>)
         let found = (choice.roots)(&kept, &grid.targets[point]);
         grid.effort.boxes += found.boxes;
         for root in found.isolated.into_iter().map(|root| root.solution).chain(found.unproven) {
+            others.learn(grid, choice, point, root);
+        }
+    }
+    for (number, point) in all_over(asked).into_iter().enumerate() {
+        if !others.found.is_empty() {
+            break;
+        }
+        for root in drawn(grid, newton, &kept, (point, number)) {
             others.learn(grid, choice, point, root);
         }
     }
@@ -223,19 +244,33 @@ fn places(grid: &Grid<'_>) -> Vec<usize> {
     points
 }
 
-/// The same of a grid whose branch leaves the ranges, with points at which it is beyond them: there another one may be within.
-fn places_beyond(grid: &Grid<'_>, field: &Field, choice: &Choice<'_>) -> Vec<usize> {
-    let is_beyond = |point: &usize| {
-        let own: Vec<f64> = field.unknowns(*point).collect();
-        !is_within(&back_into(grid.ranges, choice.periodic, &own), grid.ranges)
-    };
-    let beyond: Vec<usize> = (0..field.len()).filter(is_beyond).collect();
-    let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
-    let mut points: Vec<usize> = shares.map(|shares| grid.nearest(shares)).collect();
-    points.extend(beyond.iter().step_by(beyond.len().div_ceil(MISSING).max(1)));
-    points.sort_unstable();
-    points.dedup();
-    points.repeat(OFTEN)
+/// Some of these points, spread evenly, and all of them again and again where they are few.
+fn all_over(points: &[usize]) -> Vec<usize> {
+    let spread: Vec<usize> = points.iter().copied().step_by(points.len().div_ceil(DRAWN)).collect();
+    spread.repeat((DRAWN / spread.len()).clamp(1, OFTEN))
+}
+
+/// The points in some ranges that starts spread over them lead to, many at once; each number has starts of its own.
+fn drawn(
+    grid: &Grid<'_>,
+    newton: &mut LaneNewton<'_>,
+    kept: &[Range],
+    (point, number): (usize, usize),
+) -> Vec<Solution> {
+    for lane in 0..LANES {
+        newton.put(lane, probe(kept, (number * LANES + lane + 1) as u32).into_iter(), &grid.targets[point]);
+        newton.determinant()[lane] = f64::NAN;
+    }
+    newton.run(&[true; LANES], true);
+    let mut found = Vec::new();
+    for lane in 0..LANES {
+        if newton.is_root(lane) && newton.outcome(lane) == Outcome::Solved {
+            let unknowns: Vec<f64> = (0..kept.len()).map(|k| newton.input(k)[lane]).collect();
+            let residual = newton.residuals()[lane];
+            found.push(Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 });
+        }
+    }
+    found
 }
 
 /// Of a grid that is complete: roots beside its own at a few places, from starts spread over the ranges, many at once.
@@ -250,18 +285,7 @@ fn beside_complete(
     for (number, point) in points.into_iter().enumerate() {
         let own: Vec<f64> = field.unknowns(point).collect();
         let target = grid.targets[point];
-        for lane in 0..LANES {
-            newton.put(lane, probe(&kept, (number * LANES + lane + 1) as u32).into_iter(), &target);
-            newton.determinant()[lane] = f64::NAN;
-        }
-        newton.run(&[true; LANES], true);
-        for lane in 0..LANES {
-            if !newton.is_root(lane) || newton.outcome(lane) != Outcome::Solved {
-                continue;
-            }
-            let unknowns: Vec<f64> = (0..own.len()).map(|k| newton.input(k)[lane]).collect();
-            let residual = newton.residuals()[lane];
-            let root = Solution { outcome: Outcome::Solved, unknowns, residual, iterations: 0 };
+        for root in drawn(grid, newton, &kept, (point, number)) {
             let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
             if !is_own && qualifies(&root, choice) {
                 let beside = field
