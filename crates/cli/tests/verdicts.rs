@@ -268,3 +268,26 @@ fn a_search_without_prospect_ends() {
     assert!(told.contains("what is left is unknown at 40000 of 40000 points of lower_flank"), "{told}");
     assert!(told.contains("too many would have to be tried"), "{told}");
 }
+
+/// Verdicts that a coarse look misses, of surfaces drawn at random: each with how many points have the word, and what is told.
+#[test]
+fn what_a_coarse_look_misses_is_told() {
+    let out = folder("coarse_look");
+    for (spec, word, count, words) in [
+        // no point of the part that is a line stands where a grid is looked at first
+        ("line_at_few_points", "singular", 2, "no tangent plane"),
+        // where the fillet meets the flank's envelope beyond its fold, nothing is cut away before
+        ("trim_beyond_a_fold", "solved", 33, ""),
+        // the tool bends up one way and down the other, so that its corners lie as deep as its middle
+        ("saddle", "undercut", 75, "in another position of the tool"),
+        // the flank's envelope ends before the point, its tool does not
+        ("cut_at_the_end_of_a_motion", "trimmed", 6, "as `trim` asks for"),
+        // two points of 231 have another branch
+        ("seldom_two_branches", "solved", 165, "the ranges of face hold another branch that is not among its points"),
+    ] {
+        let text = std::fs::read_to_string(top().join(format!("tests/surfaces/specs/{spec}.chain"))).expect("its spec");
+        let (told, surface) = solved(&out, &text, 0);
+        assert_eq!(surface["outcomes"][word], count, "{spec}: {surface}\n{told}");
+        assert!(told.contains(words), "{spec}: {told}");
+    }
+}

@@ -15,7 +15,7 @@ use crate::roots::enclosure::eliminate;
 const COLLAPSED: f64 = 1e-6;
 /// Points that are looked at to see whether a sheet has tangent planes at all, at the most. Between bifurcations a sheet has them all over
 /// or nowhere, but for lines on which its determinant vanishes, too.
-const SAMPLED: usize = 24;
+const SAMPLED: usize = 7;
 /// Points of the largest grid all of which are looked at: where branches cross at a small angle, a step may have led from one to the other.
 const FEW: usize = 512;
 /// Points of the largest grid all of which are looked at where some are missing: a sheet may end at a branch that crosses it.

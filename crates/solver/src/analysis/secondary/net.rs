@@ -325,3 +325,35 @@ impl Seen<'_> {
         Found::Lost
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use flank_expr::Graph;
+    use flank_expr::geometry;
+
+    use super::*;
+
+    /// A saddle bends up one way and down the other; its parameters run askew.
+    #[test]
+    fn no_part_of_a_piece_is_nearer_than_told() {
+        let graph = Graph::new();
+        let unknowns = ["u", "v"].map(|name| graph.variable(name));
+        let [u, v] = unknowns;
+        let height = u * u * 0.011 - v * v * 0.033 + u * v * 0.009;
+        let position = geometry::Vector3([u + v * 0.8, v, height]);
+        let surface = Surface::parametric(unknowns, position, false);
+        let ranges = [Range { low: -10.0, high: 10.0 }, Range { low: -12.0, high: 12.0 }];
+        let piece = Piece::new(0, &surface, ranges, &[]).expect("nothing is unbound");
+        let place = |k: usize| {
+            let [u, v] = [ranges[0].at((k % 41) as f64 / 40.0), ranges[1].at((k / 41) as f64 / 40.0)];
+            Vector3::new(u + 0.8 * v, v, 0.011 * u * u - 0.033 * v * v + 0.009 * u * v)
+        };
+        let places: Vec<Vector3<f64>> = (0..41 * 41).map(place).collect();
+        for (k, on) in places.iter().enumerate() {
+            let point = on + Vector3::new(-7.0, 4.0, 1.5) * (k % 3) as f64;
+            let distance = places.iter().map(|place| (place - point).norm()).fold(f64::INFINITY, f64::min);
+            let least = piece.near(&point).expect("cells").least;
+            assert!(least <= distance, "{point}: {least} mm, but {distance} mm");
+        }
+    }
+}
