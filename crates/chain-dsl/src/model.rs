@@ -195,6 +195,8 @@ pub struct GeneratedSurface<'g> {
     pub sample_of: Option<usize>,
     /// The points that are asked for.
     pub sample: Option<Sample<'g>>,
+    /// Where its name is written.
+    pub written: Span,
 }
 
 /// What a tool is, in its own frame.

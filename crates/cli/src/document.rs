@@ -1,6 +1,6 @@
 //! Results as documents of JSON, and the documents of the command line itself.
 
-use flank::{Finding, Schema, schema_of};
+use flank::{Finding, NotDone, Schema, schema_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -10,19 +10,21 @@ use crate::spelling::with_flags;
 /// A result as it is printed.
 pub(crate) fn text(result: &impl Serialize) -> String {
     let mut document = serde_json::to_value(result).expect("results have keys that are texts");
-    if let Some(messages) = document.get_mut("not_done") {
-        spell(messages);
+    for messages in ["remarks", "not_done"] {
+        document.get_mut(messages).and_then(Value::as_array_mut).into_iter().flatten().for_each(spell);
     }
     format!("{document:#}\n")
 }
 
-/// All messages in a part of a document with flags for the library's options.
-fn spell(part: &mut Value) {
-    match part {
-        Value::String(message) => *message = with_flags(message),
-        Value::Array(parts) => parts.iter_mut().for_each(spell),
-        _ => {}
-    }
+/// The words of a message with flags for the library's options.
+fn spell(message: &mut Value) {
+    let spelled = |words: &mut Value| {
+        if let Value::String(text) = words {
+            *text = with_flags(text);
+        }
+    };
+    spelled(&mut message["message"]);
+    message["details"].as_array_mut().into_iter().flatten().for_each(spelled);
 }
 
 /// The schemas of all documents that the program prints or writes, by name.
@@ -50,6 +52,8 @@ pub(crate) struct FailureDocument {
     pub(crate) message: String,
     /// What is wrong with the spec; empty where the reason is another one.
     pub(crate) findings: Vec<Finding>,
+    /// What cannot be solved; empty where the reason is another one.
+    pub(crate) not_done: Vec<NotDone>,
 }
 
 /// What became of specs that were laid out, of `flank fmt`.

@@ -1,13 +1,13 @@
 //! Why a command did not do what it was asked for, in words and as data.
 
-use flank::{Finding, Findings};
+use flank::{Finding, Findings, NotDone};
 
 use crate::document::{self, FailureDocument};
 use crate::spelling::with_flags;
 use crate::{Ending, eprint, print};
 
 /// What ends a command early.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Failure {
     ending: Ending,
     /// As stderr shows it.
@@ -15,11 +15,13 @@ pub(crate) struct Failure {
     /// The same without colours and source.
     message: String,
     findings: Vec<Finding>,
+    not_done: Vec<NotDone>,
 }
 
 impl From<String> for Failure {
     fn from(reason: String) -> Failure {
-        Failure { ending: Ending::Wrong, text: format!("error: {reason}\n"), message: reason, findings: Vec::new() }
+        let text = format!("error: {reason}\n");
+        Failure { ending: Ending::Wrong, text, message: reason, findings: Vec::new(), not_done: Vec::new() }
     }
 }
 
@@ -27,7 +29,7 @@ impl Failure {
     /// A command line that the argument parser refuses.
     pub(crate) fn of_parser(error: &clap::Error) -> Failure {
         let message = error.to_string().trim().trim_start_matches("error: ").to_string();
-        Failure { ending: Ending::Usage, text: error.render().ansi().to_string(), message, findings: Vec::new() }
+        Failure { ending: Ending::Usage, text: error.render().ansi().to_string(), ..Failure::from(message) }
     }
 
     /// A command line whose parts do not go together, or with a name that the program does not know.
@@ -39,8 +41,8 @@ impl Failure {
     pub(crate) fn tell(&self, as_document: bool) -> Ending {
         eprint(&self.text);
         if as_document {
-            let (message, findings) = (self.message.clone(), self.findings.clone());
-            print(&document::text(&FailureDocument { exit_code: self.ending.code(), message, findings }));
+            let Failure { message, findings, not_done, .. } = self.clone();
+            print(&document::text(&FailureDocument { exit_code: self.ending.code(), message, findings, not_done }));
         }
         self.ending
     }
@@ -62,10 +64,15 @@ impl From<flank::Failure> for Failure {
                 text: findings_in_full(&findings),
                 message: counted(findings.counts()),
                 findings: findings.list().into_iter().map(spelled).collect(),
+                not_done: Vec::new(),
             },
             flank::Failure::Request(reason) => Failure::of_usage(with_flags(&reason)),
             flank::Failure::Unsolved(reason) => {
                 Failure { ending: Ending::Unsolved, ..Failure::from(with_flags(&reason)) }
+            }
+            flank::Failure::NotDone(not_done) => {
+                let each: Vec<String> = not_done.iter().map(|missing| with_flags(&missing.to_string())).collect();
+                Failure { ending: Ending::Unsolved, not_done, ..Failure::from(each.join("\n")) }
             }
             flank::Failure::Folder(error) => format!("{error}; name another folder with --out").into(),
             other => with_flags(&other.to_string()).into(),

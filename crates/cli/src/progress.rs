@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use flank::{Findings, Monitor, Work};
+use flank::{Findings, Monitor, Remark, Work};
 
 use crate::eprint;
 use crate::failure::findings_in_full;
@@ -56,8 +56,8 @@ impl Monitor for Terminal {
         Box::new(Working::on(what))
     }
 
-    fn note(&self, lines: &str) {
-        eprint(&with_flags(lines));
+    fn remark(&self, remark: &Remark) {
+        noted(remark);
     }
 
     fn spelled(&self, message: &str) -> String {
@@ -67,6 +67,11 @@ impl Monitor for Terminal {
     fn warn(&self, findings: &Findings) {
         eprint(&findings_in_full(findings));
     }
+}
+
+/// Shows a remark on stderr.
+pub(crate) fn noted(remark: &Remark) {
+    eprint(&with_flags(&format!("note: {remark}\n")));
 }
 
 impl Ticker {

@@ -91,7 +91,11 @@ fn solved_surfaces() {
     let unsaid: String = spec.lines().filter(|line| !line.contains("keep ")).map(|line| format!("{line}\n")).collect();
     let unsaid = written(&out, "unsaid.chain", &unsaid);
     let told = judge.run(&["solve", &unsaid, "--json", "--no-picture", at, to], 3);
-    assert!(told[0]["not_done"][0].as_str().expect("a message").starts_with("ambiguous"), "{told:?}");
+    let first = &told[0]["not_done"][0];
+    assert_eq!(first["kind"], "ambiguous", "{first}");
+    assert!(first["message"].as_str().expect("a message").starts_with("ambiguous: "), "{first}");
+    assert_eq!(first["place"]["text"], first["of"], "{first}");
+    assert!(first["details"].as_array().expect("branches").len() > 2, "{first}");
     judge.has_met(&["flank.solve/3", "flank.surfaces/3"]);
 }
 

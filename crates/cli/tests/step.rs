@@ -69,7 +69,7 @@ fn the_head_and_the_report_say_how_far_the_faces_are_off() {
     let file = std::fs::read_to_string(out.join("helical_gear.step")).expect("written");
     assert!(text(&run.stdout).contains("helical_gear.step"), "it is among the files");
     let told = text(&run.stderr);
-    for line in told.lines().filter_map(|line| line.strip_prefix("STEP: ")) {
+    for line in told.lines().filter_map(|line| line.strip_prefix("note: STEP: ")) {
         assert!(line.contains("off by at most") && file.contains(line), "{line}");
     }
     assert_eq!(told.matches("STEP: ").count(), 2);

@@ -77,7 +77,7 @@ pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
 pub use page::view;
-pub use project::answer::Answer;
+pub use project::answer::{Answer, Timing};
 pub use project::choices::{
     Choice, EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
     UnknownChoice,
@@ -87,8 +87,8 @@ pub use project::files::write_texts;
 pub use project::findings::{Finding, Findings, Note, Place, Severity};
 pub use project::job::{Job, JobParameter, JobSurface};
 pub use project::monitor::{Monitor, Unwatched, Work};
-pub use project::not_done::{NotDone, NotDoneKind};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
+pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, JobSelection, MeasureRequest, Onto, PlotRequest,
     ReportRequest, SolveRequest, ViewRequest,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use flank::{
-    Answer, Disk, Failure, Files, JobSelection, NotDoneKind, Project, SolveRequest, SolveResult, Status, Unwatched,
-    solve,
+    Answer, Disk, Failure, Files, JobSelection, NotDoneKind, Project, RemarkKind, SolveRequest, SolveResult, Status,
+    Unwatched, solve,
 };
 
 /// The disk, with a count of what is read from it.
@@ -101,7 +101,32 @@ fn what_is_not_done_is_data() {
             assert!(position.iter().all(|x| x.is_nan()), "{status:?}");
         }
     }
-    assert_eq!(result.not_done_text().matches("not solved: ").count(), result.not_done.len());
+    for missing in &result.not_done {
+        let place = missing.place.as_ref().expect("surfaces have one");
+        assert!(place.file.ends_with("undercut_gear.chain") && place.line > 1, "{place:?}");
+        assert_eq!(Some(&place.text), missing.of.as_ref());
+        assert!(missing.message.starts_with("not solved: ") && !missing.message.contains('\n'), "{missing}");
+        assert!(!missing.details.is_empty(), "{missing}");
+    }
+}
+
+/// What is to be known beside a result is data, and a part of its document.
+#[test]
+fn remarks_are_data() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/hobbing/crowned_gear_quartic.chain");
+    let job = Project::open(file, Arc::new(Disk)).job("crowned_gear_quartic", &[]).expect("it is right");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("job_remarks");
+    let request = SolveRequest { limits: true, no_picture: true, out, ..SolveRequest::of(&job) };
+    let mut results = Vec::new();
+    solve(&request, &Unwatched, &mut |result| results.push(result)).expect("it can be solved");
+    let remark = results[0].remarks.iter().find(|remark| remark.kind == RemarkKind::LineNotExcluded);
+    let remark = remark.expect("the search for lines is given up");
+    assert_eq!(remark.of.as_deref(), Some("lower_flank"));
+    assert_eq!(remark.place.as_ref().map(|place| place.text.as_str()), Some("lower_flank"));
+    let document = serde_json::to_value(&results[0]).expect("JSON");
+    let written = document["remarks"].as_array().expect("a list");
+    assert!(written.iter().any(|one| one["kind"] == "line_not_excluded" && one["of"] == "lower_flank"), "{written:?}");
+    assert!(document.get("timing").is_none(), "the same input gives the same document");
 }
 
 /// The points of a surface that has too many to keep are in the files alone.

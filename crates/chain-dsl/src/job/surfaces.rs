@@ -102,9 +102,8 @@ impl<'g> Builder<'_, 'g> {
             driven,
             motions: over,
         };
-        let name = &name.node;
         let surface = GeneratedSurface {
-            name: available.piece.map_or_else(|| name.clone(), |piece| format!("{name}.{piece}")),
+            name: available.piece.map_or_else(|| name.node.clone(), |piece| format!("{}.{piece}", name.node)),
             doc: written.doc.clone(),
             frame: self.frame_name(frame),
             generation,
@@ -114,6 +113,7 @@ impl<'g> Builder<'_, 'g> {
             cut_by: None,
             sample_of: None,
             sample: None,
+            written: name.span,
         };
         self.surfaces.push((surface, frame));
         Some(())
@@ -320,8 +320,13 @@ impl<'g> Builder<'_, 'g> {
             if !context.spend(steps, name.span) {
                 return;
             }
-            let again =
-                GeneratedSurface { name: name.node, sample: Some(sample), sample_of: Some(index), ..surface.clone() };
+            let again = GeneratedSurface {
+                name: name.node,
+                sample: Some(sample),
+                sample_of: Some(index),
+                written: name.span,
+                ..surface.clone()
+            };
             self.surfaces.push((again, *frame));
         }
     }

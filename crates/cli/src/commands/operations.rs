@@ -4,7 +4,7 @@ use flank::{Answer, Failure as Refused, Monitor};
 
 use crate::arguments::{Convert, Derive, Deviation, Measure, Plot, Report, Solve, View};
 use crate::failure::Failure;
-use crate::progress::Terminal;
+use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
 use crate::{Ending, document, eprint, print};
 
@@ -16,9 +16,10 @@ fn told<A: Answer>(
     let mut ending = Ending::Done;
     operation(&Terminal, &mut |answer| {
         print(&if as_document { document::text(&answer) } else { with_flags(&answer.to_string()) });
-        eprint(&with_flags(answer.notes()));
+        answer.timing().iter().for_each(|timing| eprint(&format!("{timing}\n")));
+        answer.remarks().iter().for_each(noted);
+        answer.not_done().iter().for_each(|missing| eprint(&with_flags(&format!("{missing}\n"))));
         if !answer.is_complete() {
-            eprint(&with_flags(&answer.not_done_text()));
             ending = Ending::Unsolved;
         }
     })?;

@@ -11,10 +11,11 @@ use flank_solver::{CutBy, EaseOff, Outcome, SurfacePoint};
 
 use crate::compare::deviation_result::{DeviationResult, EaseOffDirection};
 use crate::compare::inspect;
+use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{DeviationRequest, JobSelection, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -136,15 +137,17 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
         Second::Surface(from) => measure([surface, find(&jobs, from)?], request.no_align, session)?,
     };
     let written = measured.write(request, &origin, monitor)?;
-    let points = units::counted(measured.points.len(), "point");
-    let notes = format!("{points} in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3)
-        + &measured.opposite()
-        + &trimmed(&measured, session);
-    Ok(measured.result(written, notes))
+    let result = measured.result(written, &origin);
+    let remarks = measured.opposite().into_iter().chain(trimmed(&measured, session)).collect();
+    Ok(DeviationResult {
+        remarks: origin.located(&measured.jobs(), remarks),
+        timing: Timing { points: measured.points.len(), elapsed: start.elapsed() },
+        ..result
+    })
 }
 
-/// Surfaces of which the job trims points away, which have deviations all the same; empty if there are none.
-fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> String {
+/// Surfaces of which the job trims points away, which have deviations all the same.
+fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> Vec<Remark> {
     let held = match &measured.held {
         ComparedWith::Surface(of) => Some(of),
         ComparedWith::File { .. } => None,
@@ -164,17 +167,17 @@ fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> String {
         let count = points.iter().filter(is_trimmed).count();
         let name = &surface.name;
         (count > 0).then(|| {
-            format!(
-                "note: `trim` takes away {count} of {} of the sample of {name}: its deviations are those of the surface as its \
-                 tool makes it\n",
+            let message = format!(
+                "`trim` takes away {count} of {} of the sample of {name}: its deviations are those of the surface as its tool makes it",
                 units::counted(points.len(), "point")
-            )
+            );
+            Remark::new(RemarkKind::TrimmedAway, name, message)
         })
     });
-    let mut told: Vec<String> = told.collect();
+    let mut told: Vec<Remark> = told.collect();
     // a surface may be held against itself
     told.dedup();
-    told.concat()
+    told
 }
 
 /// A surface by its name, with that of its job where several have it.
@@ -312,17 +315,25 @@ impl DeviationMap<'_, '_> {
         middle.map(|off| if off.abs() < ON_IT { 0.0 } else { off })
     }
 
-    /// A note on normals that face apart; empty if they do not.
-    fn opposite(&self) -> String {
-        if !self.is_opposite {
-            return String::new();
-        }
-        format!(
-            "note: {} and {} have their steel on opposite sides in the middle of the grid, as the two flanks of a tooth have: these \
-             deviations compare no flank with its like\n",
-            self.held.name(),
-            self.from.surface.name
-        )
+    /// Normals that face apart.
+    fn opposite(&self) -> Option<Remark> {
+        self.is_opposite.then(|| {
+            let (held, from) = (self.held.name(), &self.from.surface.name);
+            let message = format!(
+                "{held} and {from} have their steel on opposite sides in the middle of the grid, as the two flanks of a tooth have: \
+                 these deviations compare no flank with its like"
+            );
+            Remark::new(RemarkKind::OppositeSides, from, message)
+        })
+    }
+
+    /// The jobs of its surfaces.
+    fn jobs(&self) -> Vec<&Job<'_>> {
+        let held = match &self.held {
+            ComparedWith::Surface(of) => Some(of.job),
+            ComparedWith::File { .. } => None,
+        };
+        [self.from.job].into_iter().chain(held).collect()
     }
 
     fn known(&self) -> impl Iterator<Item = f64> {
@@ -364,7 +375,7 @@ impl DeviationMap<'_, '_> {
     }
 
     /// What is said of it, with the files that were written.
-    fn result(&self, files: Vec<String>, notes: String) -> DeviationResult {
+    fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
         let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
         let direction = |k: usize| {
             ease_off.map(|of| EaseOffDirection {
@@ -398,8 +409,9 @@ impl DeviationMap<'_, '_> {
             directions: [direction(0), direction(1)],
             bias_um: ease_off.map(|of| of.bias),
             files,
-            not_done: self.missing(),
-            notes,
+            not_done: self.missing(origin),
+            remarks: Vec::new(),
+            timing: Timing::default(),
             counts: self.counts,
             positions: self.points.iter().map(|point| point.position).collect(),
             deviations: self.deviations.iter().map(|off| off.unwrap_or(f64::NAN)).collect(),
@@ -407,7 +419,11 @@ impl DeviationMap<'_, '_> {
     }
 
     /// Why numbers are missing, if some are.
-    pub(crate) fn missing(&self) -> Vec<NotDone> {
+    pub(crate) fn missing(&self, origin: &Origin) -> Vec<NotDone> {
+        origin.located(&self.jobs(), self.not_done())
+    }
+
+    fn not_done(&self) -> Vec<NotDone> {
         let (all, known) = (self.points.len(), self.known().count());
         let [surface, from] = match &self.held {
             ComparedWith::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
@@ -454,12 +470,7 @@ impl DeviationMap<'_, '_> {
             meaning: NOTE.to_string(),
             values: Values::Scalars(self.deviations.iter().copied().collect()),
         };
-        let held = match &self.held {
-            ComparedWith::Surface(of) => Some(of.job),
-            ComparedWith::File { .. } => None,
-        };
-        let jobs: Vec<&Job<'_>> = [self.from.job].into_iter().chain(held).collect();
-        let mut header = header(&jobs, which, origin);
+        let mut header = header(&self.jobs(), which, origin);
         let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
         header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
         Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }

@@ -6,8 +6,8 @@ use flank_export::fixed;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::answer::{Answer, Timing};
+use crate::project::remark::{NotDone, Remark};
 
 /// How far one surface, or measured points, lie off a surface of the same body, of `flank deviation`: um along the normal of the latter, plus is material.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -53,10 +53,12 @@ pub struct DeviationResult {
     pub bias_um: Option<f64>,
     /// Files written, in their order.
     pub files: Vec<String>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
+    /// What is to be known beside it, as stderr has it.
+    pub remarks: Vec<Remark>,
     #[serde(skip)]
-    pub(super) notes: String,
+    pub(super) timing: Timing,
     #[serde(skip)]
     pub(super) counts: [usize; 2],
     #[serde(skip)]
@@ -108,8 +110,12 @@ impl Answer for DeviationResult {
         &self.not_done
     }
 
-    fn notes(&self) -> &str {
-        &self.notes
+    fn remarks(&self) -> &[Remark] {
+        &self.remarks
+    }
+
+    fn timing(&self) -> Option<Timing> {
+        Some(self.timing)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::compare::measure_result::{MeasureResult, MeasuredFlank, MeasuredPart,
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{MeasureRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -53,7 +53,8 @@ pub fn measure(
         for format in &request.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }
-        each(result(&grid, folder.finish()?));
+        let not_done = origin.located(&[job], unsolved(&grid));
+        each(MeasureResult { not_done, ..result(&grid, folder.finish()?) });
     }
     Ok(())
 }
@@ -93,7 +94,7 @@ impl<'j, 'g> Placed<'j, 'g> {
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
         let found = solve::points(job, surface, &trial, wanted(session));
         if let Some(branches) = found.ambiguous(surface, &trial) {
-            return Err(Failure::from(branches).unsolved());
+            return Err(Failure::NotDone(vec![branches]));
         }
         let patch = solve::patch(job, name, surface, axes, &found.points);
         let ends = FlankEnds::of(&patch).ok_or(format!(
@@ -228,7 +229,7 @@ fn result(grid: &MeasuringGrid, files: Vec<String>) -> MeasureResult {
         margins: grid.margins,
         flanks: grid.flanks.iter().filter_map(flank).collect(),
         files,
-        not_done: unsolved(grid),
+        not_done: Vec::new(),
     }
 }
 
@@ -247,9 +248,9 @@ fn unsolved_in(part: Part, patch: &Patch) -> Option<NotDone> {
     }
     let (missing, all) = (patch.points.len() - solved(patch), patch.points.len());
     let (name, part) = (&patch.name, part.word());
-    let told: String = reasons.iter().map(|(reason, places)| format!("\n  {reason}: {}", places.join(" "))).collect();
-    let message = format!("not solved: {missing} of {all} points of {name}, {part} (row, column){told}");
-    (missing > 0).then(|| NotDone::new(NotDoneKind::NotSolved, name, message))
+    let told = reasons.iter().map(|(reason, places)| format!("{reason}: {}", places.join(" "))).collect();
+    let message = format!("not solved: {missing} of {all} points of {name}, {part} (row, column)");
+    (missing > 0).then(|| NotDone::new(NotDoneKind::NotSolved, name, message).with(told))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::units;
 use crate::solve::table::aligned;
 
@@ -25,7 +25,7 @@ pub struct MeasureResult {
     pub flanks: Vec<MeasuredFlank>,
     /// Files written, in their order.
     pub files: Vec<String>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
 

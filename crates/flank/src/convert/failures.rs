@@ -6,7 +6,7 @@ use flank_solver::{Missing, Outcome, Posture};
 
 use super::Conversion;
 use super::source::Source;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 
 /// Of what all axes can do together: below it they turn fast.

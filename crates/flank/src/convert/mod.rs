@@ -21,14 +21,14 @@ use flank_solver::{
 
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{ConvertRequest, JobSelection, Onto, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use blocks::Blocks;
 use rates::Rates;
-use result::{AxisMotion, ConvertResult};
+use result::{AxisMotion, ConvertResult, FoundSettings};
 use series::Series;
 use source::{Chosen, Source};
 use table::Table;
@@ -52,7 +52,8 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Conver
     Ok(if target.settings.is_empty() {
         ConvertResult::Motion(Box::new(carry(&job, target, &origin, (request, session))?))
     } else {
-        ConvertResult::Settings(settings::find(&job, &target, (request, session))?)
+        let found = settings::find(&job, &target, (request, session))?;
+        ConvertResult::Settings(FoundSettings { not_done: origin.located(&[&job], found.not_done), ..found })
     })
 }
 
@@ -153,7 +154,7 @@ fn carry<'g>(
         table.written = files::write(&table, &carried, header, (request, origin, session))?;
     }
     let not_done = carried.source.unsolved.iter().cloned().chain(told).collect();
-    Ok(table.result(not_done))
+    Ok(table.result(origin.located(&[job], not_done)))
 }
 
 /// Which of the things that are asked for there are not without power series of the axes; nothing if none is.

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::solve::table::aligned;
 
@@ -46,7 +46,7 @@ pub struct AxisMotion {
     pub nc_deviation: Option<NcDeviation>,
     /// Files written, in their order.
     pub files: Vec<String>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
     #[serde(skip)]
     pub(super) text: String,
@@ -169,7 +169,7 @@ pub struct FoundSettings {
     pub turn_deg: f64,
     /// How far the flank is off along its normal; null where no points are sampled.
     pub deviation_um: Option<f64>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
     /// What is carried over, and whereto.
     #[serde(skip)]

@@ -5,7 +5,7 @@ use flank_solver::{PoseProblem, Posture, Tube, Unproven};
 
 use super::source::{Flank, Source};
 use super::{Conversion, at, is_met};
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::ConvertRequest;
 
 /// The highest order that is tried.

@@ -11,7 +11,7 @@ use super::Target;
 use super::result::{FittedPosition, FoundSetting, FoundSettings};
 use super::source::{Flank, Source};
 use crate::project::failure::Failure;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::{NamedUnit, UnitSymbol};
 use crate::project::requests::{ConvertRequest, Session};
 use crate::project::shown_path;

@@ -6,7 +6,7 @@ use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
 use crate::project::failure::Failure;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::requests::Session;
 use crate::project::units;
 use crate::solve::stream;

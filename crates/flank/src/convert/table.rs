@@ -15,7 +15,7 @@ use super::result::{
     UnseenMotion,
 };
 use super::series::Series;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::requests::ConvertRequest;
 use crate::project::shown_path;

@@ -14,7 +14,7 @@ use crate::convert::{self, Conversion};
 use crate::derive::result::{CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::{self, NotDone};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{DeriveRequest, Session};
 use crate::project::spec;
 
@@ -60,15 +60,18 @@ fn carried(
         // the postures that tell which elbow is meant lie as far as points are solved
         let unsolved = carried.source.unsolved.clone();
         let axes = match carried.failures() {
-            told if told.is_empty() => carried.explicit(true),
-            told => Err(not_done::lines(&told).trim_end().to_string()),
+            missed if missed.is_empty() => carried.explicit(true).map_err(|reason| {
+                vec![NotDone::new(NotDoneKind::NoClosedForm, &carried.machine.name, reason)]
+            }),
+            missed => Err(missed),
         };
-        let axes = axes.map_err(|reason| format!("{}{reason}", not_done::lines(&unsolved)))?;
+        let axes = axes.map_err(|missed| Failure::NotDone(unsolved.iter().cloned().chain(missed).collect()))?;
         Ok((explicit_page(job, &carried, &axes, style(request)), unsolved))
     };
-    let (_, job, target) = convert::compiled(graph, &request.jobs, to, monitor)?;
+    let (origin, job, target) = convert::compiled(graph, &request.jobs, to, monitor)?;
     let (page, unsolved) = carry(&job, &target).map_err(Failure::unsolved)?;
-    Ok(shown(vec![DerivationPage { job: job.name.clone(), page }], unsolved, request))
+    let not_done = origin.located(&[&job], unsolved);
+    Ok(shown(vec![DerivationPage { job: job.name.clone(), page }], not_done, request))
 }
 
 /// The given vectors, then the axes from them.

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 
 /// What was built, or what it costs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,7 +27,7 @@ pub struct Derivation {
     pub style: FormulaStyle,
     /// In the order of the spec.
     pub jobs: Vec<DerivationPage>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
 

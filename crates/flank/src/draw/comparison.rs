@@ -47,7 +47,7 @@ pub(super) fn plot(
     let drawings: Vec<(PlotKind, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, request, origin, &options(request)))).collect();
     let written = write(&drawings, &surface.whole_name(), (request, session), origin)?;
-    Ok(told(&surface.job.name, written, measured.missing(), request))
+    Ok(told(&surface.job.name, written, measured.missing(origin), request))
 }
 
 fn draw(

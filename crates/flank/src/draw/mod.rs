@@ -19,7 +19,7 @@ use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::requests::{PlotRequest, Session};
 use crate::project::shown_path;
 use crate::project::spec;
@@ -118,7 +118,7 @@ fn plot_jobs(
         let mut not_done = table::failures(job, &subject.solved);
         not_done.extend(cut::unknown(&subject.solved));
         not_done.extend(travel::beyond(job, &subject.solved));
-        Ok(told(&job.name, written, not_done, request))
+        Ok(told(&job.name, written, origin.located(&[job], not_done), request))
     };
     meant.iter().map(plot).collect()
 }

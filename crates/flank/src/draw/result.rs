@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::choices::{Choice, PlotKind};
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::solve::table::aligned;
 
 /// Pictures of one job, of `flank plot`.
@@ -24,7 +24,7 @@ pub struct PlotResult {
     pub height: u32,
     /// In the order in which they were asked for.
     pub pictures: Vec<WrittenPicture>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
 

@@ -17,7 +17,7 @@ use crate::page::result::ViewResult;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::Session;
 use crate::project::requests::ViewRequest;
 use crate::project::spec;
@@ -55,12 +55,15 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = tally(&solved, &mut dataset.patches);
         let mut not_done = table::failures(job, &solved);
+        let mut remarks = Vec::new();
         let written = if tally.solved == 0 {
             let message = format!("no page: job `{}` has no point to show", job.name);
             not_done.push(NotDone::new(NotDoneKind::NoPage, &job.name, message));
             None
         } else {
-            Some(write(&graph, job, &solved, &dataset, (request, &origin, monitor))?)
+            let page = write(&graph, job, &solved, &dataset, (request, &origin, monitor))?;
+            remarks.extend(page.shown_in_part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
+            Some(page)
         };
         each(ViewResult {
             job: job.name.clone(),
@@ -68,7 +71,8 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
             solved: tally.solved,
             bytes: written.as_ref().map(|page| page.bytes),
             files: written.into_iter().map(|page| page.file).collect(),
-            not_done,
+            remarks,
+            not_done: origin.located(&[job], not_done),
         });
     }
     Ok(())
@@ -99,6 +103,8 @@ fn is_something(field: &Field) -> bool {
 struct Written {
     file: String,
     bytes: u64,
+    /// Which of the points it shows, if not all.
+    shown_in_part: Option<String>,
 }
 
 fn write<'g>(
@@ -112,19 +118,18 @@ fn write<'g>(
     let step = thin::step(surfaces);
     let mut scene = scene(graph, job, solved);
     let is_part = solved.iter().any(|solved| solved.streamed.is_some());
-    if is_part {
+    let shown_in_part = if is_part {
         let asked: usize = solved.iter().map(|solved| solved.summary.asked).sum();
         let shown: usize = surfaces.iter().map(|patch| thin::kept(patch, step).len()).sum();
-        let note = format!(
+        Some(format!(
             "the page shows {shown} of the {asked} points that the job samples, in some of their rows and columns; what moves \
-             surfaces, and by how much, is told of some of them"
-        );
-        scene.notes.push(note);
-    } else if step > 1 {
-        let note = format!("the page shows one of {step} rows and columns of what the job samples, and the last ones");
-        scene.notes.push(note);
-    }
-    scene.notes.iter().for_each(|note| monitor.note(&format!("note: {note}\n")));
+             surfaces, and by how much, is given for some of them"
+        ))
+    } else {
+        (step > 1)
+            .then(|| format!("the page shows one of {step} rows and columns of what the job samples, and the last ones"))
+    };
+    scene.notes.extend(shown_in_part.clone());
     if step > 1 {
         for (surface, patch) in scene.surfaces.iter_mut().zip(surfaces) {
             surface.targets = thin::kept(patch, step).into_iter().map(|at| surface.targets[at]).collect();
@@ -139,7 +144,7 @@ fn write<'g>(
     let file = folder.finish()?.remove(0);
     let path = request.out.join(format!("{}.html", job.name));
     let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
-    Ok(Written { file, bytes })
+    Ok(Written { file, bytes, shown_in_part })
 }
 
 /// What the page shows beside the points.

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::remark::{NotDone, Remark};
 
 /// The page of one job, of `flank view`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -22,13 +22,19 @@ pub struct ViewResult {
     pub files: Vec<String>,
     /// Size of the page; null where there is no point to show.
     pub bytes: Option<u64>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What is to be known beside it, as stderr has it.
+    pub remarks: Vec<Remark>,
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
 
 impl Answer for ViewResult {
     fn not_done(&self) -> &[NotDone] {
         &self.not_done
+    }
+
+    fn remarks(&self) -> &[Remark] {
+        &self.remarks
     }
 }
 

@@ -1,10 +1,12 @@
 //! What all results of operations have in common.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
+use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::project::not_done::{self, NotDone};
+use crate::project::remark::{NotDone, Remark};
+use crate::project::units;
 
 /// The result of an operation on jobs. Its [`Display`] is the text for people, its serialisation a document with its `schema`
 /// ([`schema_of`](crate::schema_of) has what it says).
@@ -12,18 +14,33 @@ pub trait Answer: Display + Serialize + Send + Sync + 'static {
     /// What was asked for and not done; empty if everything was.
     fn not_done(&self) -> &[NotDone];
 
-    /// What is to be known beside it, in whole lines.
-    fn notes(&self) -> &str {
-        ""
+    /// What is to be known beside it.
+    fn remarks(&self) -> &[Remark] {
+        &[]
+    }
+
+    /// How long it took, if that was measured. Documents leave it out: they are the same for the same input.
+    fn timing(&self) -> Option<Timing> {
+        None
     }
 
     /// Whether everything was done that was asked for.
     fn is_complete(&self) -> bool {
         self.not_done().is_empty()
     }
+}
 
-    /// What was not done as people read it, in whole lines.
-    fn not_done_text(&self) -> String {
-        not_done::lines(self.not_done())
+/// How long the points of a result took. Its [`Display`] is `231 points in 12 ms`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timing {
+    /// Points asked for.
+    pub points: usize,
+    /// From the request to the result.
+    pub elapsed: Duration,
+}
+
+impl Display for Timing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} in {:.0} ms", units::counted(self.points, "point"), self.elapsed.as_secs_f64() * 1e3)
     }
 }

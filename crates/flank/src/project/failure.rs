@@ -3,6 +3,7 @@
 use flank_export::{FileError, FolderError};
 
 use crate::project::findings::Findings;
+use crate::project::remark::NotDone;
 
 /// What ends an operation early.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +20,9 @@ pub enum Failure {
     /// What was asked for cannot be solved.
     #[error("{0}")]
     Unsolved(String),
+    /// The same, as data.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    NotDone(Vec<NotDone>),
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),

@@ -12,6 +12,7 @@ use flank_export::{
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::remark::{Remark, RemarkKind};
 use crate::project::requests::check;
 use crate::project::shown_path;
 use crate::project::spec::Origin;
@@ -64,9 +65,9 @@ impl<'a> Folder<'a> {
         let is_line =
             surfaces.list.iter().map(|surface| surface.outline()).all(|of| of.rows.count.min(of.columns.count) < 2);
         if is_line && matches!(format, PointFormat::Stl | PointFormat::ThreeMf) {
-            self.monitor.note(&format!(
-                "note: the mesh of {name} has no triangle: samples of two rows and two columns at least have some\n"
-            ));
+            let message =
+                format!("the mesh of {name} has no triangle: samples of two rows and two columns at least have some");
+            self.monitor.remark(&Remark::new(RemarkKind::NoTriangles, name, message));
         }
         match format {
             PointFormat::Stl => self.write(&format!("{name}.stl"), |out| write_stl(surfaces, out)),

@@ -50,7 +50,7 @@ pub struct Note {
 }
 
 /// A place in a text.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Place {
     /// The file, as it was named, with forward slashes.
     pub file: String,
@@ -93,19 +93,21 @@ impl Findings {
             code: diagnostic.code.as_str(),
             severity: diagnostic.severity().into(),
             message: diagnostic.message.clone(),
-            place: self.place(diagnostic.span),
+            place: Place::of(&self.sources, diagnostic.span),
             notes: diagnostic
                 .notes
                 .iter()
-                .map(|note| Note { place: self.place(note.span), text: note.text.clone() })
+                .map(|note| Note { place: Place::of(&self.sources, note.span), text: note.text.clone() })
                 .collect(),
             help: diagnostic.help.clone(),
         }
     }
+}
 
-    fn place(&self, span: Span) -> Place {
-        let (path, line, column) = self.sources.place(span);
-        Place { file: shown_path(path), line, column, text: self.sources.text(span).to_string() }
+impl Place {
+    pub(crate) fn of(sources: &Sources, span: Span) -> Place {
+        let (path, line, column) = sources.place(span);
+        Place { file: shown_path(path), line, column, text: sources.text(span).to_string() }
     }
 }
 

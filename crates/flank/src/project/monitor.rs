@@ -1,6 +1,7 @@
 //! Who follows an operation.
 
 use crate::project::findings::Findings;
+use crate::project::remark::Remark;
 
 /// Follows an operation: hears how far long work is, what is to be known beside its result, and what is doubtful in a spec; and may
 /// cancel it.
@@ -19,9 +20,9 @@ pub trait Monitor: Sync {
         false
     }
 
-    /// Something to know that is neither a result nor a failure, in whole lines.
-    fn note(&self, lines: &str) {
-        let _ = lines;
+    /// Something to know that belongs to no result.
+    fn remark(&self, remark: &Remark) {
+        let _ = remark;
     }
 
     /// A message that goes into a file, with its options as the file's readers spell them. Messages of this library name the fields of

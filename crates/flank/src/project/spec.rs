@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Files, Job, Sources, compile_request, read_other_file};
+use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Sources, compile_request, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
 use crate::project::failure::Failure;
-use crate::project::findings::Findings;
+use crate::project::findings::{Findings, Place};
 use crate::project::monitor::Monitor;
+use crate::project::remark::{Message, Remark, RemarkKind};
 use crate::project::requests::JobSelection;
 
 /// The jobs that are asked for. Warnings are told.
@@ -53,32 +54,24 @@ pub(crate) fn asked_for<'g>(
 ) -> Result<Vec<Job<'g>>, Failure> {
     let jobs = compilation.take_jobs(which.job.as_deref());
     let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
-    note(monitor, &set_in_several(which, &jobs));
+    set_in_several(which, &jobs).iter().for_each(|remark| monitor.remark(remark));
     Ok(jobs)
 }
 
-/// The values that were set by hand and change several jobs; empty if none does.
-fn set_in_several(which: &JobSelection, jobs: &[Job<'_>]) -> String {
-    let mut out = String::new();
-    for (name, _) in &which.set {
+/// The values that were set by hand and change several jobs.
+fn set_in_several(which: &JobSelection, jobs: &[Job<'_>]) -> Vec<Remark> {
+    let remark = |(name, _): &(String, String)| {
         let changed = jobs.iter().filter(|job| which.changes(name, job));
         let changed: Vec<&str> = changed.map(|job| job.name.as_str()).collect();
-        if let [first, _, ..] = changed[..] {
-            out += &format!(
-                "note: the option `set {name}` changes {} jobs: {}; the option `set {first}.{name}=…` changes one\n",
-                changed.len(),
-                changed.join(", ")
-            );
-        }
-    }
-    out
-}
-
-/// Tells whoever follows, if there is something to tell.
-pub(crate) fn note(monitor: &dyn Monitor, lines: &str) {
-    if !lines.is_empty() {
-        monitor.note(lines);
-    }
+        let [first, _, ..] = changed[..] else { return None };
+        let message = format!(
+            "the option `set {name}` changes {} jobs: {}; the option `set {first}.{name}=…` changes one",
+            changed.len(),
+            changed.join(", ")
+        );
+        Some(Remark::new(RemarkKind::SeveralJobs, name, message))
+    };
+    which.set.iter().filter_map(remark).collect()
 }
 
 /// What a command read: where all that it writes comes from, and what it must not write over.
@@ -88,6 +81,7 @@ pub(crate) struct Origin {
     pub(crate) hash: String,
     /// All files, without links.
     files: Vec<PathBuf>,
+    sources: Sources,
 }
 
 impl Origin {
@@ -98,7 +92,22 @@ impl Origin {
             hash.update(source.text.as_bytes());
         }
         let hash = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        Origin { hash, files: compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect() }
+        let files = compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect();
+        Origin { hash, files, sources: compilation.sources.clone() }
+    }
+
+    /// Messages about surfaces of some jobs, with the places where these are named: `concave`, or with its job `pinion.concave`.
+    pub(crate) fn located<Kind>(&self, jobs: &[&Job<'_>], mut messages: Vec<Message<Kind>>) -> Vec<Message<Kind>> {
+        let surfaces = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| (&job.name, surface)));
+        for message in &mut messages {
+            let Some(name) = &message.of else { continue };
+            let is_meant = |(job, surface): &(&String, &GeneratedSurface<'_>)| {
+                surface.name == *name || format!("{job}.{}", surface.name) == *name
+            };
+            let found = surfaces().find(is_meant);
+            message.place = found.map(|(_, surface)| Place::of(&self.sources, surface.written));
+        }
+        messages
     }
 
     /// Reads a file that is no spec, of at most so many bytes.

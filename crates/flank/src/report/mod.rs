@@ -22,7 +22,7 @@ use crate::draw::{self, Drawing, Subject};
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::requests::{ReportRequest, Session, check};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -217,7 +217,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             more.push(format!("{undercut} points are cut away by the tool that generates them (undercut)"));
         }
         more.extend(travel::beyond(self.job, self.solved()).into_iter().map(|axis| axis.message));
-        more.extend(required::missed(self.solved()).iter().map(|missed| missed.headline().to_string()));
+        more.extend(required::missed(self.solved()).into_iter().map(|missed| missed.message));
         Block::Notice(if is_good { Tone::Good } else { Tone::Bad }, text, more)
     }
 
@@ -248,7 +248,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             not_checked: NotChecked { of_this_job: unchecked.of_job, by_no_report: unchecked.always },
             conventions: conventions::sentences(self),
             files,
-            not_done: self.failures(),
+            not_done: self.origin.located(&[self.job], self.failures()),
         }
     }
 }

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedValue, Travel, UnitSymbol};
 use crate::solve::result::{Certified, PointSummary, SmoothFace, SurfaceResult};
 
@@ -56,7 +56,7 @@ pub struct ReportResult {
     pub conventions: Vec<String>,
     /// Files written, in their order.
     pub files: Vec<String>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
 

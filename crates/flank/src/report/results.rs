@@ -6,7 +6,7 @@ use flank_export::Face;
 
 use super::Findings;
 use super::result::{GeneratingProcess, ReportedSurface, SampledGrid};
-use crate::project::not_done;
+use crate::project::remark::NotDone;
 use crate::project::quantity::NamedValue;
 use crate::solve::branches;
 use crate::solve::certify;
@@ -79,8 +79,8 @@ fn missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Option<Block
 
 fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let told = reasons_told(findings, solved);
-    let branches = not_done::lines(&branches::ambiguous(std::slice::from_ref(solved)));
-    told.into_iter().chain(branches.lines().map(|line| line.trim().to_string())).collect()
+    let branches = branches::ambiguous(std::slice::from_ref(solved));
+    told.into_iter().chain(branches.iter().flat_map(NotDone::lines)).collect()
 }
 
 fn reasons_told(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
@@ -163,7 +163,7 @@ fn faces(findings: &Findings<'_, '_>) -> Option<Block> {
 /// What the samples require of their points, and where it does not hold.
 fn requirements(findings: &Findings<'_, '_>) -> Option<Block> {
     let limits = findings.solved().iter().flat_map(|solved| &solved.sample.limits).count();
-    let broken = not_done::lines(&required::missed(findings.solved()));
+    let broken = required::missed(findings.solved());
     match (limits, broken.is_empty()) {
         (0, _) => None,
         (count, true) => {
@@ -172,7 +172,7 @@ fn requirements(findings: &Findings<'_, '_>) -> Option<Block> {
             Some(Block::Paragraph(text))
         }
         (_, false) => {
-            let lines = broken.lines().map(|line| line.trim().to_string()).collect();
+            let lines = broken.iter().flat_map(NotDone::lines).collect();
             Some(Block::Notice(Tone::Bad, "Requirements of samples do not hold".to_string(), lines))
         }
     }

@@ -1,14 +1,12 @@
 //! What `flank solve` tells of branches: which there are where several qualify, and where none is excluded.
 
-use std::fmt::Write;
-
 use flank_chain_dsl::{Coordinate, Dimension, GeneratedSurface, RangedVariable};
 use flank_export::fixed;
 use flank_expr::{ScalarEvaluator, Tape};
-use flank_solver::{Doubt, Outcome, Range, SurfacePoint};
+use flank_solver::{Doubt, Outcome, Range, SurfacePoint, Undecided};
 
-use crate::project::not_done::{NotDone, NotDoneKind};
 use crate::project::quantity::{Extent, NamedValue};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::units;
 use crate::solve::keep::{self, Keep};
 use crate::solve::result::{BranchPoint, BranchSearch, OpenRanges};
@@ -51,22 +49,18 @@ fn listed_with(
     place: impl Fn(usize) -> String,
 ) -> NotDone {
     let (name, unknowns) = (&surface.name, &surface.unknowns);
-    let mut out = format!("ambiguous: the ranges of {name} hold {} branches at {at}\n", branches.len());
-    for (number, branch) in branches.iter().enumerate() {
+    let each = branches.iter().enumerate().map(|(number, branch)| {
         let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
         let [x, y, z] = branch.position.map(|x| fixed(x, DECIMALS));
-        let place = place(number);
-        let _ = writeln!(out, "  {}: {place}{}, at [{x}, {y}, {z}] mm", number + 1, values.join(", "));
-        if let Some(keep) = keeps.get(number) {
-            let _ = writeln!(out, "     {}", keep.text());
-        }
-    }
-    let _ = writeln!(
-        out,
-        "  which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges. All are of the same tool: where it leaves \
+        let keep = keeps.get(number).map_or_else(String::new, |keep| format!(": `{}`", keep.text()));
+        format!("{}: {}{}, at [{x}, {y}, {z}] mm{keep}", number + 1, place(number), values.join(", "))
+    });
+    let way_out = format!(
+        "which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges. All are of the same tool: where it leaves \
          parts of several on the work, as with run-out, make a surface of each and `trim` them by each other"
     );
-    NotDone::new(NotDoneKind::Ambiguous, name, out)
+    let message = format!("ambiguous: the ranges of {name} hold {} branches at {at}", branches.len());
+    NotDone::new(NotDoneKind::Ambiguous, name, message).with(each.chain([way_out]).collect())
 }
 
 /// The branches that the sample's `keep` does not take, where it takes none, with the values that it looks at, and what it takes:
@@ -106,59 +100,48 @@ fn values_at(solved: &Solved<'_, '_>, of: &[&Coordinate<'_>], point: &SurfacePoi
     out
 }
 
-/// Where the branch of a surface was not looked for as it is meant: in the middle of its grid, until it is found; empty if it was.
-pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
+/// Where the branch of a surface was not looked for as it is meant: in the middle of its grid, until it is found.
+pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
+    let mut out = Vec::new();
     for solved in solved {
         let (name, at) = (&solved.surface.name, anchor(solved));
         if solved.effort.is_kept_elsewhere {
-            let _ = writeln!(
-                out,
-                "note: no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}"
-            );
+            let message =
+                format!("no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}");
+            out.push(Remark::new(RemarkKind::BegunElsewhere, name, message));
         }
         if solved.effort.is_given_up {
-            let _ = writeln!(
-                out,
-                "note: no point of {name} was found at those of its sample that were tried ({} boxes looked at); a sample \
-                 whose middle lies on the surface needs fewer",
+            let message = format!(
+                "no point of {name} was found at those of its sample that were tried ({} boxes looked at); a sample whose middle \
+                 lies on the surface needs fewer",
                 solved.effort.boxes
             );
+            out.push(Remark::new(RemarkKind::SearchGivenUp, name, message));
         }
     }
     out
 }
 
-/// Branches that have points in the ranges at other places of the sample, and none of the points; empty if none is known.
-pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
-    for solved in solved.iter().filter(|solved| !solved.elsewhere.is_empty()) {
+/// Branches that have points in the ranges at other places of the sample, and none of the points.
+pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
+    let told = |solved: &Solved<'_, '_>| {
         let (name, unknowns) = (&solved.surface.name, &solved.surface.unknowns);
-        let many = if solved.elsewhere.len() == 1 {
-            "another branch".to_string()
-        } else {
-            format!("{} other branches", solved.elsewhere.len())
+        let many = match solved.elsewhere.len() {
+            1 => "another branch that is".to_string(),
+            count => format!("{count} other branches that are"),
         };
-        let _ = writeln!(
-            out,
-            "note: the ranges of {name} hold {many} that {} not among its points",
-            if solved.elsewhere.len() == 1 { "is" } else { "are" }
-        );
-        for (told, (root, beside)) in solved.effort.elsewhere.iter().zip(&solved.elsewhere) {
+        let each = solved.effort.elsewhere.iter().zip(&solved.elsewhere).map(|(told, (root, beside))| {
             let values: Vec<String> = unknowns.iter().zip(&root.unknowns).map(|(u, x)| named(u, *x)).collect();
             let [x, y, z] = root.position.map(|x| fixed(x, DECIMALS));
-            let _ = writeln!(
-                out,
-                "  at {}: {}, at [{x}, {y}, {z}] mm",
-                place(&solved.sample.coordinates, told.place),
-                values.join(", ")
-            );
-            if let Some(keep) = selecting(solved, root, beside.as_ref()) {
-                let _ = writeln!(out, "     {} would select it", keep.text());
-            }
-        }
-    }
-    out
+            let keep = selecting(solved, root, beside.as_ref());
+            let keep = keep.map_or_else(String::new, |keep| format!("; `{}` would select it", keep.text()));
+            let at = place(&solved.sample.coordinates, told.place);
+            format!("at {at}: {}, at [{x}, {y}, {z}] mm{keep}", values.join(", "))
+        });
+        let message = format!("the ranges of {name} hold {many} not among its points");
+        Remark::new(RemarkKind::OtherBranches, name, message).with(each.collect())
+    };
+    solved.iter().filter(|solved| !solved.elsewhere.is_empty()).map(told).collect()
 }
 
 /// What selects a branch at another place: against the point of the surface's own branch there, else against any solved one.
@@ -167,32 +150,30 @@ fn selecting(solved: &Solved<'_, '_>, root: &SurfacePoint, beside: Option<&Surfa
     keep::against(&solved.surface.unknowns, own, root)
 }
 
-/// What could not be decided of the ranges of each surface; empty if everything could.
-pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> String {
-    let mut out = String::new();
-    for solved in solved.iter().filter(|solved| !solved.effort.undecided.is_empty()) {
+/// What could not be decided of the ranges of each surface.
+pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
+    const SHOWN: usize = 3;
+    let told = |solved: &Solved<'_, '_>| {
         let (count, boxes) = (solved.effort.undecided.len(), solved.effort.boxes);
         let name = &solved.surface.name;
         let many = if count == 1 { "a part" } else { "parts" };
-        let _ = writeln!(
-            out,
-            "note: further branches of {name} are not excluded in {many} of its ranges at {} ({boxes} boxes looked at)",
-            anchor(solved)
-        );
-        const SHOWN: usize = 3;
-        for doubt in solved.effort.undecided.iter().take(SHOWN) {
+        let part = |doubt: &Undecided| {
             let sides = solved.surface.unknowns.iter().zip(&doubt.ranges);
             let sides: Vec<String> = sides
                 .map(|(u, range)| format!("{} {} .. {}", u.name, value(u, range.low), value(u, range.high)))
                 .collect();
-            let _ = writeln!(out, "  {}: {}", sides.join(", "), why(doubt.why));
-        }
-        if count > SHOWN {
-            let _ = writeln!(out, "  and {} more", count - SHOWN);
-        }
-        let _ = writeln!(out, "  {}", what_decides(solved));
-    }
-    out
+            format!("{}: {}", sides.join(", "), why(doubt.why))
+        };
+        let parts = solved.effort.undecided.iter().take(SHOWN).map(part);
+        let more = (count > SHOWN).then(|| format!("and {} more", count - SHOWN));
+        let message = format!(
+            "further branches of {name} are not excluded in {many} of its ranges at {} ({boxes} boxes looked at)",
+            anchor(solved)
+        );
+        let details = parts.chain(more).chain([what_decides(solved)]).collect();
+        Remark::new(RemarkKind::BranchesNotExcluded, name, message).with(details)
+    };
+    solved.iter().filter(|solved| !solved.effort.undecided.is_empty()).map(told).collect()
 }
 
 /// What would decide whether there are further branches.

@@ -3,7 +3,7 @@
 use flank_export::{Field, Values};
 use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
 
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::solve::result::Certified;
 use crate::solve::table::Solved;
 

@@ -1,13 +1,11 @@
 //! `cut flank by edges`: what the single edges leave over a surface.
 
-use std::fmt::Write;
-
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Values};
 use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
 
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::Session;
 use crate::solve::ranges;
 use crate::solve::result::CutHeights;
@@ -97,24 +95,23 @@ impl Cut {
 pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
     let mut all = Vec::new();
     for solved in solved {
-        let mut out = String::new();
         let Some(cut) = &solved.cut else { continue };
         let Tally { asked, unreached, undecided } = cut.tally();
         let (missing, name) = (unreached + undecided, &solved.surface.name);
         if missing == 0 {
             continue;
         }
-        let _ = writeln!(out, "what is left is unknown at {missing} of {asked} points of {name}");
+        let message = format!("what is left is unknown at {missing} of {asked} points of {name}");
+        let mut details = Vec::new();
         if unreached > 0 {
-            let _ = writeln!(out, "  {unreached}: no edge of {} passes there within its ranges", cut.by);
+            details.push(format!("{unreached}: no edge of {} passes there within its ranges", cut.by));
         }
         if undecided > 0 {
-            let _ = writeln!(
-                out,
-                "  {undecided}: undecided, an edge that may be the lowest could not be followed, or too many would have to be tried"
-            );
+            details.push(format!(
+                "{undecided}: undecided, an edge that may be the lowest could not be followed, or too many would have to be tried"
+            ));
         }
-        all.push(NotDone::new(NotDoneKind::HeightUnknown, name, out));
+        all.push(NotDone::new(NotDoneKind::HeightUnknown, name, message).with(details));
     }
     all
 }

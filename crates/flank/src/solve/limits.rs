@@ -7,6 +7,7 @@ use flank_solver::{GridReport, SurfacePoint, SurfaceProblem};
 use rayon::prelude::*;
 
 use crate::project::failure::Failure;
+use crate::project::remark::{Remark, RemarkKind};
 use crate::project::requests::Session;
 use crate::solve;
 use crate::solve::reach;
@@ -30,31 +31,31 @@ pub(crate) struct Line<'j, 'g> {
     pub(crate) is_open: bool,
 }
 
-/// What is not shown of the lines; empty if everything is.
-pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> String {
-    let several = lines.iter().filter(|line| line.several > 1);
-    let told = |line: &&Line<'_, '_>| {
-        format!(
-            "note: {} has {} of its kind beside each other within the ranges; the longest is shown, narrower ranges show the others\n",
+/// What is not shown of the lines.
+pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> Vec<Remark> {
+    let remark = |kind: RemarkKind, line: &Line<'_, '_>, message: String| Remark::new(kind, &line.surface.name, message);
+    let several = lines.iter().filter(|line| line.several > 1).map(|line| {
+        let message = format!(
+            "{} has {} of its kind beside each other within the ranges; the longest is shown, narrower ranges show the others",
             line.name, line.several
-        )
-    };
+        );
+        remark(RemarkKind::SeveralLines, line, message)
+    });
     // of a line without any point within the ranges the table tells as much
     let partly = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| {
         let [_, outside] = line.found();
         let by = reasons::outside(line.surface, &line.summary)?;
-        Some(format!("note: {} of {} points of {} are outside, {by}\n", outside, line.summary.asked, line.name))
+        let message = format!("{} of {} points of {} are outside, {by}", outside, line.summary.asked, line.name);
+        Some(remark(RemarkKind::LineOutside, line, message))
     });
-    let open: Vec<&str> = lines.iter().filter(|line| line.is_open).map(|line| line.name.as_str()).collect();
-    let open = match open[..] {
-        [] => String::new(),
-        _ => format!(
-            "note: not found within the ranges, and not excluded, since not all of them could be looked at: {}; narrower ranges tell \
-             more\n",
-            open.join(", ")
-        ),
-    };
-    several.map(told).chain(partly).chain([open]).collect()
+    let open = lines.iter().filter(|line| line.is_open).map(|line| {
+        let message = format!(
+            "{} is not found within the ranges, and not excluded: not all of them could be looked at; narrower ranges tell more",
+            line.name
+        );
+        remark(RemarkKind::LineNotExcluded, line, message)
+    });
+    several.chain(partly).chain(open).collect()
 }
 
 /// Both lines of each surface that points are asked of; none of a surface without an equation of meshing. All threads look for them,

@@ -38,14 +38,15 @@ use self::step::Smooth;
 use self::stream::{Kept, Streamed};
 use self::summary::Summary;
 use self::table::Solved;
+use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, Remark, RemarkKind};
 use crate::project::requests::{JobSelection, Session, SolveRequest};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
-use crate::project::units;
 
 /// Solves the surfaces of jobs, and writes their points and a picture. `each` is given what is to be said of each job.
 ///
@@ -97,13 +98,14 @@ fn solved_job(
     not_done.extend(travel::beyond(job, &solved));
     not_done.extend(step::missed(&faces, request.step.unwrap_or_default()));
     let points: usize = solved.iter().map(|solved| solved.summary.asked).sum();
-    let notes = format!("{} in {:.0} ms\n", units::counted(points, "point"), start.elapsed().as_secs_f64() * 1e3)
-        + &branches::begun(&solved)
-        + &branches::undecided(&solved)
-        + &branches::elsewhere(&solved)
-        + &limits::untold(&lines)
-        + &step::told(&faces)
-        + &secondary::given_up(&solved);
+    let remarks = [
+        branches::begun(&solved),
+        branches::undecided(&solved),
+        branches::elsewhere(&solved),
+        limits::untold(&lines),
+        step::told(&faces),
+        secondary::given_up(&solved),
+    ];
     Ok(SolveResult {
         job: job.name.clone(),
         spec: shown_path(request.jobs.file()),
@@ -111,8 +113,9 @@ fn solved_job(
         lines: lines.iter().map(|line| LineResult::new(line)).collect(),
         faces: step::results(&faces),
         files,
-        not_done,
-        notes,
+        remarks: origin.located(&[job], remarks.concat()),
+        not_done: origin.located(&[job], not_done),
+        timing: Timing { points, elapsed: start.elapsed() },
     })
 }
 
@@ -127,7 +130,7 @@ pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>], monitor: &dyn Monitor) -> Resul
     if asked.is_empty() {
         return Err(idle.iter().map(|job| told(job)).collect::<Vec<String>>().join("\n").into());
     }
-    idle.iter().for_each(|job| monitor.note(&format!("note: {}\n", told(job))));
+    idle.iter().for_each(|job| monitor.remark(&Remark::new(RemarkKind::NoSample, &job.name, told(job))));
     Ok(asked)
 }
 
@@ -240,11 +243,11 @@ pub(crate) struct Found<'j, 'g> {
 
 impl<'g> Found<'_, 'g> {
     /// The branches that qualify where nothing chooses between several, with what would select each.
-    pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<String> {
+    pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<NotDone> {
         let is_ambiguous = self.points.iter().any(|point| point.outcome == flank_solver::Outcome::Ambiguous);
         is_ambiguous.then(|| {
             let at = branches::place(&sample.coordinates, self.effort.anchor);
-            branches::listed(surface, &self.problem.points(&self.effort.branches), &at).message
+            branches::listed(surface, &self.problem.points(&self.effort.branches), &at)
         })
     }
 }

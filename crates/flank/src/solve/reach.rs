@@ -64,11 +64,9 @@ impl Needed {
         let generation = &surface.generation;
         let is_motion = generation.motions.contains(&of.variable);
         let owner = if is_motion { String::new() } else { format!(" of {}", generation.tool_name) };
-        let (low, high) = (shown(self.range.low), units::text(of.dimension, self.range.high, 4));
-        let values = match high.strip_prefix(&low) {
-            Some("" | " deg" | " mm") => format!("at {high}"),
-            _ => format!("from {low} to {high}"),
-        };
+        let [low, high] = [self.range.low, self.range.high].map(shown);
+        let whole = units::text(of.dimension, self.range.high, 4);
+        let values = if low == high { format!("at {whole}") } else { format!("from {low} to {whole}") };
         format!(
             "{}{owner} {values} would reach {}; its range is {} .. {}",
             of.name,

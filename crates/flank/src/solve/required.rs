@@ -4,7 +4,7 @@ use flank_chain_dsl::PointRequirement;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::Outcome;
 
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::UnitSymbol;
 use crate::project::units;
 use crate::solve::reasons;
@@ -56,15 +56,17 @@ pub(crate) fn missed(all: &[Solved<'_, '_>]) -> Vec<NotDone> {
             let unit = units::symbol(of.dimension);
             let name = &solved.surface.name;
             let message = format!(
-                "not as required: {} of {} points of {}: {}\n  {}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
+                "not as required: {} of {} points of {name}: {}",
                 broken.places.count,
                 solved.points.len(),
-                name,
                 broken.limit.message,
+            );
+            let detail = format!(
+                "{}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
                 of.name,
                 reasons::whereabouts(solved, &broken.places),
             );
-            NotDone::new(NotDoneKind::NotAsRequired, name, message)
+            NotDone::new(NotDoneKind::NotAsRequired, name, message).with(vec![detail])
         };
         broken(solved).iter().map(line).collect::<Vec<NotDone>>()
     };

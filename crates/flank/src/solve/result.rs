@@ -8,8 +8,8 @@ use flank_solver::{CutBy, Outcome, SurfacePoint};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::project::answer::Answer;
-use crate::project::not_done::NotDone;
+use crate::project::answer::{Answer, Timing};
+use crate::project::remark::{NotDone, Remark};
 use crate::project::quantity::{Extent, NamedValue, UnitSymbol};
 use crate::solve::limits::Line;
 use crate::solve::table::aligned;
@@ -30,10 +30,12 @@ pub struct SolveResult {
     pub faces: Vec<SmoothFace>,
     /// Files written, in their order.
     pub files: Vec<String>,
-    /// What was asked for and not done, as told on stderr, a message each; the exit code is 3 unless it is empty.
+    /// What is to be known beside it, as stderr has it.
+    pub remarks: Vec<Remark>,
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
     #[serde(skip)]
-    pub(super) notes: String,
+    pub(super) timing: Timing,
 }
 
 /// The points of a surface or of a line, counted.
@@ -395,8 +397,12 @@ impl Answer for SolveResult {
         &self.not_done
     }
 
-    fn notes(&self) -> &str {
-        &self.notes
+    fn remarks(&self) -> &[Remark] {
+        &self.remarks
+    }
+
+    fn timing(&self) -> Option<Timing> {
+        Some(self.timing)
     }
 }
 

@@ -4,6 +4,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, ToolShape};
 use flank_expr::geometry::Surface;
 use flank_solver::{Judged, Range, SecondaryCutting, SurfacePoint, Unseen};
 
+use crate::project::remark::{Remark, RemarkKind};
 use crate::project::units;
 use crate::solve::ranges;
 use crate::solve::result::ToolPositions;
@@ -130,15 +131,16 @@ pub(crate) fn unseen(solved: &[Solved<'_, '_>]) -> Vec<String> {
     solved.iter().filter_map(told).collect()
 }
 
-/// Notes on what was given up; empty if nothing was.
-pub(crate) fn given_up(solved: &[Solved<'_, '_>]) -> String {
+/// Of which surfaces positions of the tool were given up.
+pub(crate) fn given_up(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
     let is_given_up = |positions: &Positions| match positions {
         Positions::Seen(judged) => judged.unseen == Some(Unseen::Budget),
         Positions::Unseen(_) => *positions == STREAMED,
     };
     let told = solved.iter().filter(|solved| is_given_up(&solved.positions)).map(|solved| {
         let (name, what) = (&solved.surface.name, solved.positions.unseen().unwrap_or_default());
-        format!("note: whether the tool cuts points of {name} away in another position was not looked at: {what}\n")
+        let message = format!("whether the tool cuts points of {name} away in another position was not looked at: {what}");
+        Remark::new(RemarkKind::PositionsNotTried, name, message)
     });
     told.collect()
 }

@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Face, Patch};
 
 use crate::project::failure::Failure;
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::solve::result::SmoothFace;
 use crate::solve::table::Solved;
 use crate::solve::{self, SolveOptions};
@@ -95,9 +95,13 @@ fn finer<'g>(sample: &Sample<'g>) -> Option<Sample<'g>> {
     Some(Sample { counts: [rows, columns], grid: sample.grid.halved(), ..sample.clone() })
 }
 
-/// What the faces are like, a line for each.
-pub(crate) fn told(faces: &[Smooth]) -> String {
-    faces.iter().filter_map(|smooth| Some(format!("STEP: {}\n", smooth.face.as_ref()?.told()))).collect()
+/// What the faces are like.
+pub(crate) fn told(faces: &[Smooth]) -> Vec<Remark> {
+    let told = |smooth: &Smooth| {
+        let message = format!("STEP: {}", smooth.face.as_ref()?.told());
+        Some(Remark::new(RemarkKind::SmoothFace, &smooth.name, message))
+    };
+    faces.iter().filter_map(told).collect()
 }
 
 /// The same as data.

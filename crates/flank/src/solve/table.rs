@@ -5,7 +5,7 @@ use flank_export::Field;
 use flank_expr::Expr;
 use flank_solver::{GridReport, SurfacePoint};
 
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::Extent;
 use crate::solve::branches;
 use crate::solve::certify;
@@ -135,9 +135,8 @@ fn unsolved(job: &Job<'_>, solved: &Solved<'_, '_>) -> Option<NotDone> {
     let (asked, name) = (solved.summary.asked, &solved.surface.name);
     let missing = asked - solved.summary.solved();
     (missing > 0).then(|| {
-        let reasons: String = reasons::counted(job, solved).iter().map(|reason| format!("\n  {reason}")).collect();
-        let message = format!("not solved: {missing} of {asked} points of {name}{reasons}");
-        NotDone::new(NotDoneKind::NotSolved, name, message)
+        let message = format!("not solved: {missing} of {asked} points of {name}");
+        NotDone::new(NotDoneKind::NotSolved, name, message).with(reasons::counted(job, solved))
     })
 }
 

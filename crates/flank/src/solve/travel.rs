@@ -6,7 +6,7 @@ use flank_chain_dsl::{Axis, Job};
 use flank_expr::{Expr, VariableId};
 use flank_solver::{Range, extent};
 
-use crate::project::not_done::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 use crate::solve::table::Solved;
 
