@@ -71,7 +71,7 @@ fn refused(bytes: usize) -> ! {
     // of several threads one tells it
     if AS_DOCUMENT.swap(false, Ordering::Relaxed) {
         let document = format_args!(
-            "{{\"schema\": \"flank.failure/1\", \"exit_code\": {code}, \"message\": \"{reason}\", \"findings\": []}}\n"
+            "{{\"schema\": \"flank.failure/1\", \"exit_code\": {code}, \"message\": \"{reason}\", \"findings\": [], \"not_done\": []}}\n"
         );
         let _ = written(document, to_stdout);
     }

@@ -6,65 +6,35 @@ use flank_solver::{PoseProblem, Range, Tube};
 
 use super::Conversion;
 use super::files::decimals;
+use super::result::NcDeviation;
 use super::source::{Flank, Source};
 use crate::project::units;
 
-/// The largest normal distances from the flank where points are sampled, mm; each a sum over the axes, as if all were off the
-/// worse way at once.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Blocks {
-    /// Left by straight lines between positions; nothing where no proof bounds how far the axes are off them.
-    pub(super) straight: Option<f64>,
-    /// Left by the rounding of positions; nothing where no point shows it.
-    pub(super) rounding: Option<f64>,
-}
-
-impl Blocks {
-    /// For positions of one motion in order; `tube` is where the axes are proven to stand.
-    pub(super) fn of(carried: &Conversion<'_, '_>, tube: Option<&Tube>) -> Blocks {
-        let Conversion { problem, source, free: axes, positions, line, .. } = carried;
-        let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
-        let Some(series) = each.collect::<Option<Vec<Vec<Vec<f64>>>>>() else { return Blocks::default() };
-        let ends = positions.windows(2).zip(line.windows(2));
-        let blocks = ends.zip(&series).map(|((at, postures), start)| {
-            let range = Range { low: at[0][0], high: at[1][0] };
-            let step = range.high - range.low;
-            let [from, to] = [&postures[0].axes, &postures[1].axes];
-            let chords: Vec<Vec<f64>> = from.iter().zip(to).map(|(a, b)| vec![*a, (b - a) / step]).collect();
-            let bends = tube.map_or(vec![0.0; axes.len()], |tube| tube.distances_over(range, range.low, &chords));
-            Block { from: range.low, step, start, bends }
-        });
-        let blocks: Vec<Block<'_>> = blocks.collect();
-        let halves: Vec<f64> = axes.iter().map(|axis| half_increment(axis)).collect();
-        let mut worst = Blocks::default();
-        for flank in &source.flanks {
-            for (straight, rounding) in Influence::new(problem, source, flank, axes.len()).off(&blocks, &halves) {
-                worst.straight = tube.map(|_| straight.max(worst.straight.unwrap_or(0.0)));
-                worst.rounding = Some(rounding.max(worst.rounding.unwrap_or(0.0)));
-            }
-        }
-        worst
-    }
-
-    /// For the head of a program.
-    pub(super) fn sentence(self) -> String {
-        let Some(rounding) = self.rounding else {
-            return "how far straight blocks leave the flank off is not known, how far rounded positions do is not known: no point of the \
-                    flank tells that is sampled and solved on a surface that a face of the tool makes"
-                .to_string();
-        };
-        let rounding = format!("rounded positions by up to {:.4} um", rounding * 1e3);
-        match self.straight {
-            Some(straight) => format!(
-                "where points were sampled, straight blocks leave the flank off by up to {:.4} um, {rounding}",
-                straight * 1e3
-            ),
-            None => format!(
-                "where points were sampled, {rounding}; how far straight blocks leave the flank off is not known: there is no proof \
-                 where the axes stand between positions"
-            ),
+/// What straight blocks through positions of one motion, in order, leave; `tube` is where the axes are proven to stand. Largest normal
+/// distances from the flank where points are sampled; each a sum over the axes, as if all were off the worse way at once.
+pub(super) fn nc_deviation(carried: &Conversion<'_, '_>, tube: Option<&Tube>) -> NcDeviation {
+    let Conversion { problem, source, free: axes, positions, line, .. } = carried;
+    let mut worst = NcDeviation { straight_mm: None, rounding_mm: None };
+    let each = line.iter().zip(positions).map(|(posture, at)| problem.series(posture, at, 0, 2));
+    let Some(series) = each.collect::<Option<Vec<Vec<Vec<f64>>>>>() else { return worst };
+    let ends = positions.windows(2).zip(line.windows(2));
+    let blocks = ends.zip(&series).map(|((at, postures), start)| {
+        let range = Range { low: at[0][0], high: at[1][0] };
+        let step = range.high - range.low;
+        let [from, to] = [&postures[0].axes, &postures[1].axes];
+        let chords: Vec<Vec<f64>> = from.iter().zip(to).map(|(a, b)| vec![*a, (b - a) / step]).collect();
+        let bends = tube.map_or(vec![0.0; axes.len()], |tube| tube.distances_over(range, range.low, &chords));
+        Block { from: range.low, step, start, bends }
+    });
+    let blocks: Vec<Block<'_>> = blocks.collect();
+    let halves: Vec<f64> = axes.iter().map(|axis| half_increment(axis)).collect();
+    for flank in &source.flanks {
+        for (straight, rounding) in Influence::new(problem, source, flank, axes.len()).off(&blocks, &halves) {
+            worst.straight_mm = tube.map(|_| straight.max(worst.straight_mm.unwrap_or(0.0)));
+            worst.rounding_mm = Some(rounding.max(worst.rounding_mm.unwrap_or(0.0)));
         }
     }
+    worst
 }
 
 /// What lies between two positions.

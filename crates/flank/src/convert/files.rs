@@ -1,11 +1,11 @@
-//! PlotKind `flank convert` leaves in its folder: motion tables, NC programs, functions.
+//! What `flank convert` leaves in its folder: motion tables, NC programs, functions.
 
 use flank_chain_dsl::{Dimension, NcWord};
 use flank_export::{AxisSeries, Header, MachineAxis, MotionRow, MotionTable, Series, Unit, Unknown, write_nc};
 use flank_expr::{Expr, Language, Polynomial, Signature, emit_function, emit_polynomials};
 
 use super::Conversion;
-use super::blocks::Blocks;
+use super::result::AxisMotion;
 use super::table::{Named, Table};
 use crate::project::choices::EmitForm;
 use crate::project::failure::Failure;
@@ -26,7 +26,7 @@ pub(super) fn decimals(dimension: Dimension, word: &NcWord) -> u8 {
 /// # Errors
 /// In words, if a file cannot be written or a program not be made.
 pub(super) fn write(
-    table: &Table,
+    (table, found): (&Table, &AxisMotion),
     carried: &Conversion<'_, '_>,
     header: Header,
     (request, origin, session): (&ConvertRequest, &Origin, Session<'_>),
@@ -34,7 +34,7 @@ pub(super) fn write(
     let source = &carried.source;
     // two tools of one job do not write over each other's files
     let own = if source.is_one_of_several { format!("_{}", source.surfaces[0]) } else { String::new() };
-    let name = format!("{}{own}_on_{}", table.job, table.machine);
+    let name = format!("{}{own}_on_{}", table.of.job, table.of.machine);
     let motion = motion_table(table, header);
     let seconds = || request.time.expect("an NC program is asked for with its cutting time");
     // what one of the controls cannot do is told before there is a file
@@ -45,10 +45,10 @@ pub(super) fn write(
     for form in distinct(&request.emit_form) {
         for language in distinct(&request.emit) {
             let (name, text) = match form {
-                EmitForm::Polynomials => (name.clone(), polynomials(table, &name, language.into())?),
+                EmitForm::Polynomials => (name.clone(), polynomials((table, found), &name, language.into())?),
                 EmitForm::Exact => {
                     let name = format!("{name}_exact");
-                    let text = exact(table, carried, &name, language.into())?;
+                    let text = exact((table, found), carried, &name, language.into())?;
                     (name, text)
                 }
             };
@@ -75,7 +75,7 @@ fn distinct<T: Copy + PartialEq>(all: &[T]) -> Vec<T> {
 fn motion_table(table: &Table, mut header: Header) -> MotionTable {
     let motion = &table.motions[0];
     header.conventions.insert(0, table.carried.clone());
-    header.conventions.extend(table.blocks.map(Blocks::sentence));
+    header.conventions.extend(table.nc_deviation.map(|deviation| deviation.to_string()));
     let axis = |(axis, word): (&Named, &NcWord)| {
         let is_rotary = axis.dimension == Dimension::ANGLE;
         MachineAxis {
@@ -115,22 +115,27 @@ fn axis_series(index: usize, coefficients: &[f64], series: &super::series::Serie
 }
 
 /// The axes as polynomials and their first derivatives from the motion, as source text.
-fn polynomials(table: &Table, name: &str, language: Language) -> Result<String, String> {
+fn polynomials((table, found): (&Table, &AxisMotion), name: &str, language: Language) -> Result<String, String> {
     let series = table.series.as_ref().ok_or("there are no polynomials to write as a function")?;
     let axes = table.axes.iter().zip(&series.axes);
     let polynomials: Vec<Polynomial<'_>> =
         axes.map(|(axis, coefficients)| Polynomial { name: &axis.name, coefficients }).collect();
     let mut comment = head(table);
     comment.extend(series.deviations.get(series.order).map(|most| {
-        format!("the flank is off by up to {:.6} um where points were sampled; {}", most * 1e3, table.over())
+        format!("the flank is off by up to {:.6} um where points were sampled; {}", most * 1e3, found.over())
     }));
-    comment.push(table.remainders(series));
+    comment.extend(found.polynomials.as_ref().map(|found_polynomials| found.remainders_sentence(found_polynomials)));
     let signature = Signature { name, comment: &comment };
     Ok(emit_polynomials(language, signature, (&table.motions[0].name, series.about), &polynomials))
 }
 
 /// The same in closed form.
-fn exact(table: &Table, carried: &Conversion<'_, '_>, name: &str, language: Language) -> Result<String, String> {
+fn exact(
+    (table, found): (&Table, &AxisMotion),
+    carried: &Conversion<'_, '_>,
+    name: &str,
+    language: Language,
+) -> Result<String, String> {
     let explicit = carried.explicit(false)?;
     let axes: Vec<(&str, Expr<'_>)> =
         table.axes.iter().map(|axis| axis.name.as_str()).zip(explicit.continuous.iter().copied()).collect();
@@ -139,7 +144,7 @@ fn exact(table: &Table, carried: &Conversion<'_, '_>, name: &str, language: Lang
         "exact but for rounding: within {:.1e} mm or rad of {} solved positions; {}",
         explicit.off,
         table.positions.len(),
-        table.over()
+        found.over()
     ));
     let motion = carried.source.motions[0].variable;
     emit_function(language, Signature { name, comment: &comment }, &[motion], &axes).map_err(|error| error.to_string())
@@ -147,7 +152,7 @@ fn exact(table: &Table, carried: &Conversion<'_, '_>, name: &str, language: Lang
 
 fn head(table: &Table) -> Vec<String> {
     vec![
-        format!("job {}: {}", table.job, table.carried),
+        format!("job {}: {}", table.of.job, table.carried),
         "mm and rad; derivatives per rad (mm) of the motion".to_string(),
     ]
 }

@@ -9,6 +9,7 @@ mod series;
 mod settings;
 mod source;
 mod table;
+mod text;
 
 use std::path::Path;
 
@@ -23,12 +24,12 @@ use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{ConvertRequest, JobSelection, Onto, Session};
+use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
-use blocks::Blocks;
 use rates::Rates;
-use result::{AxisMotion, ConvertResult, FoundSettings};
+use result::{AxisMotion, CarriedJob, ConvertResult, FoundSettings};
 use series::Series;
 use source::{Chosen, Source};
 use table::Table;
@@ -147,14 +148,31 @@ fn carry<'g>(
     let rates = request.time.filter(|_| is_series).map(|seconds| Rates::of(&carried, seconds)).transpose()?.flatten();
     let mut table = Table::new(job, &carried, (series, rates), request);
     let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
-    table.blocks = (is_series && !request.nc.is_empty()).then(|| Blocks::of(&carried, tube));
+    table.nc_deviation = (is_series && !request.nc.is_empty()).then(|| blocks::nc_deviation(&carried, tube));
+    let not_done = carried.source.unsolved.iter().cloned().chain(told).collect();
+    let mut found = table.result(origin.located(&[job], not_done));
     // a table of one motion; what the target cannot do is no program
     if is_series {
         let header = crate::solve::header(&jobs, &request.jobs, origin);
-        table.written = files::write(&table, &carried, header, (request, origin, session))?;
+        found.files = files::write((&table, &found), &carried, header, (request, origin, session))?;
     }
-    let not_done = carried.source.unsolved.iter().cloned().chain(told).collect();
-    Ok(table.result(origin.located(&[job], not_done)))
+    Ok(found)
+}
+
+/// What is carried over, and whereto.
+fn carried_job(
+    job: &Job<'_>,
+    (machine, source): (&Machine<'_>, &Source<'_, '_>),
+    request: &ConvertRequest,
+) -> CarriedJob {
+    CarriedJob {
+        job: job.name.clone(),
+        spec: shown_path(request.jobs.file()),
+        machine: machine.name.clone(),
+        machine_spec: shown_path(&request.to),
+        tool: source.tool.clone(),
+        work: source.work.clone(),
+    }
 }
 
 /// Which of the things that are asked for there are not without power series of the axes; nothing if none is.

@@ -8,8 +8,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
+use crate::project::remark::NotDone;
 use crate::solve::table::aligned;
 
 /// A job on another machine.
@@ -26,12 +26,13 @@ pub enum ConvertResult {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "schema", rename = "flank.convert/2")]
 pub struct AxisMotion {
-    /// The job of the spec.
-    pub job: String,
-    /// The machine that it is carried over to.
-    pub machine: String,
+    /// What is carried over, and whereto.
+    #[serde(flatten)]
+    pub of: CarriedJob,
     /// Of the job.
     pub motions: Vec<NamedUnit>,
+    /// In the order and units of the motions: where all sampled points are made, if nothing moves between them; null otherwise.
+    pub made_at: Option<Vec<f64>>,
     /// That move the tool against the work.
     pub axes: Vec<AxisExtent>,
     /// Motions of the tool against itself, in its frame.
@@ -48,8 +49,31 @@ pub struct AxisMotion {
     pub files: Vec<String>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
-    #[serde(skip)]
-    pub(super) text: String,
+}
+
+/// A job on another machine than its own.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct CarriedJob {
+    /// The job of the spec.
+    pub job: String,
+    /// As it was given, with forward slashes.
+    pub spec: String,
+    /// The machine that it is carried over to.
+    pub machine: String,
+    /// The file of the machine, as it was given, with forward slashes.
+    pub machine_spec: String,
+    /// The frame of the tool on the job's own machine.
+    pub tool: String,
+    /// The frame of the work there.
+    pub work: String,
+}
+
+/// `job NAME (FILE) on MACHINE (FILE): tool against work`.
+impl fmt::Display for CarriedJob {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let CarriedJob { job, spec, machine, machine_spec, tool, work } = self;
+        write!(f, "job {job} ({spec}) on {machine} ({machine_spec}): {tool} against {work}")
+    }
 }
 
 /// How far an axis goes.
@@ -155,10 +179,9 @@ pub struct NcDeviation {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "schema", rename = "flank.settings/1")]
 pub struct FoundSettings {
-    /// The job of the spec.
-    pub job: String,
-    /// The machine whose settings are looked for.
-    pub machine: String,
+    /// What is carried over, and to the machine whose settings are looked for.
+    #[serde(flatten)]
+    pub of: CarriedJob,
     /// In the order of the machine.
     pub settings: Vec<FoundSetting>,
     /// Those that the settings are found from.
@@ -171,11 +194,7 @@ pub struct FoundSettings {
     pub deviation_um: Option<f64>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
-    /// What is carried over, and whereto.
-    #[serde(skip)]
-    pub title: String,
     /// The axes of the machine, in the order of the positions.
-    #[serde(skip)]
     pub axes: Vec<NamedUnit>,
 }
 
@@ -213,7 +232,7 @@ impl Answer for ConvertResult {
 impl fmt::Display for ConvertResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            ConvertResult::Motion(motion) => f.write_str(&motion.text),
+            ConvertResult::Motion(motion) => motion.fmt(f),
             ConvertResult::Settings(settings) => settings.fmt(f),
         }
     }
@@ -236,7 +255,7 @@ impl fmt::Display for FoundSettings {
         let head = |cells: [&str; 3]| [cells.map(String::from)].into_iter();
         let settings: Vec<_> = head(["setting", "value", ""]).chain(self.settings.iter().map(setting)).collect();
         let axes: Vec<_> = head(["axis", "from", "to"]).chain(self.axes.iter().enumerate().map(axis)).collect();
-        write!(f, "{}\n\nsettings from {} positions\n\n", self.title, self.positions.len())?;
+        write!(f, "{}\n\nsettings from {} positions\n\n", self.of, self.positions.len())?;
         write!(f, "{}\n{}", aligned(&settings, "<><"), aligned(&axes, "<>>"))?;
         writeln!(f, "\nof the poses {:.1e} mm and {:.1e} deg are left", self.displacement_mm, self.turn_deg)?;
         match self.deviation_um {

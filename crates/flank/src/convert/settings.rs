@@ -8,13 +8,12 @@ use flank_solver::{
 };
 
 use super::Target;
-use super::result::{FittedPosition, FoundSetting, FoundSettings};
+use super::result::{CarriedJob, FittedPosition, FoundSetting, FoundSettings};
 use super::source::{Flank, Source};
 use crate::project::failure::Failure;
-use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::{NamedUnit, UnitSymbol};
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{ConvertRequest, Session};
-use crate::project::shown_path;
 use crate::project::units;
 
 /// Positions that the settings are found from; all others follow.
@@ -93,11 +92,9 @@ pub(super) fn find(
     let fit = problem.fit(&some);
     let deviation = source.flanks.iter().filter_map(|flank| deviation(&problem, source, flank, &fit, &some));
     let deviation = deviation.fold(None, |most: Option<f64>, d| Some(most.map_or(d, |most| most.max(d))));
-    let [file, to] = [request.jobs.file(), &request.to].map(shown_path);
-    let title =
-        format!("job {} ({file}) on {} ({to}): {} against {}", job.name, target.machine.name, source.tool, source.work);
     let unsolved = source.unsolved.clone();
-    let found = Found { title, job: &job.name, target, positions: some, fit, deviation, unsolved };
+    let of = super::carried_job(job, (target.machine, source), request);
+    let found = Found { of, target, positions: some, fit, deviation, unsolved };
     Ok(found.result())
 }
 
@@ -155,8 +152,7 @@ fn deviation(
 
 /// What was found.
 struct Found<'f, 't, 'g> {
-    title: String,
-    job: &'f str,
+    of: CarriedJob,
     target: &'f Target<'t, 'g>,
     positions: Vec<Vec<f64>>,
     fit: SettingsFit,
@@ -211,15 +207,13 @@ impl Found<'_, '_, '_> {
             FittedPosition { motions: motions.collect(), axes: axes.collect() }
         };
         FoundSettings {
-            job: self.job.to_string(),
-            machine: target.machine.name.clone(),
+            of: self.of.clone(),
             settings: target.settings.iter().zip(&fit.settings).enumerate().map(setting).collect(),
             positions: self.positions.iter().zip(&fit.moving).map(position).collect(),
             displacement_mm: fit.displacement,
             turn_deg: fit.turn.to_degrees(),
             deviation_um: self.deviation.map(|mm| mm * 1e3),
             not_done: self.missed(),
-            title: self.title.clone(),
             axes: target.free.iter().map(|axis| NamedUnit::new(&axis.name, axis.dimension)).collect(),
         }
     }

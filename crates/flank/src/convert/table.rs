@@ -1,29 +1,22 @@
-//! What `flank convert` tells of a motion.
+//! What `flank convert` knows of a motion, for its files and its result.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use flank_chain_dsl::{Axis, Dimension, Job, NcWord};
-use flank_export::fixed;
 use flank_solver::{Outcome, Posture, Screw, Unproven};
 
 use super::Conversion;
-use super::blocks::Blocks;
 use super::rates::Rates;
 use super::result::{
-    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, MissingMotion, NcDeviation, Remainders,
-    UnseenMotion,
+    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, MissingMotion, NcDeviation,
+    Remainders, UnseenMotion,
 };
 use super::series::Series;
-use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
+use crate::project::remark::NotDone;
 use crate::project::requests::ConvertRequest;
 use crate::project::shown_path;
 use crate::project::units;
-use crate::solve::table::aligned;
-
-/// Powers of the unit of time.
-const SECONDS: [&str; 3] = ["s", "s^2", "s^3"];
 
 /// A column: the name of a motion or an axis.
 pub(super) struct Named {
@@ -33,11 +26,9 @@ pub(super) struct Named {
 }
 
 pub(crate) struct Table {
-    pub(super) title: String,
+    pub(super) of: CarriedJob,
     /// What is carried over, and whereto, for the heads of files.
     pub(super) carried: String,
-    pub(super) job: String,
-    pub(super) machine: String,
     pub(super) motions: Vec<Named>,
     pub(super) axes: Vec<Named>,
     /// What NC programs say of each axis.
@@ -46,14 +37,12 @@ pub(crate) struct Table {
     pub(super) line: Vec<Posture>,
     symmetries: Vec<Screw>,
     /// Where all sampled points are made, if nothing moves between them.
-    still: Option<String>,
+    still: Option<Vec<f64>>,
     pub(super) series: Option<Series>,
     /// Over the cutting time, if there is one.
     pub(super) rates: Option<Rates>,
     /// What an NC program leaves on the flank.
-    pub(super) blocks: Option<Blocks>,
-    /// Files that were written.
-    pub(super) written: Vec<String>,
+    pub(super) nc_deviation: Option<NcDeviation>,
 }
 
 impl Table {
@@ -68,155 +57,27 @@ impl Table {
         let motions = source.motions.iter();
         let motions =
             motions.map(|motion| Named { name: motion.name.clone(), dimension: motion.dimension, travel: None });
-        let [file, to] = [request.jobs.file(), &request.to].map(shown_path);
         Table {
-            title: format!(
-                "job {} ({file}) on {} ({to}): {} against {}",
-                job.name, machine.name, source.tool, source.work
-            ),
+            of: super::carried_job(job, (machine, source), request),
             carried: format!(
-                "{} against {}, as they make {}, on machine {} ({to})",
+                "{} against {}, as they make {}, on machine {} ({})",
                 source.tool,
                 source.work,
                 source.surfaces.join(", "),
-                machine.name
+                machine.name,
+                shown_path(&request.to)
             ),
-            job: job.name.clone(),
-            machine: machine.name.clone(),
             motions: motions.collect(),
             axes: free.iter().map(axis).collect(),
             words: free.iter().map(|axis| axis.word.clone()).collect(),
             positions: carried.positions.clone(),
             line: carried.line.clone(),
             symmetries: source.symmetries.clone(),
-            still: source.still.as_ref().map(|at| source.place(at)),
+            still: source.still.clone(),
             series,
             rates,
-            blocks: None,
-            written: Vec::new(),
+            nc_deviation: None,
         }
-    }
-
-    fn text(&self) -> String {
-        let mut out = format!("{}\n\n", self.title);
-        let _ = writeln!(out, "{} positions over {}", self.positions.len(), self.over());
-        if let Some(at) = &self.still {
-            let _ = writeln!(out, "that is all of it: the sampled points are all made at {at}");
-        }
-        for screw in &self.symmetries {
-            let _ = writeln!(out, "the tool is unchanged by {}", unseen(screw));
-        }
-        let mut rows = vec![["axis", "from", "to", "travel"].map(String::from)];
-        rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {
-            let (low, high) = self.ends(k);
-            let travel = axis.travel.map(|(low, high)| {
-                format!("{} .. {}", units::as_given(axis.dimension, low), units::as_given(axis.dimension, high))
-            });
-            let [low, high] = [low, high].map(|x| units::text(axis.dimension, x, 6));
-            [axis.name.clone(), low, high, travel.unwrap_or_default()]
-        }));
-        if self.reached().next().is_some() {
-            let _ = write!(out, "\n{}", aligned(&rows, "<>>>"));
-        }
-        if let Some(series) = &self.series {
-            self.series_text(series, &mut out);
-        }
-        if let Some(rates) = &self.rates {
-            self.rates_text(rates, &mut out);
-        }
-        if let Some(blocks) = self.blocks {
-            let _ = writeln!(out, "\nNC programs: {}", blocks.sentence());
-        }
-        if !self.written.is_empty() {
-            let _ = writeln!(out, "\nwrote {}", self.written.join(", "));
-        }
-        out
-    }
-
-    fn series_text(&self, series: &Series, out: &mut String) {
-        let motion = &self.motions[0];
-        let sign = if series.about < 0.0 { '+' } else { '-' };
-        let about = units::text(motion.dimension, series.about.abs(), 6);
-        let _ =
-            writeln!(out, "\npolynomials in h = {} {sign} {about}, mm and rad; order {}", motion.name, series.order);
-        let power = |k: usize| if k == 0 { "1".to_string() } else { format!("h^{k}") };
-        let mut rows = vec![["axis", "coefficient"].map(String::from)];
-        for (axis, coefficients) in self.axes.iter().zip(&series.axes) {
-            // what does not show in the last place anywhere on the way is rounding
-            let reach = self.positions.iter().map(|position| (position[0] - series.about).abs()).fold(0.0, f64::max);
-            let size = coefficients.iter().enumerate().map(|(k, c)| c.abs() * reach.powi(k as i32)).fold(1.0, f64::max);
-            let is_rounding = |k: usize, c: f64| c.abs() * reach.powi(k as i32) <= 4.0 * f64::EPSILON * size;
-            for (k, c) in coefficients.iter().enumerate().filter(|(k, c)| *k == 0 || !is_rounding(*k, **c)) {
-                let visible = if is_rounding(k, *c) { 0.0 } else { *c };
-                rows.push([format!("{} {}", axis.name, power(k)), units::scientific(visible, 15)]);
-            }
-        }
-        out.push_str(&aligned(&rows, "<>"));
-        self.remainders_text(series, out);
-        if let Some(most) = series.deviations.get(series.order) {
-            let _ = writeln!(out, "\nthe flank is then off by up to {:.6} um", most * 1e3);
-        }
-    }
-
-    fn rates_text(&self, rates: &Rates, out: &mut String) {
-        let _ = writeln!(out, "\n{} evenly in {} s; at most", self.motions[0].name, rates.seconds);
-        let mut rows = vec![["axis", "velocity", "acceleration", "jerk"].map(String::from)];
-        rows.extend(self.axes.iter().enumerate().map(|(k, axis)| {
-            let each = rates.most(k);
-            let unit = units::symbol(axis.dimension);
-            let [velocity, acceleration, jerk] =
-                std::array::from_fn(|k| format!("{} {unit}/{}", units::digits(axis.dimension, each[k], 6), SECONDS[k]));
-            [axis.name.clone(), velocity, acceleration, jerk]
-        }));
-        out.push_str(&aligned(&rows, "<>>>"));
-    }
-
-    /// What the polynomials leave of each axis: seen at the positions, proven over the whole way.
-    fn remainders_text(&self, series: &Series, out: &mut String) {
-        let bounds = match &series.remainders {
-            Ok(bounds) => bounds,
-            Err(unproven) => {
-                let at = units::text(self.motions[0].dimension, unproven.at, 6);
-                let _ =
-                    writeln!(out, "\nwhat the polynomials leave is not bounded: {}", unbounded(&self.motions[0], &at));
-                return;
-            }
-        };
-        let seen = format!("seen at {} positions", self.positions.len());
-        let mut rows = vec![["axis off by", &seen, "proven, nowhere more than"].map(String::from)];
-        for ((axis, seen), bound) in self.axes.iter().zip(&series.seen).zip(bounds) {
-            rows.push([axis.name.clone(), small(axis.dimension, *seen), at_most(axis.dimension, *bound)]);
-        }
-        let _ = write!(out, "\n{}", aligned(&rows, "<>>"));
-    }
-
-    /// The same in a sentence.
-    pub(super) fn remainders(&self, series: &Series) -> String {
-        match &series.remainders {
-            Ok(bounds) => {
-                let each = self.axes.iter().zip(bounds);
-                let each: Vec<String> =
-                    each.map(|(axis, bound)| format!("{} {}", axis.name, at_most(axis.dimension, *bound))).collect();
-                format!("proven, over {}: off by at most {}", self.over(), each.join(", "))
-            }
-            Err(unproven) => {
-                let at = units::text(self.motions[0].dimension, unproven.at, 6);
-                format!("no error bound is proven: {}", unbounded(&self.motions[0], &at))
-            }
-        }
-    }
-
-    pub(super) fn over(&self) -> String {
-        let each: Vec<String> = self.motions.iter().enumerate().map(|(k, motion)| self.span(k, motion)).collect();
-        each.join(" and ")
-    }
-
-    /// `roll from … to …`
-    fn span(&self, k: usize, motion: &Named) -> String {
-        let values = self.positions.iter().map(|position| position[k]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        let [low, high] = [low, high].map(|x| units::text(motion.dimension, x, 6));
-        format!("{} from {low} to {high}", motion.name)
     }
 
     /// Postures that the tool stands in as it should, or as nearly as the axes take it, within travel or beyond. Where none was found
@@ -236,10 +97,15 @@ impl Table {
     }
 
     /// With what the target cannot do.
-    pub(super) fn result(self, not_done: Vec<NotDone>) -> AxisMotion {
+    pub(super) fn result(&self, not_done: Vec<NotDone>) -> AxisMotion {
         let named = |named: &Named| NamedUnit::new(&named.name, named.dimension);
         let symmetries = self.symmetries.iter();
+        let shown = |at: &Vec<f64>| -> Vec<f64> {
+            self.motions.iter().zip(at).map(|(motion, x)| units::shown(motion.dimension, *x)).collect()
+        };
         AxisMotion {
+            of: self.of.clone(),
+            made_at: self.still.as_ref().map(shown),
             motions: self.motions.iter().map(named).collect(),
             axes: self.axes.iter().enumerate().map(|(k, axis)| self.extent(k, axis)).collect(),
             unseen_by_the_tool: symmetries
@@ -248,11 +114,8 @@ impl Table {
             positions: self.positions.iter().zip(&self.line).map(|(at, posture)| self.position(at, posture)).collect(),
             polynomials: self.series.as_ref().map(|series| self.polynomials(series)),
             rates: self.rates.as_ref().map(|rates| self.axis_rates(rates)),
-            nc_deviation: self.blocks.map(|of| NcDeviation { straight_mm: of.straight, rounding_mm: of.rounding }),
-            text: self.text(),
-            job: self.job,
-            machine: self.machine,
-            files: self.written,
+            nc_deviation: self.nc_deviation,
+            files: Vec::new(),
             not_done,
         }
     }
@@ -311,33 +174,4 @@ impl Table {
 /// A number that is one.
 fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
-}
-
-/// Why there is no bound.
-fn unbounded(motion: &Named, at: &str) -> String {
-    format!("the axes stand in or near a singular pose, or are not smooth, at {} = {at}", motion.name)
-}
-
-/// A small amount with its unit.
-fn small(dimension: Dimension, amount: f64) -> String {
-    format!("{} {}", units::scientific(units::shown(dimension, amount), 3), units::symbol(dimension))
-}
-
-/// The same, rounded up.
-fn at_most(dimension: Dimension, bound: f64) -> String {
-    const HALF_OF_THE_LAST_DIGIT: f64 = 0.0005;
-    small(dimension, bound * (1.0 + HALF_OF_THE_LAST_DIGIT))
-}
-
-fn unseen(screw: &Screw) -> String {
-    let shown = |v: [f64; 3]| format!("[{}]", v.map(|x| fixed(x, 6)).join(", "));
-    if screw.angular == [0.0; 3] {
-        return format!("a shift along {}", shown(screw.linear));
-    }
-    let turn = format!("a turn about {}", shown(screw.angular));
-    if screw.linear == [0.0; 3] {
-        turn
-    } else {
-        format!("{turn} with the velocity {} mm/rad of its origin", shown(screw.linear))
-    }
 }

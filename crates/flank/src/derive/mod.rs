@@ -60,9 +60,9 @@ fn carried(
         // the postures that tell which elbow is meant lie as far as points are solved
         let unsolved = carried.source.unsolved.clone();
         let axes = match carried.failures() {
-            missed if missed.is_empty() => carried.explicit(true).map_err(|reason| {
-                vec![NotDone::new(NotDoneKind::NoClosedForm, &carried.machine.name, reason)]
-            }),
+            missed if missed.is_empty() => carried
+                .explicit(true)
+                .map_err(|reason| vec![NotDone::new(NotDoneKind::NoClosedForm, &carried.machine.name, reason)]),
             missed => Err(missed),
         };
         let axes = axes.map_err(|missed| Failure::NotDone(unsolved.iter().cloned().chain(missed).collect()))?;

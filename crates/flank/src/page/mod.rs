@@ -126,8 +126,9 @@ fn write<'g>(
              surfaces, and by how much, is given for some of them"
         ))
     } else {
-        (step > 1)
-            .then(|| format!("the page shows one of {step} rows and columns of what the job samples, and the last ones"))
+        (step > 1).then(|| {
+            format!("the page shows one of {step} rows and columns of what the job samples, and the last ones")
+        })
     };
     scene.notes.extend(shown_in_part.clone());
     if step > 1 {

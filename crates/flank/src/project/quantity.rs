@@ -1,6 +1,7 @@
 //! Quantities in documents.
 
 use flank_chain_dsl::Dimension;
+use flank_export::degrees;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -108,6 +109,8 @@ pub struct Travel {
 
 impl Travel {
     pub(crate) fn new(dimension: Dimension, (low, high): (f64, f64)) -> Travel {
-        Travel { low: units::shown(dimension, low), high: units::shown(dimension, high) }
+        // as it was given: 120 deg are not 119.99999999999999 deg
+        let [low, high] = [low, high].map(|x| if units::is_angle(dimension) { degrees(x) } else { x });
+        Travel { low, high }
     }
 }

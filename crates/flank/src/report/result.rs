@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::remark::NotDone;
 use crate::project::quantity::{NamedValue, Travel, UnitSymbol};
+use crate::project::remark::NotDone;
 use crate::solve::result::{Certified, PointSummary, SmoothFace, SurfaceResult};
 
 /// What stands on the page of `flank report`: inputs, machines, results of one job. Lengths are mm, angles degrees.

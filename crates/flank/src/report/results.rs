@@ -6,8 +6,8 @@ use flank_export::Face;
 
 use super::Findings;
 use super::result::{GeneratingProcess, ReportedSurface, SampledGrid};
-use crate::project::remark::NotDone;
 use crate::project::quantity::NamedValue;
+use crate::project::remark::NotDone;
 use crate::solve::branches;
 use crate::solve::certify;
 use crate::solve::reasons;

@@ -106,8 +106,9 @@ pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
     for solved in solved {
         let (name, at) = (&solved.surface.name, anchor(solved));
         if solved.effort.is_kept_elsewhere {
-            let message =
-                format!("no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}");
+            let message = format!(
+                "no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}"
+            );
             out.push(Remark::new(RemarkKind::BegunElsewhere, name, message));
         }
         if solved.effort.is_given_up {

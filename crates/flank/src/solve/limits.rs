@@ -33,7 +33,8 @@ pub(crate) struct Line<'j, 'g> {
 
 /// What is not shown of the lines.
 pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> Vec<Remark> {
-    let remark = |kind: RemarkKind, line: &Line<'_, '_>, message: String| Remark::new(kind, &line.surface.name, message);
+    let remark =
+        |kind: RemarkKind, line: &Line<'_, '_>, message: String| Remark::new(kind, &line.surface.name, message);
     let several = lines.iter().filter(|line| line.several > 1).map(|line| {
         let message = format!(
             "{} has {} of its kind beside each other within the ranges; the longest is shown, narrower ranges show the others",

@@ -4,8 +4,8 @@ use flank_chain_dsl::PointRequirement;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::Outcome;
 
-use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::UnitSymbol;
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 use crate::solve::reasons;
 use crate::solve::result::MissedRequirement;

@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::{Answer, Timing};
-use crate::project::remark::{NotDone, Remark};
 use crate::project::quantity::{Extent, NamedValue, UnitSymbol};
+use crate::project::remark::{NotDone, Remark};
 use crate::solve::limits::Line;
 use crate::solve::table::aligned;
 

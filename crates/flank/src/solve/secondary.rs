@@ -139,7 +139,8 @@ pub(crate) fn given_up(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
     };
     let told = solved.iter().filter(|solved| is_given_up(&solved.positions)).map(|solved| {
         let (name, what) = (&solved.surface.name, solved.positions.unseen().unwrap_or_default());
-        let message = format!("whether the tool cuts points of {name} away in another position was not looked at: {what}");
+        let message =
+            format!("whether the tool cuts points of {name} away in another position was not looked at: {what}");
         Remark::new(RemarkKind::PositionsNotTried, name, message)
     });
     told.collect()

@@ -5,8 +5,8 @@ use flank_export::Field;
 use flank_expr::Expr;
 use flank_solver::{GridReport, SurfacePoint};
 
-use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::quantity::Extent;
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::solve::branches;
 use crate::solve::certify;
 use crate::solve::cut::Cut;
