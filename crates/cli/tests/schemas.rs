@@ -216,9 +216,6 @@ fn failures_of_all_commands() {
     }
 }
 
-/// Files that the writers of `flank-export` write piece by piece: no type stands behind their schemas.
-const WRITTEN_PIECE_BY_PIECE: [&str; 3] = ["flank.grid/1", "flank.motion/2", "flank.surfaces/3"];
-
 #[test]
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
@@ -237,24 +234,10 @@ fn schemas_are_sound_and_closed() {
         assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
         assert!(schema["description"].as_str().is_some_and(|about| about.ends_with('.')), "{name} says what it is");
         closed(schema, name);
-        if WRITTEN_PIECE_BY_PIECE.contains(&&**name) {
-            continue;
-        }
         described(schema, name);
         for (key, shared) in schema["$defs"].as_object().into_iter().flatten() {
             assert_eq!(definitions.entry(key.clone()).or_insert(shared.clone()), shared, "{key} in {name}");
         }
-    }
-}
-
-#[test]
-fn schemas_in_files_are_those_of_files_written_piece_by_piece() {
-    let folder = std::fs::read_dir(top().join("schemas")).expect("the schemas");
-    assert_eq!(folder.count(), WRITTEN_PIECE_BY_PIECE.len());
-    for name in WRITTEN_PIECE_BY_PIECE {
-        let file = name.trim_start_matches("flank.").replace('/', "-");
-        let file = top().join(format!("schemas/{file}.schema.json"));
-        assert_eq!(text(&flank(&["schema", name]).stdout), std::fs::read_to_string(file).expect("its file"));
     }
 }
 

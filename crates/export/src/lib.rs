@@ -61,6 +61,7 @@ mod files;
 mod measuring;
 mod motion;
 mod points;
+mod schema;
 pub mod shape;
 mod step;
 pub mod text;
@@ -70,18 +71,18 @@ pub use files::atomic_file::{FileSet, make_folder, write_atomically};
 pub use files::error::{FileError, FolderError, Malformed, WriteError};
 pub use files::regions::Target;
 pub use measuring::{
-    FlankEnds, GRID_SCHEMA, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank,
-    Part, read_measured, write_grid_csv, write_grid_json,
+    FlankEnds, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank, Part,
+    read_measured, write_grid_csv, write_grid_json,
 };
 pub use motion::{
-    AxisSeries, Dialect, MOTION_SCHEMA, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
+    AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
     write_motion_json, write_nc,
 };
 pub use points::bands::{Banded, Surfaces, Taker};
 pub use points::conventions::sentences as conventions;
 pub use points::csv::write_csv;
 pub use points::dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
-pub use points::json::{SCHEMA, write_json};
+pub use points::json::write_json;
 pub use points::known::{Kept, Known};
 pub use points::obj::write_obj;
 #[cfg(feature = "parquet")]
@@ -90,5 +91,11 @@ pub use points::stl::write_stl;
 pub use points::tally::Tally;
 pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
+pub use schema::schema_of;
 pub use step::{Deviation, Face, write_step};
 pub use text::number::{degrees, fixed};
+
+/// The schemas of the JSON documents that this crate writes: surfaces, motion tables, measuring grids.
+pub fn schemas() -> [serde_json::Value; 3] {
+    [points::json::schema(), motion::json_schema(), measuring::json_schema()]
+}

@@ -55,8 +55,8 @@ pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
 pub use convert::convert;
 pub use convert::result::{
-    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition, FoundSetting,
-    FoundSettings, MissingMotion, NcDeviation, Remainders, UnseenMotion,
+    AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
+    FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, UnseenMotion,
 };
 pub use derive::derive;
 pub use derive::result::{

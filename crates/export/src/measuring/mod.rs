@@ -4,12 +4,16 @@ mod csv;
 mod json;
 mod measured;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::points::dataset::{Header, Patch, Point};
 use crate::shape::{Seen, Sides, is_last, is_thread, sides};
 use crate::vector::{Vector, add, sub};
 
 pub use csv::write_grid_csv;
-pub use json::{GRID_SCHEMA, write_grid_json};
+pub(crate) use json::schema as json_schema;
+pub use json::write_grid_json;
 pub use measured::{Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, read_measured};
 
 /// Nominal points of the flanks of a job.
@@ -37,7 +41,8 @@ pub struct NominalFlank {
 }
 
 /// What is measured at a flank.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Part {
     /// The whole flank.
     Grid,
@@ -63,7 +68,8 @@ impl Part {
 }
 
 /// A flank of a tooth, seen along the tooth from the first column to the last one, with the tip up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Hand {
     /// Its normal, out of the material, points to the left.
     Left,

@@ -1,16 +1,16 @@
-//! A motion table as JSON, by the schema `schemas/motion-2.schema.json`.
+//! A motion table as JSON.
 
 use std::io::Write;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::table::{AS_IN_THE_SPEC, MachineAxis, MotionTable};
 use crate::files::error::WriteError;
+use crate::points::dataset::{Unit, Unknown};
 use crate::points::json_layout::{Head, write_document};
+use crate::schema::schema_of;
 use crate::text::number::plain;
-
-/// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
-pub const MOTION_SCHEMA: &str = "flank.motion/2";
 
 /// Writes a motion table as JSON, one row a line, keys in a fixed order. Lengths are mm, angles degrees.
 ///
@@ -21,8 +21,8 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
     const BROKEN: usize = 2;
     table.check()?;
     let document = Document {
-        head: Head::new(MOTION_SCHEMA, &table.header, table.sentences(AS_IN_THE_SPEC)),
-        motion: MotionOut { name: &table.motion.name, unit: table.motion.unit.symbol() },
+        head: Head::new(&table.header, table.sentences(AS_IN_THE_SPEC)),
+        motion: &table.motion,
         axes: (0..table.axes.len()).map(|index| axis_out(table, index)).collect(),
         series: series_out(table),
         seconds: table.rates.as_ref().map(|rates| plain(rates.seconds)),
@@ -31,56 +31,88 @@ pub fn write_motion_json(table: &MotionTable, out: &mut dyn Write) -> Result<(),
     write_document(&document, BROKEN, out)
 }
 
-#[derive(Serialize)]
+/// The schema of the documents.
+pub(crate) fn schema() -> serde_json::Value {
+    schema_of::<Document<'_>>()
+}
+
+/// What the axes of a machine do over a motion. Lengths are mm; angles are degrees, not reduced to one turn. Axes are named, signed and
+/// counted as in the machine's spec.
+#[derive(Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.motion/2")]
 struct Document<'a> {
     #[serde(flatten)]
     head: Head<'a>,
-    motion: MotionOut<'a>,
+    /// What runs.
+    motion: &'a Unknown,
+    /// Of the machine.
     axes: Vec<AxisOut<'a>>,
+    /// The axes as polynomials of the motion, in the units of the rows; null where they are not known.
     series: Option<SeriesOut>,
+    /// How long the motion takes, evenly, from the first row to the last one; null where no rates are given.
     seconds: Option<f64>,
+    /// In the order in which they are passed.
     rows: Vec<RowOut>,
 }
 
-#[derive(Serialize)]
-struct MotionOut<'a> {
-    name: &'a str,
-    unit: &'a str,
-}
-
-#[derive(Serialize)]
+/// An axis with how far it goes.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenAxis")]
 struct AxisOut<'a> {
+    /// In the machine's spec.
     name: &'a str,
+    /// In NC programs.
     address: &'a str,
-    unit: &'a str,
+    /// Of its positions.
+    unit: Unit,
+    /// Of positions in NC programs.
     decimals: u8,
+    /// Smallest position of the rows; null without rows.
     low: Option<f64>,
+    /// Largest.
     high: Option<f64>,
+    /// What the axis can do, in its unit; null where it is not limited.
     travel: Option<Ends>,
 }
 
-#[derive(Serialize)]
+/// From where to where, in the unit of what it belongs to.
+#[derive(Serialize, JsonSchema)]
 struct Ends {
+    /// Lower end.
     low: f64,
+    /// Upper end.
     high: f64,
 }
 
-#[derive(Serialize)]
+/// The axes as polynomials.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenSeries")]
 struct SeriesOut {
+    /// The value of the motion about which they are.
     reference: f64,
+    /// In the order of the axes.
     axes: Vec<AxisSeriesOut>,
 }
 
-#[derive(Serialize)]
+/// An axis as a polynomial.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenAxisSeries")]
 struct AxisSeriesOut {
+    /// Factors of the powers of the distance from the reference, constant first.
     coefficients: Vec<f64>,
+    /// Proven bound of what the polynomial leaves over the range of the rows; null without a proof.
     remainder: Option<f64>,
 }
 
-#[derive(Serialize)]
+/// The axes at one value of the motion.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenRow")]
 struct RowOut {
+    /// Value of the motion.
     motion: f64,
+    /// In the order and units of the axes.
     axes: Vec<f64>,
+    /// Of each axis velocity, acceleration and jerk, in its unit per s, s^2, s^3; null without a time.
     rates: Option<Vec<[f64; 3]>>,
 }
 
@@ -94,7 +126,7 @@ fn axis_out(table: &MotionTable, index: usize) -> AxisOut<'_> {
     AxisOut {
         name: &axis.name,
         address: &axis.address,
-        unit: axis.unit().symbol(),
+        unit: axis.unit(),
         decimals: axis.decimals,
         low: extent.as_ref().map(|extent| extent.low),
         high: extent.as_ref().map(|extent| extent.high),

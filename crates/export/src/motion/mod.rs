@@ -8,6 +8,7 @@ mod table;
 
 pub use self::csv::write_motion_csv;
 pub use dialect::Dialect;
-pub use json::{MOTION_SCHEMA, write_motion_json};
+pub(crate) use json::schema as json_schema;
+pub use json::write_motion_json;
 pub use nc::{NcError, write_nc};
 pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Rates, Series};

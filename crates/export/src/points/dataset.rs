@@ -1,5 +1,8 @@
 //! What the solver's results look like to a writer of files.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::files::error::Malformed;
 use crate::points::known::Known;
 use crate::points::tally::Tally;
@@ -71,7 +74,8 @@ pub enum Values {
 }
 
 /// One direction of a grid.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "GridAxis")]
 pub struct Axis {
     /// What changes along it, such as `z`, or from where to where it runs, such as `toe -> heel`.
     pub label: String,
@@ -80,7 +84,7 @@ pub struct Axis {
 }
 
 /// One of the parameters a surface was solved for.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Unknown {
     /// Its name in the spec.
     pub name: String,
@@ -89,13 +93,16 @@ pub struct Unknown {
 }
 
 /// The unit a number is written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 pub enum Unit {
     /// A length, in mm.
+    #[serde(rename = "mm")]
     Millimetre,
     /// An angle: handed over in radians, written in degrees. It is not reduced to one turn.
+    #[serde(rename = "deg")]
     Degree,
     /// A number without a unit.
+    #[serde(rename = "1")]
     One,
 }
 

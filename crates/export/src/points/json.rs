@@ -1,20 +1,20 @@
-//! Points as JSON, by the schema `schemas/surfaces-3.schema.json`.
+//! Points as JSON.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::ser::{Error, SerializeSeq, Serializer};
 
 use crate::files::error::WriteError;
 use crate::points::bands::{Banded, Seen, Surfaces};
 use crate::points::conventions::sentences;
-use crate::points::dataset::{Axis, Field, Patch, Point, Values};
+use crate::points::dataset::{Axis, Field, Patch, Point, Unknown, Values};
 use crate::points::json_layout::{Head, write_document};
 use crate::points::tally::Tally;
+use crate::schema::schema_of;
 use crate::text::number::plain;
-
-/// Name and version of the JSON schema. A later version is a different word: readers compare it whole.
-pub const SCHEMA: &str = "flank.surfaces/3";
 
 /// Writes all points as JSON, one point a line, keys in a fixed order.
 ///
@@ -30,7 +30,7 @@ pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wr
     const BROKEN: usize = 4;
     let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
     let document = Document {
-        head: Head::new(SCHEMA, header, sentences(header)),
+        head: Head::new(header, sentences(header)),
         tally: TallyOut::of(&seen.all),
         surfaces: surfaces
             .list
@@ -42,68 +42,107 @@ pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wr
     write_document(&document, BROKEN, out)
 }
 
-#[derive(Serialize)]
+/// The schema of the documents.
+pub(crate) fn schema() -> serde_json::Value {
+    schema_of::<Document<'_>>()
+}
+
+/// Solved tooth surfaces: grids of points in named frames. Lengths are mm; angles are degrees, not reduced to one turn. A normal points
+/// out of the body that owns the surface.
+#[derive(Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.surfaces/3")]
 struct Document<'a> {
     #[serde(flatten)]
     head: Head<'a>,
+    /// Of all surfaces.
     #[serde(flatten)]
     tally: TallyOut,
+    /// In the order of the job, then lines on them.
     surfaces: Vec<SurfaceOut<'a>>,
 }
 
-#[derive(Serialize)]
+/// Points, counted.
+#[derive(Serialize, JsonSchema)]
 struct TallyOut {
+    /// Points asked for.
     asked: usize,
+    /// Points solved.
     solved: usize,
+    /// Largest absolute residual of a solved point; null where none was solved.
     worst_residual: Option<f64>,
 }
 
-#[derive(Serialize)]
+/// A grid of points.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenSurface")]
 struct SurfaceOut<'a> {
+    /// Its name.
     name: &'a str,
+    /// Of positions and normals.
     frame: &'a str,
+    /// What index i runs over.
     rows: &'a Axis,
+    /// What index j runs over.
     columns: &'a Axis,
-    unknowns: Vec<UnknownOut<'a>>,
+    /// What the points were solved for.
+    unknowns: &'a [Unknown],
+    /// What more is known of each solved point.
     fields: Vec<FieldOut<'a>>,
     #[serde(flatten)]
     tally: TallyOut,
+    /// Row by row.
     points: PointsOut<'a>,
 }
 
-#[derive(Serialize)]
-struct UnknownOut<'a> {
-    name: &'a str,
-    unit: &'static str,
-}
-
 /// What is said of a field before its values.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenField")]
 struct FieldOut<'a> {
+    /// Its name.
     name: &'a str,
+    /// Such as `1/mm`; `1` for a plain number or a direction.
     unit: &'a str,
+    /// 1: a number; 3: a vector in the surface's frame.
+    #[schemars(extend("enum" = [1, 3]))]
     components: usize,
+    /// One sentence, with the sign convention.
     meaning: &'a str,
 }
 
-#[derive(Serialize)]
+/// The value of a field at a point; null where it is not defined there.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "FieldValue")]
 #[serde(untagged)]
 enum ValueOut {
+    /// Of one component.
     Scalar(Option<f64>),
+    /// Of three.
     Vector(Option<[f64; 3]>),
 }
 
-#[derive(Serialize)]
+/// A point. Position, normal and unknowns are null unless the status is `solved`, `undercut`, `trimmed` or `undecided`.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WrittenPoint")]
 struct PointOut<'a> {
+    /// Row, from 0.
     i: usize,
+    /// Column, from 0.
     j: usize,
+    /// `solved`, or why not; a point that is `undercut` or `trimmed` lies on the generated surface, but not on the finished work.
     status: &'static str,
+    /// In mm.
     position: Option<[f64; 3]>,
+    /// Of unit length.
     normal: Option<[f64; 3]>,
+    /// In the order and units of the surface's unknowns.
     unknowns: Option<Vec<f64>>,
+    /// The largest absolute one; null where there was nothing to measure.
     residual: Option<f64>,
+    /// More on a status other than `solved`.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
     reason: Option<&'a str>,
+    /// In the order of the surface's fields, each in its unit; null unless the point is solved.
     fields: Option<Vec<ValueOut>>,
 }
 
@@ -115,6 +154,20 @@ impl TallyOut {
 
 /// The points, one after the other as they are handed over.
 struct PointsOut<'a>(&'a dyn Banded);
+
+impl JsonSchema for PointsOut<'_> {
+    fn schema_name() -> Cow<'static, str> {
+        <Vec<PointOut<'_>>>::schema_name()
+    }
+
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        <Vec<PointOut<'_>>>::json_schema(generator)
+    }
+}
 
 impl Serialize for PointsOut<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -148,7 +201,7 @@ fn surface_out<'a>(surface: &'a dyn Banded, tally: &Tally) -> SurfaceOut<'a> {
         frame: &patch.frame,
         rows: &patch.rows,
         columns: &patch.columns,
-        unknowns: patch.unknowns.iter().map(|u| UnknownOut { name: &u.name, unit: u.unit.symbol() }).collect(),
+        unknowns: &patch.unknowns,
         fields: patch.fields.iter().map(field).collect(),
         tally: TallyOut::of(tally),
         points: PointsOut(surface),

@@ -2,40 +2,48 @@
 
 use std::io::{self, Write};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
 use crate::files::error::WriteError;
-use crate::points::dataset::Header;
+use crate::points::dataset::{Header, Unit};
 
 /// What all documents begin with.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(crate) struct Head<'a> {
-    schema: &'a str,
+    /// Program and version that wrote the file.
     program: &'a str,
+    /// The spec file, as it was given.
     spec: &'a str,
+    /// Hash of what the spec says.
     spec_hash: &'a str,
+    /// The job of the spec that was run.
     job: &'a str,
+    /// Sentences that a reader of the numbers must know.
     conventions: Vec<String>,
-    units: Units,
+    /// Of all numbers, unless they have one of their own.
+    units: FileUnits,
 }
 
-#[derive(Serialize)]
-struct Units {
-    length: &'static str,
-    angle: &'static str,
+/// The units of a file.
+#[derive(Serialize, JsonSchema)]
+struct FileUnits {
+    /// Of lengths.
+    length: Unit,
+    /// Of angles.
+    angle: Unit,
 }
 
 impl<'a> Head<'a> {
-    pub(crate) fn new(schema: &'a str, header: &'a Header, conventions: Vec<String>) -> Head<'a> {
+    pub(crate) fn new(header: &'a Header, conventions: Vec<String>) -> Head<'a> {
         Head {
-            schema,
             program: &header.program,
             spec: &header.spec,
             spec_hash: &header.spec_hash,
             job: &header.job,
             conventions,
-            units: Units { length: "mm", angle: "deg" },
+            units: FileUnits { length: Unit::Millimetre, angle: Unit::Degree },
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Documents held against the schemas that the program ships.
+//! Documents held against the schemas of what is written.
 
 use serde_json::Value;
 
-/// Faults of a document by a schema: place and rule.
-pub(crate) fn faults_of(document: &Value, schema: &str) -> Vec<String> {
-    let schema: Value = serde_json::from_str(schema).expect("the schema is JSON");
+/// Faults of a document by the schema of that name: place and rule.
+pub(crate) fn faults_of(document: &Value, name: &str) -> Vec<String> {
+    let schema = flank_export::schemas().into_iter().find(|schema| schema["title"] == name).expect("it is written");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let fault =
         |fault: jsonschema::ValidationError<'_>| format!("{}: {}", fault.instance_path(), fault.kind().keyword());
