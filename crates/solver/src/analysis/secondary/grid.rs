@@ -11,6 +11,8 @@ use crate::surface::points::SurfacePoint;
 /// Of a grid with no more points than this each is judged, where there is one motion: between lines that are far apart a whole piece may
 /// be cut away. With several motions, of which one runs at a time, a point's way is many times as long.
 const FEW: usize = 1024;
+/// Points of it that are judged at the same time.
+const TOGETHER: usize = 16;
 /// Parts into which rows and columns are divided first.
 const PARTS: usize = 8;
 /// Feet that are looked for before the rest is given up, and for each line of a grid.
@@ -123,19 +125,25 @@ impl<'c> Judge<'c> {
         Judge { cutting, poses, seen, values, fixed, is_own, looks: 0 }
     }
 
-    fn verdict(&mut self, point: &SurfacePoint) -> Verdict {
-        let count = self.cutting.ranges.len();
-        let motions = self.cutting.motions(point, self.is_own);
-        let position = Vector3::from(point.position);
-        let mut deepest: Verdict = None;
-        for running in 0..count {
-            let places = self.places(&position, &motions, running);
+    /// The verdicts on some points.
+    fn verdicts(&mut self, points: &[&SurfacePoint]) -> Vec<Verdict> {
+        let mut deepest: Vec<Verdict> = vec![None; points.len()];
+        let motions: Vec<Vec<f64>> = points.iter().map(|point| self.cutting.motions(point, self.is_own)).collect();
+        for running in 0..self.cutting.ranges.len() {
+            let placed = points.iter().zip(&motions);
+            let ways: Vec<Vec<Place>> =
+                placed.map(|(point, motions)| self.places(&Vector3::from(point.position), motions, running)).collect();
             for seen in &mut self.seen {
-                let motions = motions.clone();
-                let mut way = Way { poses: &mut self.poses, seen, point: position, motions, running, looks: 0 };
-                let cut = way.cut(&places);
-                self.looks += 1 + way.looks;
-                deepest = deepest.into_iter().chain(cut).reduce(Cut::deeper);
+                let (sights, looks) = seen.sights(&ways);
+                self.looks += points.len() as u64 + looks;
+                let each = points.iter().zip(&motions).zip(sights).zip(&mut deepest);
+                for (((point, motions), mut sights), deepest) in each {
+                    let (point, motions) = (Vector3::from(point.position), motions.clone());
+                    let mut way = Way { poses: &mut self.poses, seen, point, motions, running, looks: 0 };
+                    let cut = way.cut(&mut sights);
+                    self.looks += way.looks;
+                    *deepest = (*deepest).into_iter().chain(cut).reduce(Cut::deeper);
+                }
             }
         }
         deepest
@@ -178,9 +186,8 @@ struct Spread<'p, 'c> {
 impl Spread<'_, '_> {
     fn all(&mut self) {
         if self.points.len() <= FEW && self.judge.values.len() == 1 {
-            (0..self.points.len()).for_each(|at| {
-                self.known(at);
-            });
+            let all: Vec<usize> = (0..self.points.len()).collect();
+            all.chunks(TOGETHER).for_each(|together| self.look_at(together));
             return;
         }
         let [rows, columns] = self.counts.map(lines);
@@ -191,26 +198,27 @@ impl Spread<'_, '_> {
         }
     }
 
-    fn known(&mut self, at: usize) -> Option<Verdict> {
-        if self.points[at].outcome != Outcome::Solved {
-            return None;
+    /// Makes the verdicts on some points known, as far as they are solved and the budget goes.
+    fn look_at(&mut self, together: &[usize]) {
+        let is_open = |at: &usize| self.points[*at].outcome == Outcome::Solved && self.verdicts[*at].is_none();
+        let mut open: Vec<usize> = together.iter().copied().filter(is_open).collect();
+        open.dedup();
+        let [most, each] = MOST_LOOKS;
+        if !open.is_empty() && self.judge.looks > most + each * self.counts.iter().sum::<usize>() as u64 {
+            self.is_spent = true;
+            return;
         }
-        if self.verdicts[at].is_none() {
-            let [most, each] = MOST_LOOKS;
-            if self.judge.looks > most + each * self.counts.iter().sum::<usize>() as u64 {
-                self.is_spent = true;
-                return None;
-            }
-            self.verdicts[at] = Some(self.judge.verdict(&self.points[at]));
-        }
-        self.verdicts[at]
+        let points: Vec<&SurfacePoint> = open.iter().map(|at| &self.points[*at]).collect();
+        let verdicts = self.judge.verdicts(&points);
+        open.into_iter().zip(verdicts).for_each(|(at, verdict)| self.verdicts[at] = Some(verdict));
     }
 
     /// A block between rows and columns: of one verdict if its corners are.
     fn block(&mut self, rows: [usize; 2], columns: [usize; 2]) {
         let corners = rows.into_iter().flat_map(|i| columns.map(|j| i * self.counts[1] + j));
         let corners: Vec<usize> = corners.collect();
-        let known: Vec<Option<Verdict>> = corners.iter().map(|at| self.known(*at)).collect();
+        self.look_at(&corners);
+        let known: Vec<Option<Verdict>> = corners.iter().map(|at| self.verdicts[*at]).collect();
         let [high, wide] = [rows, columns].map(|[from, to]| to - from);
         if self.is_spent || (high <= 1 && wide <= 1) {
             return;

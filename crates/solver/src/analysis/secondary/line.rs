@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::analysis::secondary::SecondaryCutting;
-use crate::analysis::secondary::net::{Foot, Found, Near, Seen, Side};
+use crate::analysis::secondary::net::{Foot, Found, Near, Piece, Seen, Side};
 use crate::analysis::secondary::tape::Runner;
 
 /// A point less deep in the steel than this, mm, is only touched: points are good to this.
@@ -30,11 +30,12 @@ pub(super) struct Place {
     pub(super) motion: f64,
     point: Vector3<f64>,
     velocity: Vector3<f64>,
+    speed: f64,
 }
 
 /// A place as a piece of the tool sees it.
 #[derive(Clone, Copy)]
-struct Sight {
+pub(super) struct Sight {
     place: Place,
     near: Near,
     /// Once it was looked for.
@@ -112,7 +113,7 @@ impl Pose {
 
     pub(super) fn place(&self, motion: f64, point: &Vector3<f64>) -> Place {
         let velocity = self.velocity(point);
-        Place { motion, point: self.rotation[0] * point + self.translation[0], velocity }
+        Place { motion, point: self.rotation[0] * point + self.translation[0], velocity, speed: velocity.norm() }
     }
 }
 
@@ -128,32 +129,77 @@ pub(super) struct Way<'w, 'c> {
     pub(super) looks: u64,
 }
 
+impl<'c> Seen<'c> {
+    /// The places of some ways, one way after the other, as the piece sees them, those that are beside it with their feet. Also how many feet
+    /// were looked for.
+    pub(super) fn sights(&mut self, ways: &[Vec<Place>]) -> (Vec<Vec<Option<Sight>>>, u64) {
+        let mut sights: Vec<Vec<Option<Sight>>> = ways.iter().map(|places| self.piece.sights(places)).collect();
+        let mut wanted: Vec<&mut Sight> = Vec::new();
+        for way in &mut sights {
+            let is_near = |pair: [Option<&Sight>; 2]| matches!(pair, [Some(a), Some(b)] if a.may_meet(b));
+            let near: Vec<bool> = way.windows(2).map(|pair| is_near([pair[0].as_ref(), pair[1].as_ref()])).collect();
+            let is_wanted =
+                |at: usize| near.get(at) == Some(&true) || at.checked_sub(1).is_some_and(|before| near[before]);
+            wanted.extend(
+                way.iter_mut().enumerate().filter(|(at, _)| is_wanted(*at)).filter_map(|(_, sight)| sight.as_mut()),
+            );
+        }
+        let starts: Vec<_> = wanted.iter().map(|sight| (sight.place.point, sight.near.at)).collect();
+        let found = self.feet(&starts);
+        wanted.into_iter().zip(found).for_each(|(sight, found)| sight.found = Some(found));
+        (sights, starts.len() as u64)
+    }
+}
+
+impl Piece {
+    /// Some places, one after the other; none of those so far from the piece that it cannot be met before the next or since the last.
+    fn sights(&self, places: &[Place]) -> Vec<Option<Sight>> {
+        let mut before: Option<Near> = None;
+        let sight = |number: usize| {
+            let (place, last, next) = (&places[number], places[..number].last(), places.get(number + 1));
+            let to = |other: Option<&Place>| {
+                other.map_or([0.0; 2], |other| [other.speed, (other.motion - place.motion).abs()])
+            };
+            let ([a, since], [b, until]) = (to(last), to(next));
+            let is_far = self.least(&place.point) > LONGER * place.speed.max(a).max(b) * since.max(until);
+            let near = if is_far { None } else { self.near(&place.point, before.as_ref()) };
+            before = near.or(before);
+            near.map(|near| Sight { place: *place, near, found: None })
+        };
+        (0..places.len()).map(sight).collect()
+    }
+}
+
+impl Sight {
+    /// How long the way to the next one may be at the most.
+    fn way_to(&self, next: &Sight) -> f64 {
+        LONGER * self.place.speed.max(next.place.speed) * (next.place.motion - self.place.motion)
+    }
+
+    /// Whether the piece may be met on the way to the next one.
+    fn may_meet(&self, next: &Sight) -> bool {
+        let way = self.way_to(next);
+        self.near.least + next.near.least <= way && self.near.least.max(next.near.least) <= way
+    }
+}
+
 impl Way<'_, '_> {
     /// Whether the piece cuts the point away on its way through some places, one after the other; one of them is where it is
     /// generated.
-    pub(super) fn cut(&mut self, places: &[Place]) -> Option<Cut> {
-        let mut before: Option<Sight> = None;
+    pub(super) fn cut(&mut self, sights: &mut [Option<Sight>]) -> Option<Cut> {
         let mut deepest: Option<Cut> = None;
-        for (number, place) in places.iter().enumerate() {
-            let beside = &places[number.saturating_sub(1)..places.len().min(number + 2)];
-            let is_far = beside.len() > 1 && {
-                let fastest = beside.iter().map(|place| place.velocity.norm()).fold(0.0, f64::max);
-                let farther = (beside[1].motion - beside[0].motion).max(beside[beside.len() - 1].motion - place.motion);
-                self.seen.piece.least(&place.point) > LONGER * fastest * farther
-            };
-            let mut sight = if is_far { None } else { self.sight(*place) };
-            if let (Some(before), Some(sight)) = (&mut before, &mut sight)
+        for at in 1..sights.len() {
+            if let [Some(before), Some(sight)] = &mut sights[at - 1..=at]
                 && let Some(cut) = self.between(before, sight, 0)
             {
                 deepest = Some(deepest.map_or(cut, |deepest| deepest.deeper(cut)));
             }
-            before = sight;
         }
         deepest
     }
 
     fn sight(&self, place: Place) -> Option<Sight> {
-        self.seen.piece.near(&place.point).map(|near| Sight { place, near, found: None })
+        self.seen.piece.near(&place.point, None).map(|near| Sight { place, near, found: None })
     }
 
     fn sight_at(&mut self, motion: f64) -> Option<Sight> {
@@ -177,12 +223,10 @@ impl Way<'_, '_> {
     }
 
     fn between(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
-        let fastest = a.place.velocity.norm().max(b.place.velocity.norm());
-        let span = b.place.motion - a.place.motion;
-        let way = LONGER * fastest * span;
-        if a.near.least + b.near.least > way || a.near.least.max(b.near.least) > way {
+        if !a.may_meet(b) {
             return None;
         }
+        let (span, way) = (b.place.motion - a.place.motion, a.way_to(b));
         let ((foot_a, side_a), (foot_b, side_b)) = (self.foot(a), self.foot(b));
         if let (Some(side_a), Some(side_b)) = (side_a, side_b)
             && (0..2).any(|k| side_a[k] * side_b[k] > 0)

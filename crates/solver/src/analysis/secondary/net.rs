@@ -1,7 +1,7 @@
 //! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
 
 use flank_expr::geometry::Surface;
-use flank_expr::{Expr, TapeError};
+use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
 use crate::analysis::secondary::tape::{PlaceTape, Runner};
@@ -79,6 +79,8 @@ impl Corner {
 pub(super) struct Near {
     pub(super) least: f64,
     pub(super) at: [f64; 2],
+    /// The number of the cell.
+    cell: usize,
 }
 
 /// The foot of a point on a piece, or on what lies a little beyond its ranges.
@@ -158,34 +160,45 @@ impl Piece {
         (low - point).sup(&(point - high)).sup(&Vector3::zeros()).norm()
     }
 
-    /// The cell that a point is nearest to; `None` if the piece has no cells.
-    pub(super) fn near(&self, point: &Vector3<f64>) -> Option<Near> {
-        let mut best = Near { least: f64::INFINITY, at: [0.0; 2] };
-        for (block, cells) in self.blocks.iter().zip(self.cells.chunks(BLOCK)) {
+    /// The cell that a point is nearest to; `None` if the piece has no cells. What another point that is not far from it is near is looked
+    /// at first.
+    pub(super) fn near(&self, point: &Vector3<f64>, other: Option<&Near>) -> Option<Near> {
+        let first = other.map_or(0, |other| other.cell);
+        let mut best = self.cells.get(first)?.near(point, self.steps, first);
+        for (number, block) in self.blocks.iter().enumerate() {
             if (point - block.center).norm() - block.radius >= best.least {
                 continue;
             }
-            for cell in cells {
-                let from = point - cell.ball.center;
-                let apart = from.norm() - cell.ball.radius;
-                if apart >= best.least {
+            let from = number * BLOCK;
+            for (cell, number) in self.cells[from..].iter().take(BLOCK).zip(from..) {
+                if (point - cell.ball.center).norm() - cell.ball.radius >= best.least {
                     continue;
                 }
-                let share = cell.duals.map(|dual| dual.dot(&from).clamp(-1.0, 1.0));
-                let apart = (from - cell.halves[0] * share[0] - cell.halves[1] * share[1]).norm();
-                let least = cell.skew * apart - cell.sagitta;
-                if least < best.least {
-                    let at = [0, 1].map(|k| cell.at[k] + 0.5 * share[k] * self.steps[k]);
-                    best = Near { least, at };
+                let near = cell.near(point, self.steps, number);
+                if near.least < best.least {
+                    best = near;
                 }
             }
         }
-        best.least.is_finite().then_some(best)
+        Some(best)
     }
 
     /// Whether two places on the piece are no farther apart than neighbouring cells.
     pub(super) fn are_beside(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         (0..2).all(|k| (a[k] - b[k]).abs() <= 2.0 * self.steps[k])
+    }
+
+    /// What is found with a step from a place, if it is the last one.
+    #[inline]
+    fn ended(&self, at: [f64; 2], step: &Step, normal: impl FnOnce() -> Vector3<f64>) -> Option<Found> {
+        if step.along < STILL {
+            return Some(Found::Foot(Foot { at: step.to, clearance: step.clearance, normal: normal() }));
+        }
+        if step.along.is_nan() {
+            return Some(Found::Lost);
+        }
+        let after = self.beyond(step.to, BEYOND);
+        (after != [0, 0] && self.beyond(at, BEYOND) != [0, 0]).then_some(Found::Beyond(after))
     }
 
     /// On which side of the piece a place lies that Newton has found; both zero on the piece.
@@ -199,6 +212,17 @@ impl Piece {
             let (range, margin) = (self.ranges[k], share * self.ranges[k].width());
             i8::from(at[k] > range.high + margin) - i8::from(at[k] < range.low - margin)
         })
+    }
+}
+
+impl Cell {
+    /// As far as it is itself near a point.
+    fn near(&self, point: &Vector3<f64>, steps: [f64; 2], number: usize) -> Near {
+        let from = point - self.ball.center;
+        let share = self.duals.map(|dual| dual.dot(&from).clamp(-1.0, 1.0));
+        let apart = (from - self.halves[0] * share[0] - self.halves[1] * share[1]).norm();
+        let at = [0, 1].map(|k| self.at[k] + 0.5 * share[k] * steps[k]);
+        Near { least: self.skew * apart - self.sagitta, at, cell: number }
     }
 }
 
@@ -292,37 +316,131 @@ impl Seen<'_> {
 
     /// The foot of a point that Newton finds from a place.
     pub(super) fn foot(&mut self, point: &Vector3<f64>, start: [f64; 2]) -> Found {
-        let piece = self.piece;
         let mut at = start;
         for _ in 0..MOST_STEPS {
             self.run(at);
-            let [position, normal, u, v] = [0, 1, 2, 3].map(|k| self.vector(k));
-            let from = point - position;
-            let clearance = from.dot(&normal);
-            let gradient = [from.dot(&u), from.dot(&v)];
-            let metric = [u.norm_squared(), u.dot(&v), v.norm_squared()];
-            let bent = [u.dot(&self.vector(4)), u.dot(&self.vector(5)), v.dot(&self.vector(5))];
-            let curved: [f64; 3] = std::array::from_fn(|k| metric[k] + clearance * bent[k]);
-            let is_least = curved[0] > 0.0 && curved[0] * curved[2] > curved[1] * curved[1];
-            let [a, b, c] = if is_least { curved } else { metric };
-            let area = a * c - b * b;
-            let step = [(c * gradient[0] - b * gradient[1]) / area, (a * gradient[1] - b * gradient[0]) / area];
-            let along = (u * step[0] + v * step[1]).norm();
-            if along.is_nan() {
-                return Found::Lost;
+            let step = Step::new([point.x, point.y, point.z], at, self.piece.steps, |k| self.out[k]);
+            if let Some(found) = self.piece.ended(at, &step, || self.vector(1)) {
+                return found;
             }
-            let before = piece.beyond(at, BEYOND);
-            let shorter = (0..2).map(|k| 2.0 * piece.steps[k] / step[k].abs()).fold(1.0, f64::min);
-            at = [0, 1].map(|k| at[k] + shorter * step[k]);
-            if along < STILL {
-                return Found::Foot(Foot { at, clearance, normal });
-            }
-            let after = piece.beyond(at, BEYOND);
-            if before != [0, 0] && after != [0, 0] {
-                return Found::Beyond(after);
-            }
+            at = step.to;
         }
         Found::Lost
+    }
+
+    /// The same for many points, each with its place.
+    pub(super) fn feet(&mut self, wanted: &[(Vector3<f64>, [f64; 2])]) -> Vec<Found> {
+        let piece = self.piece;
+        let Some(evaluator) = self.evaluator.lanes() else {
+            return wanted.iter().map(|(point, start)| self.foot(point, *start)).collect();
+        };
+        let mut found = vec![Found::Lost; wanted.len()];
+        let mut open: Vec<Open> = (0..wanted.len().min(LANES)).map(|number| Open { number, steps: 0 }).collect();
+        let mut next = open.len();
+        let mut points = [[0.0; LANES]; 3];
+        let mut at = [[0.0; LANES]; 2];
+        let mut steps = [Step::default(); LANES];
+        let put = |points: &mut [[f64; LANES]; 3], at: &mut [[f64; LANES]; 2], lane: usize, number: usize| {
+            let (point, start) = &wanted[number];
+            (0..3).for_each(|k| points[k][lane] = point[k]);
+            (at[0][lane], at[1][lane]) = (start[0], start[1]);
+        };
+        (0..next).for_each(|lane| put(&mut points, &mut at, lane, lane));
+        while !open.is_empty() {
+            let count = open.len();
+            (0..2).for_each(|k| *evaluator.input(k) = at[k]);
+            evaluator.run_first(count);
+            let outputs: [&[f64; LANES]; OUTPUTS] = std::array::from_fn(|k| evaluator.output(k));
+            InstructionSet::widest().dispatch(
+                #[inline(always)]
+                || steps_of(count, (&points, &at), piece.steps, &outputs, &mut steps),
+            );
+            let mut kept = 0;
+            for lane in 0..count {
+                let Open { number, steps: before } = open[lane];
+                let (step, own) = (steps[lane], [at[0][lane], at[1][lane]]);
+                let normal = || Vector3::new(outputs[3][lane], outputs[4][lane], outputs[5][lane]);
+                match piece.ended(own, &step, normal) {
+                    None if before + 1 < MOST_STEPS => {
+                        open[kept] = Open { number, steps: before + 1 };
+                        (0..3).for_each(|k| points[k][kept] = points[k][lane]);
+                        (at[0][kept], at[1][kept]) = (step.to[0], step.to[1]);
+                        kept += 1;
+                    }
+                    ended => {
+                        found[number] = ended.unwrap_or(Found::Lost);
+                        if next < wanted.len() {
+                            open[kept] = Open { number: next, steps: 0 };
+                            put(&mut points, &mut at, kept, next);
+                            (kept, next) = (kept + 1, next + 1);
+                        }
+                    }
+                }
+            }
+            open.truncate(kept);
+        }
+        found
+    }
+}
+
+/// A foot that is looked for.
+#[derive(Clone, Copy)]
+struct Open {
+    number: usize,
+    /// Steps so far.
+    steps: usize,
+}
+
+/// A step of Newton towards a foot.
+#[derive(Clone, Copy, Default)]
+struct Step {
+    /// Where it leads.
+    to: [f64; 2],
+    /// Its length along the surface, had it not been shortened.
+    along: f64,
+    clearance: f64,
+}
+
+impl Step {
+    /// For a point, from a place at which the tape of a piece with such cells has these outputs.
+    #[inline(always)]
+    fn new([x, y, z]: [f64; 3], at: [f64; 2], cells: [f64; 2], out: impl Fn(usize) -> f64) -> Step {
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (normal, u, v) = ([out(3), out(4), out(5)], [out(6), out(7), out(8)], [out(9), out(10), out(11)]);
+        let (normal_u, normal_v) = ([out(12), out(13), out(14)], [out(15), out(16), out(17)]);
+        let from = [x - out(0), y - out(1), z - out(2)];
+        let clearance = dot(from, normal);
+        let (along_u, along_v) = (dot(from, u), dot(from, v));
+        let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
+        let curved_uu = uu + clearance * dot(u, normal_u);
+        let curved_uv = uv + clearance * dot(u, normal_v);
+        let curved_vv = vv + clearance * dot(v, normal_v);
+        let is_least = (curved_uu > 0.0) & (curved_uu * curved_vv > curved_uv * curved_uv);
+        let a = if is_least { curved_uu } else { uu };
+        let b = if is_least { curved_uv } else { uv };
+        let c = if is_least { curved_vv } else { vv };
+        let area = a * c - b * b;
+        let by_u = (c * along_u - b * along_v) / area;
+        let by_v = (a * along_v - b * along_u) / area;
+        let moved = [u[0] * by_u + v[0] * by_v, u[1] * by_u + v[1] * by_v, u[2] * by_u + v[2] * by_v];
+        let shorter = (2.0 * cells[0] / by_u.abs()).min(1.0).min(2.0 * cells[1] / by_v.abs());
+        let to = [at[0] + shorter * by_u, at[1] + shorter * by_v];
+        Step { to, along: dot(moved, moved).sqrt(), clearance }
+    }
+}
+
+/// Of the first lanes, each with its point and its place.
+#[inline(always)]
+fn steps_of(
+    count: usize,
+    (points, at): (&[[f64; LANES]; 3], &[[f64; LANES]; 2]),
+    cells: [f64; 2],
+    outputs: &[&[f64; LANES]; OUTPUTS],
+    steps: &mut [Step; LANES],
+) {
+    for (lane, step) in steps.iter_mut().enumerate().take(count) {
+        let point = [points[0][lane], points[1][lane], points[2][lane]];
+        *step = Step::new(point, [at[0][lane], at[1][lane]], cells, |k| outputs[k][lane]);
     }
 }
 
@@ -352,7 +470,7 @@ mod tests {
         for (k, on) in places.iter().enumerate() {
             let point = on + Vector3::new(-7.0, 4.0, 1.5) * (k % 3) as f64;
             let distance = places.iter().map(|place| (place - point).norm()).fold(f64::INFINITY, f64::min);
-            let least = piece.near(&point).expect("cells").least;
+            let least = piece.near(&point, None).expect("cells").least;
             assert!(least <= distance, "{point}: {least} mm, but {distance} mm");
         }
     }

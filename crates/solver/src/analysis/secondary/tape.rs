@@ -1,4 +1,4 @@
-//! Tapes that run at one place after the other.
+//! Tapes that run at one place after the other, or at many at once.
 
 use flank_expr::{Expr, InstructionSet, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, TapeError};
 
@@ -36,7 +36,15 @@ impl PlaceTape {
     }
 }
 
-impl Runner<'_> {
+impl<'t> Runner<'t> {
+    /// Something that runs many places at once, where that is faster.
+    pub(super) fn lanes(&mut self) -> Option<&mut LaneEvaluator<'t>> {
+        match self {
+            Runner::MachineCode(lanes) => Some(lanes),
+            Runner::Scalar(_) => None,
+        }
+    }
+
     pub(super) fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
         match self {
             Runner::MachineCode(lanes) => {
