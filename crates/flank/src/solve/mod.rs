@@ -207,7 +207,7 @@ fn in_bands<'j, 'g>(
     sample: &'j Sample<'g>,
     wanted: SolveOptions<'j>,
 ) -> Result<Solved<'j, 'g>, Failure> {
-    let mut streamed = Streamed::new(job, surface, sample, wanted.session);
+    let mut streamed = Streamed::new(job, surface, sample, wanted);
     let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown)?;
     let is_of_drawn = wanted.geometry && wanted.of_shown;
     Ok(Solved {

@@ -21,6 +21,8 @@ const MOST_BYTES: usize = 1 << 30;
 const OF_POINT: usize = size_of::<SurfacePoint>() + size_of::<Point>() + 2 * 16;
 const OF_UNKNOWN: usize = 2 * size_of::<f64>();
 const OF_NUMBER: usize = size_of::<f64>();
+/// Points that are solved at once where numbers are kept of all of them: beside these the bands are small.
+const BESIDE_NUMBERS: usize = 1 << 17;
 /// Points that are handed over at once, if rows are not longer than that.
 const HANDED_OVER: usize = 8192;
 /// Rows, and columns, of a picture.
@@ -160,15 +162,20 @@ impl<'j, 'g> Streamed<'j, 'g> {
         job: &'j Job<'g>,
         surface: &'j GeneratedSurface<'g>,
         sample: &'j Sample<'g>,
-        session: Session<'j>,
+        wanted: SolveOptions<'j>,
     ) -> Streamed<'j, 'g> {
+        let session = wanted.session;
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let axis = |k: usize| Axis { label: sample.labels[k].clone(), count: sample.counts[k] };
         Streamed {
             job,
             surface,
             sample,
-            problem: problem(job, surface, coordinates, session),
+            problem: if numbers_of_all(surface, sample, wanted) > 0 {
+                problem(job, surface, coordinates, session).at_once(BESIDE_NUMBERS)
+            } else {
+                problem(job, surface, coordinates, session)
+            },
             outline: patch(job, &surface.name, surface, [axis(0), axis(1)], &[]),
             session,
         }

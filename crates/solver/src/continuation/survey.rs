@@ -58,9 +58,6 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
         grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, (field, points), choice);
         return followed;
     }
-    if grid.are_rows_apart {
-        return followed;
-    }
     let factors = [grid.rows, grid.columns].map(|count| FINE.div_ceil(count.max(2) - 1));
     if factors == [1, 1] || grid.targets.len() > MOST_REFINED {
         let points: Vec<usize> = (0..grid.targets.len()).collect();
