@@ -291,3 +291,17 @@ fn what_a_coarse_look_misses_is_told() {
         assert!(told.contains(words), "{spec}: {told}");
     }
 }
+
+/// A grid so dense that it is solved in bands tells of another branch as a coarse one does.
+#[test]
+fn another_branch_of_a_dense_grid_is_told() {
+    let out = folder("dense_grid");
+    let coarse =
+        std::fs::read_to_string(top().join("tests/surfaces/specs/seldom_two_branches.chain")).expect("its spec");
+    let dense = coarse.replace(" by 11\n", " by 400\n").replace(" by 21\n", " by 401\n");
+    assert_ne!(dense, coarse);
+    let file = written(&out, "dense.chain", &dense);
+    let run = flank(&["solve", &file, "--geometry", "--no-picture", "--out", out.to_str().expect("a plain path")]);
+    let told = text(&run.stderr);
+    assert!(told.contains("the ranges of face hold another branch that is not among its points"), "{told}");
+}
