@@ -167,3 +167,23 @@ fn the_piece_that_follows_is_named() {
     let (_, told) = solved(&folder, &PIECES.replace("SURFACES", alone), &[]);
     assert!(told.contains("make a surface of `t.edge.top` for the points beyond"), "{told}");
 }
+
+/// Limits beyond the ranges stand in the files as in the table: each point with its status and by how much. Pictures do not show them.
+#[test]
+fn limits_outside_the_ranges_stand_in_the_files() {
+    let out = folder("limits_outside");
+    let spec = "specs/hobbing/chang_tsay_nagata.chain";
+    let run = flank(&["solve", spec, "--limits", "--format", "csv,json", "--out", out.to_str().expect("a plain path")]);
+    let table = text(&run.stdout);
+    let read = |name: &str| std::fs::read_to_string(out.join(name)).expect("written");
+    let (csv, json, picture) =
+        (read("chang_tsay_nagata.csv"), read("chang_tsay_nagata.json"), read("chang_tsay_nagata.svg"));
+    for line in ["lower_flank.singular_line", "upper_flank.contact_limit"] {
+        let told = table.lines().find(|row| row.contains(line)).expect("a row of the table");
+        assert!(told.contains("none within the ranges: outside"), "{told}");
+        let rows: Vec<&str> = csv.lines().filter(|row| row.starts_with(&format!("{line},"))).collect();
+        assert_eq!(rows.len(), 21, "{csv}");
+        assert!(rows.iter().all(|row| row.contains("out_of_range,") && row.contains(" by ")), "{rows:?}");
+        assert!(json.contains(line) && !picture.contains(line), "{line}");
+    }
+}

@@ -148,10 +148,10 @@ impl Line<'_, '_> {
         [self.summary.solved(), self.summary.outside.iter().map(|outside| outside.places.count).sum()]
     }
 
-    /// The line as a grid of one row, for files and pictures; `None` if no point of it was found.
+    /// The line as a grid of one row, for files and pictures; `None` if no point of it was found, be it outside the ranges.
     pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
         let rows = Axis { label: self.kind.to_string(), count: 1 };
         let columns = Axis { label: self.along.clone(), count: self.points.len() };
-        (self.summary.solved() > 0).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
+        (self.found() != [0; 2]).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
     }
 }

@@ -90,7 +90,11 @@ fn solved_job(
     let faces: Vec<Smooth> = tolerance
         .flat_map(|tolerance| solved.iter().map(|solved| step::smooth(job, solved, *tolerance, wanted)))
         .collect::<Result<_, Failure>>()?;
-    let files = write_files(&dataset, &solved, &faces, (&job.name, wanted.session), (request, origin))?;
+    // pictures have nothing to show of these
+    let outside = lines.iter().filter(|line| line.summary.solved() == 0);
+    let outside: Vec<Patch> = outside.filter_map(|line| line.patch(job)).collect();
+    let files = write_files((&dataset, &outside), &solved, &faces, (&job.name, wanted.session), (request, origin))?;
+    drop(outside);
     drop(dataset);
     let mut not_done = table::failures(job, &solved);
     not_done.extend(cut::unknown(&solved));
@@ -342,7 +346,8 @@ pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'
         let moved = solved.sensitivity.iter().flat_map(Sensitivity::fields);
         Patch { fields: solved.fields.iter().cloned().chain(moved).collect(), ..patch }
     });
-    Dataset { header, patches: surfaces.chain(lines.iter().filter_map(|line| line.patch(job))).collect() }
+    let lines = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| line.patch(job));
+    Dataset { header, patches: surfaces.chain(lines).collect() }
 }
 
 /// Where the data of a job comes from; of further jobs it is said what was set by hand.
@@ -400,9 +405,9 @@ pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &Surf
     Point { outcome, position: *position, normal: *normal, unknowns: unknowns.clone(), residual: *residual, reason }
 }
 
-/// Writes the files that are asked for and names them.
+/// Writes the files that are asked for and names them: lines outside their ranges stand in tables and meshes only.
 fn write_files(
-    dataset: &Dataset,
+    (dataset, outside): (&Dataset, &[Patch]),
     solved: &[Solved<'_, '_>],
     faces: &[Smooth],
     (name, session): (&str, Session<'_>),
@@ -411,7 +416,7 @@ fn write_files(
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
-    let patches = dataset.patches.iter().zip(streamed.chain(std::iter::repeat(None)));
+    let patches = dataset.patches.iter().chain(outside).zip(streamed.chain(std::iter::repeat(None)));
     let list = patches.map(|(patch, streamed)| streamed.unwrap_or(patch)).collect();
     let surfaces = Surfaces { header: &dataset.header, list };
     let faces: Vec<&Face> = faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
