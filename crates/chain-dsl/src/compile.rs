@@ -358,7 +358,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
 
 /// An argument of a function that is looked at by itself.
 fn argument<'g>(context: &mut Context<'g>, name: &Name, dimension: Dimension) -> Value<'g> {
-    Value::Scalar(context.variable(name.node.clone(), Role::Parameter, f64::NAN), dimension)
+    Value::Scalar(context.variable(name.node.clone(), Role::StandingArgument, f64::NAN), dimension)
 }
 
 /// Values from outside, as expressions of a text of their own.

@@ -34,10 +34,14 @@ fn values<'g>(context: &mut Context<'g>, expression: &Expression, scope: &Scope<
     let mut found: Vec<String> = Vec::new();
     for path in paths {
         let written = Expression { kind: ExpressionKind::Path(path.clone()), span: path.span };
+        let names: Vec<&str> = path.segments.iter().map(|segment| segment.node.as_str()).collect();
+        // what a sum runs over has no single value
+        if !scope.contains_key(&names.join(".")) {
+            continue;
+        }
         if let Value::Scalar(value, dimension) = context.evaluate(&written, scope)
             && let Constant::Known(value) = context.constant(value)
         {
-            let names: Vec<&str> = path.segments.iter().map(|segment| segment.node.as_str()).collect();
             let said = format!("`{}` is {}", names.join("."), shown(value, dimension));
             if !found.contains(&said) {
                 found.push(said);

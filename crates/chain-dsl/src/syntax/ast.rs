@@ -577,6 +577,9 @@ impl Expression {
                 [a, b].into_iter().for_each(|part| part.each(show))
             }
             ExpressionKind::If(a, b, c) => [a, b, c].into_iter().for_each(|part| part.each(show)),
+            ExpressionKind::Bound(bound) => {
+                [&bound.range.low, &bound.range.high, &bound.value].into_iter().for_each(|part| part.each(show));
+            }
         }
     }
 
@@ -611,8 +614,21 @@ pub enum ExpressionKind {
     Binary(Spanned<BinaryOperator>, Box<Expression>, Box<Expression>),
     /// `if condition then a else b`
     If(Box<Expression>, Box<Expression>, Box<Expression>),
+    /// `k in a .. b: value`, the argument of a call such as `sum`
+    Bound(Box<Bound>),
     /// Something that did not parse; reported already.
     Error,
+}
+
+/// `name in low .. high: value`: a value for each value of a name that means something only within it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// The name.
+    pub name: Name,
+    /// Where it runs.
+    pub range: Range,
+    /// The value, which may use the name.
+    pub value: Expression,
 }
 
 /// Operators before one operand.

@@ -23,7 +23,8 @@ pub(super) struct Before<'t> {
 
 /// Leaves out what can always follow: operators, the end, another digit; unless there is nothing else.
 pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
-    const TIGHT: [Rule; 6] = [Rule::open_index, Rule::unit, Rule::unit_word, Rule::unit_power, Rule::dot, Rule::caret];
+    const TIGHT: [Rule; 7] =
+        [Rule::open_index, Rule::unit, Rule::unit_word, Rule::unit_power, Rule::dot, Rule::caret, Rule::kw_runs];
     rules.retain(|rule| !TIGHT.contains(rule));
     if rules.contains(&Rule::infix) {
         rules.retain(|rule| *rule != Rule::colon);
@@ -205,7 +206,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_on => "on",
         Rule::kw_along => "along",
         Rule::kw_as => "as",
-        Rule::kw_in => "in",
+        Rule::kw_in | Rule::kw_runs => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
         Rule::kw_require => "require",

@@ -26,15 +26,25 @@ pub(crate) enum Role {
     Axis,
     Motion,
     SurfaceParameter,
+    /// What a function takes, where it differentiates by it and the argument stands still.
+    StandingArgument,
+    /// The same where the argument moves.
+    MovingArgument,
 }
 
 impl Role {
+    /// Whether it has one value in a job.
+    fn stands_still(self) -> bool {
+        matches!(self, Role::Parameter | Role::StandingArgument)
+    }
+
     pub(crate) fn described(self) -> &'static str {
         match self {
             Role::Parameter => "parameter",
             Role::Axis => "axis",
             Role::Motion => "motion",
             Role::SurfaceParameter => "surface parameter",
+            Role::StandingArgument | Role::MovingArgument => "argument",
         }
     }
 }
@@ -165,6 +175,11 @@ impl<'g> Context<'g> {
         self.graph.variables_of(exprs).into_iter().map(|variable| self.variables[variable.index()]).collect()
     }
 
+    /// What a variable stands for; nothing of other expressions.
+    pub(crate) fn role(&self, expr: Expr<'g>) -> Option<Role> {
+        expr.as_variable().map(|variable| self.roles[variable.index()])
+    }
+
     /// The value of a variable; NaN where it has none yet.
     pub(crate) fn value_of(&self, variable: Expr<'g>) -> f64 {
         variable.as_variable().map_or(f64::NAN, |variable| self.values[variable.index()])
@@ -184,7 +199,7 @@ impl<'g> Context<'g> {
         }
         self.steps.set(self.steps.get() + self.graph.count(&[expr]).shared);
         let variables = self.graph.variables_of(&[expr]);
-        if let Some(moving) = variables.iter().find(|variable| self.roles[variable.index()] != Role::Parameter) {
+        if let Some(moving) = variables.iter().find(|variable| !self.roles[variable.index()].stands_still()) {
             let role = self.roles[moving.index()].described();
             return Constant::Moves(format!("the {role} `{}`", self.graph.variable_name(*moving)));
         }

@@ -38,6 +38,7 @@ impl<'g> Context<'g> {
                 self.binary(operator.node, values, (left.span, right.span), operator.span)
             }
             ExpressionKind::If(condition, yes, no) => self.conditional(condition, yes, no, scope),
+            ExpressionKind::Bound(bound) => self.unbound(bound, expression.span),
             ExpressionKind::Error => Value::Poison,
         };
         if value.greatest_power() > limits::POWER.most {
@@ -215,7 +216,7 @@ impl<'g> Context<'g> {
         }
     }
 
-    fn binary(
+    pub(super) fn binary(
         &mut self,
         operator: BinaryOperator,
         values: (Value<'g>, Value<'g>),
@@ -401,8 +402,11 @@ impl<'g> Context<'g> {
     }
 
     fn call(&mut self, call: &ast::Call, scope: &Scope<'g>) -> Value<'g> {
-        if call.function.node == "curve" {
-            return tables::curve(self, call);
+        match call.function.node.as_str() {
+            "curve" => return tables::curve(self, call),
+            "sum" => return self.total(call, scope),
+            "derivative" => return self.derivative(call, scope),
+            _ => {}
         }
         match scope.get(&call.function.node) {
             Some(Value::Curve(curve, x, y)) => return self.on_curve(call, (*curve, *x, *y), scope),
@@ -427,17 +431,26 @@ impl<'g> Context<'g> {
             return Value::Poison;
         };
         let mut inner = Scope::new();
+        let mut own = Vec::new();
         for ((value, given), (name, written)) in arguments.into_iter().zip(&function.arguments) {
             let what = format!("`{}` of `{}`", name.node, function.name.node);
             let Some(value) = self.of_type(&value, written, given, &what) else {
                 return Value::Poison;
+            };
+            let value = match value {
+                Value::Scalar(given, dimension) if function.differentiates_by(&name.node) => {
+                    let variable = self.own_variable(name, given);
+                    own.push((variable, given));
+                    Value::Scalar(variable, dimension)
+                }
+                other => other,
             };
             inner.insert(name.node.clone(), value);
         }
         self.call_depth += 1;
         let value = self.function_body(&function, inner);
         self.call_depth -= 1;
-        value
+        self.with_given(value, &own, call.span)
     }
 
     fn on_curve(

@@ -66,9 +66,12 @@ const FUNCTIONS: [(&str, usize, Function); 27] = [
     ("norm", 1, Function::Norm),
 ];
 
+/// Calls of a form of their own.
+const FORMS: [&str; 2] = ["sum", "derivative"];
+
 /// Names of the functions that the language brings along.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.iter().map(|(name, ..)| *name)
+    FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
 }
 
 /// A value and what it is written as.

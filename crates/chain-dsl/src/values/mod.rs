@@ -1,5 +1,6 @@
 //! What expressions mean: values with dimensions, names in reach, functions, tables.
 
+mod bound;
 pub(crate) mod context;
 pub(crate) mod dimension;
 pub(crate) mod evaluate;

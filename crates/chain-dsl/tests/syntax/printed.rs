@@ -236,6 +236,10 @@ pub(crate) fn expression(it: &Expression) -> String {
         ExpressionKind::If(condition, a, b) => {
             format!("(if {} {} {})", expression(condition), expression(a), expression(b))
         }
+        ExpressionKind::Bound(bound) => {
+            let [low, high] = [&bound.range.low, &bound.range.high].map(expression);
+            format!("(each {} {low} {high} {})", bound.name.node, expression(&bound.value))
+        }
         ExpressionKind::Error => "ERROR".to_owned(),
     }
 }

@@ -10,7 +10,9 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span, Spanned};
 use crate::limits::OPERATIONS;
 
-use super::super::ast::{Argument, BinaryOperator, Call, Expression, ExpressionKind, Path, UnaryOperator};
+use super::super::ast::{
+    Argument, BinaryOperator, Bound, Call, Expression, ExpressionKind, Path, Range, UnaryOperator,
+};
 use super::super::grammar::Rule;
 use super::super::words;
 use super::{Build, Parts};
@@ -156,6 +158,12 @@ impl Build<'_> {
         let mut arguments = Vec::new();
         for pair in Parts::of(parts.required(Rule::arguments)).all(Rule::argument) {
             let mut parts = Parts::of(pair);
+            if let Some(bound) = parts.optional(Rule::bound) {
+                let (value, own) = self.bound(bound);
+                height = height.max(own);
+                arguments.push(Argument { name: None, value });
+                continue;
+            }
             let name = parts.optional(Rule::label).map(|label| self.name(Parts::of(label).required(Rule::name)));
             let (value, own) = match parts.optional(Rule::dimension_word) {
                 Some(word) => (self.dimension_argument(word), 1),
@@ -165,6 +173,21 @@ impl Build<'_> {
             arguments.push(Argument { name, value });
         }
         (Call { function, arguments, span }, height)
+    }
+
+    /// `k in a .. b: value`
+    fn bound(&mut self, pair: Pair<'_, Rule>) -> Tree {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let range = parts.required(Rule::range);
+        let range_span = self.span(&range);
+        let mut ends = Parts::of(range);
+        let (low, a) = self.tree(ends.required(Rule::expression));
+        let (high, b) = self.tree(ends.required(Rule::expression));
+        let (value, c) = self.tree(parts.required(Rule::expression));
+        let range = Range { low, high, span: range_span };
+        self.grow(ExpressionKind::Bound(Box::new(Bound { name, range, value })), span, a.max(b).max(c))
     }
 
     /// `x: length`: the dimension of a table's column, as a path of one word.
