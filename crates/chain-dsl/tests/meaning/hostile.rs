@@ -252,6 +252,24 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
             limits::JOB_STATEMENTS,
         ),
         (
+            "a sum of very many terms",
+            small_job("let a = sum(k in 1 .. 1000000000000: k * turn)"),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "sums of sums of sums",
+            small_job("let a = sum(a in 1 .. 1000: sum(b in 1 .. 1000: sum(c in 1 .. 1000: a * b * c * turn)))"),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "derivatives of derivatives",
+            format!(
+                "fn d0(x: number) = exp(x * x) / (x + exp(x))\n{}",
+                lines(40, |k| format!("fn d{}(x: number) = derivative(d{k}(x), x)", k + 1))
+            ),
+            limits::EVALUATION_STEPS,
+        ),
+        (
             "thousands of variants of a long job",
             small_job(&lines(3_000, |k| format!("let a{k} = {k}")))
                 + "\n"

@@ -445,3 +445,56 @@ fn a_job_may_be_another_one_with_values_and_parts_changed() {
     assert_eq!(told.collect::<Vec<_>>(), wanted);
     assert!(compilation.jobs.iter().all(|job| job.surfaces[0].sample.is_some()));
 }
+
+/// The law of the work's axis, driven by a value that a text works out from `turn`.
+fn law(functions: &str, value: &str) -> String {
+    laws(&format!(
+        "{functions}
+        job j {{
+            param n : count = 3
+            machine m = lathe(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = {value}
+            surface s in m.work = envelope(b.face, over: turn)
+        }}"
+    ))
+    .swap_remove(0)
+}
+
+#[test]
+fn a_sum_is_what_its_terms_are_written_out() {
+    let written = law("", "1 mm * (sin(1 * turn) / 1 + sin(2 * turn) / 2 + sin(3 * turn) / 3)");
+    assert_eq!(law("", "1 mm * sum(k in 1 .. n: sin(k * turn) / k)"), written);
+    let listed = law("", "5 mm / rad * turn + 7 mm / rad^2 * turn^2");
+    assert_eq!(law("", "sum(k in 1 .. 2: [5 mm / rad, 7 mm / rad^2][k - 1] * turn^k)"), listed);
+    assert_eq!(law("", "sum(k in -1 .. 1: k * 1 mm) + turn * 1 mm"), "Z = turn");
+    assert_eq!(law("", "sum(k in 1 .. n - 3: k * 1 mm) + turn * 1 mm"), "Z = turn");
+    assert_eq!(
+        law("", "sum(k in 1 .. 2: k * [1 mm, turn * 1 mm])[1]"),
+        law("", "1 * (turn * 1 mm) + 2 * (turn * 1 mm)")
+    );
+    assert_eq!(
+        law("", "sum(k in 1 .. 2: sum(l in 1 .. k: l * turn * 1 mm))"),
+        law("", "1 mm * turn + (1 mm * turn + 2 * turn * 1 mm)")
+    );
+}
+
+#[test]
+fn a_derivative_is_that_of_the_formula() {
+    assert_eq!(law("", "derivative(2 mm * sin(turn), turn)"), law("", "2 mm * cos(turn)"));
+    assert_eq!(law("", "derivative([0 mm, 3 mm/rad^2 * turn^2], turn)[1] * turn"), law("", "6 mm/rad^2 * turn * turn"));
+    let slope = "fn f(x: angle) = 2 mm * sin(x)
+        fn slope(x: angle) { let y = f(x) derivative(y, x) }";
+    assert_eq!(law(slope, "slope(2 * turn)"), law("", "2 mm * cos(2 * turn)"));
+    // by each argument alone, though both are one variable
+    let partial = "fn partial(x: angle, y: angle) = derivative(sin(x) * y, x) * 1 mm";
+    assert_eq!(law(partial, "partial(turn, turn)"), law("", "cos(turn) * turn * 1 mm"));
+    // of a value that stands still, conditions on it decided
+    let still = "fn step(x: number) = if x > 1 then derivative(x^3, x) else 0 * x";
+    assert_eq!(law(still, "step(n) * turn * 1 mm"), law("", "3 * n^2 * turn * 1 mm"));
+    let second = "fn second(x: angle) = derivative(derivative(x^3, x), x)";
+    assert_eq!(law(second, "second(turn) * 1 mm"), law("", "6 * turn * 1 mm"));
+}

@@ -176,6 +176,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_as
             | kw_keep
             | kw_in
+            | kw_runs
             | kw_by
             | kw_if
             | kw_then
