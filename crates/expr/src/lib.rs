@@ -26,6 +26,7 @@ mod tape;
 
 pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
 pub use enclosure::interval::{Interval, IntervalEvaluator};
+pub use enclosure::quadrature::{End, Unproven, integral};
 pub use enclosure::taylor::{Coefficient, TaylorEvaluator};
 pub use symbolic::curve::{Curve, CurveError};
 pub use symbolic::derivative::Linear;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use flank_expr::Expr;
+use flank_expr::{Expr, Interval};
 
 use crate::definitions::instance::{Binder, Overrides, Source};
 use crate::definitions::nc_word;
@@ -258,6 +258,12 @@ impl<'a> Flat<'a> {
             let travel = axis.range.as_ref().zip(dimension);
             let travel = travel.and_then(|(range, dimension)| context.range(range, scope, dimension, &what));
             let variable = context.variable(format!("{prefix}{}", axis.name.node), Role::Axis, f64::NAN);
+            match (travel, &axis.range) {
+                (Some((low, high)), _) => context.set_range(variable, Interval::new(low, high)),
+                // its ends have no values yet, or are wrong, which has been reported
+                (None, Some(_)) => context.set_range(variable, Interval::WHOLE),
+                (None, None) => {}
+            }
             let word = NcWord::of_axis(&axis.name.node);
             axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None, word });
         }

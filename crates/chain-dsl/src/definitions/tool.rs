@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use flank_expr::Expr;
 use flank_expr::geometry::{Edge, Surface, Vector3};
+use flank_expr::{Expr, Interval};
 
 use crate::definitions::instance::{Binder, Overrides, Source, is_count};
 use crate::definitions::material_side::{self, Places};
@@ -267,6 +267,7 @@ fn run_along<'g>(
         _ => f64::NAN,
     });
     let variable = context.variable(name.node.clone(), Role::SurfaceParameter, f64::NAN);
+    context.set_range(variable, Interval::new(low, high));
     let piece = Some(PieceEnds { name: segment.name.clone(), beside });
     RangedVariable {
         name: name.node.clone(),
@@ -316,5 +317,6 @@ pub(crate) fn bounded<'g>(
         context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
     }
     let variable = context.variable(name.clone(), role, f64::NAN);
+    context.set_range(variable, Interval::new(low, high));
     Some(RangedVariable { name, variable, dimension, low, high, is_count, piece: None })
 }

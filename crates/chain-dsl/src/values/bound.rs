@@ -1,13 +1,13 @@
-//! Calls that bind a name or ask for one: `sum(k in 1 .. n: …)`, `derivative(f, x)`.
+//! Calls that bind a name or ask for one: `sum(k in 1 .. n: …)`, `integral(t in a .. b: …)`, `derivative(f, x)`.
 
-use flank_expr::Expr;
+use flank_expr::{End, Expr, Interval, Unproven};
 
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::diagnostics::{Diagnostic, Note};
 use crate::syntax::ast::{self, Argument, BinaryOperator, Bound, Call, Expression, ExpressionKind};
-use crate::values::context::{Context, Role};
-use crate::values::dimension::Dimension;
+use crate::values::context::{Context, Role, Unranged};
+use crate::values::dimension::{Dimension, shown};
 use crate::values::functions;
 use crate::values::value::{Constant, Scope, Value};
 
@@ -37,27 +37,20 @@ impl<'g> Context<'g> {
     /// A range with a name that stands where no name is bound.
     pub(super) fn unbound(&mut self, bound: &Bound, span: Span) -> Value<'g> {
         let message = format!("`{} in … : …` is no value by itself", bound.name.node);
-        let help = "it is what a sum runs over: `sum(k in 1 .. n: …)`";
+        let help = "it is what a sum or an integral runs over: `sum(k in 1 .. n: …)`";
         self.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
         Value::Poison
     }
 
     /// `sum(k in low .. high: value)`: written out, so that all that holds of `+` holds of it.
     pub(super) fn total(&mut self, call: &Call, scope: &Scope<'g>) -> Value<'g> {
-        let [Argument { name: None, value: Expression { kind: ExpressionKind::Bound(bound), .. } }] =
-            call.arguments.as_slice()
-        else {
-            let message = "`sum` takes a name, its range and a value for each";
-            let help = "for example `sum(k in 1 .. n: x^k / k)`";
-            self.report(Diagnostic::new(Code::WrongArguments, call.span, message).help(help));
-            return Value::Poison;
-        };
+        let Some(bound) = self.bound(call, "sum(k in 1 .. n: x^k / k)") else { return Value::Poison };
         let low = self.whole_end(&bound.range.low, scope, "the lower end of a sum");
         let high = self.whole_end(&bound.range.high, scope, "the upper end of a sum");
         match (low, high) {
-            (Some(End::Known(low)), Some(End::Known(high))) => self.written_out(bound, (low, high), scope),
+            (Some(Whole::Known(low)), Some(Whole::Known(high))) => self.written_out(bound, (low, high), scope),
             // a definition without values: one term tells the dimension and most mistakes
-            (Some(End::Known(low)), Some(End::Unknown)) => {
+            (Some(Whole::Known(low)), Some(Whole::Unknown)) => {
                 self.term(bound, self.graph.constant(low), &mut scope.clone())
             }
             (Some(_), Some(_)) => {
@@ -103,12 +96,12 @@ impl<'g> Context<'g> {
         }
     }
 
-    fn whole_end(&mut self, written: &Expression, scope: &Scope<'g>, what: &str) -> Option<End> {
+    fn whole_end(&mut self, written: &Expression, scope: &Scope<'g>, what: &str) -> Option<Whole> {
         /// Beyond, whole numbers have gaps.
         const LARGEST: f64 = 9_007_199_254_740_992.0;
         let end = self.scalar(written, scope, Dimension::NUMBER, what)?;
         if matches!(self.constant(end), Constant::Unknown) {
-            return Some(End::Unknown);
+            return Some(Whole::Unknown);
         }
         let end = self.require_constant(end, written.span, what)?;
         if end.fract() != 0.0 || end.abs() > LARGEST {
@@ -117,7 +110,7 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::WrongDimension, written.span, message).help(help));
             return None;
         }
-        Some(End::Known(end))
+        Some(Whole::Known(end))
     }
 
     /// `derivative(value, variable)`
@@ -174,7 +167,113 @@ impl<'g> Context<'g> {
             Constant::Unknown => (Role::StandingArgument, f64::NAN),
             Constant::Moves(_) => (Role::MovingArgument, f64::NAN),
         };
-        self.variable(name.node.clone(), role, value)
+        let variable = self.variable(name.node.clone(), role, value);
+        if let (Role::MovingArgument, Ok(range)) = (role, self.enclosure(given)) {
+            self.set_range(variable, range);
+        }
+        variable
+    }
+
+    /// `integral(t in low .. high: value)`
+    pub(super) fn integral(&mut self, call: &Call, scope: &Scope<'g>) -> Value<'g> {
+        let Some(bound) = self.bound(call, "integral(t in 0 deg .. turn: speed(t))") else { return Value::Poison };
+        let (low, high) = (self.evaluate(&bound.range.low, scope), self.evaluate(&bound.range.high, scope));
+        let (from, to, dimension) = match (low, high) {
+            (Value::Poison, _) | (_, Value::Poison) => return Value::Poison,
+            (Value::Scalar(from, a), Value::Scalar(to, b)) if a.sum(b).is_some() => (from, to, a.sum(b).unwrap_or(a)),
+            (a, b) => {
+                let message = format!("an integral does not run from {} to {}", a.described(), b.described());
+                self.report(Diagnostic::new(Code::WrongDimension, bound.range.span, message));
+                return Value::Poison;
+            }
+        };
+        let variable = self.variable(bound.name.node.clone(), Role::Integration, f64::NAN);
+        let ends = match (self.enclosure(from), self.enclosure(to)) {
+            (Ok(low), Ok(high)) => {
+                self.set_range(variable, Interval::new(low.lo.min(high.lo), low.hi.max(high.hi)));
+                Ok([End { expr: from, range: low }, End { expr: to, range: high }])
+            }
+            (Err(reason), _) | (_, Err(reason)) => {
+                self.set_range(variable, Interval::WHOLE);
+                Err(reason)
+            }
+        };
+        let mut inner = scope.clone();
+        inner.insert(bound.name.node.clone(), Value::Scalar(variable, dimension));
+        let integrand = self.evaluate(&bound.value, &inner);
+        match ends {
+            Err(Unranged::Endless(what)) => self.unproven(bound, format!("{what} has no range")),
+            ends => self.integral_of(&integrand, bound, (variable, dimension), ends.ok()),
+        }
+    }
+
+    fn integral_of(
+        &mut self,
+        integrand: &Value<'g>,
+        bound: &Bound,
+        (variable, dimension): (Expr<'g>, Dimension),
+        ends: Option<[End<'g>; 2]>,
+    ) -> Value<'g> {
+        match integrand {
+            Value::Poison => Value::Poison,
+            Value::Vector(parts) => Value::Vector(
+                parts.iter().map(|part| self.integral_of(part, bound, (variable, dimension), ends)).collect(),
+            ),
+            Value::Scalar(expr, own) => {
+                let product = own.times(dimension);
+                let ranges = self.ranges_of(*expr).map(|mut ranges| {
+                    ranges.retain(|(other, _)| *other != variable);
+                    ranges
+                });
+                let (ends, ranges) = match (ends, ranges) {
+                    (_, Err(Unranged::Endless(what))) => {
+                        return self.unproven(bound, format!("{what} has no range"));
+                    }
+                    // a definition without values
+                    (None, _) | (_, Err(Unranged::Unknown)) => return Value::Scalar(*expr, product),
+                    (Some(ends), Ok(ranges)) => (ends, ranges),
+                };
+                // each part of the range is bounded to an order of some thirty
+                if !self.spend(64 * self.graph.count(&[*expr]).shared, bound.value.span) {
+                    return Value::Poison;
+                }
+                match flank_expr::integral(*expr, variable, ends, &ranges) {
+                    Ok(value) => Value::Scalar(value, product),
+                    Err(Unproven::Unbounded(at)) => {
+                        let name = &bound.name.node;
+                        let at = shown(at, dimension);
+                        self.unproven(bound, format!("what is integrated cannot be bounded near `{name}` = {at}"))
+                    }
+                    Err(reason) => self.unproven(bound, reason.to_string()),
+                }
+            }
+            other => {
+                let message = format!("there is no integral of {}", other.described());
+                self.report(Diagnostic::new(Code::WrongDimension, bound.value.span, message));
+                Value::Poison
+            }
+        }
+    }
+
+    fn unproven(&mut self, bound: &Bound, why: String) -> Value<'g> {
+        let message = format!("this integral cannot be proven: {why}");
+        let help = "keep poles, kinks and the joints of curves out of the range, give what moves a narrower range, \
+                    or split the integral";
+        self.report(Diagnostic::new(Code::Unproven, bound.value.span, message).help(help));
+        Value::Poison
+    }
+
+    /// The one argument of a call that binds a name.
+    fn bound<'c>(&mut self, call: &'c Call, example: &str) -> Option<&'c Bound> {
+        if let [Argument { name: None, value: Expression { kind: ExpressionKind::Bound(bound), .. } }] =
+            call.arguments.as_slice()
+        {
+            return Some(bound);
+        }
+        let message = format!("`{}` takes a name, its range and a value for each", call.function.node);
+        let help = format!("for example `{example}`");
+        self.report(Diagnostic::new(Code::WrongArguments, call.span, message).help(help));
+        None
     }
 
     /// A value of a function with the arguments that were given in the place of its own variables.
@@ -196,7 +295,7 @@ impl<'g> Context<'g> {
 }
 
 /// An end of a sum.
-enum End {
+enum Whole {
     Known(f64),
     /// It depends on a parameter that has no value yet.
     Unknown,

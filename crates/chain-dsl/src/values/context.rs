@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape, VariableId};
 
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
@@ -30,6 +30,8 @@ pub(crate) enum Role {
     StandingArgument,
     /// The same where the argument moves.
     MovingArgument,
+    /// What an integral runs over.
+    Integration,
 }
 
 impl Role {
@@ -44,9 +46,18 @@ impl Role {
             Role::Axis => "axis",
             Role::Motion => "motion",
             Role::SurfaceParameter => "surface parameter",
+            Role::Integration => "variable of integration",
             Role::StandingArgument | Role::MovingArgument => "argument",
         }
     }
+}
+
+/// Why it is not known where an expression lies.
+pub(crate) enum Unranged {
+    /// It depends on a parameter that has no value yet.
+    Unknown,
+    /// It depends on something that moves without ends.
+    Endless(String),
 }
 
 /// The state of one compilation.
@@ -59,6 +70,8 @@ pub(crate) struct Context<'g> {
     variables: Vec<Expr<'g>>,
     roles: Vec<Role>,
     values: Vec<f64>,
+    /// Where those lie that move, if it is known.
+    ranges: Vec<Option<Interval>>,
     diagnostics: Vec<Diagnostic>,
     /// Errors among them.
     errors: usize,
@@ -89,6 +102,7 @@ impl<'g> Context<'g> {
             variables: Vec::new(),
             roles: Vec::new(),
             values: Vec::new(),
+            ranges: Vec::new(),
             diagnostics: Vec::new(),
             errors: 0,
             reported: HashSet::new(),
@@ -159,7 +173,46 @@ impl<'g> Context<'g> {
         self.variables.push(variable);
         self.roles.push(role);
         self.values.push(value);
+        self.ranges.push(None);
         variable
+    }
+
+    /// Says where a variable that moves lies.
+    pub(crate) fn set_range(&mut self, variable: Expr<'g>, range: Interval) {
+        if let Some(variable) = variable.as_variable() {
+            self.ranges[variable.index()] = Some(range);
+        }
+    }
+
+    /// The variables of an expression, each with its value or where it lies.
+    pub(crate) fn ranges_of(&self, expr: Expr<'g>) -> Result<Vec<(Expr<'g>, Interval)>, Unranged> {
+        let known = |variable: Expr<'g>| {
+            let index = variable.as_variable().map_or(0, VariableId::index);
+            let role = self.roles[index];
+            match self.ranges[index] {
+                _ if role.stands_still() && self.values[index].is_nan() => Err(Unranged::Unknown),
+                _ if role.stands_still() => Ok((variable, Interval::point(self.values[index]))),
+                // a range that depends on parameters without values
+                Some(range) if !range.continuous => Err(Unranged::Unknown),
+                Some(range) => Ok((variable, range)),
+                None => {
+                    let name = variable.as_variable().map_or_else(String::new, |id| self.graph.variable_name(id));
+                    Err(Unranged::Endless(format!("the {} `{name}`", role.described())))
+                }
+            }
+        };
+        self.variables_of(&[expr]).into_iter().map(known).collect()
+    }
+
+    /// Where an expression lies.
+    pub(crate) fn enclosure(&self, expr: Expr<'g>) -> Result<Interval, Unranged> {
+        let ranges = self.ranges_of(expr)?;
+        let (variables, ranges): (Vec<_>, Vec<_>) = ranges.into_iter().unzip();
+        let mut out = [Interval::WHOLE];
+        if let Ok(tape) = Tape::new(&[expr], &variables) {
+            IntervalEvaluator::new(&tape).run(&ranges, &mut out);
+        }
+        Ok(out[0])
     }
 
     /// Adds a note to those findings, from a number of them on, that lie in a part of the text.

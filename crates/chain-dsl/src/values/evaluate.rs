@@ -405,6 +405,7 @@ impl<'g> Context<'g> {
         match call.function.node.as_str() {
             "curve" => return tables::curve(self, call),
             "sum" => return self.total(call, scope),
+            "integral" => return self.integral(call, scope),
             "derivative" => return self.derivative(call, scope),
             _ => {}
         }

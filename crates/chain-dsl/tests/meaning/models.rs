@@ -498,3 +498,53 @@ fn a_derivative_is_that_of_the_formula() {
     let second = "fn second(x: angle) = derivative(derivative(x^3, x), x)";
     assert_eq!(law(second, "second(turn) * 1 mm"), law("", "6 * turn * 1 mm"));
 }
+
+/// The value of the work's axis at an angle.
+fn law_at(functions: &str, value: &str, turn: f64) -> f64 {
+    let graph = Graph::new();
+    let text = format!(
+        "{functions}
+        job j {{
+            param n : number = 3
+            machine m = lathe(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in -90 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = {value}
+            surface s in m.work = envelope(b.face, over: turn)
+        }}"
+    );
+    let compilation = compiled(&graph, &text);
+    let job = &compilation.jobs[0];
+    let axis = job.machines[0].axes.iter().find(|axis| axis.name == "Z").expect("the axis");
+    let mut values = vec![0.0; graph.variable_count()];
+    for parameter in &job.parameters {
+        values[parameter.variable.as_variable().expect("a variable").index()] = parameter.value;
+    }
+    values[job.motions[0].variable.as_variable().expect("a variable").index()] = turn;
+    graph.evaluate(&[axis.law], &values)[0]
+}
+
+#[test]
+fn an_integral_is_good_to_rounding() {
+    for turn in [-1.5_f64, -0.3, 0.0, 0.7, 1.5] {
+        let near = |value: &str, exact: f64| {
+            let found = law_at("", value, turn);
+            assert!((found - exact).abs() <= 4e-15 * exact.abs().max(1.0), "{value} at {turn}: {found}, not {exact}");
+        };
+        near("integral(t in 0 deg .. turn: cos(t)) * 1 mm", turn.sin());
+        near("integral(t in turn .. 3 * turn: t^2) * 1 mm", 26.0 / 3.0 * turn.powi(3));
+        near("integral(t in 0 deg .. turn: n * exp(t)) * 1 mm", 3.0 * (turn.exp() - 1.0));
+        // an integrand that moves by more than what is integrated over
+        near("integral(x in 0 .. 1: cos(x * turn) * turn) * 1 mm", turn.sin());
+        near("integral(t in 0 deg .. turn: integral(u in 0 deg .. t: cos(u))) * 1 mm", 1.0 - turn.cos());
+        near("integral(t in 0 deg .. turn: [1, cos(t)])[1] * 1 mm", turn.sin());
+        // by Leibniz's rule the slope is the integrand
+        near("derivative(integral(t in 0 deg .. turn: exp(t)), turn) * 1 mm", turn.exp());
+        near("derivative(integral(t in -turn .. turn: cos(turn * t)), turn) * 1 mm", {
+            let f = |x: f64| if x == 0.0 { 0.0 } else { 2.0 * (x * x).sin() / x };
+            if turn == 0.0 { 2.0 } else { 4.0 * (turn * turn).cos() - f(turn) / turn }
+        });
+    }
+}
