@@ -1,5 +1,7 @@
 //! Cylindrical gears of the library against closed forms, and against each other where two processes make one gear.
 
+use std::f64::consts::{PI, TAU};
+
 use flank_expr::{Graph, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, SurfacePoint};
 use flank_tests::{assert_point, job, job_named, points, sampled, turned};
@@ -30,7 +32,7 @@ fn hobs_of_both_hands_cut_the_same_gear() {
             }
             turn
         });
-        let pitches = (turns[0] - turns[1]) / (std::f64::consts::TAU / 31.0);
+        let pitches = (turns[0] - turns[1]) / (TAU / 31.0);
         assert!((pitches - pitches.round()).abs() < 1e-11, "{helix}: {pitches}");
     }
 }
@@ -132,37 +134,39 @@ const ARCS: [(f64, [f64; 6]); 4] = [
             6.096_147_275_006_284,
         ],
     ),
-    (1.0, [0.3, 1.1, 2.0, 3.5, 5.9, std::f64::consts::TAU]),
+    (1.0, [0.3, 1.1, 2.0, 3.5, 5.9, TAU]),
 ];
+
+/// Radial slide and rack of an elliptical gear with half axes of this ratio, at a value of the motion, from the tooth space there.
+fn elliptical_at(ratio: f64, t: f64) -> [f64; 2] {
+    let graph = Graph::new();
+    let space = (t / TAU * 36.0).round();
+    let set = [("axis_ratio", ratio.to_string()), ("pivot", "0".to_owned()), ("space", space.to_string())];
+    let set = set.each_ref().map(|(name, value)| (*name, value.as_str()));
+    let job = job(&graph, "specs/hobbing/elliptical_gear.chain", &set);
+    let axis = |name: &str| job.machines[0].axes.iter().find(|axis| axis.name == name).expect("an axis").law;
+    let laws = graph.substitute(&[axis("X"), axis("Y")], &job.bindings());
+    let tape = Tape::new(&laws, &[job.motions[0].variable]).expect("bound");
+    let mut out = [0.0; 2];
+    ScalarEvaluator::new(&tape).run(&[t], &mut out);
+    [out[0], out[1] - space * PI * 3.0]
+}
 
 /// The arc length that the table of an elliptical gear follows is that of the ellipse to rounding, and the perimeter is as long as the
 /// pitches of all teeth.
 #[test]
 fn the_arc_of_the_ellipse_is_its_integral() {
     for (ratio, arcs) in ARCS {
-        let graph = Graph::new();
-        let set = [("axis_ratio", ratio.to_string()), ("pivot", "0".to_owned())];
-        let set = set.each_ref().map(|(name, value)| (*name, value.as_str()));
-        let job = job(&graph, "specs/hobbing/elliptical_gear.chain", &set);
-        let axis = |name: &str| job.machines[0].axes.iter().find(|axis| axis.name == name).expect("an axis").law;
-        let laws = graph.substitute(&[axis("X"), axis("Y")], &job.bindings());
-        let tape = Tape::new(&laws, &[job.motions[0].variable]).expect("bound");
-        let mut evaluator = ScalarEvaluator::new(&tape);
-        let mut at = |t: f64| {
-            let mut out = [0.0; 2];
-            evaluator.run(&[t], &mut out);
-            out
-        };
         // the tangent through the end of the larger half axis lies at its distance, that of the smaller one at the other
-        let (a, b) = (at(0.0)[0], at(std::f64::consts::FRAC_PI_2)[0]);
+        let (a, b) = (elliptical_at(ratio, 0.0)[0], elliptical_at(ratio, PI / 2.0)[0]);
         assert!((b - ratio * a).abs() < 1e-12 * a);
-        let pitches = 36.0 * 3.0 * std::f64::consts::PI;
+        let pitches = 36.0 * 3.0 * PI;
         // a few sums of numbers as large as the perimeter
         let rounding = 4.0 * f64::EPSILON * pitches;
-        for (t, arc) in [0.3, 1.1, 2.0, 3.5, 5.9, std::f64::consts::TAU].into_iter().zip(arcs) {
+        for (t, arc) in [0.3, 1.1, 2.0, 3.5, 5.9, TAU].into_iter().zip(arcs) {
             let normal = t + ((a - b) * t.sin() * t.cos() / (b * t.cos().powi(2) + a * t.sin().powi(2))).atan();
             let along = -a * t.cos() * normal.sin() + b * t.sin() * normal.cos();
-            let off = along - at(t)[1] - a * arc;
+            let off = along - elliptical_at(ratio, t)[1] - a * arc;
             assert!(off.abs() < rounding, "{ratio} at {t}: {off:e}, {rounding:e}");
         }
         assert!((a * arcs[5] - pitches).abs() < rounding, "{ratio}");

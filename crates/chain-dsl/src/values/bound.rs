@@ -257,8 +257,7 @@ impl<'g> Context<'g> {
 
     fn unproven(&mut self, bound: &Bound, why: String) -> Value<'g> {
         let message = format!("this integral cannot be proven: {why}");
-        let help = "keep poles, kinks and the joints of curves out of the range, give what moves a narrower range, \
-                    or split the integral";
+        let help = "keep poles, kinks and joints of curves out of the range, narrow what moves, or split it";
         self.report(Diagnostic::new(Code::Unproven, bound.value.span, message).help(help));
         Value::Poison
     }
