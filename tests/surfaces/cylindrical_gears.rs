@@ -161,8 +161,8 @@ fn the_arc_of_the_ellipse_is_its_integral() {
         let (a, b) = (elliptical_at(ratio, 0.0)[0], elliptical_at(ratio, PI / 2.0)[0]);
         assert!((b - ratio * a).abs() < 1e-12 * a);
         let pitches = 36.0 * 3.0 * PI;
-        // a few sums of numbers as large as the perimeter
-        let rounding = 4.0 * f64::EPSILON * pitches;
+        // a few sums of numbers as large as the perimeter, the pitches up to the space among them
+        let rounding = 8.0 * f64::EPSILON * pitches;
         for (t, arc) in [0.3, 1.1, 2.0, 3.5, 5.9, TAU].into_iter().zip(arcs) {
             let normal = t + ((a - b) * t.sin() * t.cos() / (b * t.cos().powi(2) + a * t.sin().powi(2))).atan();
             let along = -a * t.cos() * normal.sin() + b * t.sin() * normal.cos();
