@@ -11,7 +11,7 @@ use std::time::Instant;
 use flank_benches::peak_memory;
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Range, SurfaceProblem};
+use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
 /// Where the common job starts: s, theta, phi.
 const START: [f64; 3] = [5.4, -2.45, -0.26];
@@ -79,7 +79,8 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let is_curved = arguments.job == "grid";
     let new = if is_curved { SurfaceProblem::with_curvatures } else { SurfaceProblem::new };
-    let problem = new(&surface.surface, coordinates, ranges, &job.bindings()).map_err(|error| error.to_string())?;
+    let problem = new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .map_err(|error| error.to_string())?;
     let setup = start.elapsed().as_secs_f64();
 
     let targets = sample.targets();

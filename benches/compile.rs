@@ -7,7 +7,7 @@ use std::time::Instant;
 use divan::{Bencher, black_box};
 use flank_chain_dsl::{compile_text, render};
 use flank_expr::Graph;
-use flank_solver::{Range, SurfaceProblem};
+use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
 /// Numbers of frames in a chain.
 const FRAMES: [usize; 5] = [10, 30, 100, 300, 1000];
@@ -28,7 +28,8 @@ fn tape_of(text: &str) -> usize {
         let sample = surface.sample.as_ref().expect("a sample");
         let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
         let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-        let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+        let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+            .expect("all bound");
         instructions += problem.system().tape().instructions().len();
     }
     instructions

@@ -3,7 +3,7 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flank_chain_dsl::compile_text;
 use flank_expr::{Binary, Graph, InstructionSet, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, Unary};
-use flank_solver::{Range, SurfaceProblem};
+use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
 fn main() {
     divan::main();
@@ -20,7 +20,8 @@ fn flank_tape() -> Tape {
     let sample = surface.sample.as_ref().expect("a sample");
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .expect("all bound");
     problem.system().tape().clone()
 }
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 use flank_benches::peak_memory;
 use flank_chain_dsl::compile_text;
 use flank_expr::Graph;
-use flank_solver::{Range, SurfaceProblem};
+use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
 /// Rows and columns: 10³ to 10⁷ points.
 const SIDES: [usize; 5] = [32, 100, 316, 1000, 3162];
@@ -35,7 +35,8 @@ fn measured(side: usize) -> (f64, f64) {
     let sample = surface.sample.as_ref().expect("a sample");
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .expect("all bound");
     let start = problem.solve(&[sample.grid.at(side / 2, side / 2)], [1, 1]).0.remove(0).unknowns;
     let points = side * side;
     let run = || {

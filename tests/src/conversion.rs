@@ -42,9 +42,10 @@ impl<'g> Conversion<'g> {
         let chain = machine.chain(graph, frames[0], frames[1]).expect("both frames");
         let axes = target_axes(target);
         let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-        let (driven, motions) = (&surface.generation.driven, &surface.generation.motions);
+        let [chain, driven] = [&chain, &surface.generation.driven].map(|chain| chain.substituted(&bindings));
+        let motions = &surface.generation.motions;
         let slips = unseen(job, surface);
-        let problem = PoseProblem::new(&chain, &axes, driven, motions, &slips, REACH, &bindings).expect("six axes");
+        let problem = PoseProblem::new(&chain, &axes, &driven, motions, &slips, REACH).expect("six axes");
         Conversion { problem, axes: machine.axes.iter().map(|axis| axis.name.clone()).collect() }
     }
 }

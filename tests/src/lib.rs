@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Compilation, Dimension, GeneratedSurface, Job, compile_file, compile_text, render};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem, solve_grid};
+use flank_solver::{
+    BoundSurface, Outcome, PointGeometry, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem, solve_grid,
+};
 use serde_json::Value;
 
 pub use dice::Dice;
@@ -166,6 +168,11 @@ fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     wider.map(|(u, range)| if u.is_count { range } else { range.beyond(at_least(u.dimension)) }).collect()
 }
 
+/// A surface with the values of the job's parameters.
+pub fn bound<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>) -> BoundSurface<'g> {
+    BoundSurface::new(&surface.surface, ranges(surface), &job.bindings())
+}
+
 /// What `flank solve` solves: points of a surface at values of two coordinates, on the branch that its sample keeps.
 ///
 /// # Panics
@@ -173,9 +180,10 @@ fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
 pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2]) -> SurfaceProblem {
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings());
+    let bound = bound(job, surface);
+    let problem = SurfaceProblem::new(&bound, coordinates);
     let problem = problem.map(|problem| problem.following_beyond(followed(surface)));
-    let problem = problem.and_then(|problem| problem.keeping(&surface.surface.unknowns, &keep, &job.bindings()));
+    let problem = problem.and_then(|problem| problem.keeping(&bound, &keep));
     problem.expect("nothing is unbound")
 }
 
@@ -216,11 +224,12 @@ pub struct Evaluated {
 pub fn evaluated(job: &Job<'_>, surface: &str, unknowns: &[Vec<f64>]) -> Vec<Evaluated> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let [z, rho] = ["z", "rho"].map(|name| surface.coordinate(name).expect("every surface has it").value);
-    let (made, bindings) = (&surface.surface, job.bindings());
-    let geometry = SurfaceGeometry::new(made, &surface.generation.motions, [z, rho], &bindings).expect("all bound");
+    let bound = bound(job, surface);
+    let geometry = SurfaceGeometry::new(&bound, &surface.generation.motions, [z, rho]).expect("all bound");
+    let made = bound.surface();
     let outputs = made.position.0.into_iter().chain(made.normal.0).chain(made.constraints.iter().copied());
     let outputs: Vec<Expr<'_>> = outputs.collect();
-    let tape = Tape::new(&z.graph().substitute(&outputs, &bindings), &made.unknowns).expect("all bound");
+    let tape = Tape::new(&outputs, &made.unknowns).expect("all bound");
     let evaluate = |at: &Vec<f64>| {
         let mut out = vec![0.0; tape.output_count()];
         ScalarEvaluator::new(&tape).run(at, &mut out);

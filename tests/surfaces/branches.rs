@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Job;
 use flank_expr::Graph;
-use flank_solver::{Outcome, Range, Roots, SurfacePoint, SurfaceProblem};
+use flank_solver::{BoundSurface, Outcome, Range, Roots, SurfacePoint, SurfaceProblem};
 use flank_tests::{difference, job, problem};
 
 /// All roots at the middle of the sample of each surface of a job.
@@ -43,7 +43,8 @@ fn a_root_is_alone_where_it_is_said_to_be() {
     let around = root.solution.unknowns.iter().zip(&root.alone_within);
     let ranges = around.map(|(x, radius)| Range { low: x - radius, high: x + radius }).collect();
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let near = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let near = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .expect("all bound");
     let found = near.all_points(target);
     assert_eq!((found.isolated.len(), found.undecided.len()), (1, 0), "{found:?}");
     assert!(root.alone_within.iter().all(|radius| *radius > 1e-6), "{root:?}");
@@ -58,7 +59,8 @@ fn several_branches_are_listed_and_none_is_taken() {
     let sample = surface.sample.as_ref().expect("it is sampled");
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let unsaid = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let unsaid = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .expect("all bound");
     let (points, effort) = unsaid.solve(&sample.targets(), sample.counts);
     assert!(points.iter().all(|point| point.outcome == Outcome::Ambiguous));
     assert!(effort.branches.len() > 1);

@@ -148,9 +148,8 @@ fn what_a_machine_has_no_axis_for_is_told() {
     let axes: Vec<TargetAxis<'_>> = target_axes(&target).into_iter().filter(|axis| axis.variable != still).collect();
     let generation = &job.surfaces[0].generation;
     let screws = unseen(&job, &job.surfaces[0]);
-    let bindings = job.bindings();
-    let problem = PoseProblem::new(&chain, &axes, &generation.driven, &generation.motions, &screws, 1000.0, &bindings)
-        .expect("few");
+    let [chain, driven] = [&chain, &generation.driven].map(|chain| chain.substituted(&job.bindings()));
+    let problem = PoseProblem::new(&chain, &axes, &driven, &generation.motions, &screws, 1000.0).expect("few");
     let posture = &problem.postures(&[0.1])[0];
     let missing = posture.missing.expect("the cutter's axis cannot be met");
     assert!(missing.direction >= 3 && missing.by.abs() > 1e-3, "{missing:?}");
@@ -268,7 +267,7 @@ fn remainders_over_more_than_a_turn() {
     let laws: Vec<_> = machine.axes.iter().map(|axis| (axis.variable, law(&axis.name))).collect();
     let axes = target_axes(&target);
     let source = chain.substituted(&laws);
-    let problem = PoseProblem::new(&chain, &axes, &source, &[turn], &[], 1000.0, &[]).expect("six axes");
+    let problem = PoseProblem::new(&chain, &axes, &source, &[turn], &[], 1000.0).expect("six axes");
     let conversion = Conversion { problem, axes: Vec::new() };
     let first = conversion.problem.postures(&[0.0]).swap_remove(0);
     let series = conversion.problem.series(&first, &[0.0], 0, 3).expect("no singular pose");
@@ -309,7 +308,7 @@ fn in_a_singular_pose_nothing_is_claimed() {
     let tube = |beside: f64| {
         let turned = [(Axis::X, swing), (Axis::Y, graph.constant(beside))].map(|(line, by)| Step::Rotate(line, by));
         let source = Chain::new(&graph, turned.to_vec());
-        let problem = PoseProblem::new(&chain, &target_axes(&target), &source, &[swing], &[], 1000.0, &[]);
+        let problem = PoseProblem::new(&chain, &target_axes(&target), &source, &[swing], &[], 1000.0);
         let problem = problem.expect("six axes");
         let first = problem.postures(&[-0.5]).swap_remove(0);
         assert!(problem.follow(&first, &[vec![-0.5]])[0].missing.is_none());

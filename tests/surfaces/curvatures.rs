@@ -6,9 +6,9 @@
 
 use flank_chain_dsl::Job;
 use flank_expr::Graph;
-use flank_solver::{Outcome, Range, SurfaceGeometry, SurfacePoint, SurfaceProblem};
+use flank_solver::{Outcome, SurfaceGeometry, SurfacePoint, SurfaceProblem};
 use flank_tests::{
-    Evaluated, difference, evaluated, grid, job, job_named, number, points, reference_json, reversed, vector,
+    Evaluated, bound, difference, evaluated, grid, job, job_named, number, points, reference_json, reversed, vector,
 };
 use serde_json::{Value, json};
 
@@ -307,13 +307,13 @@ fn many_points_at_once_bend_as_one_by_one() {
         for surface in job.surfaces.iter().filter(|surface| surface.sample.is_some()) {
             let sample = surface.sample.as_ref().expect("it has one");
             let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-            let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-            let problem = SurfaceProblem::with_curvatures(&surface.surface, coordinates, ranges, &job.bindings());
+            let bound = bound(&job, surface);
+            let problem = SurfaceProblem::with_curvatures(&bound, coordinates);
             let problem = problem.expect("nothing is unbound");
             let (points, _) = problem.solve_points(&sample.targets(), sample.counts, None, None);
             let motions: Vec<_> = job.motions.iter().map(|motion| motion.variable).collect();
             let motions: Vec<_> = motions.into_iter().filter(|m| surface.surface.unknowns.contains(m)).collect();
-            let geometry = SurfaceGeometry::new(&surface.surface, &motions, coordinates, &job.bindings());
+            let geometry = SurfaceGeometry::new(&bound, &motions, coordinates);
             let geometry = geometry.expect("nothing is unbound");
             for k in (0..points.len()).filter(|k| points.outcome(*k) == Outcome::Solved) {
                 let careful = geometry.at(&points.unknowns(k)).curvature.expect("a regular point").principal();

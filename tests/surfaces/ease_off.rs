@@ -2,16 +2,15 @@
 //! tooth space.
 
 use flank_expr::Graph;
-use flank_solver::{Deviation, EaseOff, Outcome, Range, SurfacePoint};
-use flank_tests::{Row, difference, job_named, job_of_text, library, points, reference_csv};
+use flank_solver::{Deviation, EaseOff, Outcome, SurfacePoint};
+use flank_tests::{Row, bound, difference, job_named, job_of_text, library, points, reference_csv};
 
 const SPEC: &str = "specs/bevel/ease_off_19x62.chain";
 const MACHINES: [&str; 2] = ["machines/cradle.chain", "tools/face_mill.chain"];
 
 fn held_against<'g>(job: &flank_chain_dsl::Job<'g>, surface: &str) -> Deviation {
     let generated = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
-    let ranges = generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    Deviation::new(&generated.surface, ranges, &job.bindings()).expect("all bound")
+    Deviation::new(&bound(job, generated)).expect("all bound")
 }
 
 fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {

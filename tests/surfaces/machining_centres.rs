@@ -122,16 +122,15 @@ fn the_tilting_table_meets_linuxcnc_backward() {
         };
         // A and C given: what is asked for is where X, Y and Z stand
         let given = [(axes[3].variable, motions[3]), (axes[4].variable, motions[4])];
-        let problem =
-            PoseProblem::new(&target.substituted(&given), &axes[..3], &source, &motions, &SPINDLE, 1000.0, &[])
-                .expect("three axes");
+        let problem = PoseProblem::new(&target.substituted(&given), &axes[..3], &source, &motions, &SPINDLE, 1000.0)
+            .expect("three axes");
         let found = problem.postures(&motion);
         assert!(found.len() == 1 && meets(&found[0]), "{found:?} instead of {joints:?}");
         // all five: where A stands at zero the tool stands along the axis of C, and the pose does not tell how far that is turned
         if angles[0] != 0.0 {
             told_by_the_pose += 1;
             let problem =
-                PoseProblem::new(&target, &on_one_elbow(&axes, angles[0]), &source, &motions, &SPINDLE, 1000.0, &[])
+                PoseProblem::new(&target, &on_one_elbow(&axes, angles[0]), &source, &motions, &SPINDLE, 1000.0)
                     .expect("five axes");
             let found = problem.postures(&motion);
             assert!(found.iter().any(meets), "{found:?} instead of {joints:?}, {angles:?}");
@@ -158,7 +157,7 @@ fn machining_centres_find_their_own_postures() {
         let motions: Vec<Expr<'_>> = (0..5).map(|k| graph.variable(format!("made {k}"))).collect();
         let moved: Vec<(Expr<'_>, Expr<'_>)> = variables.iter().copied().zip(motions.iter().copied()).collect();
         let target = chain(&graph, &machine);
-        let problem = PoseProblem::new(&target, &axes, &target.substituted(&moved), &motions, &SPINDLE, 1000.0, &[])
+        let problem = PoseProblem::new(&target, &axes, &target.substituted(&moved), &motions, &SPINDLE, 1000.0)
             .expect("five axes");
         let mut dice = Dice(5);
         for _ in 0..20 {

@@ -72,7 +72,8 @@ fn carried<'g>(
     let axes: Vec<TargetAxis<'g>> = moving.clone().map(target_axis).collect();
     let names: Vec<&str> = moving.map(|axis| axis.name.as_str()).collect();
     let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings()).collect();
-    let problem = PoseProblem::new(&chain, &axes, &generation.driven, &generation.motions, unseen, REACH, &bindings)
+    let [chain, driven] = [&chain, &generation.driven].map(|chain| chain.substituted(&bindings));
+    let problem = PoseProblem::new(&chain, &axes, &driven, &generation.motions, unseen, REACH)
         .map_err(|error| error.to_string())?;
     let of_motions: Vec<usize> = generation
         .motions

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Dimension, Job};
 use flank_expr::Graph;
-use flank_solver::{NormalSensitivity, Outcome, Parameter, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{BoundSurface, NormalSensitivity, Outcome, Parameter, Range, SurfacePoint, SurfaceProblem};
 use flank_tests::{job, points};
 
 /// Up to seven of a surface's sampled points, spread over the grid.
@@ -21,7 +21,8 @@ fn solved_near(job: &Job<'_>, surface: &str, targets: &[[f64; 2]], near: &[Vec<f
         let around = surface.unknowns.iter().zip(near);
         let around = around.map(|(unknown, at)| (at, 0.02 * (unknown.high - unknown.low)));
         let ranges = around.map(|(at, by)| Range { low: at - by, high: at + by }).collect();
-        let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+        let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+            .expect("all bound");
         problem.solve(&[*target], [1, 1]).0.remove(0)
     };
     let found: Vec<SurfacePoint> = targets.iter().zip(near).map(one).collect();

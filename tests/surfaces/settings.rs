@@ -57,9 +57,10 @@ fn fit<'g>(job: &Job<'g>, target: &Job<'g>, source: &Chain<'g>, names: &[&str]) 
     let chain = machine.chain(graph, "work", "cutter").expect("both frames").substituted(&laws);
     let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
     let bindings: Vec<(Expr<'g>, Expr<'g>)> = job.bindings().into_iter().chain(target.bindings_beside(&open)).collect();
+    let [chain, source] = [&chain, source].map(|chain| chain.substituted(&bindings));
     let generator = AdjustableMachine { chain: &chain, settings: &settings, axes: &axes };
     let motions = [job.motions[0].variable];
-    let problem = SettingsProblem::new(&generator, source, &motions, &unseen(job, &job.surfaces[0]), &bindings, 200.0);
+    let problem = SettingsProblem::new(&generator, &source, &motions, &unseen(job, &job.surfaces[0]), 200.0);
     problem.expect("all bound").fit(&rolls())
 }
 
@@ -117,10 +118,10 @@ fn settings_come_back_through_a_free_form_machine() {
         .enumerate()
         .map(|(k, axis)| TargetAxis { variable: *axis, is_rotary: k > 2, travel: None })
         .collect();
-    let (driven, motions) = (&job.surfaces[0].generation.driven, [job.motions[0].variable]);
-    let problem =
-        PoseProblem::new(&free_form, &free, driven, &motions, &unseen(&job, &job.surfaces[0]), 1000.0, &job.bindings())
-            .expect("six axes");
+    let driven = job.surfaces[0].generation.driven.substituted(&job.bindings());
+    let motions = [job.motions[0].variable];
+    let problem = PoseProblem::new(&free_form, &free, &driven, &motions, &unseen(&job, &job.surfaces[0]), 1000.0)
+        .expect("six axes");
     let posture = &problem.postures(&[0.0])[0];
     let series = problem.series(posture, &[0.0], 0, 16).expect("no singular pose");
     let laws: Vec<(Expr<'_>, Expr<'_>)> = axes

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::{Graph, ScalarEvaluator, Tape};
-use flank_solver::{CuttingEdges, Outcome, Range, ScallopHeight, SurfacePoint};
-use flank_tests::{assert_point, difference, job, job_of_text, problem, repository};
+use flank_solver::{CuttingEdges, Outcome, ScallopHeight, SurfacePoint};
+use flank_tests::{assert_point, bound, difference, job, job_of_text, problem, repository};
 
 const PLANED: &str = "tests/machines/planed.chain";
 const REAL_HOB: &str = "specs/hobbing/real_hob.chain";
@@ -18,8 +18,7 @@ fn surface<'j, 'g>(job: &'j Job<'g>, name: &str) -> &'j GeneratedSurface<'g> {
 fn left(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<Option<ScallopHeight>> {
     let ideal = surface(job, name);
     let real = &job.surfaces[ideal.cut_by.expect("the job says by what")];
-    let ranges: Vec<Range> = real.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let edges = CuttingEdges::new(&ideal.surface, &real.surface, &ranges, &job.bindings()).expect("all bound");
+    let edges = CuttingEdges::new(&bound(job, ideal), &bound(job, real)).expect("all bound");
     edges.left(points)
 }
 

@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, ToolShape, compile_text, render};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{CutBy, Intersection, Meeting, Outcome, Range, SurfacePoint, SurfaceProblem, System, solve, trim};
-use flank_tests::{difference, job, number, points, reference_json, repository, reversed, vector};
+use flank_tests::{bound, difference, job, number, points, reference_json, repository, reversed, vector};
 
 const SPUR: &str = "specs/hobbing/spur_gear.chain";
 /// z = 20, m = 1, α = 20°, x = 0, h_aP0 = 1.25, ρ_aP0 = 0.25.
@@ -231,8 +231,7 @@ fn line<'g>(job: &Job<'g>, name: &str, limit: &str, along: Expr<'g>, values: &[f
         "singular" => generated.surface.clearance_minors().pop(),
         _ => generated.surface.contact_limit(),
     };
-    let ranges = ranges(generated);
-    let problem = SurfaceProblem::line(&generated.surface, quantity.expect("motions"), along, ranges, &job.bindings());
+    let problem = SurfaceProblem::line(&bound(job, generated), quantity.expect("motions"), along);
     let targets: Vec<[f64; 2]> = values.iter().map(|&value| [0.0, value]).collect();
     problem.expect("nothing is unbound").solve(&targets, [1, values.len()]).0
 }
@@ -393,14 +392,9 @@ fn a_cradle_pinion_is_cut_under_along_its_root() {
     for point in &singular {
         assert!(values(&job, "flank", &[height], &point.unknowns)[0] < 0.5);
     }
-    let ranges = surface(&job, "flank").unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface(&job, "flank").surface, [along, height], ranges, &job.bindings());
+    let problem = SurfaceProblem::new(&bound(&job, surface(&job, "flank")), [along, height]);
     let (asked, _) = problem.expect("nothing is unbound").solve(&sample.targets(), sample.counts);
     assert!(asked.iter().all(|point| point.outcome == Outcome::Solved));
-}
-
-fn ranges(generated: &GeneratedSurface<'_>) -> Vec<Range> {
-    generated.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect()
 }
 
 /// Where a surface meets another one, on lines of two coordinates, and its points at the targets without what that cuts away.
@@ -413,11 +407,10 @@ fn trimmed(
 ) -> (Vec<SurfacePoint>, Vec<Meeting>) {
     let [first, second] = [name, by].map(|name| surface(job, name));
     let coordinates = coordinates.map(|coordinate_name| coordinate(job, name, coordinate_name));
-    let problem = SurfaceProblem::new(&first.surface, coordinates, ranges(first), &job.bindings());
+    let [first, second] = [first, second].map(|surface| bound(job, surface));
+    let problem = SurfaceProblem::new(&first, coordinates);
     let (mut points, _) = problem.expect("nothing is unbound").solve(targets, counts);
-    let both = [ranges(first), ranges(second)];
-    let surfaces = [&first.surface, &second.surface];
-    let intersection = Intersection::new(surfaces, coordinates, both, &job.bindings()).expect("nothing is unbound");
+    let intersection = Intersection::new([&first, &second], coordinates).expect("nothing is unbound");
     let meetings = trim(&mut points, targets, counts, &intersection, 0);
     (points, meetings.concat())
 }

@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use flank_chain_dsl::{Compilation, Job, compile_with_machine};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{BoundSurface, Outcome, Range, SurfacePoint, SurfaceProblem};
 use support::{flank, folder, text, top};
 
 const JOB: &str = "specs/bevel/thesis_gear.chain";
@@ -79,7 +79,8 @@ fn flank_points(job: &Job<'_>) -> Vec<SurfacePoint> {
     let sample = surface.sample.as_ref().expect("points are asked for");
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
     let ranges: Vec<Range> = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
-    let problem = SurfaceProblem::new(&surface.surface, coordinates, ranges, &job.bindings()).expect("all bound");
+    let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+        .expect("all bound");
     let points = problem.solve(&sample.targets(), sample.counts).0;
     assert!(points.iter().all(|point| point.outcome == Outcome::Solved));
     points

@@ -2,7 +2,7 @@
 
 use flank_expr::geometry::{Surface, Vector3};
 use flank_expr::{Expr, Graph};
-use flank_solver::{Band, Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{Band, BoundSurface, Outcome, Range, SurfacePoint, SurfaceProblem};
 
 /// A surface over `u` and `v`, asked for by `height + 0.3 sin 3u` and `u`.
 fn waves(height: impl for<'g> Fn(Expr<'g>) -> Expr<'g>, lowest_v: f64) -> SurfaceProblem {
@@ -10,7 +10,8 @@ fn waves(height: impl for<'g> Fn(Expr<'g>) -> Expr<'g>, lowest_v: f64) -> Surfac
     let [u, v] = ["u", "v"].map(|name| graph.variable(name));
     let surface = Surface::parametric([u, v], Vector3([u, v, 0.3 * u * v]), false);
     let ranges = vec![Range { low: -3.0, high: 3.0 }, Range { low: lowest_v, high: 2.0 }];
-    SurfaceProblem::new(&surface, [height(v) + 0.3 * (3.0 * u).sin(), u], ranges, &[]).expect("nothing is unbound")
+    SurfaceProblem::new(&BoundSurface::new(&surface, ranges, &[]), [height(v) + 0.3 * (3.0 * u).sin(), u])
+        .expect("nothing is unbound")
 }
 
 /// It has no point where the first is less than `0.3 sin 3u`: it turns back along a wavy line. With `v` of either sign there are

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use flank_expr::geometry::{Axis, Chain, Edge, Step, Surface, Vector3};
 use flank_expr::{Expr, Graph};
-use flank_solver::{PointGeometry, SurfaceGeometry};
+use flank_solver::{BoundSurface, PointGeometry, Range, SurfaceGeometry};
 
 /// Rounding of a few operations on numbers of order one to ten.
 const ROUNDING: f64 = 1e-13;
@@ -16,7 +16,8 @@ fn close(a: f64, b: f64, what: &str) {
 /// With the last unknowns as motions and the first two as coordinates.
 fn geometry_at(surface: &Surface<'_>, motions: usize, at: &[f64]) -> PointGeometry {
     let p = &surface.unknowns;
-    let geometry = SurfaceGeometry::new(surface, &p[p.len() - motions..], [p[0], p[1]], &[]).expect("all bound");
+    let bound = BoundSurface::new(surface, vec![Range { low: -10.0, high: 10.0 }; p.len()], &[]);
+    let geometry = SurfaceGeometry::new(&bound, &p[p.len() - motions..], [p[0], p[1]]).expect("all bound");
     geometry.at(at)
 }
 
@@ -88,7 +89,8 @@ fn what_is_not_defined_is_none() {
     let tip = geometry_at(&cone, 0, &[0.3, 0.0]);
     assert_eq!((tip.curvature, tip.metric.map(|metric| metric.e)), (None, Some(0.0)));
     // coordinates that are one
-    let twice = SurfaceGeometry::new(&cone, &[], [v, 2.0 * v], &[]).expect("all bound").at(&[0.3, 1.0]);
+    let cone = BoundSurface::new(&cone, vec![Range { low: -10.0, high: 10.0 }; 2], &[]);
+    let twice = SurfaceGeometry::new(&cone, &[], [v, 2.0 * v]).expect("all bound").at(&[0.3, 1.0]);
     assert!(twice.metric.is_none() && twice.curvature.is_some());
     // out of the domain
     let root = Surface::parametric([u, v], Vector3([u, v, (u - 5.0).sqrt()]), false);

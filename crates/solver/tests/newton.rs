@@ -2,7 +2,7 @@
 
 use flank_expr::Graph;
 use flank_expr::geometry::{Surface, Vector3};
-use flank_solver::{Outcome, Range, SurfaceProblem, System, TOLERANCE, solve, solve_grid};
+use flank_solver::{BoundSurface, Outcome, Range, SurfaceProblem, System, TOLERANCE, solve, solve_grid};
 
 fn range(low: f64, high: f64) -> Range {
     Range { low, high }
@@ -139,7 +139,11 @@ fn points_of_a_sphere_by_height_and_angle() {
     let position = Vector3([5.0 * u.cos() * v.cos(), 5.0 * u.cos() * v.sin(), 5.0 * u.sin()]);
     let sphere = Surface::parametric([u, v], position, true);
     let [x, y, z] = position.0;
-    let problem = SurfaceProblem::new(&sphere, [z, y.atan2(x)], vec![range(-1.5, 1.5), range(-3.0, 3.0)], &[]).unwrap();
+    let problem = SurfaceProblem::new(
+        &BoundSurface::new(&sphere, vec![range(-1.5, 1.5), range(-3.0, 3.0)], &[]),
+        [z, y.atan2(x)],
+    )
+    .unwrap();
     let targets: Vec<[f64; 2]> = (0..9).map(|k| [-4.0 + f64::from(k), -1.0 + 0.25 * f64::from(k)]).collect();
     for (target, point) in targets.iter().zip(problem.solve(&targets, [9, 1]).0) {
         assert_eq!(point.outcome, Outcome::Solved);

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use flank_expr::geometry::{Surface, Vector3};
 use flank_expr::{Expr, Graph};
-use flank_solver::{Band, Outcome, Range, SurfacePoint, SurfaceProblem};
+use flank_solver::{Band, BoundSurface, Outcome, Range, SurfacePoint, SurfaceProblem};
 
 fn range(low: f64, high: f64) -> Range {
     Range { low, high }
@@ -20,9 +20,10 @@ fn plane(
     let [u, v] = ["u", "v"].map(|name| graph.variable(name));
     let surface = Surface::parametric([u, v], Vector3([u, v, graph.constant(0.0)]), false);
     let keep: Vec<_> = keep.into_iter().map(|(unknown, range)| ([u, v][unknown], range)).collect();
-    let problem = SurfaceProblem::new(&surface, coordinates(u, v), ranges.to_vec(), &[]).expect("nothing is unbound");
+    let surface = BoundSurface::new(&surface, ranges.to_vec(), &[]);
+    let problem = SurfaceProblem::new(&surface, coordinates(u, v)).expect("nothing is unbound");
     let problem = problem.following_beyond(ranges.map(|range| range.beyond(0.0)).to_vec());
-    problem.keeping(&[u, v], &keep, &[]).expect("nothing is unbound")
+    problem.keeping(&surface, &keep).expect("nothing is unbound")
 }
 
 /// A grid from one corner to the other.
@@ -139,10 +140,11 @@ fn cylinder(graph: &Graph, angles: Range) -> SurfaceProblem {
     let [angle, z] = ["angle", "z"].map(|name| graph.variable(name));
     let surface = Surface::parametric([angle, z], Vector3([3.0 * angle.cos(), 3.0 * angle.sin(), z]), false);
     let ranges = vec![angles, range(-1.0, 1.0)];
-    let problem = SurfaceProblem::new(&surface, [3.0 * angle.sin(), z], ranges.clone(), &[]);
+    let surface = BoundSurface::new(&surface, ranges.clone(), &[]);
+    let problem = SurfaceProblem::new(&surface, [3.0 * angle.sin(), z]);
     let problem =
         problem.expect("nothing is unbound").following_beyond(ranges.iter().map(|range| range.beyond(0.0)).collect());
-    problem.keeping(&[angle, z], &[(angle.cos(), range(-1.0, 0.0))], &[]).expect("nothing is unbound")
+    problem.keeping(&surface, &[(angle.cos(), range(-1.0, 0.0))]).expect("nothing is unbound")
 }
 
 fn is_on_the_left(target: [f64; 2], point: &SurfacePoint, angles: Range) -> bool {

@@ -22,7 +22,7 @@ use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::branches;
 use crate::solve::starts::{self, Starts};
-use crate::solve::{self, SolveOptions, header, patch, problem, ranges};
+use crate::solve::{self, SolveOptions, bound, header, patch, problem};
 
 const NOTE: &str = "along the normal, plus is material";
 
@@ -212,8 +212,7 @@ pub(crate) fn measure<'j, 'g>(
     session.check()?;
     let starts = Starts::beside(surface.surface, (sample, &points));
     let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
-    let held = &surface.surface.surface;
-    let deviation = flank_solver::Deviation::new(held, ranges(surface.surface), &surface.job.bindings())
+    let deviation = flank_solver::Deviation::new(&bound(surface.job, surface.surface))
         .expect("a job without errors leaves nothing unbound");
     let middle = starts::middle(counts);
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));

@@ -45,8 +45,8 @@ pub(crate) fn inspect<'j, 'g>(
         let at = reading.row * counts[1] + reading.column;
         positions[at] = position(reading.measured, &nominal[at]);
     }
-    let inspection = Inspection::new(&of.surface.surface, solve::ranges(of.surface), &of.job.bindings())
-        .expect("a job without errors leaves nothing unbound");
+    let inspection =
+        Inspection::new(&solve::bound(of.job, of.surface)).expect("a job without errors leaves nothing unbound");
     let _working = session.begin(format!("holding {shown} against {}", of.surface.name))?;
     let turn = inspection.best_turn(&positions, &nominal);
     if let Some((at, off, half)) = misplaced(&positions, &nominal, counts, turn.unwrap_or(0.0)) {

@@ -277,7 +277,8 @@ impl<'t, 'g> Target<'t, 'g> {
         (chain, axes): (&Chain<'g>, &[TargetAxis<'g>]),
         unseen: &[Screw],
     ) -> Result<PoseProblem<'g>, String> {
-        PoseProblem::new(chain, axes, self.source.driven, &self.motions(), unseen, REACH, &self.bindings)
+        let [chain, source] = [chain, self.source.driven].map(|chain| chain.substituted(&self.bindings));
+        PoseProblem::new(&chain, axes, &source, &self.motions(), unseen, REACH)
             .map_err(|error| refused(&error, self.machine, &self.free))
     }
 

@@ -79,10 +79,11 @@ pub(super) fn find(
     let Target { source, settings, .. } = target;
     let positions = source.positions(request.positions as usize);
     let unknown: Vec<UnknownSetting<'_>> = settings.iter().map(|setting| unknown(target.job, setting)).collect();
-    let machine = AdjustableMachine { chain: &target.chain, settings: &unknown, axes: &target.axes };
+    let [chain, driven] = [&target.chain, source.driven].map(|chain| chain.substituted(&target.bindings));
+    let machine = AdjustableMachine { chain: &chain, settings: &unknown, axes: &target.axes };
     let reach = reach(target, &positions);
     let motions = target.motions();
-    let problem = SettingsProblem::new(&machine, source.driven, &motions, &source.symmetries, &target.bindings, reach)
+    let problem = SettingsProblem::new(&machine, &driven, &motions, &source.symmetries, reach)
         .map_err(|error| error.to_string())?;
     let some: Vec<Vec<f64>> = match positions.len().checked_sub(1) {
         Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),

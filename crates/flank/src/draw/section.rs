@@ -1,20 +1,17 @@
 //! A section through the tooth space, square to the tooth, with the tool at some moments.
 
-use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_chain_dsl::GeneratedSurface;
 use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
 use flank_export::shape::rows_follow_profile;
 use flank_export::{Patch, fixed};
-use flank_expr::geometry::Vector3;
-use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, Range, System, solve};
+use flank_solver::{Outcome, SectionPlane, SurfacePoint};
 
 use super::maps::{cross, dot, unit};
 use super::subject::Subject;
-use super::tool::{Plane, Tool};
+use super::tool::Tool;
 use super::{Drawing, Unfit, counted};
 use crate::project::units;
-use crate::solve::ranges;
-use crate::solve::table::Solved;
+use crate::solve::bound;
 
 /// Positions of the tool in all, and of each surface at least.
 const POSITIONS: usize = 14;
@@ -23,20 +20,6 @@ const LEAST_POSITIONS: usize = 3;
 const MOST_TOUCHED: usize = 14;
 /// Points of a surface in the section.
 const POINTS: usize = 61;
-
-/// The plane of the section with the directions that go across and up on paper.
-struct Cut {
-    plane: Plane,
-    across: [f64; 3],
-    up: [f64; 3],
-}
-
-/// A point of a generated surface in the section.
-struct InSection {
-    unknowns: Vec<f64>,
-    position: [f64; 3],
-    normal: [f64; 3],
-}
 
 pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
     let drawn = of(subject)?;
@@ -55,7 +38,14 @@ fn of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
     for &at in &mates {
         tools.push(Tool::of(subject.job, subject.solved[at].surface)?);
     }
-    let lines: Vec<Vec<InSection>> = mates.iter().map(|&at| cut.surface(subject.job, &subject.solved[at])).collect();
+    let line = |&at: &usize| {
+        let solved = &subject.solved[at];
+        let surface = bound(subject.job, solved.surface);
+        cut.0
+            .cut(&surface, (&solved.points, solved.counts()), POINTS)
+            .expect("a job without errors leaves nothing unbound")
+    };
+    let lines: Vec<Vec<SurfacePoint>> = mates.iter().map(line).collect();
     if lines.iter().all(Vec::is_empty) {
         return Err("the plane of the section meets no solved point".to_string());
     }
@@ -66,6 +56,9 @@ fn of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
         tools: cut.positions(subject, &mates, &lines, &tools),
     })
 }
+
+/// The plane of the section; its axes go across and up on paper.
+struct Cut(SectionPlane);
 
 impl Cut {
     /// The plane through the middle of the first surface, square to the tooth there.
@@ -89,11 +82,11 @@ impl Cut {
         let in_plane = [0, 1, 2].map(|k| rise[k] - dot(rise, length) * length[k]);
         let up = unit(in_plane).ok_or_else(no_direction)?;
         let up = if dot(up, point.normal) < 0.0 { up.map(|x| -x) } else { up };
-        Ok(Cut { plane: Plane { point: point.position, normal: length }, across: cross(up, length), up })
+        Ok(Cut(SectionPlane { point: point.position, normal: length, axes: [cross(up, length), up] }))
     }
 
     fn note(&self, subject: &Subject<'_, '_>) -> String {
-        let [x, y, z] = self.plane.point;
+        let [x, y, z] = self.0.point;
         let is_counted = subject.motions().iter().any(|motion| motion.is_count);
         let counts = if is_counted { "; what counts is taken without gaps" } else { "" };
         let mates = subject.mates();
@@ -118,67 +111,11 @@ impl Cut {
         )
     }
 
-    fn on_paper(&self, position: [f64; 3]) -> [f64; 2] {
-        let off = [0, 1, 2].map(|k| position[k] - self.plane.point[k]);
-        [dot(self.across, off), dot(self.up, off)]
-    }
-
-    /// Points in which the surface meets the plane, solved to rounding from those that its grid is cut in.
-    fn surface<'g>(&self, job: &Job<'g>, solved: &Solved<'_, 'g>) -> Vec<InSection> {
-        let starts = self.starts(solved);
-        let places: Vec<[f64; 2]> = starts.iter().map(|(place, _)| *place).collect();
-        let Some((low, high)) = places.first().zip(places.last()) else { return Vec::new() };
-        // asked for by what changes most along the line
-        let k = if (high[0] - low[0]).abs() > (high[1] - low[1]).abs() { 0 } else { 1 };
-        let solver = Solver::new(self, job, solved.surface, k);
-        let mut points = Vec::new();
-        for step in 0..POINTS {
-            let share = step as f64 / (POINTS - 1) as f64;
-            let target = low[k] + share * (high[k] - low[k]);
-            let near = starts.iter().min_by(|a, b| (a.0[k] - target).abs().total_cmp(&(b.0[k] - target).abs()));
-            points.extend(near.and_then(|(_, start)| solver.point(target, start)));
-        }
-        points
-    }
-
-    /// Where the lines of the grid that run along the tooth cross the plane: on paper, and the unknowns there.
-    fn starts(&self, solved: &Solved<'_, '_>) -> Vec<([f64; 2], Vec<f64>)> {
-        let [rows, columns] = solved.counts();
-        let mut best: Vec<([f64; 2], Vec<f64>)> = Vec::new();
-        for along_rows in [true, false] {
-            let (lines, steps) = if along_rows { (columns, rows) } else { (rows, columns) };
-            let crossing = |line: usize| {
-                let at = |step: usize| if along_rows { step * columns + line } else { line * columns + step };
-                (1..steps).find_map(|step| self.between(solved, at(step - 1), at(step)))
-            };
-            let found: Vec<([f64; 2], Vec<f64>)> = (0..lines).filter_map(crossing).collect();
-            if found.len() > best.len() {
-                best = found;
-            }
-        }
-        best
-    }
-
-    fn between(&self, solved: &Solved<'_, '_>, from: usize, to: usize) -> Option<([f64; 2], Vec<f64>)> {
-        let [from, to] = [from, to].map(|at| &solved.points[at]);
-        let both =
-            [from, to].map(|point| (point.outcome == Outcome::Solved).then(|| self.plane.height(point.position)));
-        let (low, high) = (both[0]?, both[1]?);
-        let crosses = (low <= 0.0) != (high <= 0.0);
-        let share = low / (low - high);
-        crosses.then(|| {
-            let mix = |a: f64, b: f64| a + share * (b - a);
-            let position = [0, 1, 2].map(|k| mix(from.position[k], to.position[k]));
-            let unknowns = from.unknowns.iter().zip(&to.unknowns).map(|(a, b)| mix(*a, *b)).collect();
-            (self.on_paper(position), unknowns)
-        })
-    }
-
-    fn line(&self, surface: &GeneratedSurface<'_>, points: &[InSection]) -> SectionLine {
-        let normal = |point: &InSection| [dot(self.across, point.normal), dot(self.up, point.normal)];
+    fn line(&self, surface: &GeneratedSurface<'_>, points: &[SurfacePoint]) -> SectionLine {
+        let normal = |point: &SurfacePoint| self.0.axes.map(|axis| dot(axis, point.normal));
         SectionLine {
             name: surface.name.clone(),
-            points: points.iter().map(|point| self.on_paper(point.position)).collect(),
+            points: points.iter().map(|point| self.0.in_axes(point.position)).collect(),
             normals: points.iter().map(normal).collect(),
         }
     }
@@ -188,12 +125,12 @@ impl Cut {
         &self,
         subject: &Subject<'_, '_>,
         mates: &[usize],
-        lines: &[Vec<InSection>],
+        lines: &[Vec<SurfacePoint>],
         tools: &[Tool],
     ) -> Vec<ToolPosition> {
         let each = (POSITIONS / mates.len()).max(LEAST_POSITIONS);
         let mut positions: Vec<(f64, ToolPosition)> = Vec::new();
-        let touched: Vec<(&usize, &Vec<InSection>)> =
+        let touched: Vec<(&usize, &Vec<SurfacePoint>)> =
             mates.iter().zip(lines).filter(|(_, line)| !line.is_empty()).collect();
         let drawn = touched.len().min(MOST_TOUCHED);
         for (&at, line) in (0..drawn).map(|k| touched[k * touched.len() / drawn]) {
@@ -201,14 +138,14 @@ impl Cut {
             for k in 0..each {
                 let touching = &line[(2 * k + 1) * line.len() / (2 * each)];
                 let rest = &touching.unknowns[2..];
-                let pieces = tools.iter().flat_map(|tool| tool.cut(rest, &self.plane));
+                let pieces = tools.iter().flat_map(|tool| tool.cut(rest, &self.0));
                 let values = surface.unknowns[2..].iter().zip(rest);
                 let label: Vec<String> =
                     values.map(|(of, x)| format!("{} {}", of.name, units::text(of.dimension, *x, 2))).collect();
                 let position = ToolPosition {
                     label: label.join(", "),
-                    lines: pieces.map(|ends| ends.map(|end| self.on_paper(end)).to_vec()).collect(),
-                    contacts: vec![self.on_paper(touching.position)],
+                    lines: pieces.map(|ends| ends.map(|end| self.0.in_axes(end)).to_vec()).collect(),
+                    contacts: vec![self.0.in_axes(touching.position)],
                 };
                 positions.push((rest[0], position));
             }
@@ -231,46 +168,6 @@ fn neighbours(patch: &Patch, at: usize, along_rows: bool) -> Option<[f64; 3]> {
     let (before, after) = (near(-1).unwrap_or(here), near(1).unwrap_or(here));
     let way = [0, 1, 2].map(|k| after[k] - before[k]);
     (dot(way, way) > 0.0).then_some(way)
-}
-
-/// Points of a generated surface in the plane at given places across or up.
-struct Solver {
-    system: System,
-    point: Tape,
-    ranges: Vec<Range>,
-}
-
-impl Solver {
-    fn new<'g>(cut: &Cut, job: &Job<'g>, surface: &GeneratedSurface<'g>, k: usize) -> Solver {
-        let bound = surface.surface.bound(&job.bindings());
-        let graph = bound.position.0[0].graph();
-        let height = |direction: [f64; 3]| -> Expr<'g> {
-            let direction = Vector3::constant(graph, direction);
-            (bound.position - Vector3::constant(graph, cut.plane.point)).dot(direction)
-        };
-        let target = graph.variable("target");
-        let place = height([cut.across, cut.up][k]) - target;
-        let residuals: Vec<Expr<'g>> =
-            bound.constraints.iter().copied().chain([height(cut.plane.normal), place]).collect();
-        let outputs: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
-        let whole = "a job without errors leaves nothing unbound";
-        Solver {
-            system: System::new(&residuals, &bound.unknowns, &[target]).expect(whole),
-            point: Tape::new(&outputs, &bound.unknowns).expect(whole),
-            ranges: ranges(surface),
-        }
-    }
-
-    fn point(&self, target: f64, start: &[f64]) -> Option<InSection> {
-        let solution = solve(&self.system, &self.ranges, &[target], start);
-        if solution.outcome != Outcome::Solved {
-            return None;
-        }
-        let mut out = [0.0; 6];
-        ScalarEvaluator::new(&self.point).run(&solution.unknowns, &mut out);
-        let [x, y, z, nx, ny, nz] = out;
-        Some(InSection { unknowns: solution.unknowns, position: [x, y, z], normal: [nx, ny, nz] })
-    }
 }
 
 #[cfg(test)]

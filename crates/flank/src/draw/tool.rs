@@ -2,10 +2,9 @@
 
 use flank_chain_dsl::{GeneratedSurface, Job, Process, ToolShape};
 use flank_expr::{InstructionSet, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, Varies};
-use flank_solver::Range;
+use flank_solver::{Range, SectionPlane};
 
-use super::maps::dot;
-use crate::solve::ranges;
+use crate::solve;
 
 /// Cells of the grid that a tool is cut by a plane in: along its profile, and along its other parameter.
 const CELLS: [usize; 2] = [64, 96];
@@ -20,19 +19,6 @@ pub(super) struct Tool {
     /// The position alone, where the motions are the same in all lanes.
     positions: LaneTape,
     ranges: [Range; 2],
-}
-
-/// A plane by one of its points and its unit normal.
-#[derive(Clone, Copy)]
-pub(super) struct Plane {
-    pub(super) point: [f64; 3],
-    pub(super) normal: [f64; 3],
-}
-
-impl Plane {
-    pub(super) fn height(&self, at: [f64; 3]) -> f64 {
-        dot(self.normal, [0, 1, 2].map(|k| at[k] - self.point[k]))
-    }
 }
 
 impl Tool {
@@ -54,13 +40,14 @@ impl Tool {
             }
             ToolShape::Surface(_) | ToolShape::Edge(_) => {}
         }
-        let bound = surface.surface.bound(&job.bindings());
+        let surface = solve::bound(job, surface);
+        let bound = surface.surface();
         let outputs: Vec<_> = bound.position.0.into_iter().chain(bound.normal.0).collect();
         let [tape, positions] = [&outputs[..], &bound.position.0]
             .map(|outputs| Tape::new(outputs, &bound.unknowns).expect("a job without errors leaves nothing unbound"));
         let varies = |k: usize| if k < 2 { Varies::Freely } else { Varies::ByRun };
         let varies: Vec<Varies> = (0..bound.unknowns.len()).map(varies).collect();
-        let ranges = ranges(surface);
+        let ranges = surface.ranges();
         Ok(Tool { tape, positions: LaneTape::with_inputs(&positions, &varies), ranges: [ranges[0], ranges[1]] })
     }
 
@@ -87,7 +74,7 @@ impl Tool {
     }
 
     /// Where the tool meets a plane: short straight pieces with their ends on both, mm.
-    pub(super) fn cut(&self, rest: &[f64], plane: &Plane) -> Vec<[[f64; 3]; 2]> {
+    pub(super) fn cut(&self, rest: &[f64], plane: &SectionPlane) -> Vec<[[f64; 3]; 2]> {
         let mut sheet = Sheet::new(self, rest);
         let [rows, columns] = CELLS;
         let share = |i: usize, j: usize| [i as f64 / rows as f64, j as f64 / columns as f64];
@@ -154,7 +141,7 @@ impl<'t> Sheet<'t> {
     }
 
     /// Where the plane lies between the ends of each crossing.
-    fn crossed(&mut self, crossings: &[Crossing], plane: &Plane) -> Vec<[f64; 3]> {
+    fn crossed(&mut self, crossings: &[Crossing], plane: &SectionPlane) -> Vec<[f64; 3]> {
         let mut between = vec![[0.0, 1.0]; crossings.len()];
         for _ in 0..HALVINGS {
             let middle = |[near, far]: [f64; 2]| 0.5 * (near + far);

@@ -7,7 +7,7 @@ use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::Session;
-use crate::solve::ranges;
+use crate::solve::bound;
 use crate::solve::result::CutHeights;
 use crate::solve::table::Solved;
 
@@ -31,7 +31,7 @@ pub(crate) fn of<'g>(
     session: Session,
 ) -> Option<Cut> {
     let by = &job.surfaces[surface.cut_by?];
-    let edges = CuttingEdges::new(&surface.surface, &by.surface, &ranges(by), &job.bindings())
+    let edges = CuttingEdges::new(&bound(job, surface), &bound(job, by))
         .expect("a job without errors leaves nothing unbound")
         .with_instruction_set(session.instructions());
     let counts = by.unknowns[2..].iter().map(|count| count.name.clone()).collect();

@@ -6,6 +6,7 @@ use flank_solver::{Metric, Outcome, PointGeometry, Principal, SurfaceGeometry, S
 use rayon::prelude::*;
 
 use crate::project::units;
+use crate::solve::bound;
 
 /// Points that threads share out at once: of no more all that is known is held.
 pub(crate) const TOGETHER: usize = 4096;
@@ -40,7 +41,7 @@ impl<'s> Described<'s> {
     ) -> Described<'s> {
         let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
         let motions = &surface.generation.motions;
-        let geometry = SurfaceGeometry::new(&surface.surface, motions, coordinates, &job.bindings())
+        let geometry = SurfaceGeometry::new(&bound(job, surface), motions, coordinates)
             .expect("a job without errors leaves nothing unbound");
         Described { geometry, columns: columns(surface, sample, points) }
     }

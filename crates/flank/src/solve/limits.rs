@@ -126,8 +126,7 @@ impl<'j, 'g> Sought<'j, 'g> {
 
     fn problem(&self, job: &Job<'g>, k: usize, session: Session) -> SurfaceProblem {
         let (surface, along) = (self.surface, &self.sample.coordinates[k]);
-        let ranges = solve::ranges(surface);
-        let problem = SurfaceProblem::line(&surface.surface, self.quantity, along.value, ranges, &job.bindings())
+        let problem = SurfaceProblem::line(&solve::bound(job, surface), self.quantity, along.value)
             .expect("a job without errors leaves nothing unbound");
         problem.following_beyond(reach::followed(surface)).with_instruction_set(session.instructions())
     }

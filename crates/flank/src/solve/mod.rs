@@ -27,7 +27,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
 use flank_draw::{PictureOptions, picture};
 use flank_export::{Axis, Banded, Dataset, Face, Header, Outcome, Patch, Point, Surfaces, Unit, Unknown};
 use flank_expr::{Expr, Graph};
-use flank_solver::{CutBy, GridReport, Range, Solution, SurfacePoint, SurfaceProblem};
+use flank_solver::{BoundSurface, CutBy, GridReport, Range, Solution, SurfacePoint, SurfaceProblem};
 
 use self::cut::Cut;
 use self::limits::Line;
@@ -287,7 +287,7 @@ pub(crate) fn problem<'g>(
     let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
     let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     on_any_branch(job, surface, coordinates, session)
-        .keeping(&surface.surface.unknowns, &keep, &job.bindings())
+        .keeping(&bound(job, surface), &keep)
         .expect("a job without errors leaves nothing unbound")
 }
 
@@ -298,7 +298,7 @@ fn on_any_branch<'g>(
     coordinates: [Expr<'g>; 2],
     session: Session,
 ) -> SurfaceProblem {
-    SurfaceProblem::new(&surface.surface, coordinates, ranges(surface), &job.bindings())
+    SurfaceProblem::new(&bound(job, surface), coordinates)
         .expect("a job without errors leaves nothing unbound")
         .following_beyond(reach::followed(surface))
         .with_instruction_set(session.instructions())
@@ -326,6 +326,11 @@ fn kept_out<'g>(
 fn elsewhere(problem: &SurfaceProblem, effort: &GridReport) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
     let point = |root: &Solution| problem.points(std::slice::from_ref(root)).remove(0);
     effort.elsewhere.iter().map(|other| (point(&other.root), other.beside.as_ref().map(point))).collect()
+}
+
+/// A surface with the values of the job's parameters.
+pub(crate) fn bound<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>) -> BoundSurface<'g> {
+    BoundSurface::new(&surface.surface, ranges(surface), &job.bindings())
 }
 
 /// Where the unknowns of a surface are looked for.

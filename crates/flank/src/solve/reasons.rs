@@ -4,6 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, RangedVariable};
 use flank_solver::{CutBy, Outcome};
 
 use crate::project::units;
+use crate::solve::bound;
 use crate::solve::branches;
 use crate::solve::reach;
 use crate::solve::secondary;
@@ -70,7 +71,7 @@ pub(crate) fn counted(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
 
 /// Whether the points of a surface that is cut away whole speak of a `body` on the wrong side.
 fn is_inside_out(job: &Job<'_>, solved: &Solved<'_, '_>) -> bool {
-    flank_solver::is_inside_out(&solved.surface.surface, &solved.points, &job.bindings())
+    flank_solver::is_inside_out(&bound(job, solved.surface), &solved.points)
         .expect("a job without errors leaves nothing unbound")
 }
 

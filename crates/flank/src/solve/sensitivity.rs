@@ -5,15 +5,11 @@ use std::f64::consts::PI;
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
 use flank_draw::{Picture, PictureOptions, field_maps};
 use flank_export::{Dataset, Field, Known, Values};
-use flank_solver::{NormalSensitivity, Outcome, SurfacePoint};
-use rayon::prelude::*;
+use flank_solver::{Displacement, NormalSensitivity, SurfacePoint};
 
 use crate::project::units;
 use crate::solve::result::{ParameterInfluence, SensitivityTable, UsualChange};
 use crate::solve::table::Solved;
-
-/// Points that threads share out at once: of no more all influences are held.
-const TOGETHER: usize = 4096;
 
 /// Maps on one picture.
 pub(crate) const MAPS: usize = 6;
@@ -39,10 +35,12 @@ struct Influence {
     dimension: Dimension,
     /// The change that parameters are ranked by, in the same unit.
     usual_change: f64,
+    /// um for the step, as the two that follow.
     values: Known<f64>,
-    /// Root of the mean square, and the largest, over all points with a value.
     rms: f64,
     largest: f64,
+    /// Whether it moves any point.
+    moves: bool,
 }
 
 pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
@@ -51,42 +49,31 @@ pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[Su
     let parameters: Vec<_> = job.parameters.iter().map(changing).collect();
     let exact =
         NormalSensitivity::new(&surface.surface, &parameters).expect("a job without errors leaves nothing unbound");
-    let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| exact.at(&point.unknowns)).flatten();
     let (counts, continuous): (Vec<_>, Vec<_>) =
         job.parameters.iter().enumerate().partition(|(_, parameter)| parameter.is_count);
-    // one number of each parameter and point is all that is kept of a point
-    let mut moved: Vec<Known<f64>> = continuous.iter().map(|_| Known::with_capacity(points.len())).collect();
-    let mut known = 0;
-    for points in points.chunks(TOGETHER) {
-        let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
-        for of_all in found {
-            known += usize::from(of_all.is_some());
-            for ((k, _), values) in continuous.iter().zip(&mut moved) {
-                values.push(of_all.as_ref().map(|of_all| of_all[*k]));
-            }
-        }
-    }
+    let places: Vec<usize> = continuous.iter().map(|(k, _)| *k).collect();
+    let (moved, known) = exact.over(points, &places);
     let influences = continuous.iter().zip(moved);
-    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, &moved)).collect();
+    let influences = influences.map(|((_, parameter), moved)| Influence::new(parameter, moved)).collect();
     let counts = counts.into_iter().map(|(_, parameter)| parameter.name.clone()).collect();
     Sensitivity { influences, counts, points: known }
 }
 
 impl Influence {
-    fn new(parameter: &Parameter<'_>, moved: &Known<f64>) -> Influence {
+    fn new(parameter: &Parameter<'_>, moved: Displacement) -> Influence {
         let (size, step) = small_step(parameter.dimension);
-        let values: Known<f64> = moved.iter().map(|mm| Some(1e3 * size * mm?)).collect();
-        let known = || values.iter().flatten();
-        let squares: f64 = known().map(|um| um * um).sum();
+        let moves = moved.moves();
+        let Displacement { at_points, rms, largest } = moved.times(1e3 * size);
         Influence {
             parameter: parameter.name.clone(),
             step: size,
             unit: format!("um/{step}"),
             dimension: parameter.dimension,
             usual_change: usual_change(parameter),
-            rms: (squares / known().count().max(1) as f64).sqrt(),
-            largest: known().fold(0.0, |largest: f64, um| largest.max(um.abs())),
-            values,
+            values: at_points.into_iter().map(|um| (!um.is_nan()).then_some(um)).collect(),
+            rms,
+            largest,
+            moves,
         }
     }
 
@@ -100,10 +87,6 @@ impl Influence {
             ),
             values: Values::Scalars(self.values.clone()),
         }
-    }
-
-    fn moves(&self) -> bool {
-        self.largest > 0.0
     }
 
     /// A number that is told for the step, for the usual change instead: um.
@@ -169,7 +152,7 @@ impl Sensitivity {
     /// The parameters that move the surface, the one whose usual change does most first, each by its place in the job.
     fn ranked(&self) -> Vec<(usize, &Influence)> {
         let mut ranked: Vec<(usize, &Influence)> =
-            self.influences.iter().enumerate().filter(|(_, one)| one.moves()).collect();
+            self.influences.iter().enumerate().filter(|(_, one)| one.moves).collect();
         ranked.sort_by(|(_, a), (_, b)| b.by_usual_change(b.rms).total_cmp(&a.by_usual_change(a.rms)));
         ranked
     }
@@ -192,7 +175,7 @@ impl Sensitivity {
 
     /// The parameters that move no point; of none can be said so where no point is known.
     fn idle(&self) -> Vec<&str> {
-        self.influences.iter().filter(|one| self.points > 0 && !one.moves()).map(|one| one.parameter.as_str()).collect()
+        self.influences.iter().filter(|one| self.points > 0 && !one.moves).map(|one| one.parameter.as_str()).collect()
     }
 
     pub(crate) fn table(&self) -> SensitivityTable {

@@ -27,7 +27,11 @@ pub(crate) fn runs<'j, 'g>(job: &'j Job<'g>, solved: &[Solved<'_, 'g>]) -> Vec<R
     let over = reached(job, solved);
     let bindings = job.bindings();
     let axes = job.machines.iter().flat_map(|machine| machine.axes.iter().map(|axis| (machine.name.as_str(), axis)));
-    axes.map(|(machine, axis)| Run { axis, machine, over: extent(axis.law, &over, &bindings).ok().flatten() }).collect()
+    let run = |(machine, axis): (&'j str, &'j Axis<'g>)| {
+        let law = axis.law.graph().substitute(&[axis.law], &bindings)[0];
+        Run { axis, machine, over: extent(law, &over).ok().flatten() }
+    };
+    axes.map(run).collect()
 }
 
 impl<'j> Run<'j, '_> {

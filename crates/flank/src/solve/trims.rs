@@ -1,15 +1,15 @@
 //! `trim flank by fillet`: what one surface of a job cuts away of another.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_solver::{CutBy, Deviation, Intersection, Outcome, SurfacePoint, trim};
+use flank_solver::{SurfacePoint, Trim};
 
 use crate::project::requests::Session;
 use crate::solve::limits::Line;
 use crate::solve::summary::Summary;
-use crate::solve::{problem, ranges};
+use crate::solve::{bound, problem};
 
 /// Marks the points of the first surface that the second cuts away, with the number of this trim, and gives back the line
-/// where the two meet. Where they meet nowhere, the one that lies deeper in the steel has taken all of the other.
+/// where the two meet.
 pub(crate) fn cut<'j, 'g>(
     job: &Job<'g>,
     [surface, by]: [&'j GeneratedSurface<'g>; 2],
@@ -18,13 +18,12 @@ pub(crate) fn cut<'j, 'g>(
     (number, session): (usize, Session),
 ) -> Line<'j, 'g> {
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
-    let both = [ranges(surface), ranges(by)];
-    let intersection = Intersection::new([&surface.surface, &by.surface], coordinates, both, &job.bindings())
+    let both = [surface, by].map(|surface| bound(job, surface));
+    let trim = Trim { surfaces: both.each_ref(), coordinates, number };
+    let points_of_by = |coordinates| problem(job, by, coordinates, session);
+    let [on_columns, on_rows] = trim
+        .apply(points, (&sample.targets(), sample.counts), &points_of_by)
         .expect("a job without errors leaves nothing unbound");
-    let [on_columns, on_rows] = trim(points, &sample.targets(), sample.counts, &intersection, number);
-    if on_columns.is_empty() && on_rows.is_empty() {
-        mark_deeper(job, by, sample.counts, points, (number, session));
-    }
     // whichever cross the line oftener show more of it; on the columns it runs along the rows
     let (meetings, along) =
         if on_columns.len() < on_rows.len() { (on_rows, &sample.labels[0]) } else { (on_columns, &sample.labels[1]) };
@@ -39,93 +38,4 @@ pub(crate) fn cut<'j, 'g>(
         several: 1,
         is_open: false,
     }
-}
-
-/// Nearer than this, mm, two surfaces lie on each other.
-const ON_EACH_OTHER: f64 = 1e-9;
-/// Points of gears are told by radius and height unless other places tell them this much better: near a root cylinder, say.
-const CLEARLY: f64 = 2.0;
-
-/// Marks the solved points of the first surface below which, along their normals into the steel, the second one lies and faces
-/// the same way, with the number of the trim. Where the second has several branches beside them, it is not known which counts.
-fn mark_deeper<'g>(
-    job: &Job<'g>,
-    by: &GeneratedSurface<'g>,
-    counts: [usize; 2],
-    points: &mut [SurfacePoint],
-    (number, session): (usize, Session),
-) {
-    let Some(places) = Places::telling(points) else { return };
-    let coordinates = places.of(by.surface.position.0, |x, y| (x * x + y * y).sqrt());
-    let (near, _) = problem(job, by, coordinates, session).solve(&places.targets(points), counts);
-    let deviation =
-        Deviation::new(&by.surface, ranges(by), &job.bindings()).expect("a job without errors leaves nothing unbound");
-    let off = deviation.map(points, &near, 0.0);
-    for ((point, near), off) in points.iter_mut().zip(&near).zip(off) {
-        let is_deeper = off.is_some_and(|off| off < -ON_EACH_OTHER) && turned_normal(near, point) > 0.0;
-        if is_deeper {
-            point.outcome = Outcome::CutAway(CutBy::Other(number));
-        } else if point.outcome == Outcome::Solved && near.outcome == Outcome::Ambiguous {
-            point.outcome = Outcome::Undecided;
-        }
-    }
-}
-
-/// Two functions of a place that tell the points of a surface: two of x, y, z, or the distance from the z axis and z.
-#[derive(Clone, Copy)]
-enum Places {
-    RadiusAndHeight,
-    /// Without the one of this number.
-    Without(usize),
-}
-
-impl Places {
-    /// Those across which some points' surface lies least, whatever its own coordinates are; `None` if no point is solved.
-    fn telling(points: &[SurfacePoint]) -> Option<Places> {
-        let solved = || points.iter().filter(|point| point.outcome == Outcome::Solved);
-        solved().next()?;
-        let sum = |part: &dyn Fn(&SurfacePoint) -> f64| solved().map(|point| part(point).abs()).sum::<f64>();
-        let tangential = |point: &SurfacePoint| {
-            let ([x, y, _], [nx, ny, _]) = (point.position, point.normal);
-            (x * ny - y * nx) / x.hypot(y).max(f64::MIN_POSITIVE)
-        };
-        let mut best = (Places::RadiusAndHeight, sum(&tangential));
-        for k in 0..3 {
-            let own = sum(&|point| point.normal[k]);
-            if own > CLEARLY * best.1 {
-                best = (Places::Without(k), own);
-            }
-        }
-        Some(best.0)
-    }
-
-    fn of<T: Copy>(self, [x, y, z]: [T; 3], radius: impl Fn(T, T) -> T) -> [T; 2] {
-        match self {
-            Places::RadiusAndHeight => [radius(x, y), z],
-            Places::Without(0) => [y, z],
-            Places::Without(1) => [x, z],
-            Places::Without(_) => [x, y],
-        }
-    }
-
-    /// Their values at points; where one is not solved, those of the solved one before it, or of the first.
-    fn targets(self, points: &[SurfacePoint]) -> Vec<[f64; 2]> {
-        let target =
-            |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.of(point.position, f64::hypot));
-        let mut last = points.iter().find_map(target).unwrap_or_default();
-        let targets = points.iter().map(|point| {
-            last = target(point).unwrap_or(last);
-            last
-        });
-        targets.collect()
-    }
-}
-
-/// The normal of a point, turned about z with it to the polar angle of another one, times the normal of that.
-fn turned_normal(point: &SurfacePoint, to: &SurfacePoint) -> f64 {
-    let angle = |[x, y, _]: [f64; 3]| y.atan2(x);
-    let (sine, cosine) = (angle(to.position) - angle(point.position)).sin_cos();
-    let [x, y, z] = point.normal;
-    let turned = [x * cosine - y * sine, x * sine + y * cosine, z];
-    turned.iter().zip(to.normal).map(|(a, b)| a * b).sum()
 }

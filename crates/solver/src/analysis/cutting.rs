@@ -9,6 +9,7 @@ use crate::equations::solution::{Outcome, ROUNDING, Range};
 use crate::equations::system::{Evaluation, System};
 use crate::newton::batch::LaneNewton;
 use crate::newton::scalar::solve_with;
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// Points that a thread works on at a time; which they are depends on the points alone.
@@ -75,23 +76,17 @@ pub enum ScallopHeight {
 
 impl CuttingEdges {
     /// `ideal` is the surface that an edge sweeps over a motion and counts, in this order behind its own parameter; `real`
-    /// the same for the real edge and machine, with the same motion and counts. `ranges` are those of the unknowns of `real`;
-    /// `bindings` replace the remaining variables by numbers.
+    /// the same for the real edge and machine, with the same motion and counts, whose ranges hold.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If the surfaces do not have the same motion and counts, or not as many unknowns as ranges.
-    pub fn new<'g>(
-        ideal: &Surface<'g>,
-        real: &Surface<'g>,
-        ranges: &[Range],
-        bindings: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<CuttingEdges, TapeError> {
+    /// If the surfaces do not have the same motion and counts.
+    pub fn new<'g>(ideal: &BoundSurface<'g>, real: &BoundSurface<'g>) -> Result<CuttingEdges, TapeError> {
+        let ranges = real.ranges();
+        let [ideal, real] = [ideal, real].map(BoundSurface::surface);
         assert_eq!(ideal.unknowns[1..], real.unknowns[1..], "the same motion and counts");
-        assert_eq!(real.unknowns.len(), ranges.len(), "one range for each unknown");
-        let [ideal, real] = [ideal, real].map(|surface| surface.bound(bindings));
         let along = |value: Expr<'g>| ideal.unknowns.iter().map(move |&p| value.derivative(p));
         let slopes = ideal.unknowns.iter().flat_map(|&p| ideal.position.derivative(p).0);
         let bends = ideal.constraints.iter().flat_map(|&c| along(c).collect::<Vec<_>>());
@@ -99,8 +94,8 @@ impl CuttingEdges {
         let swept = [ranges[0], ranges[1]];
         Ok(CuttingEdges {
             guide: Tape::new(&guide, &ideal.unknowns)?,
-            ideal: Edges::new(&ideal, swept)?,
-            real: Edges::new(&real, swept)?,
+            ideal: Edges::new(ideal, swept)?,
+            real: Edges::new(real, swept)?,
             counts: ranges[2..].to_vec(),
             same: ideal.position == real.position && ideal.unknowns == real.unknowns,
         })

@@ -1,6 +1,6 @@
 //! How far one surface lies off another one, along the other's normals.
 
-use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, LANES, TapeError};
 use rayon::prelude::*;
 
@@ -8,6 +8,7 @@ use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
 use crate::newton::batch::LaneNewton;
 use crate::newton::scalar::{LONGEST_STEP, solve};
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// Distances along a normal are looked for up to here, mm.
@@ -28,34 +29,29 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Of a surface whose unknowns lie in `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    /// Of a surface.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
-    pub fn new<'g>(
-        surface: &Surface<'g>,
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Deviation, TapeError> {
-        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
-        let bound = surface.bound(bindings);
+    /// If the surface does not have two unknowns more than constraints.
+    pub fn new<'g>(surface: &BoundSurface<'g>) -> Result<Deviation, TapeError> {
+        let bound = surface.surface();
         let graph = bound.position.0[0].graph();
         let vector = |names: [&str; 3]| Vector3(names.map(|name| graph.variable(name)));
         let (point, normal) = (vector(["point x", "point y", "point z"]), vector(["normal x", "normal y", "normal z"]));
         let (distance, turn) = (graph.variable("distance"), graph.variable("turn"));
         let [x, y, z] = bound.position.0;
         let turned = Vector3([x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos(), z]);
-        let residuals = |apart: Vector3<'g>| [bound.constraints.as_slice(), &apart.0].concat();
+        let residuals = |apart: Vector3<'g>| surface.constrained(apart.0);
         let unknowns = |last: Expr<'g>| [bound.unknowns.as_slice(), &[last]].concat();
         let reached = point + normal.map(|part| part * distance);
-        let parameters: Vec<Expr<'g>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();
+        let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();
         Ok(Deviation {
             along_normal: System::new(&residuals(turned - reached), &unknowns(distance), &parameters)?,
             around_axis: System::one_by_one(&residuals(turned - point), &unknowns(turn), &point.0)?,
-            ranges,
+            ranges: surface.ranges().to_vec(),
         })
     }
 
@@ -185,6 +181,7 @@ impl EaseOff {
 mod tests {
     use super::*;
     use flank_expr::Graph;
+    use flank_expr::geometry::Surface;
 
     /// Two coaxial cylinders, radii 10 and 10.5 mm: everywhere 0.5 mm apart.
     #[test]
@@ -195,7 +192,8 @@ mod tests {
             Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false)
         };
         let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -50.0, high: 50.0 }];
-        let deviation = Deviation::new(&cylinder(10.5), ranges, &[]).expect("nothing else is unknown");
+        let deviation =
+            Deviation::new(&BoundSurface::new(&cylinder(10.5), ranges, &[])).expect("nothing else is unknown");
         let point = |angle: f64, radius: f64| SurfacePoint {
             outcome: Outcome::Solved,
             unknowns: vec![angle, 7.0],
@@ -217,7 +215,7 @@ mod tests {
         let (radius, height) = (graph.variable("radius"), graph.variable("height"));
         let plane = Surface::parametric([radius, height], Vector3([radius, 0.0 * radius, height]), false);
         let ranges = vec![Range { low: 1.0, high: 50.0 }, Range { low: -50.0, high: 50.0 }];
-        let deviation = Deviation::new(&plane, ranges, &[]).expect("nothing else is unknown");
+        let deviation = Deviation::new(&BoundSurface::new(&plane, ranges, &[])).expect("nothing else is unknown");
         let point = |turn: f64| SurfacePoint {
             outcome: Outcome::Solved,
             unknowns: vec![20.0, 3.0],

@@ -15,29 +15,23 @@ const TOGETHER: usize = 3;
 const STARTS: u32 = 64;
 const SWEEPS: usize = 16;
 
-/// The smallest and the largest value of `value` while the variables of `over` run through their ranges; `bindings` replace
-/// the others. `None` if it has no finite value anywhere.
+/// The smallest and the largest value of `value` while the variables of `over` run through their ranges. `None` if it has no finite value anywhere.
 ///
 /// Looked for on a grid and then ever closer around the best points: exact for smooth functions without narrow peaks. Of more than three
 /// variables one after the other, from points all over the ranges, until none gets any farther: exact for sums of functions of one
 /// variable each, as laws of axes over many motions are, and for products of them.
 ///
 /// # Errors
-/// If the value depends on a variable that is neither in `over` nor bound.
-pub fn extent<'g>(
-    value: Expr<'g>,
-    over: &[(Expr<'g>, Range)],
-    bindings: &[(Expr<'g>, Expr<'g>)],
-) -> Result<Option<Range>, TapeError> {
-    let value = value.graph().substitute(&[value], bindings);
-    let used = value[0].graph().variables_of(&value);
+/// If the value depends on a variable that is not in `over`.
+pub fn extent<'g>(value: Expr<'g>, over: &[(Expr<'g>, Range)]) -> Result<Option<Range>, TapeError> {
+    let used = value.graph().variables_of(&[value]);
     let over: Vec<(Expr<'g>, Range)> = over
         .iter()
         .copied()
         .filter(|(variable, _)| variable.as_variable().is_some_and(|v| used.contains(&v)))
         .collect();
     let inputs: Vec<Expr<'g>> = over.iter().map(|(variable, _)| *variable).collect();
-    let tape = Tape::new(&value, &inputs)?;
+    let tape = Tape::new(&[value], &inputs)?;
     let ranges: Vec<Range> = over.iter().map(|(_, range)| *range).collect();
     let (low, high) = (furthest(&tape, &ranges, -1.0), furthest(&tape, &ranges, 1.0));
     Ok(low.zip(high).map(|(low, high)| Range { low, high }))
@@ -127,14 +121,15 @@ mod tests {
         let (x, y, p) = (graph.variable("x"), graph.variable("y"), graph.variable("p"));
         let range = |low, high| Range { low, high };
         let wave = p * (3.0 * x).sin() + y;
+        let [twice, two] = [wave, p].map(|value| graph.substitute(&[value], &[(p, graph.constant(2.0))])[0]);
         let over = [(x, range(0.0, 1.0)), (y, range(-1.0, 2.0))];
-        let found = extent(wave, &over, &[(p, graph.constant(2.0))]).expect("all bound").expect("finite");
+        let found = extent(twice, &over).expect("all bound").expect("finite");
         // 2 sin(3x) over [0, 1]: from 0 to 2
         assert!((found.low + 1.0).abs() < 1e-12 && (found.high - 4.0).abs() < 1e-9, "{found:?}");
-        let still = extent(p, &over, &[(p, graph.constant(2.0))]).expect("all bound");
+        let still = extent(two, &over).expect("all bound");
         assert_eq!(still, Some(range(2.0, 2.0)));
-        assert_eq!(extent((x - 5.0).sqrt(), &over, &[]).expect("all bound"), None);
-        assert!(extent(wave, &over, &[]).is_err());
+        assert_eq!(extent((x - 5.0).sqrt(), &over).expect("all bound"), None);
+        assert!(extent(wave, &over).is_err());
     }
     /// As many motions as a job may have are gone through in a moment: 33 to the power of 14 points are more than can be counted.
     #[test]
@@ -145,8 +140,7 @@ mod tests {
             let over: Vec<_> = variables.iter().map(|x| (*x, Range { low: -1.0, high: 3.0 })).collect();
             // each sine runs from −1 to 1; the product of two variables from −3 to 9, at corners
             let sines = variables.iter().map(|x| (2.0 * *x).sin()).reduce(|a, b| a + b).expect("some");
-            let found =
-                extent(sines + variables[0] * variables[1] * 100.0, &over, &[]).expect("bound").expect("finite");
+            let found = extent(sines + variables[0] * variables[1] * 100.0, &over).expect("bound").expect("finite");
             let others = (count - 2) as f64;
             let [low, high] = [(-2f64).sin(), 6f64.sin()];
             // near a corner the product decides over the two sines

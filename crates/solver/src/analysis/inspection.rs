@@ -1,6 +1,6 @@
 //! How far measured points lie off a surface, along its normals.
 
-use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, TapeError};
 use rayon::prelude::*;
 
@@ -8,6 +8,7 @@ use crate::analysis::deviation::FARTHEST;
 use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
 use crate::newton::scalar::solve;
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// A turn that changes by less, radians, has settled: 1e-9 um on a radius of a metre.
@@ -27,28 +28,23 @@ pub struct Inspection {
 }
 
 impl Inspection {
-    /// Of a surface whose unknowns lie in `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    /// Of a surface.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
-    pub fn new<'g>(
-        surface: &Surface<'g>,
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<Inspection, TapeError> {
-        assert_eq!(surface.unknowns.len(), ranges.len(), "one range for each unknown");
-        let bound = surface.bound(bindings);
+    /// If the surface does not have two unknowns more than constraints.
+    pub fn new(surface: &BoundSurface<'_>) -> Result<Inspection, TapeError> {
+        let bound = surface.surface();
         let graph = bound.position.0[0].graph();
         let point = ["point x", "point y", "point z"].map(|name| graph.variable(name));
         let distance = graph.variable("distance");
         let reached = bound.position + bound.normal.map(|part| part * distance);
         let apart = (reached - Vector3(point)).0;
-        let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(apart).collect();
-        let unknowns: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain([distance]).collect();
-        Ok(Inspection { foot: System::one_by_one(&residuals, &unknowns, &point)?, ranges })
+        let residuals = surface.constrained(apart);
+        let unknowns: Vec<Expr<'_>> = bound.unknowns.iter().copied().chain([distance]).collect();
+        Ok(Inspection { foot: System::one_by_one(&residuals, &unknowns, &point)?, ranges: surface.ranges().to_vec() })
     }
 
     /// How far each measured point, mm, turned about the z axis by an angle in radians, lies off the surface, mm: positive on the side
@@ -146,6 +142,7 @@ fn apart(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64>
 mod tests {
     use super::*;
     use flank_expr::Graph;
+    use flank_expr::geometry::Surface;
 
     fn solved(unknowns: Vec<f64>, position: [f64; 3], normal: [f64; 3]) -> SurfacePoint {
         SurfacePoint { outcome: Outcome::Solved, unknowns, position, normal, residual: 0.0 }
@@ -161,9 +158,12 @@ mod tests {
             Vector3([20.0 * u.cos() * v.cos(), 20.0 * u.sin() * v.cos(), 20.0 * v.sin()]),
             false,
         );
-        let inspection =
-            Inspection::new(&sphere, vec![Range { low: -3.0, high: 3.0 }, Range { low: -1.5, high: 1.5 }], &[])
-                .expect("bound");
+        let inspection = Inspection::new(&BoundSurface::new(
+            &sphere,
+            vec![Range { low: -3.0, high: 3.0 }, Range { low: -1.5, high: 1.5 }],
+            &[],
+        ))
+        .expect("bound");
         let on = |u: f64, v: f64| [u.cos() * v.cos(), u.sin() * v.cos(), v.sin()];
         let nominal = [solved(vec![0.4, 0.3], on(0.4, 0.3).map(|x| 20.0 * x), on(0.4, 0.3))];
         for (radius, du, dv) in [(20.25, 0.0, 0.0), (19.5, 0.2, -0.1), (20.0, 0.0, 0.4), (21.0, -0.3, 0.3)] {
@@ -188,7 +188,7 @@ mod tests {
         let cone =
             Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false);
         let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -20.0, high: 20.0 }];
-        let inspection = Inspection::new(&cone, ranges, &[]).expect("bound");
+        let inspection = Inspection::new(&BoundSurface::new(&cone, ranges, &[])).expect("bound");
         let slope = 1.01f64.sqrt();
         let places: Vec<[f64; 2]> = (0..24).map(|k| [0.137 * f64::from(k), 0.731 * f64::from(k % 7) - 1.9]).collect();
         let nominal: Vec<SurfacePoint> = places
@@ -220,7 +220,7 @@ mod tests {
         let (sine, cosine) = 0.3f64.sin_cos();
         let plane = Surface::parametric([radius, height], Vector3([radius * cosine, radius * sine, height]), true);
         let ranges = vec![Range { low: 1.0, high: 50.0 }, Range { low: -50.0, high: 50.0 }];
-        let inspection = Inspection::new(&plane, ranges, &[]).expect("bound");
+        let inspection = Inspection::new(&BoundSurface::new(&plane, ranges, &[])).expect("bound");
         let places: Vec<[f64; 2]> = [10.0, 20.0, 30.0].iter().flat_map(|&r| [[r, -5.0], [r, 5.0]]).collect();
         let nominal: Vec<SurfacePoint> =
             places.iter().map(|&[r, z]| solved(vec![r, z], [r * cosine, r * sine, z], [-sine, cosine, 0.0])).collect();

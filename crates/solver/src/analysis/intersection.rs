@@ -1,12 +1,13 @@
 //! Where two surfaces meet, along lines of the coordinates of the first.
 
-use flank_expr::geometry::{Surface, Vector3};
+use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::equations::solution::{Outcome, Range, Solution, distance};
 use crate::equations::system::{Evaluation, System};
 use crate::newton::scalar::{inverse_times, solve_with};
 use crate::surface::SurfaceProblem;
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// Points of the second surface in each of its first two unknowns, from which meetings are looked for.
@@ -58,29 +59,24 @@ pub struct Meeting {
 
 impl Intersection {
     /// Of two surfaces in one frame; the meetings lie on lines of two `coordinates`, functions of the first one's unknowns.
-    /// The unknowns of each are looked for in its `ranges`; `bindings` replace the remaining variables by numbers.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If a surface does not have two unknowns more than constraints, or not as many as ranges.
+    /// If a surface does not have two unknowns more than constraints.
     pub fn new<'g>(
-        surfaces: [&Surface<'g>; 2],
+        [first, second]: [&BoundSurface<'g>; 2],
         coordinates: [Expr<'g>; 2],
-        ranges: [Vec<Range>; 2],
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<Intersection, TapeError> {
         let graph = coordinates[0].graph();
-        let [first, second] = surfaces.map(|surface| surface.bound(bindings));
+        let across = first.with_values(&coordinates);
         // both may be envelopes over the same motion, at different values of it
-        let own: Vec<Expr<'g>> =
-            second.unknowns.iter().map(|&p| graph.variable(format!("{p} of the second"))).collect();
-        let renaming: Vec<(Expr<'g>, Expr<'g>)> = second.unknowns.iter().copied().zip(own.iter().copied()).collect();
-        let second = Surface { unknowns: own, ..second.bound(&renaming) };
-        let seeds = seeds(&second, &ranges[1])?;
+        let second = second.renamed("of the second");
+        let seeds = seeds(&second)?;
+        let ranges = [first.ranges(), second.ranges()].concat();
+        let (first, second) = (first.surface(), second.surface());
         let line = ["from 1", "from 2", "direction 1", "direction 2"].map(|name| graph.variable(name));
-        let across = graph.substitute(&coordinates, bindings);
         let placed: Vec<Expr<'g>> = first.constraints.iter().chain(&across).copied().collect();
         let (x, y) = (across[0] - line[0], across[1] - line[1]);
         let along = x * line[2] + y * line[3];
@@ -101,7 +97,7 @@ impl Intersection {
                 &inputs,
             )?,
             own: System::one_by_one(&placed, &first.unknowns, &[])?,
-            ranges: ranges.concat(),
+            ranges,
             first_unknowns: first.unknowns.len(),
             probe: Tape::new(&probe, &inputs)?,
             seeds,
@@ -203,11 +199,11 @@ impl Meeting {
 }
 
 /// Points all over a surface that its tool leaves.
-fn seeds(surface: &Surface<'_>, ranges: &[Range]) -> Result<Vec<SurfacePoint>, TapeError> {
-    let coordinates = [surface.unknowns[0], surface.unknowns[1]];
+fn seeds(surface: &BoundSurface<'_>) -> Result<Vec<SurfacePoint>, TapeError> {
+    let (unknowns, ranges) = (&surface.surface().unknowns, surface.ranges());
+    let coordinates = [unknowns[0], unknowns[1]];
     // machine code does not pay for so few
-    let problem =
-        SurfaceProblem::new(surface, coordinates, ranges.to_vec(), &[])?.with_instruction_set(InstructionSet::widest());
+    let problem = SurfaceProblem::new(surface, coordinates)?.with_instruction_set(InstructionSet::widest());
     let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
     let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
     let (points, _) = problem.solve(&targets, [SEEDS; 2]);

@@ -8,5 +8,6 @@ pub(crate) mod inspection;
 pub(crate) mod integer_points;
 pub(crate) mod intersection;
 pub(crate) mod secondary;
+pub(crate) mod section;
 pub(crate) mod sensitivity;
 pub(crate) mod trim;

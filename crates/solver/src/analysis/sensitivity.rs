@@ -3,10 +3,17 @@
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, Interval, IntervalEvaluator, Tape, TapeError};
 use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use crate::equations::solution::Outcome;
+use crate::surface::points::SurfacePoint;
 
 /// A displacement of which the normal takes no more than this share is one along the surface: what is left is the rounding
 /// of a normal that follows from solved unknowns.
 const ALONG: f64 = 1e-12;
+
+/// Points that threads share out at once: of no more all displacements are held twice.
+const TOGETHER: usize = 4096;
 
 /// A number that a surface was made with.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +67,60 @@ pub struct NormalSensitivity {
     following: Vec<Vec<(usize, Interval)>>,
 }
 
+/// How the points of a surface move with one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displacement {
+    /// At each point, as [`NormalSensitivity::at`]; NaN where it is not known.
+    pub at_points: Vec<f64>,
+    /// Over the points at which it is known, root of the mean square; zero without any.
+    pub rms: f64,
+    /// Over the same, the largest, without its sign.
+    pub largest: f64,
+}
+
+impl Displacement {
+    fn new(at_points: Vec<f64>) -> Displacement {
+        let known = || at_points.iter().filter(|moved| !moved.is_nan());
+        let squares: f64 = known().map(|moved| moved * moved).sum();
+        Displacement {
+            rms: (squares / known().count().max(1) as f64).sqrt(),
+            largest: known().fold(0.0, |largest, moved| moved.abs().max(largest)),
+            at_points,
+        }
+    }
+
+    /// Whether the parameter moves the surface at any point.
+    pub fn moves(&self) -> bool {
+        self.largest > 0.0
+    }
+
+    /// The same for a change of this size instead of one.
+    pub fn times(self, size: f64) -> Displacement {
+        let at_points = self.at_points.into_iter().map(|moved| moved * size).collect();
+        Displacement { at_points, rms: self.rms * size, largest: self.largest * size }
+    }
+}
+
 impl NormalSensitivity {
+    /// How points of the surface move with each of `parameters`, by their places among all; and at how many points that is known: those
+    /// that are solved and where all of [`NormalSensitivity::at`] is finite. On as many threads as there are.
+    pub fn over(&self, points: &[SurfacePoint], parameters: &[usize]) -> (Vec<Displacement>, usize) {
+        let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.at(&point.unknowns)).flatten();
+        // one number of each parameter and point is all that is kept of a point
+        let mut moved: Vec<Vec<f64>> = parameters.iter().map(|_| Vec::with_capacity(points.len())).collect();
+        let mut known = 0;
+        for points in points.chunks(TOGETHER) {
+            let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
+            for of_all in found {
+                known += usize::from(of_all.is_some());
+                for (k, values) in parameters.iter().zip(&mut moved) {
+                    values.push(of_all.as_ref().map_or(f64::NAN, |of_all| of_all[*k]));
+                }
+            }
+        }
+        (moved.into_iter().map(Displacement::new).collect(), known)
+    }
+
     /// The sensitivity of `surface` to `parameters`, which stand in such an order that definitions depend on earlier ones only.
     ///
     /// # Errors

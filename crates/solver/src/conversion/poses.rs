@@ -111,8 +111,7 @@ impl Posture {
 
 impl<'g> PoseProblem<'g> {
     /// `target` and `source` lead from work to tool on the two machines; `symmetries` are what the tool does not see of its own
-    /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go;
-    /// `bindings` replace parameters by numbers.
+    /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go.
     ///
     /// An axis of the target that only turns or shifts the tool along itself takes over what the source does there; where there are
     /// axes enough without it, the tool stands exactly as on the source.
@@ -126,13 +125,11 @@ impl<'g> PoseProblem<'g> {
         motions: &[Expr<'g>],
         symmetries: &[Screw],
         reach: f64,
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<PoseProblem<'g>, PoseError> {
         let graph = motions[0].graph();
-        let [target, source] = [target, source].map(|chain| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
         let mut slips = symmetries.to_vec();
-        while let Some(slip) = doubled(&target, &variables, &[], &slips)? {
+        while let Some(slip) = doubled(target, &variables, &[], &slips)? {
             slips.remove(slip);
         }
         // with axes enough the tool may as well stand exactly as it does on the source

@@ -1,24 +1,18 @@
 //! On which side of a surface the body lies that owns it, as far as its points tell.
 
-use flank_expr::geometry::Surface;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{ScalarEvaluator, Tape, TapeError};
 
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// Whether some points would all stay on the work if the body of the tool lay on the other side of the tool's surface: the Hessian
 /// of the clearance is negative definite at each of them. Of a surface that is cut away whole this tells a body on the wrong side
 /// from undercut, where the Hessian is indefinite somewhere. `false` without points, or without motions.
 ///
-/// `bindings` replace the variables of the surface that are no unknowns by numbers.
-///
 /// # Errors
-/// If something depends on a variable that is neither an unknown nor bound.
-pub fn is_inside_out<'g>(
-    surface: &Surface<'g>,
-    points: &[SurfacePoint],
-    bindings: &[(Expr<'g>, Expr<'g>)],
-) -> Result<bool, TapeError> {
-    let bound = surface.bound(bindings);
+/// If something depends on a variable that is neither an unknown nor has a value.
+pub fn is_inside_out(surface: &BoundSurface<'_>, points: &[SurfacePoint]) -> Result<bool, TapeError> {
+    let bound = surface.surface();
     let minors = Tape::new(&bound.clearance_minors(), &bound.unknowns)?;
     let mut evaluator = ScalarEvaluator::new(&minors);
     let mut values = vec![0.0; minors.output_count()];

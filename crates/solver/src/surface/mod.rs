@@ -2,12 +2,12 @@
 
 pub(crate) mod bands;
 pub(crate) mod body;
+pub(crate) mod bound;
 pub(crate) mod certify;
 pub(crate) mod points;
 
 use std::convert::Infallible;
 
-use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
 use crate::continuation::choice::{Choice, Several};
@@ -21,6 +21,7 @@ use crate::equations::system::System;
 use crate::roots::angles::SearchSystem;
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::surface::bands::{Band, Targets, solve_in_bands};
+use crate::surface::bound::{BoundSurface, PointEquations};
 use crate::surface::points::{SurfacePoint, SurfacePoints};
 
 /// Grids of more points are solved in bands of rows, see [`SurfaceProblem::in_bands`].
@@ -62,21 +63,15 @@ pub struct SurfaceProblem {
 }
 
 impl SurfaceProblem {
-    /// Points of `surface` at which two `coordinates` (functions of its unknowns) have given values, with the unknowns in
-    /// `ranges`. `bindings` replace the remaining variables (parameters) by numbers.
+    /// Points of `surface` at which two `coordinates` (functions of its unknowns) have given values.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
-    pub fn new<'g>(
-        surface: &Surface<'g>,
-        coordinates: [Expr<'g>; 2],
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
-    ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::clear_of_tool(surface, (coordinates, false), ranges, bindings)
+    /// If the surface does not have two unknowns more than constraints.
+    pub fn new<'g>(surface: &BoundSurface<'g>, coordinates: [Expr<'g>; 2]) -> Result<SurfaceProblem, TapeError> {
+        SurfaceProblem::clear_of_tool(surface, coordinates, false)
     }
 
     /// The same, with the principal curvatures at each point of a grid
@@ -88,24 +83,20 @@ impl SurfaceProblem {
     /// # Panics
     /// As for [`SurfaceProblem::new`].
     pub fn with_curvatures<'g>(
-        surface: &Surface<'g>,
+        surface: &BoundSurface<'g>,
         coordinates: [Expr<'g>; 2],
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::clear_of_tool(surface, (coordinates, true), ranges, bindings)
+        SurfaceProblem::clear_of_tool(surface, coordinates, true)
     }
 
     /// A surface whose points the tool does not cut away again, with curvatures or without.
     fn clear_of_tool<'g>(
-        surface: &Surface<'g>,
-        coordinates: ([Expr<'g>; 2], bool),
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
+        surface: &BoundSurface<'g>,
+        coordinates: [Expr<'g>; 2],
+        is_curved: bool,
     ) -> Result<SurfaceProblem, TapeError> {
-        let bound = surface.bound(bindings);
-        let conditions = bound.clearance_minors();
-        SurfaceProblem::of(&bound, coordinates, ranges, bindings, &conditions, Several::Refuse)
+        let conditions = surface.surface().clearance_minors();
+        SurfaceProblem::of(surface, (coordinates, is_curved), &conditions, Several::Refuse)
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
@@ -117,42 +108,26 @@ impl SurfaceProblem {
     /// as for [`SurfaceProblem::new`].
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// If the surface does not have two unknowns more than constraints, or `ranges` not one entry per unknown.
+    /// If the surface does not have two unknowns more than constraints.
     pub fn line<'g>(
-        surface: &Surface<'g>,
+        surface: &BoundSurface<'g>,
         quantity: Expr<'g>,
         along: Expr<'g>,
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::of(
-            &surface.bound(bindings),
-            ([quantity, along], false),
-            ranges,
-            bindings,
-            &[],
-            Several::TakeWidest,
-        )
+        SurfaceProblem::of(surface, ([quantity, along], false), &[], Several::TakeWidest)
     }
 
     fn of<'g>(
-        bound: &Surface<'g>,
+        surface: &BoundSurface<'g>,
         (coordinates, is_curved): ([Expr<'g>; 2], bool),
-        ranges: Vec<Range>,
-        bindings: &[(Expr<'g>, Expr<'g>)],
         conditions: &[Expr<'g>],
         several: Several,
     ) -> Result<SurfaceProblem, TapeError> {
-        assert_eq!(bound.unknowns.len(), ranges.len(), "one range for each unknown");
-        let graph = coordinates[0].graph();
-        let targets = [graph.variable("target 1"), graph.variable("target 2")];
-        let coordinates = graph.substitute(&coordinates, bindings);
-        let coordinates = [coordinates[0], coordinates[1]];
-        let on_target = coordinates.into_iter().zip(targets).map(|(coordinate, target)| coordinate - target);
-        let residuals: Vec<Expr<'g>> = bound.constraints.iter().copied().chain(on_target).collect();
+        let (bound, ranges) = (surface.surface(), surface.ranges().to_vec());
+        let PointEquations { targets, coordinates, residuals } = surface.equations_at(coordinates);
         let point: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).collect();
         let curvatures = if is_curved { bound.principal_curvatures(coordinates) } else { None };
         let extras: Vec<Expr<'g>> = point.iter().copied().chain(curvatures.into_iter().flatten()).collect();
@@ -227,15 +202,15 @@ impl SurfaceProblem {
     /// that is looked at first, and of these only the points at which they do: others are [`Outcome::NotKept`].
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     pub fn keeping<'g>(
         self,
-        unknowns: &[Expr<'g>],
+        surface: &BoundSurface<'g>,
         keep: &[(Expr<'g>, Range)],
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceProblem, TapeError> {
+        let unknowns = &surface.surface().unknowns;
         let values: Vec<Expr<'g>> = keep.iter().map(|(value, _)| *value).collect();
-        let values = unknowns[0].graph().substitute(&values, bindings);
+        let values = surface.with_values(&values);
         let ranges = keep.iter().map(|(_, range)| *range).collect();
         let mut kept_ranges = self.kept_ranges;
         for (kept, unknown) in kept_ranges.iter_mut().zip(unknowns) {

@@ -6,13 +6,14 @@
 mod curvature;
 mod null_space;
 
-use flank_expr::geometry::Surface;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 use nalgebra::{DMatrix, DMatrixView, Matrix2, Matrix3x2, Vector3};
 
 pub use curvature::{Curvature, Principal};
 use curvature::{oriented, tangents};
 use null_space::null_space;
+
+use crate::surface::bound::BoundSurface;
 
 /// A direction shorter than this share of what it was summed up from is none.
 const VANISHED: f64 = 1e-10;
@@ -26,13 +27,15 @@ const NO_COORDINATES: f64 = 1e-10;
 /// ```
 /// use flank_expr::Graph;
 /// use flank_expr::geometry::{Surface, Vector3};
-/// use flank_solver::SurfaceGeometry;
+/// use flank_solver::{BoundSurface, Range, SurfaceGeometry};
 ///
 /// let graph = Graph::new();
 /// let (a, b) = (graph.variable("a"), graph.variable("b"));
 /// let position = Vector3([a.cos() * b.cos(), a.sin() * b.cos(), b.sin()]).map(|x| 2.0 * x);
 /// let ball = Surface::parametric([a, b], position, false);
-/// let geometry = SurfaceGeometry::new(&ball, &[], [a, b], &[]).expect("nothing else is unknown");
+/// let anywhere = Range { low: -2.0, high: 2.0 };
+/// let ball = BoundSurface::new(&ball, vec![anywhere; 2], &[]);
+/// let geometry = SurfaceGeometry::new(&ball, &[], [a, b]).expect("nothing else is unknown");
 ///
 /// let point = geometry.at(&[0.3, 0.5]);
 /// let curvature = point.curvature.expect("not a singular point");
@@ -102,20 +105,20 @@ impl Contact {
 }
 
 impl SurfaceGeometry {
-    /// The geometry of `surface`, made over `motions`, in two `coordinates` (functions of its unknowns). `bindings` replace
-    /// the remaining variables (parameters) by numbers.
+    /// The geometry of `surface`, made over `motions`, in two `coordinates` (functions of its unknowns).
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor bound.
+    /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
     /// If the motions are not the last of the surface's unknowns, or it does not have two unknowns more than constraints.
     pub fn new<'g>(
-        surface: &Surface<'g>,
+        surface: &BoundSurface<'g>,
         motions: &[Expr<'g>],
         coordinates: [Expr<'g>; 2],
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SurfaceGeometry, TapeError> {
+        let coordinates = surface.with_values(&coordinates);
+        let surface = surface.surface();
         let p = &surface.unknowns;
         assert!(p.ends_with(motions), "the motions are the last unknowns");
         assert_eq!(p.len(), surface.constraints.len() + 2, "a surface has two unknowns more than constraints");
@@ -125,7 +128,6 @@ impl SurfaceGeometry {
         // column by column, as matrices are stored
         let slopes = p.iter().flat_map(|p| functions.iter().map(|function| function.derivative(*p)));
         let outputs: Vec<Expr<'g>> = surface.normal.0.into_iter().chain(slopes).collect();
-        let outputs = coordinates[0].graph().substitute(&outputs, bindings);
         Ok(SurfaceGeometry {
             unknowns: p.len(),
             motions: motions.len(),

@@ -9,12 +9,13 @@ mod line;
 mod net;
 mod tape;
 
-use flank_expr::geometry::{Chain, Surface};
+use flank_expr::geometry::Chain;
 use flank_expr::{Expr, TapeError};
 
 use crate::analysis::secondary::net::Piece;
 use crate::analysis::secondary::tape::PlaceTape;
 use crate::equations::solution::Range;
+use crate::surface::bound::BoundSurface;
 pub use grid::{Judged, Unseen};
 
 /// A tool with its positions.
@@ -28,29 +29,25 @@ pub struct SecondaryCutting {
 
 impl SecondaryCutting {
     /// Of `pieces`, a tool's surfaces of two free unknowns in its own frame with normals out of its steel, each with the number by
-    /// which it is named and the ranges of its unknowns. `t_work_tool` is the pose of the tool in the work, which depends on
-    /// `motions`; these run through their `ranges`. `bindings` replace the remaining variables by numbers.
+    /// which it is named. `t_work_tool` is the pose of the tool in the work, which depends on `motions` alone; these run through their
+    /// `ranges`.
     ///
     /// # Errors
-    /// If something depends on a variable that is neither an unknown nor a motion nor bound.
+    /// If something depends on a variable that is neither an unknown nor a motion nor has a value.
     ///
     /// # Panics
     /// If a piece does not have two unknowns, or there are not as many ranges as motions.
     pub fn new<'g>(
-        pieces: &[(usize, &Surface<'g>, [Range; 2])],
+        pieces: &[(usize, BoundSurface<'g>)],
         t_work_tool: &Chain<'g>,
         (motions, ranges): (&[Expr<'g>], Vec<Range>),
-        bindings: &[(Expr<'g>, Expr<'g>)],
     ) -> Result<SecondaryCutting, TapeError> {
         assert_eq!(motions.len(), ranges.len(), "one range for each motion");
-        let t_tool_work = t_work_tool.substituted(bindings).inverse().merged().pose();
+        let t_tool_work = t_work_tool.inverse().merged().pose();
         let own: Vec<Expr<'g>> = t_tool_work.rotation.entries().into_iter().chain(t_tool_work.translation.0).collect();
         let derived = motions.iter().flat_map(|&motion| own.iter().map(move |entry| entry.derivative(motion)));
         let outputs: Vec<Expr<'g>> = own.iter().copied().chain(derived).collect();
-        let piece = |(number, surface, ranges): &(usize, &Surface<'g>, [Range; 2])| {
-            assert_eq!(surface.unknowns.len(), 2, "a piece has two unknowns");
-            Piece::new(*number, surface, *ranges, bindings)
-        };
+        let piece = |(number, surface): &(usize, BoundSurface<'g>)| Piece::new(*number, surface);
         Ok(SecondaryCutting {
             pieces: pieces.iter().map(piece).collect::<Result<_, _>>()?,
             pose: PlaceTape::new(&outputs, motions)?,

@@ -1,11 +1,11 @@
 //! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
 
-use flank_expr::geometry::Surface;
 use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
 use crate::analysis::secondary::tape::{PlaceTape, Runner};
 use crate::equations::solution::{ROUNDING, Range};
+use crate::surface::bound::BoundSurface;
 
 /// Normal and tangents turn by no more than this (rad) over a cell: Newton from anywhere in it finds the foot.
 const TURN: f64 = 0.4;
@@ -120,13 +120,10 @@ pub(super) struct Seen<'p> {
 }
 
 impl Piece {
-    pub(super) fn new(
-        number: usize,
-        surface: &Surface<'_>,
-        ranges: [Range; 2],
-        bindings: &[(Expr<'_>, Expr<'_>)],
-    ) -> Result<Piece, TapeError> {
-        let bound = surface.bound(bindings);
+    pub(super) fn new(number: usize, surface: &BoundSurface<'_>) -> Result<Piece, TapeError> {
+        let bound = surface.surface();
+        let [first, second] = surface.ranges() else { panic!("a piece has two unknowns") };
+        let ranges = [*first, *second];
         let parts = [bound.position, bound.normal];
         let slopes = parts.iter().flat_map(|part| bound.unknowns.iter().map(|&p| part.derivative(p)));
         let outputs: Vec<Expr<'_>> = parts.iter().copied().chain(slopes).flat_map(|vector| vector.0).collect();

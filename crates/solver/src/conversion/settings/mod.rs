@@ -82,7 +82,7 @@ pub struct SettingsFit {
 
 impl<'g> SettingsProblem<'g> {
     /// `source` leads from work to tool on the other machine, in `motions`; `symmetries` are what the tool does not see of its own
-    /// motion. `bindings` replace parameters by numbers. Nothing on the way is longer than `reach`, mm, by much.
+    /// motion. Nothing on the way is longer than `reach`, mm, by much.
     ///
     /// # Errors
     /// If something depends on a variable that is not given.
@@ -94,16 +94,14 @@ impl<'g> SettingsProblem<'g> {
         source: &Chain<'g>,
         motions: &[Expr<'g>],
         symmetries: &[Screw],
-        bindings: &[(Expr<'g>, Expr<'g>)],
         reach: f64,
     ) -> Result<SettingsProblem<'g>, TapeError> {
         let graph = motions[0].graph();
-        let AdjustableMachine { chain, settings, axes } = *target;
-        let [target, source] = [chain, source].map(|chain| chain.substituted(bindings));
+        let AdjustableMachine { chain: target, settings, axes } = *target;
         let variables: Vec<Expr<'g>> = axes.iter().map(|axis| axis.variable).collect();
         let constants: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
         let mut slips = symmetries.to_vec();
-        while let Some(slip) = doubled(&target, &variables, &constants, &slips)? {
+        while let Some(slip) = doubled(target, &variables, &constants, &slips)? {
             slips.remove(slip);
         }
         let (slipped, amounts) = slipping(graph, &slips);

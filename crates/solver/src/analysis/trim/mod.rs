@@ -1,11 +1,53 @@
 //! A surface without the points that another one cuts away.
 
+mod deeper;
+
+use flank_expr::{Expr, TapeError};
+
 use crate::analysis::intersection::{Intersection, Line, Meeting};
 use crate::equations::solution::{CutBy, Outcome};
+use crate::surface::SurfaceProblem;
+use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// A point nearer than this to a meeting on its line, in the line's own unit, lies on the edge and stays.
 const ON_EDGE: f64 = 1e-9;
+
+/// A surface that is cut away by another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Trim<'s, 'g> {
+    /// The surface that loses points, and the one that takes them; both in one frame.
+    pub surfaces: [&'s BoundSurface<'g>; 2],
+    /// By which points of the first are asked for.
+    pub coordinates: [Expr<'g>; 2],
+    /// What marks the points that go, as [`CutBy::Other`].
+    pub number: usize,
+}
+
+impl<'g> Trim<'_, 'g> {
+    /// Marks the points of a grid that the second surface cuts away, and gives back where the two meet on the grid, as [`trim`] does.
+    /// Where they meet nowhere, the second has taken all that it lies deeper than in the material; points of it beside the first's are
+    /// solved by `points_of_by`, given two functions of its unknowns.
+    ///
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown nor has a value.
+    ///
+    /// # Panics
+    /// As for [`trim`].
+    pub fn apply(
+        &self,
+        points: &mut [SurfacePoint],
+        (targets, counts): (&[[f64; 2]], [usize; 2]),
+        points_of_by: &dyn Fn([Expr<'g>; 2]) -> SurfaceProblem,
+    ) -> Result<[Vec<Meeting>; 2], TapeError> {
+        let intersection = Intersection::new(self.surfaces, self.coordinates)?;
+        let meetings = trim(points, targets, counts, &intersection, self.number);
+        if meetings.iter().all(Vec::is_empty) {
+            deeper::mark_deeper(self.surfaces[1], points, counts, self.number, points_of_by)?;
+        }
+        Ok(meetings)
+    }
+}
 
 /// What is known of a point of the grid.
 #[derive(Clone, Copy, Default)]
