@@ -456,9 +456,9 @@ mod tests {
         let [u, v] = unknowns;
         let height = u * u * 0.011 - v * v * 0.033 + u * v * 0.009;
         let position = geometry::Vector3([u + v * 0.8, v, height]);
-        let surface = Surface::parametric(unknowns, position, false);
+        let surface = flank_expr::geometry::Surface::parametric(unknowns, position, false);
         let ranges = [Range { low: -10.0, high: 10.0 }, Range { low: -12.0, high: 12.0 }];
-        let piece = Piece::new(0, &surface, ranges, &[]).expect("nothing is unbound");
+        let piece = Piece::new(0, &BoundSurface::new(&surface, ranges.to_vec(), &[])).expect("nothing is unbound");
         let place = |k: usize| {
             let [u, v] = [ranges[0].at((k % 41) as f64 / 40.0), ranges[1].at((k / 41) as f64 / 40.0)];
             Vector3::new(u + 0.8 * v, v, 0.011 * u * u - 0.033 * v * v + 0.009 * u * v)
