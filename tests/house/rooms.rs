@@ -132,3 +132,59 @@ fn libraries_name_no_flag() {
         }
     }
 }
+
+/// What a `use` names, without its braces: `a::{b, c::d}` as `a::b` and `a::c::d`.
+fn named(tree: &str) -> Vec<String> {
+    let Some((before, inside)) = tree.split_once('{') else { return vec![tree.trim().to_string()] };
+    let inside = inside.trim_end().trim_end_matches('}');
+    let (mut depth, mut parts) = (0, vec![String::new()]);
+    for letter in inside.chars() {
+        depth += i32::from(letter == '{') - i32::from(letter == '}');
+        match letter {
+            ',' if depth == 0 => parts.push(String::new()),
+            _ => parts.last_mut().expect("there is one").push(letter),
+        }
+    }
+    let parts = parts.iter().filter(|part| !part.trim().is_empty()).flat_map(|part| named(part));
+    parts.map(|part| format!("{}{part}", before.trim())).collect()
+}
+
+/// The module of a file in a crate: `solve::cut` of `solve/cut.rs`, nothing of the root.
+fn module(root: &Path, path: &Path) -> String {
+    let inside = path.strip_prefix(root).expect("a file of the crate").with_extension("");
+    let parts: Vec<&str> = inside.iter().map(|part| part.to_str().expect("UTF-8")).collect();
+    let ends_with_root = matches!(parts.last(), Some(&("mod" | "lib" | "main")));
+    parts[..parts.len() - usize::from(ends_with_root)].join("::")
+}
+
+/// Files that need each other in a circle cannot be read one by one.
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    for folder in ["flank", "cli"] {
+        let root = repository(&format!("crates/{folder}/src"));
+        let files = sources(&root);
+        let modules: Vec<String> = files.iter().map(|path| module(&root, path)).collect();
+        let owner = |path: &str| {
+            let inside = |module: &str| path == module || path.starts_with(&format!("{module}::"));
+            let found = modules.iter().enumerate().filter(|(_, module)| !module.is_empty() && inside(module));
+            found.max_by_key(|(_, module)| module.len()).map(|(k, _)| k)
+        };
+        let uses = |k: usize| -> Vec<usize> {
+            let code = code(&files[k]);
+            let before_tests = code.split("#[cfg(test)]").next().unwrap_or_default();
+            let statements = before_tests.split("use crate::").skip(1).filter_map(|rest| rest.split_once(';'));
+            let paths = statements.flat_map(|(tree, _)| named(tree));
+            paths.filter_map(|path| owner(&path)).filter(|used| *used != k).collect()
+        };
+        let all: Vec<Vec<usize>> = (0..files.len()).map(uses).collect();
+        for first in 0..files.len() {
+            let (mut reached, mut open) = (vec![false; files.len()], all[first].clone());
+            while let Some(next) = open.pop() {
+                if !std::mem::replace(&mut reached[next], true) {
+                    open.extend(&all[next]);
+                }
+            }
+            assert!(!reached[first], "{folder}: {} needs itself", modules[first]);
+        }
+    }
+}

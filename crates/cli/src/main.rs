@@ -7,6 +7,7 @@ mod document;
 mod failure;
 mod memory;
 mod progress;
+mod requests;
 mod spec;
 mod spelling;
 mod threads;

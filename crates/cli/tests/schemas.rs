@@ -5,7 +5,7 @@ mod support;
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
-use support::{REXS, flank, folder, self_contained, text, top, written};
+use support::{REXS, flank, folder, self_contained, text, written};
 
 /// All shipped schemas, as the program prints them.
 fn schemas() -> BTreeMap<String, Value> {

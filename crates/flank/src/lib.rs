@@ -64,9 +64,10 @@ pub use derive::result::{
 };
 pub use draw::plot;
 pub use draw::result::{PlotResult, WrittenPicture};
+pub use exchange::changes::Words;
 pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
 pub use exchange::templates::{
-    JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, Words, new_job, template_parameters,
+    JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters,
     templates,
 };
 pub use flank_chain_dsl::syntax::is_reserved;

@@ -5,7 +5,6 @@ mod convert;
 mod measuring;
 mod plot;
 mod report;
-mod requests;
 
 use std::num::NonZero;
 use std::ops::RangeInclusive;
@@ -13,10 +12,8 @@ use std::path::{Path, PathBuf, is_separator};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use flank::{Code, Coefficients, EvaluatorOptions, JobSelection, PointFormat, Signs};
+use flank::{Code, Coefficients, EvaluatorOptions, PointFormat, Signs};
 
-use crate::failure::Failure;
-use crate::spec;
 use choice::{described, names};
 
 pub(crate) use convert::{Convert, Onto};
@@ -133,7 +130,7 @@ impl Command {
     }
 }
 
-/// JobArguments job of which file, with which values.
+/// Which job of which file, with which values.
 #[derive(Args, Debug)]
 pub(crate) struct JobArguments {
     /// The file that the job stands in; - for stdin
@@ -145,14 +142,6 @@ pub(crate) struct JobArguments {
     /// pinion.m.swivel="-3 deg"
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub(crate) set: Vec<(String, String)>,
-}
-
-impl JobArguments {
-    /// # Errors
-    /// If the standard input cannot be read.
-    pub(crate) fn jobs(&self) -> Result<JobSelection, Failure> {
-        Ok(JobSelection { project: spec::project(&self.file)?, job: self.job.clone(), set: self.set.clone() })
-    }
 }
 
 /// How the numbers are worked out; it changes no bit of them.

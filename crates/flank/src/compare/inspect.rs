@@ -3,7 +3,7 @@
 use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
 use flank_solver::{Inspection, Outcome, SurfacePoint, beside};
 
-use crate::compare::deviation::{ComparedWith, DeviationMap, Named};
+use crate::compare::map::{ComparedWith, DeviationMap, Named};
 use crate::compare::measure::Placed;
 use crate::project::failure::Failure;
 use crate::project::requests::{DeviationRequest, Session};

@@ -7,7 +7,7 @@ use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, Part, Pat
 use flank_expr::Graph;
 use flank_solver::SurfacePoint;
 
-use crate::compare::deviation;
+use crate::compare::map::find;
 use crate::compare::measure_result::{MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
@@ -34,7 +34,7 @@ pub fn measure(
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of(&compilation);
-    let named = request.surface.iter().map(|name| deviation::find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
+    let named = request.surface.iter().map(|name| find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
     let session = Session::new(request.evaluator, monitor);
     for job in solve::asked(&jobs, monitor)? {
         let is_meant = |surface: &&GeneratedSurface<'_>| match named.is_empty() {

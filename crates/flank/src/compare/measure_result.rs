@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
+use crate::project::columns::aligned;
 use crate::project::remark::NotDone;
 use crate::project::units;
-use crate::solve::table::aligned;
 
 /// What was written for a measuring machine, of `flank measure`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

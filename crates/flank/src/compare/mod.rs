@@ -3,5 +3,6 @@
 pub(crate) mod deviation;
 pub(crate) mod deviation_result;
 pub(crate) mod inspect;
+pub(crate) mod map;
 pub(crate) mod measure;
 pub(crate) mod measure_result;

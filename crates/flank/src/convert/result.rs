@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
+use crate::project::columns::aligned;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::remark::NotDone;
-use crate::solve::table::aligned;
 
 /// A job on another machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,9 +5,9 @@ use std::fmt::{self, Formatter};
 use flank_export::fixed;
 
 use super::result::{AxisExtent, AxisMotion, AxisPolynomials, AxisRates, NcDeviation, UnseenMotion};
+use crate::project::columns::aligned;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::units;
-use crate::solve::table::aligned;
 
 /// Powers of the unit of time.
 const SECONDS: [&str; 3] = ["s", "s^2", "s^3"];

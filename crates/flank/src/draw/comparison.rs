@@ -6,7 +6,8 @@ use flank_export::Dataset;
 
 use super::result::PlotResult;
 use super::{Drawing, options, told, with_origin, write};
-use crate::compare::deviation::{self, DeviationMap};
+use crate::compare::deviation;
+use crate::compare::map::{DeviationMap, find};
 use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::requests::{PlotRequest, Session};
@@ -41,8 +42,8 @@ pub(super) fn plot(
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<PlotResult, Failure> {
-    let surface = deviation::find(jobs, &request.surface[0])?;
-    let measured = deviation::measure([surface, deviation::find(jobs, from)?], false, session)?;
+    let surface = find(jobs, &request.surface[0])?;
+    let measured = deviation::measure([surface, find(jobs, from)?], false, session)?;
     let asked = if request.what.is_empty() { &KINDS[..] } else { &request.what };
     let drawings: Vec<(PlotKind, Drawing)> =
         asked.iter().map(|&what| (what, draw(&measured, what, request, origin, &options(request)))).collect();

@@ -14,7 +14,7 @@ use flank_draw::{Picture, PictureOptions};
 use flank_export::{Dataset, Header};
 use flank_expr::Graph;
 
-use crate::compare::deviation;
+use crate::compare::map::{Named, find};
 use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
@@ -26,6 +26,7 @@ use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve;
 use crate::solve::cut;
+use crate::solve::solved::Solved;
 use crate::solve::table;
 use crate::solve::travel;
 use result::{PlotResult, WrittenPicture};
@@ -89,11 +90,11 @@ fn plot_jobs(
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Vec<PlotResult>, Failure> {
-    let named = request.surface.iter().map(|name| deviation::find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
+    let named = request.surface.iter().map(|name| find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
     {
-        let [first, other] = [first, other].map(deviation::Named::whole_name);
+        let [first, other] = [first, other].map(Named::whole_name);
         return Err(format!("`{first}` and `{other}` belong to different jobs; draw them one after the other").into());
     }
     let is_meant = |job: &&Job<'_>| match named.first() {
@@ -116,7 +117,7 @@ fn plot_jobs(
         })?;
         let written = write(&drawings, &job.name, (request, session), origin)?;
         let mut not_done = table::failures(job, &subject.solved);
-        not_done.extend(cut::unknown(&subject.solved));
+        not_done.extend(cut::unknown(subject.solved.iter().map(Solved::left)));
         not_done.extend(travel::beyond(job, &subject.solved));
         Ok(told(&job.name, written, origin.located(&[job], not_done), request))
     };

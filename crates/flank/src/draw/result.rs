@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::choices::{Choice, PlotKind};
+use crate::project::columns::aligned;
 use crate::project::remark::NotDone;
-use crate::solve::table::aligned;
 
 /// Pictures of one job, of `flank plot`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]

@@ -8,8 +8,8 @@ use flank_solver::{Outcome, SurfacePoint};
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
+use crate::solve::solved::Solved;
 use crate::solve::stream;
-use crate::solve::table::Solved;
 use crate::solve::{self, SolveOptions};
 
 pub(crate) struct Subject<'j, 'g> {

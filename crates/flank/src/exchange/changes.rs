@@ -5,9 +5,17 @@ use std::ops::Range;
 use flank_chain_dsl::syntax::parse_expression;
 use flank_chain_dsl::{Diagnostic, FileId, Sources, Span};
 
-use crate::exchange::templates::Words;
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
+
+/// Words that a user gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// The words.
+    pub text: String,
+    /// What findings call the place where they were given.
+    pub origin: String,
+}
 
 /// Something that a user gives, as it was given.
 pub(super) struct Given {

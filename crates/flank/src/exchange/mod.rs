@@ -1,6 +1,6 @@
 //! Jobs from elsewhere: from the library, from other programs' files.
 
-mod changes;
+pub(crate) mod changes;
 pub(crate) mod import;
 pub(crate) mod templates;
 mod xml_cost;

@@ -12,7 +12,7 @@ use include_dir::{Dir, include_dir};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::exchange::changes::{Changes, Given};
+use crate::exchange::changes::{Changes, Given, Words};
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
 use crate::project::shown_path;
@@ -46,15 +46,6 @@ pub struct Together {
     pub file: String,
     /// The names of its jobs.
     pub jobs: Vec<String>,
-}
-
-/// Words that a user gives.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Words {
-    /// The words.
-    pub text: String,
-    /// What findings call the place where they were given.
-    pub origin: String,
 }
 
 /// A job to be made of one of the library.

@@ -23,8 +23,9 @@ use crate::project::requests::ViewRequest;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::limits::Line;
+use crate::solve::solved::Solved;
 use crate::solve::stream;
-use crate::solve::table::{self, Solved};
+use crate::solve::table;
 use crate::solve::{self, SolveOptions};
 use functions::Functions;
 

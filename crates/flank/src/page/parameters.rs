@@ -6,7 +6,7 @@ use flank_draw::PageParameter;
 use super::functions::Functions;
 use crate::project::units;
 use crate::solve::sensitivity::Sensitivity;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// By how much of its size a surface may be moved by one parameter, to first order.
 const OF_SURFACE: f64 = 0.05;

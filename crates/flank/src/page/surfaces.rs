@@ -5,7 +5,7 @@ use flank_draw::PageSurface;
 use flank_expr::{Expr, Graph};
 
 use super::functions::Functions;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 pub(super) fn of<'g>(
     graph: &'g Graph,

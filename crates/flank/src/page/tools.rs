@@ -10,7 +10,7 @@ use flank_solver::{Range, Screw, symmetries};
 
 use super::functions::Functions;
 use super::surfaces::frame;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// Numbers of steps that a parameter of a tool is divided into.
 const STEPS: [usize; 10] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512];

@@ -2,6 +2,7 @@
 
 pub(crate) mod answer;
 pub(crate) mod choices;
+pub(crate) mod columns;
 pub(crate) mod failure;
 pub(crate) mod files;
 pub(crate) mod findings;

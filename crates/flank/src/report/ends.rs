@@ -8,6 +8,7 @@ use super::result::ReportedLine;
 use crate::project::units;
 use crate::solve::limits::Line;
 use crate::solve::secondary;
+use crate::solve::solved::Solved;
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
     let mut blocks = vec![undercut(findings)];
@@ -44,7 +45,7 @@ fn undercut(findings: &Findings<'_, '_>) -> Block {
             cut,
         );
     }
-    let unseen = secondary::unseen(findings.solved());
+    let unseen = secondary::unseen(findings.solved().iter().map(Solved::positions_tried));
     if unseen.is_empty() {
         let text = "No point that was asked for is cut away by the tool that generates it.";
         return Block::Notice(Tone::Good, text.to_string(), Vec::new());

@@ -7,7 +7,7 @@ use flank_export::{Values, fixed};
 use super::Findings;
 use super::result::ExtremeCurvature;
 use crate::project::units;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// Of curvatures, 1/mm.
 const DECIMALS: usize = 6;

@@ -4,7 +4,7 @@ use flank_draw::{Block, Column, ReportSection};
 
 use super::Findings;
 use crate::solve::result::ParameterInfluence;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// Parameters of each surface that are listed.
 const SHOWN: usize = 5;

@@ -30,9 +30,10 @@ use crate::solve::certify;
 use crate::solve::cut;
 use crate::solve::limits::{self, Line};
 use crate::solve::required;
+use crate::solve::solved::Solved;
 use crate::solve::step::{self, Smooth};
 use crate::solve::stream;
-use crate::solve::table::{self, Solved};
+use crate::solve::table;
 use crate::solve::travel::{self, Run};
 use crate::solve::{self, SolveOptions};
 use result::{NotChecked, ReportResult, ReportedPicture};
@@ -144,7 +145,7 @@ impl<'j, 'g> Findings<'j, 'g> {
     fn failures(&self) -> Vec<NotDone> {
         let solved = self.solved();
         let mut all = table::failures(self.job, solved);
-        all.extend(cut::unknown(solved));
+        all.extend(cut::unknown(solved.iter().map(Solved::left)));
         all.extend(certify::failed(solved));
         all.extend(travel::beyond(self.job, solved));
         all.extend(step::missed(&self.faces, self.request.step.unwrap_or_default()));

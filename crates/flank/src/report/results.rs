@@ -10,11 +10,11 @@ use crate::project::quantity::NamedValue;
 use crate::project::remark::NotDone;
 use crate::solve::branches;
 use crate::solve::certify;
-use crate::solve::reasons;
 use crate::solve::required;
 use crate::solve::result::Certified;
+use crate::solve::solved::Solved;
 use crate::solve::step::Smooth;
-use crate::solve::table::Solved;
+use crate::solve::unsolved;
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> ReportSection {
     let mut blocks = vec![surfaces(findings)];
@@ -84,7 +84,7 @@ fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<Stri
 }
 
 fn reasons_told(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    reasons::counted(findings.job, solved).iter().map(|reason| findings.spelled(reason)).collect()
+    unsolved::reasons(findings.job, solved).iter().map(|reason| findings.spelled(reason)).collect()
 }
 
 /// Which roots there are where each surface was begun.

@@ -5,7 +5,7 @@ use flank_chain_dsl::LawSource;
 use super::Findings;
 use crate::solve::certify;
 use crate::solve::secondary;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// What of this job was not looked at, then what no report looks at.
 pub(super) struct Unchecked {
@@ -105,7 +105,7 @@ fn not_trimmed(findings: &Findings<'_, '_>) -> Option<String> {
 }
 
 fn other_positions(findings: &Findings<'_, '_>) -> Option<String> {
-    let unseen = secondary::unseen(findings.solved());
+    let unseen = secondary::unseen(findings.solved().iter().map(Solved::positions_tried));
     (!unseen.is_empty())
         .then(|| format!("Whether the tool, in another of its positions, cuts away points of {}.", unseen.join("; ")))
 }

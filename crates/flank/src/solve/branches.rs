@@ -10,7 +10,7 @@ use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::units;
 use crate::solve::keep::{self, Keep};
 use crate::solve::result::{BranchPoint, BranchSearch, OpenRanges};
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// Of values in messages.
 const DECIMALS: usize = 4;

@@ -5,7 +5,7 @@ use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::solve::result::Certified;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// The radius of each solved point of a surface, in mm; `None` where nothing could be proven.
 pub(crate) fn radii(problem: &SurfaceProblem, targets: &[[f64; 2]], points: &[SurfacePoint]) -> Vec<Option<f64>> {

@@ -1,15 +1,13 @@
 //! `cut flank by edges`: what the single edges leave over a surface.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_draw::{Picture, PictureOptions, field_maps};
-use flank_export::{Dataset, Field, Values};
+use flank_export::{Field, Values};
 use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::Session;
-use crate::solve::bound;
 use crate::solve::result::CutHeights;
-use crate::solve::table::Solved;
+use crate::solve::surface::bound;
 
 /// What the numbers are, for pictures.
 pub(crate) const NOTE: &str = "What the single edges leave over the surface that edges without end would generate, along its normal; plus \
@@ -92,12 +90,11 @@ impl Cut {
 }
 
 /// At how many points it is not known what is left, and why.
-pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+pub(crate) fn unknown<'s>(of_surfaces: impl Iterator<Item = (&'s str, Option<&'s Cut>)>) -> Vec<NotDone> {
     let mut all = Vec::new();
-    for solved in solved {
-        let Some(cut) = &solved.cut else { continue };
+    for (name, cut) in of_surfaces.filter_map(|(name, cut)| Some((name, cut?))) {
         let Tally { asked, unreached, undecided } = cut.tally();
-        let (missing, name) = (unreached + undecided, &solved.surface.name);
+        let missing = unreached + undecided;
         if missing == 0 {
             continue;
         }
@@ -114,17 +111,4 @@ pub(crate) fn unknown(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
         all.push(NotDone::new(NotDoneKind::HeightUnknown, name, message).with(details));
     }
     all
-}
-
-/// A map of what is left on each surface that is cut, named by the surface.
-pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
-    let mut pictures = Vec::new();
-    for (patch, solved) in solved.iter().enumerate().filter(|(_, solved)| solved.cut.is_some()) {
-        let left = solved.fields.iter().position(|field| field.name == "left");
-        let shown: Vec<(usize, usize)> = left.map(|field| (patch, field)).into_iter().collect();
-        let title = format!("{}: what is left on {}", dataset.header.job, solved.surface.name);
-        let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
-        pictures.push((solved.surface.name.clone(), picture));
-    }
-    pictures
 }

@@ -4,8 +4,8 @@ use flank_export::Values;
 use flank_solver::Outcome;
 
 use crate::solve::result::FieldExtent;
+use crate::solve::solved::Solved;
 use crate::solve::stream::Streamed;
-use crate::solve::table::Solved;
 
 /// What each field runs through; vectors have no range.
 pub(crate) fn extents(solved: &Solved<'_, '_>) -> Vec<FieldExtent> {

@@ -6,7 +6,7 @@ use flank_solver::{Metric, Outcome, PointGeometry, Principal, SurfaceGeometry, S
 use rayon::prelude::*;
 
 use crate::project::units;
-use crate::solve::bound;
+use crate::solve::surface::bound;
 
 /// Points that threads share out at once: of no more all that is known is held.
 pub(crate) const TOGETHER: usize = 4096;

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 use crate::project::failure::Failure;
 use crate::project::remark::{Remark, RemarkKind};
 use crate::project::requests::Session;
-use crate::solve;
-use crate::solve::reach;
+use crate::solve::points::patch;
 use crate::solve::reasons;
 use crate::solve::summary::Summary;
+use crate::solve::surface::{bound, followed};
 
 /// A line on a surface.
 pub(crate) struct Line<'j, 'g> {
@@ -126,9 +126,9 @@ impl<'j, 'g> Sought<'j, 'g> {
 
     fn problem(&self, job: &Job<'g>, k: usize, session: Session) -> SurfaceProblem {
         let (surface, along) = (self.surface, &self.sample.coordinates[k]);
-        let problem = SurfaceProblem::line(&solve::bound(job, surface), self.quantity, along.value)
+        let problem = SurfaceProblem::line(&bound(job, surface), self.quantity, along.value)
             .expect("a job without errors leaves nothing unbound");
-        problem.following_beyond(reach::followed(surface)).with_instruction_set(session.instructions())
+        problem.following_beyond(followed(surface)).with_instruction_set(session.instructions())
     }
 
     fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, GridReport)) -> Line<'j, 'g> {
@@ -151,6 +151,6 @@ impl Line<'_, '_> {
     pub(crate) fn patch(&self, job: &Job<'_>) -> Option<Patch> {
         let rows = Axis { label: self.kind.to_string(), count: 1 };
         let columns = Axis { label: self.along.clone(), count: self.points.len() };
-        (self.found() != [0; 2]).then(|| solve::patch(job, &self.name, self.surface, [rows, columns], &self.points))
+        (self.found() != [0; 2]).then(|| patch(job, &self.name, self.surface, [rows, columns], &self.points))
     }
 }

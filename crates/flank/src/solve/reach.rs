@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, PieceEnds, RangedVariable};
 use flank_solver::{Outcome, Range, SurfacePoint};
 
 use crate::project::units;
-use crate::solve::ranges;
+use crate::solve::surface::ranges;
 
 /// What an unknown would have to run through.
 #[derive(Clone, Copy, Debug)]
@@ -13,15 +13,6 @@ pub(crate) struct Needed {
     range: Range,
     /// Whether nothing else is missing.
     is_all: bool,
-}
-
-/// Where a surface is followed beyond its ranges: farther on, through a whole turn at least. What is counted goes no farther.
-pub(crate) fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
-    let wider = surface.unknowns.iter().zip(ranges(surface)).map(|(unknown, range)| match unknown.is_count {
-        true => range,
-        false => range.beyond(if units::is_angle(unknown.dimension) { std::f64::consts::TAU } else { 0.0 }),
-    });
-    wider.collect()
 }
 
 /// The ranges that would have reached the points that are outside.

@@ -7,10 +7,10 @@ use flank_solver::Outcome;
 use crate::project::quantity::UnitSymbol;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
-use crate::solve::reasons;
 use crate::solve::result::MissedRequirement;
+use crate::solve::solved::Solved;
 use crate::solve::summary::Places;
-use crate::solve::table::Solved;
+use crate::solve::unsolved::whereabouts;
 
 /// The solved points of a surface at which a requirement of its sample does not hold.
 pub(crate) struct Broken<'j, 'g> {
@@ -64,7 +64,7 @@ pub(crate) fn missed(all: &[Solved<'_, '_>]) -> Vec<NotDone> {
             let detail = format!(
                 "{}{} is {least} .. {most} {unit}, required is {low} .. {high} {unit}",
                 of.name,
-                reasons::whereabouts(solved, &broken.places),
+                whereabouts(solved, &broken.places),
             );
             NotDone::new(NotDoneKind::NotAsRequired, name, message).with(vec![detail])
         };

@@ -9,10 +9,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::{Answer, Timing};
+use crate::project::columns::aligned;
 use crate::project::quantity::{Extent, NamedValue, UnitSymbol};
 use crate::project::remark::{NotDone, Remark};
-use crate::solve::limits::Line;
-use crate::solve::table::aligned;
 
 /// Solved surfaces of one job, in numbers, of `flank solve`; the points are in the files. Lengths are mm, angles degrees.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -95,7 +94,7 @@ pub struct LineResult {
     #[serde(flatten)]
     pub summary: PointSummary,
     #[serde(skip)]
-    points: PointArrays,
+    pub(super) points: PointArrays,
 }
 
 /// The values of one field of numbers over the solved points of a surface.
@@ -376,11 +375,6 @@ impl SurfaceResult {
 }
 
 impl LineResult {
-    pub(super) fn new(line: &Line<'_, '_>) -> LineResult {
-        let points = PointArrays::new([1, line.points.len()], line.surface.unknowns.len(), &line.points);
-        LineResult { summary: line.told(), points }
-    }
-
     /// Positions in the surface's frame, mm, along the line; NaN where no point of it was found.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.points.positions

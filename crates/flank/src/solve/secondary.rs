@@ -6,9 +6,8 @@ use flank_solver::{BoundSurface, Judged, Range, SecondaryCutting, SurfacePoint, 
 
 use crate::project::remark::{Remark, RemarkKind};
 use crate::project::units;
-use crate::solve::ranges;
 use crate::solve::result::ToolPositions;
-use crate::solve::table::Solved;
+use crate::solve::surface::ranges;
 
 /// Which positions of its tool the points of a surface were held against, and what was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,26 +122,24 @@ impl Positions {
 }
 
 /// `, by up to 0.51 mm`; empty if that is not known.
-pub(crate) fn depth(solved: &Solved<'_, '_>, by: usize) -> String {
-    let deepest = solved.positions.deepest(by);
+pub(crate) fn depth(positions: &Positions, by: usize) -> String {
+    let deepest = positions.deepest(by);
     deepest.map_or(String::new(), |depth| format!(", by up to {}", units::text(Dimension::LENGTH, depth, 6)))
 }
 
 /// Of each surface that was not held against all positions of its tool, its name and what was not looked at.
-pub(crate) fn unseen(solved: &[Solved<'_, '_>]) -> Vec<String> {
-    let told =
-        |solved: &Solved<'_, '_>| solved.positions.unseen().map(|what| format!("{}: {what}", solved.surface.name));
-    solved.iter().filter_map(told).collect()
+pub(crate) fn unseen<'s>(of_surfaces: impl Iterator<Item = (&'s str, &'s Positions)>) -> Vec<String> {
+    of_surfaces.filter_map(|(name, positions)| Some(format!("{name}: {}", positions.unseen()?))).collect()
 }
 
 /// Of which surfaces positions of the tool were given up.
-pub(crate) fn given_up(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
+pub(crate) fn given_up<'s>(of_surfaces: impl Iterator<Item = (&'s str, &'s Positions)>) -> Vec<Remark> {
     let is_given_up = |positions: &Positions| match positions {
         Positions::Seen(judged) => judged.unseen == Some(Unseen::Budget),
         Positions::Unseen(_) => *positions == STREAMED,
     };
-    let told = solved.iter().filter(|solved| is_given_up(&solved.positions)).map(|solved| {
-        let (name, what) = (&solved.surface.name, solved.positions.unseen().unwrap_or_default());
+    let told = of_surfaces.filter(|(_, positions)| is_given_up(positions)).map(|(name, positions)| {
+        let what = positions.unseen().unwrap_or_default();
         let message =
             format!("whether the tool cuts points of {name} away in another position was not looked at: {what}");
         Remark::new(RemarkKind::PositionsNotTried, name, message)

@@ -3,13 +3,11 @@
 use std::f64::consts::PI;
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter};
-use flank_draw::{Picture, PictureOptions, field_maps};
-use flank_export::{Dataset, Field, Known, Values};
+use flank_export::{Field, Known, Values};
 use flank_solver::{Displacement, NormalSensitivity, SurfacePoint};
 
 use crate::project::units;
 use crate::solve::result::{ParameterInfluence, SensitivityTable, UsualChange};
-use crate::solve::table::Solved;
 
 /// Maps on one picture.
 pub(crate) const MAPS: usize = 6;
@@ -186,19 +184,4 @@ impl Sensitivity {
             counts: self.counts.clone(),
         }
     }
-}
-
-/// A picture of each surface: maps of the parameters that move it most. Named by the surface.
-pub(crate) fn pictures(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec<(String, Picture)> {
-    let mut pictures = Vec::new();
-    // the surfaces come first among the patches
-    for (patch, solved) in solved.iter().enumerate() {
-        let Some(sensitivity) = &solved.sensitivity else { continue };
-        let most = sensitivity.most_moving(MAPS).into_iter();
-        let shown: Vec<(usize, usize)> = most.map(|k| (patch, solved.fields.len() + k)).collect();
-        let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);
-        let picture = field_maps(dataset, &title, &shown, NOTE, &PictureOptions::default());
-        pictures.push((solved.surface.name.clone(), picture));
-    }
-    pictures
 }

@@ -5,9 +5,11 @@ use flank_export::{Axis, Face, Patch};
 
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::solve::options::SolveOptions;
+use crate::solve::points;
 use crate::solve::result::SmoothFace;
-use crate::solve::table::Solved;
-use crate::solve::{self, SolveOptions};
+use crate::solve::sampled;
+use crate::solve::solved::Solved;
 
 /// A finer grid than this is not solved to make a face better.
 const MOST_POINTS: usize = 250_000;
@@ -34,7 +36,7 @@ pub(crate) fn smooth<'g>(
     let working = wanted.session.begin(format!("making a smooth face of {}", surface.name))?;
     let (mut sample, mut coarse) = match thinned(solved.sample) {
         Some(thin) => {
-            let points = solve::points(job, surface, &thin, wanted).points;
+            let points = sampled::points(job, surface, &thin, wanted).points;
             let coarse = patch(job, surface, &thin, &points);
             (thin, coarse)
         }
@@ -46,7 +48,7 @@ pub(crate) fn smooth<'g>(
         wanted.session.check()?;
         sample = finer;
         working.reached(&|| format!("{} x {} points", sample.counts[0], sample.counts[1]));
-        let fine = patch(job, surface, &sample, &solve::points(job, surface, &sample, wanted).points);
+        let fine = patch(job, surface, &sample, &sampled::points(job, surface, &sample, wanted).points);
         let face = face.measured(&fine);
         let off = |face: &Face| {
             face.deviation.map_or(f64::INFINITY, |off| if off.missing == 0 { off.largest } else { f64::INFINITY })
@@ -70,7 +72,7 @@ fn patch<'g>(
     points: &[flank_solver::SurfacePoint],
 ) -> Patch {
     let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: sample.counts[k] });
-    solve::patch(job, &surface.name, surface, axes, points)
+    points::patch(job, &surface.name, surface, axes, points)
 }
 
 /// Rows and columns spread over the sample, the outermost among them, where it is too large to be made finer.

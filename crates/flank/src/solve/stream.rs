@@ -9,8 +9,10 @@ use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem}
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::solve::geometry::{self, Described, TOGETHER};
+use crate::solve::options::SolveOptions;
+use crate::solve::points::{patch, point};
 use crate::solve::summary::Summary;
-use crate::solve::{SolveOptions, patch, point, problem};
+use crate::solve::surface::problem;
 
 /// Surfaces of more points are streamed if nothing needs all of them together.
 const KEPT: usize = 1 << 16;

@@ -1,9 +1,6 @@
 //! What `flank solve` tells of its work.
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Sample};
-use flank_export::Field;
-use flank_expr::Expr;
-use flank_solver::{GridReport, SurfacePoint};
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
 
 use crate::project::quantity::Extent;
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -12,63 +9,15 @@ use crate::solve::certify;
 use crate::solve::cut::Cut;
 use crate::solve::fields;
 use crate::solve::limits::Line;
-use crate::solve::reach::Needed;
 use crate::solve::reasons;
 use crate::solve::required;
-use crate::solve::result::{PointArrays, PointSummary, SurfaceResult};
-use crate::solve::secondary::Positions;
+use crate::solve::result::{LineResult, PointArrays, PointSummary, SurfaceResult};
 use crate::solve::sensitivity::Sensitivity;
-use crate::solve::stream::Streamed;
+use crate::solve::solved::Solved;
 use crate::solve::summary::{Ends, Summary};
+use crate::solve::unsolved;
 
-/// One surface with its points.
-pub(crate) struct Solved<'j, 'g> {
-    pub(crate) surface: &'j GeneratedSurface<'g>,
-    pub(crate) sample: &'j Sample<'g>,
-    /// The job's parameters with their values.
-    pub(crate) bindings: Vec<(Expr<'g>, Expr<'g>)>,
-    /// Ranges that would reach the points that are outside.
-    pub(crate) needed: Vec<Needed>,
-    /// What is told of its points.
-    pub(crate) summary: Summary,
-    /// All of them; some for a picture if there are too many to keep.
-    pub(crate) points: Vec<SurfacePoint>,
-    /// The sample's rows and columns that these points stand in.
-    pub(crate) lines: [Vec<usize>; 2],
-    /// What hands over the points if they are too many to keep.
-    pub(crate) streamed: Option<Streamed<'j, 'g>>,
-    pub(crate) effort: GridReport,
-    /// Where it meets the surfaces that trim it, in their order.
-    pub(crate) trims: Vec<Line<'j, 'g>>,
-    /// Which positions of its tool its points were held against.
-    pub(crate) positions: Positions,
-    /// Where each of the branches at the anchor is.
-    pub(crate) branches: Vec<SurfacePoint>,
-    /// Branches that have points at other places, each with the point of its own branch there if that has one.
-    pub(crate) elsewhere: Vec<(SurfacePoint, Option<SurfacePoint>)>,
-    /// Where nothing was found: the branches there that the sample's `keep` does not take.
-    pub(crate) kept_out: Vec<SurfacePoint>,
-    /// How near exactly one root is proven to each point, mm, if that was asked for.
-    pub(crate) radii: Option<Vec<Option<f64>>>,
-    /// What more is known of these points; files show it after the status. What is known of each point of a streamed surface it has itself.
-    pub(crate) fields: Vec<Field>,
-    pub(crate) sensitivity: Option<Sensitivity>,
-    /// What the single edges leave, if the job says which.
-    pub(crate) cut: Option<Cut>,
-}
-
-impl<'g> Solved<'_, 'g> {
-    /// Rows and columns of its points.
-    pub(crate) fn counts(&self) -> [usize; 2] {
-        [0, 1].map(|k| self.lines[k].len())
-    }
-
-    /// Where one of its points stands in the sample: row and column.
-    pub(crate) fn place(&self, at: usize) -> [usize; 2] {
-        let columns = self.lines[1].len();
-        [self.lines[0][at / columns], self.lines[1][at % columns]]
-    }
-
+impl Solved<'_, '_> {
     /// Its points, counted.
     pub(crate) fn told(&self) -> PointSummary {
         summary(&self.surface.name, self.surface, &self.summary)
@@ -101,6 +50,12 @@ impl<'g> Solved<'_, 'g> {
 }
 
 impl Line<'_, '_> {
+    /// Its points, counted, and its points.
+    pub(crate) fn result(&self) -> LineResult {
+        let points = PointArrays::new([1, self.points.len()], self.surface.unknowns.len(), &self.points);
+        LineResult { summary: self.told(), points }
+    }
+
     /// Its points, counted.
     pub(crate) fn told(&self) -> PointSummary {
         summary(&self.name, self.surface, &self.summary)
@@ -136,17 +91,6 @@ fn unsolved(job: &Job<'_>, solved: &Solved<'_, '_>) -> Option<NotDone> {
     let missing = asked - solved.summary.solved();
     (missing > 0).then(|| {
         let message = format!("not solved: {missing} of {asked} points of {name}");
-        NotDone::new(NotDoneKind::NotSolved, name, message).with(reasons::counted(job, solved))
+        NotDone::new(NotDoneKind::NotSolved, name, message).with(unsolved::reasons(job, solved))
     })
-}
-
-/// Rows with their cells below each other, all to the left but those whose place in `sides` holds a `>`.
-pub(crate) fn aligned<const N: usize>(rows: &[[String; N]], sides: &str) -> String {
-    let widths: [usize; N] = std::array::from_fn(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0));
-    let cell = |k: usize, text: &str| match sides.as_bytes().get(k) {
-        Some(b'>') => format!("  {text:>0$}", widths[k]),
-        _ => format!("  {text:<0$}", widths[k]),
-    };
-    let line = |row: &[String; N]| (0..N).map(|k| cell(k, &row[k])).collect::<String>();
-    rows.iter().map(|row| line(row).trim_end().to_string() + "\n").collect()
 }

@@ -8,7 +8,7 @@ use flank_solver::{Range, extent};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
-use crate::solve::table::Solved;
+use crate::solve::solved::Solved;
 
 /// An axis is beyond its travel if it is so by more than this share of it: laws of some hundred operations on numbers of the size of the
 /// travel round by far less, and no scale of a machine shows it.

@@ -6,7 +6,7 @@ use flank_solver::{SurfacePoint, Trim};
 use crate::project::requests::Session;
 use crate::solve::limits::Line;
 use crate::solve::summary::Summary;
-use crate::solve::{bound, problem};
+use crate::solve::surface::{bound, problem};
 
 /// Marks the points of the first surface that the second cuts away, with the number of this trim, and gives back the line
 /// where the two meet.

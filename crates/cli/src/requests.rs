@@ -1,12 +1,21 @@
 //! From arguments to what is asked of the library.
 
 use flank::{
-    ConvertRequest, DeriveRequest, DeviationRequest, MeasureRequest, PlotRequest, ReportRequest, SolveRequest,
-    ViewRequest,
+    ConvertRequest, DeriveRequest, DeviationRequest, JobSelection, MeasureRequest, PlotRequest, ReportRequest,
+    SolveRequest, ViewRequest,
 };
 
-use super::{Convert, Derive, Deviation, Measure, Onto, Plot, Report, Solve, View};
+use crate::arguments::{Convert, Derive, Deviation, JobArguments, Measure, Onto, Plot, Report, Solve, View};
 use crate::failure::Failure;
+use crate::spec;
+
+impl JobArguments {
+    /// # Errors
+    /// If the standard input cannot be read.
+    pub(crate) fn jobs(&self) -> Result<JobSelection, Failure> {
+        Ok(JobSelection { project: spec::project(&self.file)?, job: self.job.clone(), set: self.set.clone() })
+    }
+}
 
 impl Solve {
     pub(crate) fn request(&self) -> Result<SolveRequest, Failure> {

@@ -1,0 +1,359 @@
+//! A surface, or what was measured of it, held against a surface: what is known of it, and how it is written.
+
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_draw::{PictureOptions, field_maps};
+use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
+use flank_solver::{EaseOff, Outcome, SurfacePoint};
+
+use crate::compare::deviation_result::{DeviationResult, EaseOffDirection};
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::project::requests::{DeviationRequest, JobSelection};
+use crate::project::spec::Origin;
+use crate::solve::starts;
+use crate::solve::{header, patch};
+
+const NOTE: &str = "along the normal, plus is material";
+
+/// A surface of a job.
+#[derive(Clone, Copy)]
+pub(crate) struct Named<'j, 'g> {
+    pub(crate) job: &'j Job<'g>,
+    pub(crate) surface: &'j GeneratedSurface<'g>,
+}
+
+impl Named<'_, '_> {
+    pub(crate) fn whole_name(&self) -> String {
+        format!("{}.{}", self.job.name, self.surface.name)
+    }
+}
+
+/// What is held against a surface.
+pub(crate) enum ComparedWith<'j, 'g> {
+    Surface(Named<'j, 'g>),
+    /// So many measured points of a file.
+    File {
+        name: String,
+        points: usize,
+    },
+}
+
+impl ComparedWith<'_, '_> {
+    fn name(&self) -> &str {
+        match self {
+            ComparedWith::Surface(of) => &of.surface.name,
+            ComparedWith::File { name, .. } => name,
+        }
+    }
+
+    fn whole_name(&self) -> String {
+        match self {
+            ComparedWith::Surface(of) => of.whole_name(),
+            ComparedWith::File { name, .. } => name.clone(),
+        }
+    }
+
+    fn frame(&self) -> Option<&str> {
+        match self {
+            ComparedWith::Surface(of) => Some(&of.surface.frame),
+            ComparedWith::File { .. } => None,
+        }
+    }
+}
+
+/// One surface, or what was measured of it, held against a surface.
+pub(crate) struct DeviationMap<'j, 'g> {
+    pub(crate) held: ComparedWith<'j, 'g>,
+    pub(crate) from: Named<'j, 'g>,
+    pub(crate) labels: [String; 2],
+    pub(crate) counts: [usize; 2],
+    pub(crate) points: Vec<SurfacePoint>,
+    /// About z, radians: until both meet in the middle of the grid, or measured points lie nearest.
+    pub(crate) turn: Option<f64>,
+    /// Whether it was turned.
+    pub(crate) is_turned: bool,
+    /// um
+    pub(crate) deviations: Vec<Option<f64>>,
+    /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
+    pub(crate) is_opposite: bool,
+    /// Why nothing could be held against the other, with a way out; empty if it could.
+    pub(crate) refused: Vec<NotDone>,
+    /// Points at whose places the surface is cut away.
+    pub(crate) cut_away: usize,
+}
+
+/// A surface by its name, with that of its job where several have it.
+pub(crate) fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<Named<'j, 'g>, String> {
+    let all = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| Named { job, surface }));
+    let found: Vec<Named<'j, 'g>> = all().filter(|of| of.surface.name == name || of.whole_name() == name).collect();
+    match found[..] {
+        [one] => Ok(one),
+        [] => {
+            let known: Vec<String> = all().map(|of| format!("`{}`", of.whole_name())).collect();
+            Err(format!("there is no surface `{name}`; there is: {}", known.join(", ")))
+        }
+        _ => {
+            let known: Vec<String> = found.iter().map(|of| format!("`{}`", of.whole_name())).collect();
+            Err(format!("several jobs have a surface `{name}`; say which: {}", known.join(", ")))
+        }
+    }
+}
+
+pub(super) fn is_solved(point: &SurfacePoint) -> bool {
+    point.outcome == Outcome::Solved
+}
+
+/// Nearer than this, um, the middle lies on the surface that it was turned onto: points are solved to 1e-9 mm.
+const ON_IT: f64 = 1e-6;
+
+impl DeviationMap<'_, '_> {
+    fn middle(&self) -> usize {
+        starts::middle(self.counts)
+    }
+
+    /// Distance of the middle of the grid from the z axis, mm.
+    fn middle_radius(&self) -> f64 {
+        self.points.get(self.middle()).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1]))
+    }
+
+    /// The middle of the grid, um.
+    fn in_the_middle(&self) -> Option<f64> {
+        let middle = *self.deviations.get(self.middle())?;
+        middle.map(|off| if off.abs() < ON_IT { 0.0 } else { off })
+    }
+
+    /// Normals that face apart.
+    pub(super) fn opposite(&self) -> Option<Remark> {
+        self.is_opposite.then(|| {
+            let (held, from) = (self.held.name(), &self.from.surface.name);
+            let message = format!(
+                "{held} and {from} have their steel on opposite sides in the middle of the grid, as the two flanks of a tooth have: \
+                 these deviations compare no flank with its like"
+            );
+            Remark::new(RemarkKind::OppositeSides, from, message)
+        })
+    }
+
+    /// The jobs of its surfaces.
+    pub(super) fn jobs(&self) -> Vec<&Job<'_>> {
+        let held = match &self.held {
+            ComparedWith::Surface(of) => Some(of.job),
+            ComparedWith::File { .. } => None,
+        };
+        [self.from.job].into_iter().chain(held).collect()
+    }
+
+    fn known(&self) -> impl Iterator<Item = f64> {
+        self.deviations.iter().flatten().copied()
+    }
+
+    /// The smallest, the largest, and the root of the mean square, um.
+    fn spread(&self) -> Option<[f64; 3]> {
+        let count = self.known().count();
+        let ends = self.known().map(|x| (x, x)).reduce(|(low, high), (x, _)| (low.min(x), high.max(x)));
+        let square = self.known().map(|x| x * x).sum::<f64>() / count as f64;
+        ends.map(|(low, high)| [low, high, square.sqrt()])
+    }
+
+    fn ease_off(&self) -> Option<EaseOff> {
+        EaseOff::of(&self.deviations, self.counts)
+    }
+
+    /// Way from the first to the last point of the middle column, and of the middle row, mm.
+    fn lengths(&self) -> [Option<f64>; 2] {
+        let [rows, columns] = self.counts;
+        let apart = |a: usize, b: usize| {
+            let ends = [self.points.get(a)?, self.points.get(b)?];
+            let [one, other] = ends.map(|point| is_solved(point).then_some(point.position));
+            let squares = one?.into_iter().zip(other?).map(|(a, b)| (a - b) * (a - b));
+            Some(squares.sum::<f64>().sqrt())
+        };
+        [
+            apart(columns / 2, (rows - 1) * columns + columns / 2),
+            apart(rows / 2 * columns, rows / 2 * columns + columns - 1),
+        ]
+    }
+
+    fn name(&self) -> String {
+        match &self.held {
+            ComparedWith::Surface(of) => format!("{}.deviation", of.whole_name()),
+            ComparedWith::File { .. } => format!("{}.measured.deviation", self.from.whole_name()),
+        }
+    }
+
+    /// What is said of it, with the files that were written.
+    pub(super) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
+        let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
+        let direction = |k: usize| {
+            ease_off.map(|of| EaseOffDirection {
+                direction: self.labels[k].clone(),
+                slope_um: of.slopes[k],
+                slope_arcmin: lengths[k].map(|length| arcmin(of.slopes[k], length)),
+                crowning_um: of.crownings[k],
+            })
+        };
+        let (surface, measured, job) = match &self.held {
+            ComparedWith::Surface(of) => (Some(of.surface.name.clone()), None, Some(of.job.name.clone())),
+            ComparedWith::File { name, .. } => (None, Some(name.clone()), None),
+        };
+        DeviationResult {
+            surface,
+            job,
+            frame: self.held.frame().map(str::to_string),
+            measured,
+            from: self.from.surface.name.clone(),
+            from_job: self.from.job.name.clone(),
+            from_frame: self.from.surface.frame.clone(),
+            asked: self.points.len(),
+            known: self.known().count(),
+            turn_deg: self.turn.map(f64::to_degrees),
+            turned: self.is_turned,
+            turn_mm: self.turn.map(|turn| self.middle_radius() * turn),
+            lowest_um: spread.map(|of| of[0]),
+            highest_um: spread.map(|of| of[1]),
+            rms_um: spread.map(|of| of[2]),
+            middle_um: self.in_the_middle(),
+            directions: [direction(0), direction(1)],
+            bias_um: ease_off.map(|of| of.bias),
+            files,
+            not_done: self.missing(origin),
+            remarks: Vec::new(),
+            timing: Timing::default(),
+            counts: self.counts,
+            positions: self.points.iter().map(|point| point.position).collect(),
+            deviations: self.deviations.iter().map(|off| off.unwrap_or(f64::NAN)).collect(),
+        }
+    }
+
+    /// Why numbers are missing, if some are.
+    pub(crate) fn missing(&self, origin: &Origin) -> Vec<NotDone> {
+        origin.located(&self.jobs(), self.not_done())
+    }
+
+    fn not_done(&self) -> Vec<NotDone> {
+        let (all, known) = (self.points.len(), self.known().count());
+        let [surface, from] = match &self.held {
+            ComparedWith::Surface(of) if of.job.name != self.from.job.name => [of.whole_name(), self.from.whole_name()],
+            held => [held.name().to_string(), self.from.surface.name.clone()],
+        };
+        let unsolved = self.points.iter().filter(|point| !is_solved(point)).count();
+        if let ComparedWith::File { points, .. } = self.held {
+            return missing_of_file(self, [points, known, unsolved]);
+        }
+        if !self.refused.is_empty() {
+            return self.refused.clone();
+        }
+        let unmet = all - known - unsolved;
+        let cut_away = self.cut_away.min(unmet);
+        let unmet = unmet - cut_away;
+        counted([
+            (unsolved, not_solved(&from, format!("not solved: {unsolved} of {all} points of {from}"))),
+            (
+                cut_away,
+                no_deviation(
+                    &surface,
+                    format!("no deviation at {cut_away} of {all} points: {surface} is cut away there"),
+                ),
+            ),
+            (
+                unmet,
+                no_deviation(
+                    &from,
+                    format!(
+                        "no deviation at {unmet} of {all} points: the normal of {from} does not meet {surface} within its ranges"
+                    ),
+                ),
+            ),
+        ])
+    }
+
+    /// The points with their deviations as their one field.
+    pub(crate) fn dataset(&self, which: &JobSelection, origin: &Origin) -> Dataset {
+        let axis = |k: usize| Axis { label: self.labels[k].clone(), count: self.counts[k] };
+        let patch = patch(self.from.job, &self.from.surface.name, self.from.surface, [axis(0), axis(1)], &self.points);
+        let field = Field {
+            name: format!("deviation of {}", self.held.name()),
+            unit: "um".to_string(),
+            meaning: NOTE.to_string(),
+            values: Values::Scalars(self.deviations.iter().copied().collect()),
+        };
+        let mut header = header(&self.jobs(), which, origin);
+        let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
+        header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
+        Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
+    }
+
+    /// How a picture is to be read.
+    pub(crate) fn note(&self) -> String {
+        let turn = self.turn.filter(|_| self.is_turned);
+        let turn = turn.map(|turn| {
+            format!(
+                "; {} is turned by {} deg about z, {} mm on the circle through the middle",
+                self.held.name(),
+                fixed(turn.to_degrees(), 6),
+                fixed(self.middle_radius() * turn, 6)
+            )
+        });
+        format!("{NOTE}{}", turn.unwrap_or_default())
+    }
+
+    pub(crate) fn title(&self) -> String {
+        format!("{} from {}", self.held.whole_name(), self.from.whole_name())
+    }
+
+    pub(super) fn write(
+        &self,
+        request: &DeviationRequest,
+        origin: &Origin,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<String>, Failure> {
+        let dataset = self.dataset(&request.jobs, origin);
+        let mut folder = Folder::at(&request.out, origin, monitor)?;
+        let map = || field_maps(&dataset, &self.title(), &[(0, 0)], &self.note(), &PictureOptions::default());
+        let map = (!request.no_picture).then(map);
+        folder.picture_after(&self.name(), map.as_ref(), |folder| {
+            folder.data(&self.name(), &dataset.surfaces(), &request.format)
+        })?;
+        folder.finish()
+    }
+}
+
+/// Why numbers are missing of a grid with so many measured points, known deviations and nominal points that are not solved.
+fn missing_of_file(of: &DeviationMap<'_, '_>, [measured, known, unsolved]: [usize; 3]) -> Vec<NotDone> {
+    let (all, from) = (of.points.len(), &of.from.surface.name);
+    let (left_out, unmet) = (all.saturating_sub(measured), measured.saturating_sub(known));
+    counted([
+        (unsolved, not_solved(from, format!("not solved: {unsolved} of {all} nominal points of {from}"))),
+        (left_out, NotDone::new(NotDoneKind::NotMeasured, from, format!("not measured: {left_out} of {all} points"))),
+        (
+            unmet,
+            no_deviation(
+                from,
+                format!(
+                    "no deviation at {unmet} of {measured} measured points: no normal of {from} within its ranges goes through them"
+                ),
+            ),
+        ),
+    ])
+}
+
+fn not_solved(of: &str, message: String) -> NotDone {
+    NotDone::new(NotDoneKind::NotSolved, of, message)
+}
+
+pub(super) fn no_deviation(of: &str, message: String) -> NotDone {
+    NotDone::new(NotDoneKind::NoDeviation, of, message)
+}
+
+/// Those of which there are some.
+fn counted<const N: usize>(all: [(usize, NotDone); N]) -> Vec<NotDone> {
+    all.into_iter().filter(|(count, _)| *count > 0).map(|(_, one)| one).collect()
+}
+
+/// The angle of a rise in um over a length in mm.
+fn arcmin(rise: f64, length: f64) -> f64 {
+    (1e-3 * rise).atan2(length).to_degrees() * 60.0
+}

@@ -1,0 +1,171 @@
+//! The points that the samples of surfaces ask for, with all that is wanted of them.
+
+use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_solver::{GridReport, Outcome, Solution, SurfacePoint, SurfaceProblem};
+
+use crate::project::failure::Failure;
+use crate::project::remark::NotDone;
+use crate::project::requests::Session;
+use crate::solve::branches;
+use crate::solve::certify;
+use crate::solve::cut::{self, Cut};
+use crate::solve::geometry;
+use crate::solve::limits::Line;
+use crate::solve::options::SolveOptions;
+use crate::solve::reach;
+use crate::solve::secondary::{self, Positions};
+use crate::solve::sensitivity;
+use crate::solve::solved::Solved;
+use crate::solve::stream::{self, Kept, Streamed};
+use crate::solve::summary::Summary;
+use crate::solve::surface::{on_any_branch, problem};
+use crate::solve::trims;
+
+/// The points of one surface, if any are asked for.
+pub(crate) fn solve_surface<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    wanted: SolveOptions<'j>,
+) -> Option<Result<Solved<'j, 'g>, Failure>> {
+    let sample = surface.sample.as_ref()?;
+    match stream::is_streamed(job, surface, sample, wanted) {
+        Ok(true) => return Some(in_bands(job, surface, sample, wanted)),
+        Ok(false) => {}
+        Err(reason) => return Some(Err(reason.into())),
+    }
+    let _working = match wanted.session.begin(format!("solving {}", surface.name)) {
+        Ok(working) => working,
+        Err(cancelled) => return Some(Err(cancelled)),
+    };
+    let Found { problem, points, effort, trims, positions } = points(job, surface, sample, wanted);
+    let branches = problem.points(&effort.branches);
+    let elsewhere = elsewhere(&problem, &effort);
+    let needed = reach::needed(surface, &points);
+    let radii = wanted.certificates.then(|| certify::radii(&problem, &sample.targets(), &points));
+    let mut fields = Vec::new();
+    if wanted.geometry {
+        fields.extend(geometry::fields(job, surface, sample, &points));
+    }
+    fields.extend(radii.as_deref().map(certify::field));
+    let cut = cut::of(job, surface, &points, wanted.session);
+    fields.extend(cut.iter().flat_map(Cut::fields));
+    let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
+    let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
+    let kept_out = kept_out(job, surface, (&effort, &summary), wanted.session);
+    Some(Ok(Solved {
+        surface,
+        sample,
+        bindings: job.bindings(),
+        summary,
+        points,
+        lines: sample.counts.map(|count| (0..count).collect()),
+        streamed: None,
+        needed,
+        effort,
+        branches,
+        elsewhere,
+        kept_out,
+        radii,
+        fields,
+        sensitivity,
+        trims,
+        positions,
+        cut,
+    }))
+}
+
+/// What is kept of the points of a surface that has too many of them.
+fn in_bands<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &'j Sample<'g>,
+    wanted: SolveOptions<'j>,
+) -> Result<Solved<'j, 'g>, Failure> {
+    let mut streamed = Streamed::new(job, surface, sample, wanted);
+    let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown)?;
+    let is_of_drawn = wanted.geometry && wanted.of_shown;
+    Ok(Solved {
+        surface,
+        sample,
+        bindings: job.bindings(),
+        needed: Vec::new(),
+        lines: streamed.drawn(),
+        branches: streamed.problem().points(&effort.branches),
+        elsewhere: elsewhere(streamed.problem(), &effort),
+        kept_out: kept_out(job, surface, (&effort, &summary), wanted.session),
+        summary,
+        streamed: Some(streamed),
+        effort,
+        radii: None,
+        fields: if is_of_drawn { geometry::fields(job, surface, sample, &drawn) } else { Vec::new() },
+        sensitivity: wanted.sensitivity.then(|| sensitivity::of(job, surface, &drawn)),
+        points: drawn,
+        trims: Vec::new(),
+        positions: secondary::STREAMED,
+        cut: None,
+    })
+}
+
+/// The points of a sample, with what it took to find them.
+pub(crate) struct Found<'j, 'g> {
+    problem: SurfaceProblem,
+    pub(crate) points: Vec<SurfacePoint>,
+    effort: GridReport,
+    trims: Vec<Line<'j, 'g>>,
+    positions: Positions,
+}
+
+impl<'g> Found<'_, 'g> {
+    /// The branches that qualify where nothing chooses between several, with what would select each.
+    pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<NotDone> {
+        let is_ambiguous = self.points.iter().any(|point| point.outcome == Outcome::Ambiguous);
+        is_ambiguous.then(|| {
+            let at = branches::place(&sample.coordinates, self.effort.anchor);
+            branches::listed(surface, &self.problem.points(&self.effort.branches), &at)
+        })
+    }
+}
+
+/// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away, or its own tool in another
+/// position.
+pub(crate) fn points<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+    wanted: SolveOptions,
+) -> Found<'j, 'g> {
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = problem(job, surface, coordinates, wanted.session);
+    let (mut points, effort) = problem.solve(&sample.targets(), sample.counts);
+    let trims = surface.trimmed_by.iter().enumerate();
+    let trims = trims.map(|(number, &by)| {
+        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.session))
+    });
+    let trims = trims.collect();
+    secondary::judge_trims(job, surface, &mut points, sample.counts);
+    let positions = secondary::judge(job, surface, &mut points, sample.counts);
+    Found { problem, points, effort, trims, positions }
+}
+
+/// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.
+fn kept_out<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    (effort, summary): (&GridReport, &Summary),
+    session: Session,
+) -> Vec<SurfacePoint> {
+    let is_kept = |sample: &&Sample<'g>| !sample.keep.is_empty();
+    let is_nothing = summary.solved() == 0 && effort.branches.is_empty();
+    let Some(sample) = surface.sample.as_ref().filter(is_kept).filter(|_| is_nothing) else { return Vec::new() };
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = on_any_branch(job, surface, coordinates, session);
+    let found = problem.all_points(effort.anchor);
+    let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();
+    problem.points(&found)
+}
+
+/// Branches at other places, each with the point of the surface's own branch there if it has one.
+fn elsewhere(problem: &SurfaceProblem, effort: &GridReport) -> Vec<(SurfacePoint, Option<SurfacePoint>)> {
+    let point = |root: &Solution| problem.points(std::slice::from_ref(root)).remove(0);
+    effort.elsewhere.iter().map(|other| (point(&other.root), other.beside.as_ref().map(point))).collect()
+}

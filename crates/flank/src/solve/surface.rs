@@ -1,0 +1,55 @@
+//! The surfaces of a job as problems for the solver.
+
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_expr::Expr;
+use flank_solver::{BoundSurface, Range, SurfaceProblem};
+
+use crate::project::requests::Session;
+use crate::project::units;
+
+/// A surface with the values of the job's parameters.
+pub(crate) fn bound<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>) -> BoundSurface<'g> {
+    BoundSurface::new(&surface.surface, ranges(surface), &job.bindings())
+}
+
+/// Where the unknowns of a surface are looked for.
+pub(crate) fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+    surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect()
+}
+
+/// Where a surface is followed beyond its ranges: farther on, through a whole turn at least. What is counted goes no farther.
+pub(crate) fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+    let wider = surface.unknowns.iter().zip(ranges(surface)).map(|(unknown, range)| match unknown.is_count {
+        true => range,
+        false => range.beyond(if units::is_angle(unknown.dimension) { std::f64::consts::TAU } else { 0.0 }),
+    });
+    wider.collect()
+}
+
+/// Points of a surface at values of two coordinates, on the branch that its sample keeps.
+pub(crate) fn problem<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    coordinates: [Expr<'g>; 2],
+    session: Session,
+) -> SurfaceProblem {
+    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
+    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
+    on_any_branch(job, surface, coordinates, session)
+        .keeping(&bound(job, surface), &keep)
+        .expect("a job without errors leaves nothing unbound")
+}
+
+/// The same, whatever its sample keeps.
+pub(super) fn on_any_branch<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    coordinates: [Expr<'g>; 2],
+    session: Session,
+) -> SurfaceProblem {
+    SurfaceProblem::new(&bound(job, surface), coordinates)
+        .expect("a job without errors leaves nothing unbound")
+        .following_beyond(followed(surface))
+        .with_instruction_set(session.instructions())
+        .boxes(session.boxes())
+}

@@ -1,0 +1,123 @@
+//! Why points of a surface were not solved, and where they are.
+
+use flank_chain_dsl::Job;
+use flank_solver::{CutBy, Outcome};
+
+use crate::project::units;
+use crate::solve::branches;
+use crate::solve::reach;
+use crate::solve::reasons::{amount, by_what, outside_keep};
+use crate::solve::secondary;
+use crate::solve::solved::Solved;
+use crate::solve::summary::Places;
+use crate::solve::surface::bound;
+
+/// Why points of a surface were not solved, with the number of points for each reason.
+pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
+    let summary = &solved.summary;
+    let mut reasons = Vec::new();
+    let mut tell = |count: usize, text: String| {
+        if count > 0 {
+            reasons.push(format!("{count}: {text}"));
+        }
+    };
+    for (unknown, outside) in solved.surface.unknowns.iter().zip(&summary.outside) {
+        let (most, place) = (amount(unknown, outside.most), whereabouts(solved, &outside.places));
+        tell(outside.places.count, format!("{} outside its range, by up to {most}{place}", unknown.name));
+    }
+    for (condition, count) in &summary.not_kept {
+        tell(*count, outside_keep(solved.surface, *condition));
+    }
+    let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
+    let elsewhere = summary.cut_elsewhere.iter().map(|(by, count)| (CutBy::ItsToolElsewhere(*by), *count));
+    for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(elsewhere).chain(trims) {
+        let is_whole = cutter == CutBy::ItsTool && count == summary.asked;
+        let side = if is_whole && is_inside_out(job, solved) {
+            "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
+        } else {
+            ""
+        };
+        let depth = match cutter {
+            CutBy::ItsToolElsewhere(by) => secondary::depth(&solved.positions, by),
+            CutBy::ItsTool | CutBy::Other(_) => String::new(),
+        };
+        tell(count, format!("cut away {}{depth}{side}", by_what(job, solved.surface, cutter)));
+    }
+    tell(
+        summary.count(Outcome::Undecided),
+        "undecided, the lines of the grid disagree on what a trim leaves of them, or several branches of what trims lie beside them"
+            .to_string(),
+    );
+    let singular =
+        "singular, the equations do not fix a single point there, or the surface has no normal or no tangent plane";
+    tell(summary.count(Outcome::Singular), singular.to_string());
+    let least = summary.least_residual;
+    let near = if least.is_nan() { String::new() } else { format!(" (smallest residual {least:.1e})") };
+    // the others may end where the surface turns back
+    let ends = if summary.solved() > 0 { "; the option `limits` shows where the surface ends" } else { "" };
+    tell(
+        summary.count(Outcome::NotConverged { iterations: 0 }),
+        format!("not converged{near}: no point of this branch was found there{ends}"),
+    );
+    if summary.count(Outcome::NotConverged { iterations: 0 }) > 0 {
+        reasons.extend(short_tables(solved));
+    }
+    reasons.extend(branches::kept_out(solved));
+    if solved.needed.is_empty() && summary.has_unreached() {
+        reasons.extend(reach::beside_piece(job, solved.surface));
+    }
+    reasons.extend(solved.needed.iter().map(|needed| needed.text(job, solved.surface)));
+    reasons
+}
+
+/// Whether the points of a surface that is cut away whole speak of a `body` on the wrong side.
+fn is_inside_out(job: &Job<'_>, solved: &Solved<'_, '_>) -> bool {
+    flank_solver::is_inside_out(&bound(job, solved.surface), &solved.points)
+        .expect("a job without errors leaves nothing unbound")
+}
+
+/// The curves through tables that end within the range of the unknown that they are asked for: beyond, the surface has no points.
+fn short_tables(solved: &Solved<'_, '_>) -> Vec<String> {
+    let unknowns = &solved.surface.unknowns;
+    let position = solved.surface.surface.position.0;
+    let curves = position[0].graph().curves_in(&position);
+    let short = curves.into_iter().filter_map(|(curve, at)| {
+        let of = unknowns.iter().find(|unknown| unknown.variable == at)?;
+        let (low, high) = curve.ends();
+        let text = |x: f64| units::as_given(of.dimension, x);
+        let (name, own) = (&of.name, format!("{} .. {}", text(of.low), text(of.high)));
+        (low > of.low || high < of.high).then(|| {
+            format!(
+                "the table of `{}` covers {name} {} .. {}, the range of {name} is {own}: beyond its ends there are no points",
+                curve.name(),
+                text(low),
+                text(high)
+            )
+        })
+    });
+    short.collect()
+}
+
+/// At which ends of the grid points lie: `, at the toe and the tip`. An end has at least half of its line among them; where none
+/// has, all of them lie in the third of the grid next to it.
+pub(crate) fn whereabouts(solved: &Solved<'_, '_>, places: &Places) -> String {
+    let [rows, columns] = solved.sample.counts;
+    let ends = [1, 0].into_iter().filter(|&k| solved.sample.counts[k] > 2).filter_map(|k| {
+        let (first, last) = solved.sample.labels[k].split_once(" -> ")?;
+        let (count, length) = (solved.sample.counts[k], [columns, rows][k]);
+        let third = count / 3;
+        let end = |name, line: usize, from: usize| {
+            (name, 2 * places.on_lines(k, line..line + 1) >= length, places.on_lines(k, from..from + third))
+        };
+        Some([end(first, 0, 0), end(last, count - 1, count - third)])
+    });
+    let ends: Vec<(&str, bool, usize)> = ends.flatten().collect();
+    let has_most = |end: &&(&str, bool, usize)| end.1;
+    let names: Vec<&str> = if ends.iter().any(|end| end.1) {
+        ends.iter().filter(has_most).map(|end| end.0).collect()
+    } else {
+        ends.iter().filter(|end| end.2 == places.count).map(|end| end.0).collect()
+    };
+    // all round is nowhere in particular
+    if names.is_empty() || names.len() == 4 { String::new() } else { format!(", at the {}", names.join(" and the ")) }
+}
