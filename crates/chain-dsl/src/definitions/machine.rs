@@ -1,7 +1,7 @@
 //! Machines: what `extends` amounts to, axes and their laws, the tree of frames.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 use flank_expr::{Expr, Interval};
 
@@ -14,7 +14,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Frame, NcWord, Parameter, RangedVariable};
-use crate::syntax::ast::{self, AxisKind, Let, MachineStatement, Param, Requirement};
+use crate::syntax::ast::{self, AxisKind, Expression, ExpressionKind, Let, MachineStatement, Param, Requirement};
 use crate::values::context::{Context, READABLE, Role};
 use crate::values::dimension::Dimension;
 use crate::values::value::{Constant, Scope, Value};
@@ -121,6 +121,15 @@ pub(crate) fn flatten<'a, 'g>(
     Some(flat)
 }
 
+/// Whether an expression names one of these.
+fn names_any(expression: &Expression, names: &HashSet<String>) -> bool {
+    let mut found = false;
+    expression.each(&mut |part| {
+        found |= matches!(&part.kind, ExpressionKind::Path(path) if names.contains(&path.segments[0].node));
+    });
+    found
+}
+
 /// Name and place of what a statement defines, with a word for its namespace; nothing for requirements and NC words.
 fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
     Some(match statement {
@@ -220,9 +229,15 @@ impl<'a> Flat<'a> {
         let mut binder = Binder::new(source, overrides);
         let mut scope = Scope::new();
         context.moving = self.axes.list.iter().map(|axis| axis.name.node.clone()).collect();
+        // values that axes move come after the axes, whose travels may depend on the others
+        let mut moving = Vec::new();
         for statement in &self.constants.list {
             match statement {
                 MachineStatement::Param(param) => binder.bind(context, param, &mut scope),
+                MachineStatement::Let(binding) if names_any(&binding.value, &context.moving) => {
+                    context.moving.insert(binding.name.node.clone());
+                    moving.push(binding);
+                }
                 MachineStatement::Let(binding) => {
                     let value = context.evaluate(&binding.value, &scope);
                     scope.insert(binding.name.node.clone(), value);
@@ -237,6 +252,10 @@ impl<'a> Flat<'a> {
         for axis in &axes {
             let value = axis.dimension.map_or(Value::Poison, |dimension| Value::Scalar(axis.variable, dimension));
             scope.insert(axis.name.node.clone(), value);
+        }
+        for binding in moving {
+            let value = context.evaluate(&binding.value, &scope);
+            scope.insert(binding.name.node.clone(), value);
         }
         self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);

@@ -76,7 +76,7 @@ pub(crate) struct Context<'g> {
     /// Errors among them.
     errors: usize,
     reported: HashSet<(Code, Span)>,
-    /// The axes of the machine whose constants are being looked at.
+    /// The axes of the machine whose constants are being looked at, and the values that they move.
     pub(crate) moving: HashSet<String>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,

@@ -163,8 +163,10 @@ impl<'g> Context<'g> {
             return Value::Scalar(self.graph.constant(std::f64::consts::PI), Dimension::NUMBER);
         }
         if self.moving.contains(&joined) {
-            let message = format!("axis `{joined}` moves, and what is stated here must stand still");
-            let help = format!("name `{joined}` where it moves something: in a transform of a frame, or in `couple`");
+            let message = format!("`{joined}` moves, and what is stated here must stand still");
+            let help = format!(
+                "name `{joined}` where it moves something: in a transform of a frame, in `couple`, or in a `let`"
+            );
             self.report(Diagnostic::new(Code::NotConstant, path.span, message).help(help));
             return Value::Poison;
         }

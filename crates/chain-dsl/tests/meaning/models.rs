@@ -548,3 +548,32 @@ fn an_integral_is_good_to_rounding() {
         });
     }
 }
+
+/// Values that axes move, through each other, in frames, couplings and jobs; travels from values that stand still.
+#[test]
+fn values_of_a_machine_may_follow_its_axes() {
+    let machine = |values: &str, law: &str| {
+        format!(
+            "machine pushed extends lathe {{
+                param arm : length = 3 mm
+                {values}
+                axis D : rotary in 0 deg .. limit
+                let limit = 90 deg
+                couple Z = {law}
+            }}
+            job j {{
+                machine m = pushed(height: 4 mm)
+                tool b = ball
+                mount b on m.slide
+                motion turn : angle in 0 deg .. 90 deg
+                drive m.D = turn
+                drive m.C = 2 * turn
+                surface s in m.work = envelope(b.face, over: turn)
+            }}"
+        )
+    };
+    let swept = "integral(t in 0 deg .. D: cos(t)) * 1 mm";
+    let named = machine("let rise = arm * sin(D) let all = 2 * rise", &format!("all + {swept}"));
+    let written = machine("", &format!("2 * (arm * sin(D)) + {swept}"));
+    assert_eq!(laws(&named), laws(&written));
+}
