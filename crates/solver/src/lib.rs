@@ -15,6 +15,7 @@
 //! ```
 
 mod analysis;
+mod contact;
 mod continuation;
 mod conversion;
 mod equations;
@@ -32,6 +33,7 @@ pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter};
 pub use analysis::trim::{Trim, trim};
+pub use contact::{ContactPath, ContactPoint, ContactProblem, ContactState, NoContact, RollingPair};
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};
 pub use conversion::explicit::{Explicit, ExplicitProblem, Given, NotExplicit};

@@ -1,9 +1,9 @@
 //! The same relative pose on another machine: axis values for which tool and work stand to each other as they do on the first.
 
 use faer::Mat;
-use faer::linalg::solvers::{FullPivLu, PartialPivLu, Solve, Svd};
+use faer::linalg::solvers::{FullPivLu, Svd};
 use flank_expr::geometry::{Chain, Pose, Step, Twist};
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError, TaylorEvaluator};
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 use thiserror::Error;
 
 use crate::conversion::orientation;
@@ -286,29 +286,8 @@ impl<'g> PoseProblem<'g> {
 
     /// Series of each unknown, axes first, in powers of the change of one of the motions, about a posture: coefficients up to an order, constant
     /// first; `None` where the posture is singular.
-    ///
-    /// Order by order, `J q_k = −F_k` with F_k the coefficient of the pose's deviation along the series so far: exact but for
-    /// rounding, no differences.
     pub fn series(&self, posture: &Posture, motions: &[f64], along: usize, order: usize) -> Option<Vec<Vec<f64>>> {
-        let (size, terms) = (self.system.size(), order + 1);
-        let mut evaluation = self.system.evaluation(motions);
-        evaluation.at(&posture.unknowns);
-        let jacobian = Mat::from_fn(size, size, |i, j| evaluation.jacobian(i, j));
-        let inverse = PartialPivLu::new(jacobian.as_ref());
-        let mut inputs = vec![0.0; terms * (size + motions.len())];
-        posture.unknowns.iter().chain(motions).enumerate().for_each(|(k, x)| inputs[terms * k] = *x);
-        if order > 0 {
-            inputs[terms * (size + along) + 1] = 1.0;
-        }
-        let mut outputs = vec![0.0; terms * size];
-        let mut evaluator = TaylorEvaluator::new(self.system.residual_tape(), order);
-        for k in 1..terms {
-            evaluator.run(&inputs, &mut outputs);
-            let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[terms * i + k]));
-            (0..size).for_each(|i| inputs[terms * i + k] = by[(i, 0)]);
-        }
-        inputs.truncate(terms * size);
-        inputs.iter().all(|c| c.is_finite()).then(|| inputs.chunks(terms).map(<[f64]>::to_vec).collect())
+        self.system.series(&posture.unknowns, motions, along, order)
     }
 
     /// How near a posture is to a singular one: the least change of the pose that axes can make together, as a share of the largest,

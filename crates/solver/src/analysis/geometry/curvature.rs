@@ -37,7 +37,7 @@ pub struct Principal {
 const NO_COMPONENT: f64 = 1e-9;
 
 /// Two unit vectors square to a unit normal and to each other; with it right-handed.
-pub(super) fn tangents(normal: Vector3<f64>) -> Matrix3x2<f64> {
+pub(crate) fn tangents(normal: Vector3<f64>) -> Matrix3x2<f64> {
     let least = normal.iamin();
     let first = normal.cross(&Vector3::ith(least, 1.0)).normalize();
     Matrix3x2::from_columns(&[first, normal.cross(&first)])
@@ -101,6 +101,11 @@ impl Curvature {
     /// The product of the principal curvatures, 1/mm².
     pub fn gauss(&self) -> f64 {
         self.form.determinant()
+    }
+
+    /// This one and another one in the same tangents: how two surfaces part that touch, each bending away from the other.
+    pub(crate) fn plus(&self, other: &Curvature) -> Curvature {
+        Curvature { form: self.form + other.form, rounding: self.rounding.max(other.rounding), ..*self }
     }
 
     /// This one less another one in the same tangents.

@@ -9,8 +9,9 @@ mod null_space;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 use nalgebra::{DMatrix, DMatrixView, Matrix2, Matrix3x2, Vector3};
 
+use curvature::oriented;
+pub(crate) use curvature::tangents;
 pub use curvature::{Curvature, Principal};
-use curvature::{oriented, tangents};
 use null_space::null_space;
 
 use crate::surface::bound::BoundSurface;
@@ -177,6 +178,21 @@ impl SurfaceGeometry {
         let induced = work.zip(tool).map(|(work, tool)| work.minus(&tool));
         Contact { line, sliding: sliding.collect(), induced }
     }
+}
+
+/// The curvature of a surface at a point, in tangents of its own or of a surface that touches it there, from derivatives with respect to
+/// its unknowns (columns) of position, normal and constraints.
+pub(crate) fn curvature_in(
+    tangents: Matrix3x2<f64>,
+    [position, normal, constraints]: [&DMatrix<f64>; 3],
+) -> Option<Curvature> {
+    let slopes = Slopes {
+        position: position.clone(),
+        normal: normal.clone(),
+        constraints: constraints.clone(),
+        coordinates: DMatrix::zeros(0, position.ncols()),
+    };
+    slopes.curvature(tangents, &null_space(&slopes.constraints)?)
 }
 
 /// Derivatives with respect to the unknowns (columns).

@@ -1,0 +1,87 @@
+//! Where two generated flanks touch while a pair rolls, and how evenly they turn each other.
+//!
+//! Two surfaces stand in one frame at a roll position; what follows the roll (the other member's turn, say) has one unknown added, the
+//! lag. They touch where positions agree and normals are opposite: with the constraints of both as many equations as unknowns, so that
+//! a contact is a curve over the roll.
+
+mod path;
+mod point;
+mod start;
+
+use flank_expr::geometry::{Chain, Surface, Vector3};
+use flank_expr::{Expr, Tape, TapeError};
+
+use crate::equations::solution::Range;
+use crate::equations::system::System;
+use crate::surface::bound::BoundSurface;
+pub use path::ContactPath;
+pub use point::{ContactPoint, ContactState};
+pub use start::NoContact;
+
+/// Two surfaces that roll on each other.
+#[derive(Clone, Debug)]
+pub struct RollingPair<'s, 'g> {
+    /// The flanks, each in the frame of its member, with normals out of the member.
+    pub surfaces: [&'s BoundSurface<'g>; 2],
+    /// Of each member its pose in a frame that both share, in the roll and the lag alone.
+    pub placements: [Chain<'g>; 2],
+    /// What the contact is followed over.
+    pub roll: Expr<'g>,
+    /// What the contact determines, and between which values.
+    pub lag: (Expr<'g>, Range),
+}
+
+/// The equations of a contact of two flanks.
+#[derive(Clone, Debug)]
+pub struct ContactProblem {
+    /// Unknowns of the first flank, of the second, the lag; the roll and two directions are parameters.
+    touching: System,
+    /// Unknowns of the second flank and the lag, at which it passes through a point of the first one: the unknowns of the first flank
+    /// and the roll are parameters.
+    through: System,
+    /// From the unknowns, the lag and the roll: what [`point`] reads.
+    state: Tape,
+    /// Numbers of unknowns and of constraints of each flank.
+    unknowns: [usize; 2],
+    constraints: [usize; 2],
+    ranges: Vec<Range>,
+}
+
+impl ContactProblem {
+    /// # Errors
+    /// If something depends on a variable that is neither an unknown, nor the roll or lag, nor has a value.
+    ///
+    /// # Panics
+    /// If a surface does not have two unknowns more than constraints.
+    pub fn new<'g>(pair: &RollingPair<'_, 'g>) -> Result<ContactProblem, TapeError> {
+        let graph = pair.roll.graph();
+        // flanks of one job may be envelopes over the same motion, which may also be the roll
+        let own = [pair.surfaces[0].renamed("of the first"), pair.surfaces[1].renamed("of the second")];
+        let [first, second] = [0, 1].map(|k| own[k].surface().moved(&pair.placements[k]));
+        let (lag, range) = pair.lag;
+        let vector = |name: &str| Vector3(["x", "y", "z"].map(|axis| graph.variable(format!("{name} {axis}"))));
+        let directions = [vector("first direction"), vector("second direction")];
+        let apart = first.position - second.position;
+        let opposite = directions.map(|direction| (first.normal + second.normal).dot(direction));
+        let constraints = |surface: &Surface<'g>| surface.constraints.clone();
+        let residuals = [constraints(&first), constraints(&second), apart.0.to_vec(), opposite.to_vec()].concat();
+        let unknowns = [&first.unknowns[..], &second.unknowns, &[lag]].concat();
+        let parameters = [&[pair.roll][..], &directions[0].0, &directions[1].0].concat();
+        let through = [constraints(&second), apart.0.to_vec()].concat();
+        let followed = [&second.unknowns[..], &[lag]].concat();
+        let given = [&first.unknowns[..], &[pair.roll]].concat();
+        let inputs = [&unknowns[..], &[pair.roll]].concat();
+        Ok(ContactProblem {
+            touching: System::one_by_one(&residuals, &unknowns, &parameters)?,
+            through: System::one_by_one(&through, &followed, &given)?,
+            state: Tape::new(&point::outputs([&own[0], &own[1]], [&first, &second], pair.roll, lag), &inputs)?,
+            unknowns: [first.unknowns.len(), second.unknowns.len()],
+            constraints: [first.constraints.len(), second.constraints.len()],
+            ranges: [pair.surfaces[0].ranges(), pair.surfaces[1].ranges(), &[range]].concat(),
+        })
+    }
+
+    fn lag_at(&self) -> usize {
+        self.unknowns[0] + self.unknowns[1]
+    }
+}

@@ -1,0 +1,106 @@
+//! A contact followed over the roll.
+
+use nalgebra::Vector3;
+
+use crate::contact::ContactProblem;
+use crate::contact::point::ContactPoint;
+use crate::contact::start::NoContact;
+use crate::equations::solution::Outcome;
+use crate::surface::points::SurfacePoint;
+
+/// Halvings of a step of the roll until the contact is lost.
+const HALVINGS: u32 = 12;
+/// A point this much farther from where it was expected than the way to it, as a share of that, is of another contact.
+const ASTRAY: f64 = 0.3;
+/// Steps until a vertex is settled, and the change of the roll, as a share of what is followed, at which it is.
+const VERTEX_STEPS: usize = 20;
+const SETTLED: f64 = 1e-13;
+
+/// A contact at many roll positions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPath {
+    /// At each roll position; `None` where the contact was not found.
+    pub points: Vec<Option<ContactPoint>>,
+    /// Why none was found at all.
+    pub refused: Option<NoContact>,
+}
+
+impl ContactProblem {
+    /// The contact at roll positions in rising order, found at the middle one, or where that has none at the others from there
+    /// outwards, and followed to both sides.
+    pub fn path(&self, rolls: &[f64], points: [&[SurfacePoint]; 2]) -> ContactPath {
+        let mut path = ContactPath { points: vec![None; rolls.len()], refused: None };
+        let middle = rolls.len() / 2;
+        let mut order: Vec<usize> = (0..rolls.len()).collect();
+        order.sort_by_key(|k| k.abs_diff(middle));
+        for first in order {
+            match self.find(rolls[first], points) {
+                Ok(found) => {
+                    path.points[first] = Some(found);
+                    self.follow(&mut path, rolls, (first..rolls.len()).collect());
+                    self.follow(&mut path, rolls, (0..=first).rev().collect());
+                    path.refused = None;
+                    return path;
+                }
+                Err(reason) => path.refused = path.refused.or(Some(reason)),
+            }
+        }
+        path
+    }
+
+    fn follow(&self, path: &mut ContactPath, rolls: &[f64], places: Vec<usize>) {
+        for pair in places.windows(2) {
+            let Some(from) = path.points[pair[0]].clone() else { return };
+            path.points[pair[1]] = self.followed(&from, rolls[pair[1]]);
+        }
+    }
+
+    /// The contact at another roll position, on the way from one that is known; `None` where it is lost.
+    pub fn followed(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
+        let mut at = from.clone();
+        let mut halvings = 0;
+        while at.roll != roll {
+            let step = (roll - at.roll) * 0.5f64.powi(halvings);
+            let next = if halvings == 0 { roll } else { at.roll + step };
+            match self.step(&at, next) {
+                Some(found) => {
+                    at = found;
+                    halvings = halvings.saturating_sub(1);
+                }
+                None if halvings as u32 == HALVINGS => return None,
+                None => halvings += 1,
+            }
+        }
+        Some(at)
+    }
+
+    fn step(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
+        let expected = self.predicted(from, roll - from.roll)?;
+        let found = self.touching_near(roll, &expected, &Vector3::from(from.normal))?;
+        let share = |a: &[f64], b: &[f64]| {
+            let off = a.iter().zip(b).zip(&self.ranges).map(|((a, b), range)| ((a - b) / range.width()).abs());
+            off.fold(0.0, f64::max)
+        };
+        let (astray, way) = (share(&found.all_unknowns(), &expected), share(&expected, &from.all_unknowns()));
+        (astray <= ASTRAY * way.max(1e-6)).then_some(found)
+    }
+
+    /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has no such
+    /// place between two roll positions.
+    pub fn vertex(&self, near: &ContactPoint, between: [f64; 2]) -> Option<ContactPoint> {
+        let mut at = near.clone();
+        let width = between[1] - between[0];
+        for _ in 0..VERTEX_STEPS {
+            let step = -at.lag_slopes[0] / at.lag_slopes[1];
+            let next = at.roll + step.clamp(-0.5 * width, 0.5 * width);
+            if !(between[0]..=between[1]).contains(&next) {
+                return None;
+            }
+            if step.abs() <= SETTLED * width {
+                return Some(at);
+            }
+            at = self.followed(&at, next).filter(|at| at.outcome == Outcome::Solved)?;
+        }
+        None
+    }
+}

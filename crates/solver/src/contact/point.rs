@@ -1,0 +1,227 @@
+//! What two flanks are like where they touch.
+
+use flank_expr::geometry::Surface;
+use flank_expr::{Expr, ScalarEvaluator};
+use nalgebra::{DMatrix, Matrix3x2, Vector3};
+
+use crate::analysis::geometry::{Curvature, Principal, curvature_in, tangents};
+use crate::contact::ContactProblem;
+use crate::equations::solution::Outcome;
+use crate::surface::bound::BoundSurface;
+
+/// Normals whose sum is shorter than this are opposite: beyond it they face the same way, the other root of the equations.
+const OPPOSITE: f64 = 1e-3;
+/// Principal curvatures of a gap that are smaller than this share of the larger one are zero: rounding of second derivatives.
+const FLAT: f64 = 1e-9;
+
+/// How two flanks stand to each other at a point that they share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactState {
+    /// They part to all sides: a contact.
+    Touching,
+    /// To second order they lie on each other along a line: flanks that are conjugate, or nearly so.
+    Line,
+    /// To some side they run into each other: not the place where the pair touches.
+    Crossing,
+}
+
+/// A point in which two flanks touch, at one roll position. Lengths are mm, angles radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// What became of it: only [`Outcome::Solved`] and [`Outcome::Outside`] (a flank would have to go on beyond its ranges) are points
+    /// of contact.
+    pub outcome: Outcome,
+    /// The roll position.
+    pub roll: f64,
+    /// What the contact determines.
+    pub lag: f64,
+    /// Its first and second derivative by the roll.
+    pub lag_slopes: [f64; 2],
+    /// The unknowns of each flank.
+    pub unknowns: [Vec<f64>; 2],
+    /// In the frame that both members share.
+    pub position: [f64; 3],
+    /// Unit vector out of the first member.
+    pub normal: [f64; 3],
+    /// The point in the frame of each member.
+    pub in_members: [[f64; 3]; 2],
+    /// How it moves over each flank as the roll goes on, in the frame of the member, mm per radian of roll.
+    pub path: [[f64; 3]; 2],
+    /// How the flanks part, 1/mm: half of it times the square of the way from the point. `None` where a flank has no curvature.
+    pub gap: Option<Principal>,
+    /// Whether it is a contact; `None` where that is not known.
+    pub state: Option<ContactState>,
+    /// Velocity of the first member against the second in the tangent plane, mm per radian of roll.
+    pub sliding: [f64; 3],
+    /// Half the sum of the velocities of both members against the point of contact, mm per radian of roll.
+    pub entraining: [f64; 3],
+    /// How far the second flank moves out of the first one for a step of the lag, mm per unit; plus opens.
+    pub opening: f64,
+}
+
+/// All that [`ContactProblem::point`] reads, in the order in which it does.
+pub(super) fn outputs<'g>(
+    own: [&BoundSurface<'g>; 2],
+    placed: [&Surface<'g>; 2],
+    roll: Expr<'g>,
+    lag: Expr<'g>,
+) -> Vec<Expr<'g>> {
+    let mut outputs = Vec::new();
+    for (own, placed) in own.into_iter().zip(placed) {
+        let (own, p) = (own.surface(), &placed.unknowns);
+        outputs.extend(placed.position.0.into_iter().chain(placed.normal.0).chain(own.position.0));
+        outputs.extend([roll, lag].iter().flat_map(|x| placed.position.derivative(*x).0));
+        // column by column, as matrices are stored
+        outputs.extend(p.iter().flat_map(|p| own.position.derivative(*p).0));
+        outputs.extend(p.iter().flat_map(|p| placed.position.derivative(*p).0));
+        outputs.extend(p.iter().flat_map(|p| placed.normal.derivative(*p).0));
+        outputs.extend(p.iter().flat_map(|p| placed.constraints.iter().map(|c| c.derivative(*p))));
+    }
+    outputs
+}
+
+/// A flank at a point, with its derivatives by its unknowns as columns.
+pub(super) struct Member {
+    pub(super) position: Vector3<f64>,
+    pub(super) normal: Vector3<f64>,
+    own: Vector3<f64>,
+    /// Derivatives of the position by the roll and by the lag.
+    moved: [Vector3<f64>; 2],
+    own_slopes: DMatrix<f64>,
+    slopes: DMatrix<f64>,
+    normal_slopes: DMatrix<f64>,
+    constraint_slopes: DMatrix<f64>,
+}
+
+/// Takes numbers off the front of a slice.
+fn taken<'a>(values: &mut &'a [f64], count: usize) -> &'a [f64] {
+    let (first, rest) = values.split_at(count);
+    *values = rest;
+    first
+}
+
+impl ContactProblem {
+    /// Both flanks at unknowns, lag and roll.
+    pub(super) fn members(&self, unknowns: &[f64], roll: f64) -> [Member; 2] {
+        let mut out = vec![0.0; self.state.output_count()];
+        ScalarEvaluator::new(&self.state).run(&[unknowns, &[roll]].concat(), &mut out);
+        let mut rest = &out[..];
+        [0, 1].map(|k| {
+            let (p, c) = (self.unknowns[k], self.constraints[k]);
+            let vector = |rest: &mut &[f64]| Vector3::from_column_slice(taken(rest, 3));
+            let matrix = |rest: &mut &[f64], rows: usize| DMatrix::from_column_slice(rows, p, taken(rest, rows * p));
+            Member {
+                position: vector(&mut rest),
+                normal: vector(&mut rest),
+                own: vector(&mut rest),
+                moved: [vector(&mut rest), vector(&mut rest)],
+                own_slopes: matrix(&mut rest, 3),
+                slopes: matrix(&mut rest, 3),
+                normal_slopes: matrix(&mut rest, 3),
+                constraint_slopes: matrix(&mut rest, c),
+            }
+        })
+    }
+
+    /// What is known of a root of the equations of touching.
+    pub(super) fn point(&self, outcome: Outcome, unknowns: &[f64], roll: f64) -> ContactPoint {
+        let members = self.members(unknowns, roll);
+        let [first, second] = &members;
+        let series = self.series(unknowns, roll, &first.normal);
+        let slope = |k: usize| series.as_ref().map_or(f64::NAN, |series| series[k][1]);
+        let lag = self.lag_at();
+        let lag_slopes = series.as_ref().map_or([f64::NAN; 2], |series| [series[lag][1], 2.0 * series[lag][2]]);
+        // of the unknowns of each flank, by the roll
+        let along = |k: usize| {
+            let from = k * self.unknowns[0];
+            DMatrix::from_fn(self.unknowns[k], 1, |row, _| slope(from + row))
+        };
+        let vector = |m: DMatrix<f64>| Vector3::new(m[(0, 0)], m[(1, 0)], m[(2, 0)]);
+        let over = [0, 1].map(|k| vector(&members[k].own_slopes * along(k)));
+        let over_in_frame = [0, 1].map(|k| vector(&members[k].slopes * along(k)));
+        let velocity = [0, 1].map(|k| members[k].moved[0] + members[k].moved[1] * lag_slopes[0]);
+        let in_plane = |v: Vector3<f64>| <[f64; 3]>::from(v - first.normal * first.normal.dot(&v));
+        let gap = self.gap(&members);
+        ContactPoint {
+            outcome,
+            roll,
+            lag: unknowns[lag],
+            lag_slopes,
+            unknowns: [unknowns[..self.unknowns[0]].to_vec(), unknowns[self.unknowns[0]..lag].to_vec()],
+            position: first.position.into(),
+            normal: first.normal.into(),
+            in_members: [first.own.into(), second.own.into()],
+            path: over.map(<[f64; 3]>::from),
+            gap: gap.map(|gap| gap.principal()),
+            state: gap.map(|gap| state(&gap.principal())),
+            sliding: in_plane(velocity[0] - velocity[1]),
+            // a member moves past the point as the point moves over the member, the other way
+            entraining: in_plane(-0.5 * (over_in_frame[0] + over_in_frame[1])),
+            opening: opening(&members),
+        }
+    }
+
+    /// Whether the normals are opposite there, and not the same.
+    pub(super) fn faces(&self, unknowns: &[f64], roll: f64) -> bool {
+        let [first, second] = self.members(unknowns, roll);
+        (first.normal + second.normal).norm() < OPPOSITE
+    }
+
+    /// How the flanks part.
+    fn gap(&self, members: &[Member; 2]) -> Option<Curvature> {
+        let tangents: Matrix3x2<f64> = tangents(members[0].normal);
+        let each = members
+            .each_ref()
+            .map(|member| curvature_in(tangents, [&member.slopes, &member.normal_slopes, &member.constraint_slopes]));
+        let [Some(first), Some(second)] = each else { return None };
+        Some(first.plus(&second))
+    }
+
+    /// Series of the unknowns in the roll, to second order.
+    fn series(&self, unknowns: &[f64], roll: f64, normal: &Vector3<f64>) -> Option<Vec<Vec<f64>>> {
+        self.touching.series(unknowns, &parameters(roll, normal), 0, 2)
+    }
+
+    /// Where the contact goes: the unknowns a step of the roll on, to an order.
+    pub(super) fn predicted(&self, from: &ContactPoint, step: f64) -> Option<Vec<f64>> {
+        let unknowns = from.all_unknowns();
+        let series = self.series(&unknowns, from.roll, &Vector3::from(from.normal))?;
+        Some(series.iter().map(|c| c[0] + step * (c[1] + step * c[2])).collect())
+    }
+}
+
+/// The roll, then two directions square to a normal.
+pub(super) fn parameters(roll: f64, normal: &Vector3<f64>) -> Vec<f64> {
+    let tangents = tangents(*normal);
+    [roll].into_iter().chain(tangents.iter().copied()).collect()
+}
+
+/// How far the second flank moves along the normal of the first for a step of the lag.
+pub(super) fn opening([first, second]: &[Member; 2]) -> f64 {
+    first.normal.dot(&(second.moved[1] - first.moved[1]))
+}
+
+fn state(gap: &Principal) -> ContactState {
+    let flat = FLAT * gap.k1.abs().max(gap.k2.abs());
+    if gap.k2 > flat {
+        ContactState::Touching
+    } else if gap.k2 < -flat {
+        ContactState::Crossing
+    } else {
+        ContactState::Line
+    }
+}
+
+impl ContactPoint {
+    /// The unknowns of the first flank, of the second, then the lag.
+    pub(super) fn all_unknowns(&self) -> Vec<f64> {
+        [&self.unknowns[0][..], &self.unknowns[1], &[self.lag]].concat()
+    }
+
+    /// The half axes of the ellipse within which the gap is no wider than a film, mm: the shorter first, along the directions of the
+    /// gap's curvatures. `None` where they are not both positive.
+    pub fn ellipse(&self, film: f64) -> Option<[f64; 2]> {
+        let gap = self.gap.filter(|gap| gap.k2 > 0.0)?;
+        Some([gap.k1, gap.k2].map(|k| (2.0 * film / k).sqrt()))
+    }
+}

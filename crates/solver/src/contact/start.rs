@@ -1,0 +1,132 @@
+//! A contact without a start value.
+//!
+//! At a roll position each point of the first flank says at which lag the second one would pass through it. The flanks touch where
+//! that lag is extreme: before, they are apart everywhere, and beyond, they cut into each other. On a grid of solved points the
+//! extreme is near the contact.
+
+use nalgebra::Vector3;
+
+use crate::contact::ContactProblem;
+use crate::contact::point::{ContactPoint, ContactState, opening, parameters};
+use crate::equations::solution::Outcome;
+use crate::newton::scalar::solve_with;
+use crate::surface::points::SurfacePoint;
+
+/// Places, the most extreme first, from which a contact is looked for.
+const STARTS: usize = 12;
+/// A lag that moves the flank along the normal by less than this share of what it moves it at all does not open the pair.
+const LOCKED: f64 = 1e-6;
+
+/// Why no contact was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoContact {
+    /// The second flank passes through no point of the first one within the range of the lag.
+    Apart,
+    /// The flanks face the same way where they meet: a member inside the other, or the wrong flank of a tooth.
+    SameSide,
+    /// The lag moves nothing along the normal: the pair is self-locking there.
+    Locked,
+    /// They meet, and no point at which they touch was found from there.
+    NotFound,
+}
+
+/// A point of the first flank through which the second passes.
+struct Passing {
+    unknowns: Vec<f64>,
+    /// What the lag is, with the sign with which more of it opens.
+    height: f64,
+    normal: Vector3<f64>,
+}
+
+impl ContactProblem {
+    /// The contact at a roll position, found from solved points of both flanks: those that a grid of each has.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn find(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
+        let mut passing = self.passing(roll, points)?;
+        passing.sort_by(|a, b| b.height.total_cmp(&a.height));
+        let mut best: Option<ContactPoint> = None;
+        for start in passing.iter().take(STARTS) {
+            let Some(found) = self.touching_near(roll, &start.unknowns, &start.normal) else { continue };
+            let rank = |point: &ContactPoint| {
+                let is_contact = matches!(point.state, Some(ContactState::Touching | ContactState::Line));
+                (is_contact, point.outcome == Outcome::Solved)
+            };
+            if best.as_ref().is_none_or(|best| rank(&found) > rank(best)) {
+                best = Some(found);
+            }
+            if best.as_ref().is_some_and(|best| rank(best) == (true, true)) {
+                break;
+            }
+        }
+        best.ok_or(NoContact::NotFound)
+    }
+
+    /// The contact near unknowns of both and a lag.
+    pub(super) fn touching_near(&self, roll: f64, unknowns: &[f64], normal: &Vector3<f64>) -> Option<ContactPoint> {
+        let mut normal = *normal;
+        let mut start = unknowns.to_vec();
+        // the directions that the normals are held against turn with them
+        for _ in 0..2 {
+            let mut evaluation = self.touching.evaluation(&parameters(roll, &normal));
+            let solution = solve_with(&mut evaluation, &self.ranges, &start);
+            if !matches!(solution.outcome, Outcome::Solved | Outcome::Outside { .. }) {
+                return None;
+            }
+            let [first, _] = self.members(&solution.unknowns, roll);
+            let is_square = (first.normal - normal).norm() < 0.5;
+            (start, normal) = (solution.unknowns, first.normal);
+            if is_square {
+                let faces = self.faces(&start, roll);
+                return faces.then(|| self.point(solution.outcome, &start, roll));
+            }
+        }
+        None
+    }
+
+    fn passing(&self, roll: f64, [first, second]: [&[SurfacePoint]; 2]) -> Result<Vec<Passing>, NoContact> {
+        let solved = |points: &'_ [SurfacePoint]| -> Vec<Vec<f64>> {
+            points.iter().filter(|point| point.outcome == Outcome::Solved).map(|point| point.unknowns.clone()).collect()
+        };
+        let (first, second) = (solved(first), solved(second));
+        let lag = self.ranges[self.lag_at()].middle();
+        let at = |p: &[f64], q: &[f64]| self.members(&[p, q, &[lag]].concat(), roll);
+        let Some((p, q)) = first.first().zip(second.first()) else { return Err(NoContact::Apart) };
+        let places: Vec<Vector3<f64>> = second.iter().map(|q| at(p, q)[1].position).collect();
+        let own: Vec<Vector3<f64>> = first.iter().map(|p| at(p, q)[0].position).collect();
+        let mut found = Vec::new();
+        let mut refused = None;
+        let mut last: Option<Vec<f64>> = None;
+        for (p, place) in first.iter().zip(&own) {
+            let nearest = (0..second.len()).min_by(|a, b| {
+                let off = |k: usize| (places[k] - place).norm_squared();
+                off(*a).total_cmp(&off(*b))
+            });
+            let beside = nearest.map(|k| [&second[k][..], &[lag]].concat());
+            let starts = last.iter().cloned().chain(beside);
+            let Some(through) = starts.into_iter().find_map(|start| self.through(roll, p, &start)) else { continue };
+            let unknowns = [p, &through[..]].concat();
+            let members = self.members(&unknowns, roll);
+            let opening = opening(&members);
+            let least = LOCKED * members[1].position.norm().max(1.0);
+            if members[0].normal.dot(&members[1].normal) > 0.0 {
+                refused = refused.or(Some(NoContact::SameSide));
+            } else if opening.abs() < least {
+                refused = refused.or(Some(NoContact::Locked));
+            } else {
+                let height = unknowns[self.lag_at()] * opening.signum();
+                found.push(Passing { unknowns, height, normal: members[0].normal });
+            }
+            last = Some(through);
+        }
+        if found.is_empty() { Err(refused.unwrap_or(NoContact::Apart)) } else { Ok(found) }
+    }
+
+    /// Unknowns of the second flank and the lag at which it passes through a point of the first.
+    fn through(&self, roll: f64, p: &[f64], start: &[f64]) -> Option<Vec<f64>> {
+        let mut evaluation = self.through.evaluation(&[p, &[roll]].concat());
+        let solution = solve_with(&mut evaluation, &self.ranges[self.unknowns[0]..], start);
+        (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
+    }
+}
