@@ -124,6 +124,7 @@ impl Convert {
             to: self.to.clone(),
             onto: self.onto.request(),
             fit: self.fit.clone(),
+            starts: self.starts,
             positions: self.positions,
             order: self.order,
             tolerance: self.tolerance,

@@ -589,3 +589,14 @@ fn a_swept_surface_is_carried_over_as_far_as_its_points_need() {
     // the sample is 20 mm wide
     assert!(told.contains("stroke from -10.000000 mm to 10.000000 mm"), "{told}");
 }
+
+/// From a single start the settings that make all poses are not found, which is told; from as many as there are otherwise they are.
+#[test]
+fn settings_are_looked_for_from_as_many_starts_as_asked_for() {
+    let settings = "machine_center_to_crossing_point,sliding_base,work_offset,cutter_tilt,cutter_swivel";
+    let spec = ["convert", "specs/bevel/pinion_19x62.chain", "--to", "specs/machines/cradle.chain", "--fit", settings];
+    let of_one = flank(&[&spec[..], &["--starts", "1"]].concat());
+    assert_eq!(of_one.status.code(), Some(3), "{}", text(&of_one.stdout));
+    assert!(text(&of_one.stderr).contains("no values of these settings were found"), "{}", text(&of_one.stderr));
+    assert_eq!(flank(&spec).status.code(), Some(0));
+}

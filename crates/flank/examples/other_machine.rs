@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flank::{
-    ConvertRequest, ConvertResult, Disk, Failure, JobSelection, Monitor, Onto, Project, TableFormat, Work, convert,
+    ConvertRequest, ConvertResult, Disk, FIT_STARTS, Failure, JobSelection, Monitor, Onto, Project, TableFormat, Work,
+    convert,
 };
 
 struct Printer;
@@ -26,6 +27,7 @@ fn main() -> Result<(), Failure> {
         to: PathBuf::from("specs/machines/free_form.chain"),
         onto: Onto::default(),
         fit: Vec::new(),
+        starts: FIT_STARTS,
         positions: 101,
         order: None,
         tolerance: Some(1e-4),

@@ -91,8 +91,8 @@ pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
-    ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, JobSelection, MeasureRequest, Onto, PlotRequest,
-    ReportRequest, SolveRequest, ViewRequest,
+    ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, JobSelection, MeasureRequest, Onto,
+    PlotRequest, ReportRequest, SolveRequest, ViewRequest,
 };
 pub use project::{Project, shown_path};
 pub use report::report;

@@ -39,7 +39,8 @@ pub use continuation::grid::{Elsewhere, GridReport};
 pub use conversion::explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use conversion::poses::{Missing, PoseError, PoseProblem, Posture, TargetAxis};
 pub use conversion::settings::{
-    AdjustableMachine, SettingBounds, SettingKind, SettingsFit, SettingsProblem, UnknownSetting,
+    AdjustableMachine, STARTS as SETTING_STARTS, SettingBounds, SettingKind, SettingsFit, SettingsProblem,
+    UnknownSetting,
 };
 pub use conversion::symmetry::{Screw, symmetries, unseen_motion};
 pub use conversion::tube::{Tube, Unproven};

@@ -32,6 +32,9 @@ pub(crate) struct Convert {
     /// Settings of the target that are looked for beside those without a value: tilt,swivel
     #[arg(long, value_delimiter = ',', value_name = "SETTING")]
     pub(crate) fit: Vec<String>,
+    /// Starts from which settings are looked for before the nearest ones are taken
+    #[arg(long, value_name = "N", default_value_t = flank::FIT_STARTS, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]
+    pub(crate) starts: u32,
     /// How many positions, over the motion as far as the sampled points need it
     #[arg(long, value_name = "COUNT", default_value_t = 101, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]
     pub(crate) positions: u32,

@@ -84,7 +84,8 @@ pub(super) fn find(
     let reach = reach(target, &positions);
     let motions = target.motions();
     let problem = SettingsProblem::new(&machine, &driven, &motions, &source.symmetries, reach)
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| error.to_string())?
+        .starts(request.starts);
     let some: Vec<Vec<f64>> = match positions.len().checked_sub(1) {
         Some(last) if last >= FITTED => (0..FITTED).map(|k| positions[k * last / (FITTED - 1)].clone()).collect(),
         _ => positions.clone(),

@@ -304,6 +304,9 @@ pub struct Onto {
     pub evaluator: EvaluatorOptions,
 }
 
+/// Starts from which settings are looked for, where nobody says how many.
+pub const FIT_STARTS: u32 = flank_solver::SETTING_STARTS;
+
 /// A job on another machine.
 #[derive(Clone, Debug)]
 pub struct ConvertRequest {
@@ -315,6 +318,8 @@ pub struct ConvertRequest {
     pub onto: Onto,
     /// Settings of the machine that are looked for beside those without a value.
     pub fit: Vec<String>,
+    /// Starts from which settings are looked for before the nearest are taken; [`FIT_STARTS`] do for most machines.
+    pub starts: u32,
     /// Positions over the motion.
     pub positions: u32,
     /// The order of the polynomials; 6 otherwise.

@@ -63,6 +63,9 @@ pub struct SettingsProblem<'g> {
     search: Search,
 }
 
+/// Starts from which settings are looked for, where nobody says how many.
+pub const STARTS: u32 = 1024;
+
 /// Settings and how well they do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SettingsFit {
@@ -119,8 +122,16 @@ impl<'g> SettingsProblem<'g> {
             is_rotary: axes.iter().map(|axis| axis.is_rotary).chain(slips.iter().map(turns)).collect(),
             tape: Tape::new(&outputs, &inputs)?,
             reach,
+            starts: STARTS,
         };
         Ok(SettingsProblem { chain, settings: constants, moving, search })
+    }
+
+    /// Looks for them from so many starts at the most, one at least, in place of [`STARTS`].
+    #[must_use]
+    pub fn starts(mut self, starts: u32) -> SettingsProblem<'g> {
+        self.search.starts = starts.max(1);
+        self
     }
 
     /// From work to tool on the target machine, in settings and in what moves.

@@ -17,8 +17,6 @@ const ROWS: usize = 12;
 const FEW: usize = 5;
 /// Starts that are tried together.
 const BATCH: u32 = 64;
-/// Batches after which the nearest is taken.
-const MOST_BATCHES: u32 = 16;
 /// So many ends with the same sum of squares, up to a share of it, are no chance.
 const AGREEING: usize = 4;
 const SAME_END: f64 = 1e-6;
@@ -48,6 +46,8 @@ pub(super) struct Search {
     pub(super) tape: Tape,
     /// As far as the poses reach, mm.
     pub(super) reach: f64,
+    /// Starts after which the nearest is taken.
+    pub(super) starts: u32,
 }
 
 /// Unknowns of several poses and the sum of squares that they leave.
@@ -83,8 +83,8 @@ impl Search {
     fn search(&self, motions: &[Vec<f64>], held: &[Option<f64>]) -> State {
         let few = spread(motions, FEW);
         let (mut ends, mut exact): (Vec<State>, Vec<State>) = (Vec::new(), Vec::new());
-        for batch in 0..MOST_BATCHES {
-            let starts = (batch * BATCH + 1..=(batch + 1) * BATCH).into_par_iter();
+        for before in (0..self.starts).step_by(BATCH as usize) {
+            let starts = (before + 1..=self.starts.min(before.saturating_add(BATCH))).into_par_iter();
             let found: Vec<State> = starts.map(|k| self.descend(self.start(k, &few, held), &few, held)).collect();
             let is_exact = |end: &&State| end.cost <= self.rounding(few.len());
             exact.extend(found.iter().filter(is_exact).map(|end| self.widened(end.clone(), motions, held)));
