@@ -1,0 +1,193 @@
+//! What a job says, and its variants.
+
+use super::{Argument, Expression, Let, Param, Parameter, Path, Range, Requirement};
+use crate::diagnostics::source::{Name, Span};
+
+/// A job: machine, tool, motions, the surfaces asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// Statements in order.
+    pub statements: Vec<JobStatement>,
+    /// From `job` to the closing brace.
+    pub span: Span,
+}
+
+/// A job that is another one with values or parts changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The job that it is made from.
+    pub parent: Name,
+    /// What is changed.
+    pub changes: Vec<Change>,
+}
+
+/// `ratio: value`, `m.swivel: value`, `c: definition(setting: value)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// A parameter, a setting of a machine or tool, or a machine or tool.
+    pub target: Path,
+    /// What takes its place.
+    pub value: Expression,
+}
+
+/// A statement in a job.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JobStatement {
+    /// `param name : dimension = …`
+    Param(Param),
+    /// `let name = …`
+    Let(Let),
+    /// `machine m = definition(setting: value, …)`
+    Machine(Instance),
+    /// `tool c = definition(setting: value, …)`
+    Tool(Instance),
+    /// `mount c on m.cutter`
+    Mount {
+        /// The tool.
+        tool: Name,
+        /// The frame.
+        frame: Path,
+    },
+    /// `motion roll : angle in a .. b`
+    Motion(Parameter),
+    /// `drive m.X, m.Z = …, …`
+    Drive(Drive),
+    /// `surface name, other in m.work = …`
+    Surface(GeneratedSurface),
+    /// `trim flank by fillet`
+    Trim {
+        /// The surface that loses points.
+        surface: Path,
+        /// The surface that cuts them away.
+        by: Path,
+    },
+    /// `cut flank by edges`
+    Cut {
+        /// The ideal surface.
+        surface: Path,
+        /// The sweep of the edges that cut it.
+        by: Path,
+    },
+    /// `sample name, other { … }`
+    Sample(Sample),
+    /// `require a < b, "…"`
+    Require(Requirement),
+}
+
+/// `name = definition(setting: value, …)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// The name in the job.
+    pub name: Name,
+    /// The machine or tool.
+    pub definition: Name,
+    /// Settings by name.
+    pub settings: Vec<Argument>,
+}
+
+impl JobStatement {
+    /// How many statements about one thing each it stands for.
+    pub(crate) fn size(&self) -> usize {
+        match self {
+            JobStatement::Drive(drive) => drive.targets.len().max(drive.values.len()),
+            JobStatement::Surface(surface) => surface.names.len(),
+            JobStatement::Sample(sample) => sample.surfaces.len(),
+            _ => 1,
+        }
+    }
+}
+
+/// `drive target, target = value, value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// The axes.
+    pub targets: Vec<Path>,
+    /// Their laws, in the same order.
+    pub values: Vec<Expression>,
+}
+
+/// `surface name, name in frame = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeneratedSurface {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// The names, one for each surface that it is made from.
+    pub names: Vec<Name>,
+    /// The frame that they are given in.
+    pub frame: Path,
+    /// `envelope(c.flank, c.fillet, over: roll)`
+    pub value: Expression,
+}
+
+/// `sample name, name as other { key: values … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// The surfaces, perhaps pieces of them.
+    pub surfaces: Vec<Sampled>,
+    /// What is asked for of each, in order.
+    pub entries: Vec<SampleEntry>,
+    /// Which branch is meant.
+    pub keeps: Vec<Keep>,
+    /// What its points must fulfil.
+    pub limits: Vec<PointRequirement>,
+    /// The whole statement.
+    pub span: Span,
+}
+
+/// `name`, or `name as other` for one more sample of a surface
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    /// The surface, perhaps a piece of it.
+    pub surface: Path,
+    /// What it is called with this sample.
+    pub name: Option<Name>,
+}
+
+/// `key: a .. b by n`, `key: [a, b]`, or `key: value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampleEntry {
+    /// A coordinate (`z`, `rho`), an unknown, a corner of the outline, or the name of a coordinate defined here.
+    pub key: Name,
+    /// What it is, if it is defined here: `height = z * cos(root_angle): 1 mm .. 5 mm by 9`.
+    pub definition: Option<Expression>,
+    /// Its values.
+    pub values: SampleValues,
+}
+
+/// `keep key: a .. b`, a function of the points and a range of it
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keep {
+    /// A coordinate, an unknown, or the name of a coordinate defined here.
+    pub key: Name,
+    /// What it is, if it is defined here.
+    pub definition: Option<Expression>,
+    /// Where it lies: on the branch that is meant, or at every point.
+    pub range: Range,
+}
+
+/// `require key: a .. b, "message"`
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointRequirement {
+    /// A function of the points and where it must lie.
+    pub within: Keep,
+    /// What is told of points where it does not.
+    pub message: String,
+}
+
+/// The values of a sample entry.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // there are few of them
+pub enum SampleValues {
+    /// `a .. b by n`
+    Range(Range, Expression),
+    /// One value, or a vector: several values, or a point.
+    Value(Expression),
+}
