@@ -71,7 +71,7 @@ pub use files::atomic_file::{FileSet, make_folder, write_atomically};
 pub use files::error::{FileError, FolderError, Malformed, WriteError};
 pub use files::regions::Target;
 pub use measuring::{
-    FlankEnds, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank, Part,
+    FlankEnds, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank, NominalPart,
     read_measured, write_grid_csv, write_grid_json,
 };
 pub use motion::{

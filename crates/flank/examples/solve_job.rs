@@ -7,7 +7,7 @@ use flank::{Disk, Failure, PointFormat, Project, SolveRequest, Unwatched, solve}
 fn main() -> Result<(), Failure> {
     let spec = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
     let job = spec.job("helical_gear", &[("teeth".to_string(), "37".to_string())])?;
-    let request = SolveRequest { format: vec![PointFormat::Csv, PointFormat::Stl], ..SolveRequest::of(&job) };
+    let request = SolveRequest { format: vec![PointFormat::Csv, PointFormat::Stl], ..SolveRequest::new(&job) };
     solve(&request, &Unwatched, &mut |solved| {
         for surface in &solved.surfaces {
             let summary = &surface.summary;

@@ -6,7 +6,7 @@ use flank::{Disk, Failure, JobSelection, Project, SolveRequest, Unwatched, solve
 
 fn main() -> Result<(), Failure> {
     let spec = Project::open("specs/bevel/pinion_19x62.chain", Arc::new(Disk));
-    let request = SolveRequest { sensitivity: true, no_picture: true, ..SolveRequest::of(JobSelection::all(spec)) };
+    let request = SolveRequest { sensitivity: true, no_picture: true, ..SolveRequest::new(JobSelection::all(spec)) };
     solve(&request, &Unwatched, &mut |solved| {
         let surface = &solved.surfaces[0];
         println!("{} moves by", surface.summary.name);

@@ -27,7 +27,7 @@
 //!
 //! let project = Project::open("specs/hobbing/helical_gear.chain", Arc::new(Disk));
 //! let job = project.job("helical_gear", &[("teeth".to_string(), "37".to_string())])?;
-//! let request = SolveRequest { no_picture: true, ..SolveRequest::of(&job) };
+//! let request = SolveRequest { no_picture: true, ..SolveRequest::new(&job) };
 //! solve(&request, &Unwatched, &mut |solved| {
 //!     for surface in &solved.surfaces {
 //!         let highest = surface.positions().iter().map(|[_, _, z]| *z).fold(f64::MIN, f64::max);

@@ -72,7 +72,7 @@ const GEAR: &str = "hobbing/undercut_gear.chain";
 #[test]
 fn solve_ends_without_files() {
     check("cancel_solve", |monitor, out| {
-        let more = SolveRequest::of(spec(GEAR));
+        let more = SolveRequest::new(spec(GEAR));
         let request = SolveRequest { out, limits: true, step: Some(1e-3), format: vec![PointFormat::Csv], ..more };
         solve(&request, monitor, &mut |_| {})
     });
@@ -84,7 +84,7 @@ fn bands_end_without_files() {
     check("cancel_bands", |monitor, out| {
         let set = ["rows", "columns"].map(|name| (name.to_string(), "300".to_string())).to_vec();
         let jobs = JobSelection { job: Some("flank".to_string()), set, ..spec("../benches/spiral_bevel.chain") };
-        let more = SolveRequest::of(jobs);
+        let more = SolveRequest::new(jobs);
         solve(&SolveRequest { out, no_picture: true, ..more }, monitor, &mut |_| {})
     });
 }

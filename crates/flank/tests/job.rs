@@ -34,7 +34,7 @@ fn project(files: Arc<dyn Files>) -> Project {
 
 fn solved(jobs: JobSelection, folder: &str) -> SolveResult {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
-    let request = SolveRequest { out, no_picture: true, ..SolveRequest::of(jobs) };
+    let request = SolveRequest { out, no_picture: true, ..SolveRequest::new(jobs) };
     let mut all = Vec::new();
     solve(&request, &Unwatched, &mut |one| all.push(one)).expect("it is solved");
     all.remove(0)
@@ -116,7 +116,7 @@ fn remarks_are_data() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/hobbing/crowned_gear_quartic.chain");
     let job = Project::open(file, Arc::new(Disk)).job("crowned_gear_quartic", &[]).expect("it is right");
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("job_remarks");
-    let request = SolveRequest { limits: true, no_picture: true, out, ..SolveRequest::of(&job) };
+    let request = SolveRequest { limits: true, no_picture: true, out, ..SolveRequest::new(&job) };
     let mut results = Vec::new();
     solve(&request, &Unwatched, &mut |result| results.push(result)).expect("it can be solved");
     let remark = results[0].remarks.iter().find(|remark| remark.kind == RemarkKind::LineNotExcluded);

@@ -44,5 +44,6 @@ pub(crate) struct Report {
 }
 
 fn page_or_folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| if ReportFormat::of(&path).is_some() { Ok(path) } else { no_file(path) })
+    PathBufValueParser::new()
+        .try_map(|path| if ReportFormat::of_path(&path).is_some() { Ok(path) } else { no_file(path) })
 }

@@ -8,7 +8,7 @@ use crate::{Ending, document, print};
 pub(crate) fn run(arguments: &Explain) -> Ending {
     print(&match (arguments.code, arguments.json) {
         (Some(code), false) => error_page(code).to_string(),
-        (Some(code), true) => document::text(&Explanation::of(code)),
+        (Some(code), true) => document::text(&Explanation::of_code(code)),
         (None, false) => list(&error_codes()),
         (None, true) => document::text(&Explanation::of_all()),
     });

@@ -80,10 +80,10 @@ struct LineOut<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn of(dataset: &'a Dataset, scene: &'a Scene) -> Self {
+    pub(super) fn of_scene(dataset: &'a Dataset, scene: &'a Scene) -> Self {
         let header = &dataset.header;
         let (surfaces, lines) = dataset.patches.split_at(scene.surfaces.len().min(dataset.patches.len()));
-        let tally = Tally::of(surfaces);
+        let tally = Tally::of_patches(surfaces);
         Document {
             program: &header.program,
             spec: &header.spec,

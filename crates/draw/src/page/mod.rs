@@ -43,7 +43,7 @@ const MODULES: [&str; 13] = [
 /// When the dataset is malformed, or the stream refuses.
 pub fn write_page(dataset: &Dataset, scene: &Scene, out: &mut dyn Write) -> Result<(), WriteError> {
     dataset.check()?;
-    let document = serde_json::to_string(&Document::of(dataset, scene)).map_err(std::io::Error::from)?;
+    let document = serde_json::to_string(&Document::of_scene(dataset, scene)).map_err(std::io::Error::from)?;
     for part in HTML.split_inclusive('\n') {
         match part.trim() {
             "{{title}}" => writeln!(out, "<title>{} – flank</title>", escaped(&dataset.header.job))?,

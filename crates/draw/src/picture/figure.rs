@@ -64,7 +64,7 @@ struct Group<'a> {
 
 /// Arranges the figure on a sheet of this size.
 pub(super) fn compose(dataset: &Dataset, width: f64, height: f64) -> Figure {
-    let regions = Regions::of(width, height);
+    let regions = Regions::of_sheet(width, height);
     let drawn = meshes(dataset);
     let groups = groups(&drawn, &regions);
     let title = one_line(if dataset.header.job.is_empty() { "surfaces" } else { &dataset.header.job });
@@ -86,7 +86,7 @@ pub(super) fn compose(dataset: &Dataset, width: f64, height: f64) -> Figure {
 
 impl Regions {
     /// Legend and insets stand beside the views; below them on a sheet that is higher than wide.
-    fn of(width: f64, height: f64) -> Self {
+    fn of_sheet(width: f64, height: f64) -> Self {
         let [width, height] = useful(width, height);
         let (right, bottom) = (width - MARGIN, height - 84.0);
         if height > width {
@@ -146,7 +146,7 @@ fn groups<'a>(drawn: &'a [Drawn<'a>], regions: &Regions) -> Vec<Group<'a>> {
 fn meshes(dataset: &Dataset) -> Vec<Drawn<'_>> {
     let many = dataset.patches.len().max(1) as f64;
     let cells = (110.0 / many.sqrt()).clamp(3.0, 72.0) as usize;
-    let mesh = |(number, patch)| Drawn { number, patch, mesh: Mesh::of(patch, cells) };
+    let mesh = |(number, patch)| Drawn { number, patch, mesh: Mesh::of_patch(patch, cells) };
     dataset.patches.iter().enumerate().map(mesh).collect()
 }
 
@@ -162,7 +162,7 @@ pub(super) fn write_heading(title: &str, header: &Header, room: f64, sheet: &mut
 }
 
 fn caption(dataset: &Dataset, drawn: &[Drawn<'_>], groups: &[Group<'_>]) -> String {
-    let tally = Tally::of(&dataset.patches);
+    let tally = Tally::of_patches(&dataset.patches);
     let mut text = format!("Solved {} of {} points asked for", tally.solved, tally.asked);
     // how it was computed goes with where it comes from: a book's picture stays the same when rounding changes
     if let Some(worst) = tally.worst_residual.filter(|_| !dataset.header.spec.is_empty()) {

@@ -63,7 +63,7 @@ fn draw_entry(
 fn dimensions(patch: &Patch) -> Vec<String> {
     let positions: Vec<Vector> = patch.points.iter().filter_map(node).map(|node| node.position).collect();
     if positions.is_empty() {
-        let tally = Tally::of([patch]);
+        let tally = Tally::of_patches([patch]);
         return vec![if tally.asked == 0 {
             "no points".into()
         } else {

@@ -125,7 +125,7 @@ pub(super) fn compose(machine: &MachineDrawing, [width, height]: [f64; 2]) -> Fi
 
 /// The machine in space: bodies, links from frame to frame, frames, axes, and then their names where there is room.
 fn draw_space(machine: &MachineDrawing, rect: Rect, sheet: &mut Sheet) {
-    let meshes = |bodies: &[Patch]| bodies.iter().map(|body| Mesh::of(body, 120)).collect::<Vec<Mesh>>();
+    let meshes = |bodies: &[Patch]| bodies.iter().map(|body| Mesh::of_patch(body, 120)).collect::<Vec<Mesh>>();
     let [tool, work] = [&machine.tool, &machine.work].map(|bodies| meshes(bodies));
     let all = tool.iter().chain(&work);
     let of_bodies = all.flat_map(|mesh| mesh.nodes.iter().flatten().map(|node| node.position));

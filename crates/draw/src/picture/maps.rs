@@ -70,7 +70,7 @@ pub(super) fn compose(
     let title = one_line(title);
     let mut sheet = Sheet::default();
     figure::write_heading(&title, &dataset.header, width - 2.0 * MARGIN, &mut sheet);
-    let panels: Vec<Panel<'_>> = shown.iter().filter_map(|at| Panel::of(dataset, *at, style)).collect();
+    let panels: Vec<Panel<'_>> = shown.iter().filter_map(|at| Panel::of_field(dataset, *at, style)).collect();
     let area = Rect { left: MARGIN, top: 118.0, right: width - MARGIN, bottom: height - 92.0 };
     if panels.is_empty() {
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw");
@@ -89,7 +89,7 @@ fn caption(note: &str, panels: &[Panel<'_>]) -> String {
 }
 
 impl<'a> Panel<'a> {
-    fn of(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
+    fn of_field(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
         let patch = dataset.patches.get(patch)?;
         let field = patch.fields.get(field)?;
         let Values::Scalars(values) = &field.values else { return None };
@@ -101,8 +101,8 @@ impl<'a> Panel<'a> {
         let known = || values.iter().zip(&patch.points).filter(|(_, point)| point.is_solved()).filter_map(|(v, _)| v);
         let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain(patch, field));
         let taken = |value: f64| if is_rounding { 0.0 } else { value };
-        let mesh = Mesh::of(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
-        let projection = Projection::of(patch, &mesh);
+        let mesh = Mesh::of_patch(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
+        let projection = Projection::of_patch(patch, &mesh);
         let known_at =
             |at: usize| values.at(at).filter(|value| value.is_finite() && patch.points[at].is_solved()).map(taken);
         let picked = mesh.picked(patch).map(known_at).collect();

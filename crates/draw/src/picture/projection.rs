@@ -26,7 +26,7 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    pub(super) fn of(patch: &Patch, mesh: &Mesh) -> Projection {
+    pub(super) fn of_patch(patch: &Patch, mesh: &Mesh) -> Projection {
         let flat: Vec<Option<[f64; 2]>> = mesh.nodes.iter().map(|node| Some(axial(node.as_ref()?.position))).collect();
         if share_seen(mesh, &flat) < LEAST_SHARE {
             Projection::by_index(patch, mesh)

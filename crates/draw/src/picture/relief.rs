@@ -21,7 +21,7 @@ const PIECES: usize = 48;
 
 /// Draws the relief of a panel's values.
 pub(super) fn draw(panel: &Panel<'_>, levels: &Levels, rect: Rect, sheet: &mut Sheet) {
-    let relief = Relief::of(panel);
+    let relief = Relief::of_panel(panel);
     let all: Vec<Vector> = relief.plan.iter().chain(&relief.heights).flatten().copied().collect();
     let room = rect.inside([110.0, 30.0, 110.0, 34.0]);
     let camera = relief.camera();
@@ -46,7 +46,7 @@ struct Relief {
 }
 
 impl Relief {
-    fn of(panel: &Panel<'_>) -> Relief {
+    fn of_panel(panel: &Panel<'_>) -> Relief {
         let nodes = &panel.projection.nodes;
         let reach = |k: usize| {
             let known = || nodes.iter().flatten().map(|place| place[k]);

@@ -76,7 +76,7 @@ impl FileSet {
     /// Names the first file that could not get its name, and says why; those after it are not there either.
     pub fn finish(self) -> Result<(), FileError> {
         let folders: BTreeSet<PathBuf> = self.0.iter().map(|whole| folder_of(&whole.path)).collect();
-        let _locks: Vec<Lock> = folders.iter().map(|folder| Lock::of(folder)).collect();
+        let _locks: Vec<Lock> = folders.iter().map(|folder| Lock::of_folder(folder)).collect();
         self.0.into_iter().try_for_each(|whole| {
             whole.file.finish(&whole.path).map_err(|reason| FileError { path: whole.asked, reason: reason.into() })
         })

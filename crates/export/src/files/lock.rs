@@ -18,7 +18,7 @@ pub(crate) struct Lock {
 
 impl Lock {
     /// Waits for its turn, and removes what programs that were killed have left.
-    pub(crate) fn of(folder: &Path) -> Lock {
+    pub(crate) fn of_folder(folder: &Path) -> Lock {
         let held = held(folder);
         if held.is_some() {
             remove_what_was_left(folder);

@@ -12,11 +12,11 @@ const HELD: usize = 1 << 16;
 
 /// Parts that follow each other.
 pub(crate) struct Regions {
-    parts: Vec<Part>,
+    parts: Vec<Region>,
     end: u64,
 }
 
-struct Part {
+struct Region {
     /// Where the held bytes belong.
     next: u64,
     held: Vec<u8>,
@@ -29,7 +29,7 @@ impl Regions {
         let mut part = |size: u64| {
             let next = end;
             end += size;
-            Part { next, held: Vec::new() }
+            Region { next, held: Vec::new() }
         };
         let parts = sizes.into_iter().map(&mut part).collect();
         Regions { parts, end }
@@ -55,7 +55,7 @@ impl Regions {
     }
 }
 
-impl Part {
+impl Region {
     fn write(&mut self, out: &mut dyn Target) -> io::Result<()> {
         out.seek(SeekFrom::Start(self.next))?;
         out.write_all(&self.held)?;

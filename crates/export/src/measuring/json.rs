@@ -5,7 +5,7 @@ use std::io::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Hand, MeasuringGrid, NominalFlank, Part, places, sentences};
+use super::{Hand, MeasuringGrid, NominalFlank, NominalPart, places, sentences};
 use crate::files::error::WriteError;
 use crate::points::dataset::{Patch, Point};
 use crate::points::json_layout::{Head, write_document};
@@ -73,10 +73,10 @@ struct FlankOut<'a> {
 
 /// Points of a flank that are measured together.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "NominalPart")]
+#[schemars(rename = "NominalPoints")]
 struct PartOut {
     /// Which they are.
-    part: Part,
+    part: NominalPart,
     /// Number of rows.
     rows: usize,
     /// Number of columns.
@@ -116,7 +116,7 @@ fn flank_out(flank: &NominalFlank) -> FlankOut<'_> {
     }
 }
 
-fn part_out(part: Part, patch: &Patch) -> PartOut {
+fn part_out(part: NominalPart, patch: &Patch) -> PartOut {
     let point_out = |([row, column], point): ([usize; 2], &Point)| PointOut {
         row,
         column,

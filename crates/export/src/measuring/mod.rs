@@ -37,13 +37,13 @@ pub struct NominalFlank {
     /// What the ends are called.
     pub ends: FlankEnds,
     /// The parts that are measured, each a grid of its own; name, frame and points are theirs.
-    pub parts: Vec<(Part, Patch)>,
+    pub parts: Vec<(NominalPart, Patch)>,
 }
 
 /// What is measured at a flank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Part {
+pub enum NominalPart {
     /// The whole flank.
     Grid,
     /// The line from root to tip in the middle of the tooth's length.
@@ -54,15 +54,15 @@ pub enum Part {
     Middle,
 }
 
-impl Part {
+impl NominalPart {
     /// As files have it.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Part::Grid => "grid",
-            Part::Profile => "profile",
-            Part::Lead => "lead",
-            Part::Middle => "middle",
+            NominalPart::Grid => "grid",
+            NominalPart::Profile => "profile",
+            NominalPart::Lead => "lead",
+            NominalPart::Middle => "middle",
         }
     }
 }
@@ -81,7 +81,7 @@ impl Hand {
     /// Of a grid whose rows run from root to tip and whose columns run along the tooth; `None` where that does not tell, as at the root
     /// or on a thread.
     #[must_use]
-    pub fn of(grid: &Patch) -> Option<Hand> {
+    pub fn of_grid(grid: &Patch) -> Option<Hand> {
         let [rows, columns] = [grid.rows.count, grid.columns.count];
         let solved = |at: [usize; 2]| grid.point(at[0], at[1]).filter(|point| point.is_solved());
         let up = sum((0..columns).filter_map(|j| way((0..rows).filter_map(|i| solved([i, j])))));
@@ -129,7 +129,7 @@ pub struct FlankEnds {
 impl FlankEnds {
     /// Of a grid of solved points: by the labels of its rows and columns, else by the way the flank leans. `None` where they do not tell.
     #[must_use]
-    pub fn of(patch: &Patch) -> Option<FlankEnds> {
+    pub fn of_patch(patch: &Patch) -> Option<FlankEnds> {
         let Sides { rows, columns, rows_are_profile } = sides(patch)?;
         let (profile, length) = if rows_are_profile { (rows, columns) } else { (columns, rows) };
         let ordered = |[first, last]: [String; 2]| {

@@ -68,7 +68,7 @@ impl Seen {
     ///
     /// # Errors
     /// If a surface is malformed, or cannot be handed over.
-    pub(crate) fn of(surfaces: &Surfaces<'_>) -> Result<Seen, WriteError> {
+    pub(crate) fn of_surfaces(surfaces: &Surfaces<'_>) -> Result<Seen, WriteError> {
         let (mut all, mut told) = (Tally::default(), false);
         let mut tallies = Vec::new();
         for surface in &surfaces.list {

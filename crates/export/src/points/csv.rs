@@ -25,7 +25,7 @@ use crate::text::one_line;
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_csv(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    let seen = Seen::of(surfaces)?;
+    let seen = Seen::of_surfaces(surfaces)?;
     write_head(surfaces, &seen, out)?;
     let unknowns = union_of_unknowns(surfaces.outlines());
     let fields = union_of_fields(surfaces.outlines());

@@ -21,7 +21,7 @@ pub(crate) type Numbered<'a> = (usize, &'a Point);
 
 impl Mesh {
     /// Of a file that holds the points which it `counts`.
-    pub(crate) fn of(surface: &dyn Banded, counts: fn(&Point) -> bool) -> Mesh {
+    pub(crate) fn of_surface(surface: &dyn Banded, counts: fn(&Point) -> bool) -> Mesh {
         Mesh { columns: surface.outline().columns.count, above: Vec::new(), places: Vec::new(), counted: 0, counts }
     }
 
@@ -65,7 +65,7 @@ pub(crate) fn each_facet(
     surface: &dyn Banded,
     take: &mut dyn FnMut([Numbered<'_>; 3]) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let mut mesh = Mesh::of(surface, Point::is_solved);
+    let mut mesh = Mesh::of_surface(surface, Point::is_solved);
     surface.bands(&mut |points| mesh.add(points, take))
 }
 

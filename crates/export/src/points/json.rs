@@ -28,10 +28,10 @@ use crate::text::number::plain;
 pub fn write_json(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     /// Document, list of surfaces, surface, list of points.
     const BROKEN: usize = 4;
-    let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
+    let (seen, header) = (Seen::of_surfaces(surfaces)?, surfaces.header);
     let document = Document {
         head: Head::new(header, sentences(header)),
-        tally: TallyOut::of(&seen.all),
+        tally: TallyOut::of_tally(&seen.all),
         surfaces: surfaces
             .list
             .iter()
@@ -147,7 +147,7 @@ struct PointOut<'a> {
 }
 
 impl TallyOut {
-    fn of(tally: &Tally) -> Self {
+    fn of_tally(tally: &Tally) -> Self {
         TallyOut { asked: tally.asked, solved: tally.solved, worst_residual: tally.worst_residual }
     }
 }
@@ -203,7 +203,7 @@ fn surface_out<'a>(surface: &'a dyn Banded, tally: &Tally) -> SurfaceOut<'a> {
         columns: &patch.columns,
         unknowns: &patch.unknowns,
         fields: patch.fields.iter().map(field).collect(),
-        tally: TallyOut::of(tally),
+        tally: TallyOut::of_tally(tally),
         points: PointsOut(surface),
     }
 }

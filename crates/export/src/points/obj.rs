@@ -18,7 +18,7 @@ use crate::text::one_line;
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    let (seen, header) = (Seen::of(surfaces)?, surfaces.header);
+    let (seen, header) = (Seen::of_surfaces(surfaces)?, surfaces.header);
     let [program, spec, hash, job] =
         [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
     let origin = format!("{program}; spec: {spec}, hash {hash}; job: {job}");

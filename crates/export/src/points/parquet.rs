@@ -29,7 +29,7 @@ const GROUP: usize = 1 << 16;
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_parquet(surfaces: &Surfaces<'_>, out: &mut (impl Write + Send + ?Sized)) -> Result<(), WriteError> {
-    let seen = Seen::of(surfaces)?;
+    let seen = Seen::of_surfaces(surfaces)?;
     let columns = columns(surfaces, seen.told);
     let unknowns = union_of_unknowns(surfaces.outlines());
     let fields = union_of_fields(surfaces.outlines());

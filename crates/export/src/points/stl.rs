@@ -22,7 +22,7 @@ use crate::vector::{cross, sub, unit};
 /// When a surface is malformed or cannot hand over its points, there are more triangles than the format can count, or the
 /// target refuses.
 pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), WriteError> {
-    Seen::of(surfaces)?;
+    Seen::of_surfaces(surfaces)?;
     out.write_all(&head(surfaces.header))?;
     let place = out.stream_position()?;
     out.write_all(&[0; 4])?;

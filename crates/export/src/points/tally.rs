@@ -23,7 +23,7 @@ pub struct Tally {
 
 impl Tally {
     /// Counts the points of one or more patches.
-    pub fn of<'a>(patches: impl IntoIterator<Item = &'a Patch>) -> Self {
+    pub fn of_patches<'a>(patches: impl IntoIterator<Item = &'a Patch>) -> Self {
         let mut tally = Tally::default();
         patches.into_iter().flat_map(|patch| &patch.points).for_each(|point| tally.count(point));
         tally

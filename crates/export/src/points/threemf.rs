@@ -36,7 +36,7 @@ const FAST: i64 = 1;
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_3mf(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    Seen::of(surfaces)?;
+    Seen::of_surfaces(surfaces)?;
     // one date for all, so that the same surfaces give the same bytes
     let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
     let options = options.compression_level(Some(FAST));

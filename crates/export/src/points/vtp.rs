@@ -23,7 +23,7 @@ use crate::text::xml::escaped;
 /// # Errors
 /// When a surface is malformed or cannot hand over its points, or the target refuses.
 pub fn write_vtp(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), WriteError> {
-    let seen = Seen::of(surfaces)?;
+    let seen = Seen::of_surfaces(surfaces)?;
     let arrays = arrays(surfaces);
     let pieces = surfaces.list.iter().zip(&seen.tallies).enumerate();
     let pieces = pieces.map(|(number, (surface, tally))| {
@@ -183,7 +183,7 @@ impl Piece<'_> {
         let connectivity = polys(|what| matches!(what, What::Connectivity)).expect("every piece has one");
         let offsets = polys(|what| matches!(what, What::Offsets)).expect("every piece has them");
         let (mut first, mut triangles, mut mesh, mut bytes) =
-            (0, 0_i64, Mesh::of(self.surface, Point::is_placed), Vec::new());
+            (0, 0_i64, Mesh::of_surface(self.surface, Point::is_placed), Vec::new());
         self.surface.bands(&mut |points| {
             for (at, (i, j, point)) in (first..).zip(patch.numbered(first, points)) {
                 for (k, of_point) in of_points.iter().filter(|_| point.is_placed()) {

@@ -39,7 +39,7 @@ pub fn node(point: &Point) -> Option<Node> {
 
 impl Mesh {
     /// The patch with at most `cells` cells in each direction; first and last rows and columns always stay.
-    pub fn of(patch: &Patch, cells: usize) -> Self {
+    pub fn of_patch(patch: &Patch, cells: usize) -> Self {
         let rows = thinned(patch.rows.count, cells);
         let columns = thinned(patch.columns.count, cells);
         let nodes = rows.iter().flat_map(|&i| columns.iter().map(move |&j| patch.point(i, j).and_then(node))).collect();

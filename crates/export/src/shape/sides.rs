@@ -49,7 +49,7 @@ pub struct Sides {
 
 /// The names of all four sides; `None` where the grid does not tell them.
 pub fn sides(patch: &Patch) -> Option<Sides> {
-    let words = words(patch, &Mesh::of(patch, 40));
+    let words = words(patch, &Mesh::of_patch(patch, 40));
     let word = |side: Side| words.iter().find(|(named, _)| *named == side).map(|(_, word)| word.clone());
     Some(Sides {
         rows: [word(Side::FirstRow)?, word(Side::LastRow)?],
@@ -63,8 +63,8 @@ pub fn rows_follow_profile(patch: &Patch) -> Option<bool> {
     if let Some(labelled) = labelled_profile(patch) {
         return Some(labelled);
     }
-    let mesh = Mesh::of(patch, 40);
-    let [rows, columns] = [true, false].map(|along_rows| Direction::of(&mesh, along_rows));
+    let mesh = Mesh::of_patch(patch, 40);
+    let [rows, columns] = [true, false].map(|along_rows| Direction::of_mesh(&mesh, along_rows));
     Some(rows_are_profile(&rows?, &columns?))
 }
 
@@ -108,7 +108,7 @@ fn labelled_profile(patch: &Patch) -> Option<bool> {
 /// What the sides are: as the labels name them; else from the shape.
 pub fn words(patch: &Patch, mesh: &Mesh) -> Vec<(Side, String)> {
     let named = named_sides(patch);
-    let directions = [true, false].map(|along_rows| Direction::of(mesh, along_rows));
+    let directions = [true, false].map(|along_rows| Direction::of_mesh(mesh, along_rows));
     let [Some(rows), Some(columns)] = directions else { return named };
     let is_by_rows = labelled_profile(patch).unwrap_or_else(|| rows_are_profile(&rows, &columns));
     let (rows, columns) = ((rows, [Side::FirstRow, Side::LastRow]), (columns, [Side::FirstColumn, Side::LastColumn]));
@@ -158,7 +158,7 @@ struct Direction {
 }
 
 impl Direction {
-    fn of(mesh: &Mesh, along_rows: bool) -> Option<Direction> {
+    fn of_mesh(mesh: &Mesh, along_rows: bool) -> Option<Direction> {
         let (steps, lines) = if along_rows { (mesh.rows, mesh.columns) } else { (mesh.columns, mesh.rows) };
         let line = |line: usize| -> Vec<Vector> {
             let at = |step: usize| if along_rows { step * mesh.columns + line } else { line * mesh.columns + step };
@@ -210,10 +210,10 @@ fn in_order([first, last]: [&'static str; 2], is_forward: bool) -> [&'static str
 
 /// Whether a grid lies on a thread.
 pub fn is_thread(patch: &Patch) -> bool {
-    let mesh = Mesh::of(patch, 40);
+    let mesh = Mesh::of_patch(patch, 40);
     [true, false]
         .into_iter()
-        .filter_map(|along_rows| Direction::of(&mesh, along_rows))
+        .filter_map(|along_rows| Direction::of_mesh(&mesh, along_rows))
         .any(|direction| direction.winds())
 }
 

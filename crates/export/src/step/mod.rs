@@ -29,7 +29,7 @@ pub fn write_step(header: &Header, faces: &[&Face], out: &mut dyn Write) -> Resu
     writeln!(out, "FILE_DESCRIPTION(({}),'2;1');", lines.join(",\n"))?;
     writeln!(out, "FILE_NAME({},'',(''),(''),{},'','');", text(&header.job), text(&header.program))?;
     writeln!(out, "FILE_SCHEMA(('{SCHEMA}'));\nENDSEC;\nDATA;")?;
-    let mut part = Part { out, last: 0 };
+    let mut part = DataSection { out, last: 0 };
     let product = part.product(&header.job)?;
     let context = part.units()?;
     let shells: Vec<usize> = faces.iter().map(|face| part.shell(face)).collect::<Result<_, _>>()?;
@@ -64,12 +64,12 @@ impl Face {
 }
 
 /// The data section: entities are numbered as they come.
-struct Part<'w> {
+struct DataSection<'w> {
     out: &'w mut dyn Write,
     last: usize,
 }
 
-impl Part<'_> {
+impl DataSection<'_> {
     fn add(&mut self, entity: &str) -> Result<usize, WriteError> {
         self.last += 1;
         writeln!(self.out, "#{}={entity};", self.last)?;

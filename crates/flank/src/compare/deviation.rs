@@ -58,7 +58,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
     };
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let mut origin = Origin::of(&compilation);
+    let mut origin = Origin::of_compilation(&compilation);
     let surface = find(&jobs, &request.surface)?;
     let session = Session::new(request.evaluator, monitor);
     let measured = match second {

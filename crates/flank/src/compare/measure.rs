@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample, SampleGrid, spaced};
-use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, Part, Patch, Point};
+use flank_export::{Axis, FlankEnds, Hand, MeasuringGrid, NominalFlank, NominalPart, Patch, Point};
 use flank_expr::Graph;
 use flank_solver::SurfacePoint;
 
@@ -33,7 +33,7 @@ pub fn measure(
 ) -> Result<(), Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let origin = Origin::of(&compilation);
+    let origin = Origin::of_compilation(&compilation);
     let named = request.surface.iter().map(|name| find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
     let session = Session::new(request.evaluator, monitor);
     for job in solve::asked(&jobs, monitor)? {
@@ -97,7 +97,7 @@ impl<'j, 'g> Placed<'j, 'g> {
             return Err(Failure::NotDone(vec![branches]));
         }
         let patch = solve::patch(job, name, surface, axes, &found.points);
-        let ends = FlankEnds::of(&patch).ok_or(format!(
+        let ends = FlankEnds::of_patch(&patch).ok_or(format!(
             "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
              does: `toe_root: [z, rho]`, …"
         ))?;
@@ -179,13 +179,13 @@ fn flank<'g>(
 ) -> Result<NominalFlank, Failure> {
     let placed = Placed::new(job, surface, request.margins(), session)?;
     let grid = placed.part([request.rows as usize, request.columns as usize])?;
-    let hand = Hand::of(&grid);
-    let mut parts = vec![(Part::Grid, grid)];
+    let hand = Hand::of_grid(&grid);
+    let mut parts = vec![(NominalPart::Grid, grid)];
     if let Some(count) = request.lines {
         let count = count as usize;
-        parts.extend([(Part::Profile, placed.part([count, 1])?), (Part::Lead, placed.part([1, count])?)]);
+        parts.extend([(NominalPart::Profile, placed.part([count, 1])?), (NominalPart::Lead, placed.part([1, count])?)]);
     }
-    parts.push((Part::Middle, placed.part([1, 1])?));
+    parts.push((NominalPart::Middle, placed.part([1, 1])?));
     Ok(NominalFlank { hand, ends: placed.ends, parts })
 }
 
@@ -198,13 +198,13 @@ fn is_solved(point: &Point) -> bool {
 }
 
 fn middle(flank: &NominalFlank) -> Option<MiddlePoint> {
-    let (_, patch) = flank.parts.iter().find(|(part, _)| *part == Part::Middle)?;
+    let (_, patch) = flank.parts.iter().find(|(part, _)| *part == NominalPart::Middle)?;
     let [x, y, z] = patch.points.first().filter(|point| is_solved(point))?.position;
     Some(MiddlePoint { rho_mm: x.hypot(y), z_mm: z, angle_deg: y.atan2(x).to_degrees() })
 }
 
 fn result(grid: &MeasuringGrid, files: Vec<String>) -> MeasureResult {
-    let part = |(part, patch): &(Part, Patch)| MeasuredPart {
+    let part = |(part, patch): &(NominalPart, Patch)| MeasuredPart {
         part: (*part).into(),
         rows: patch.rows.count,
         columns: patch.columns.count,
@@ -239,7 +239,7 @@ fn unsolved(grid: &MeasuringGrid) -> Vec<NotDone> {
     parts.filter_map(|(part, patch)| unsolved_in(*part, patch)).collect()
 }
 
-fn unsolved_in(part: Part, patch: &Patch) -> Option<NotDone> {
+fn unsolved_in(part: NominalPart, patch: &Patch) -> Option<NotDone> {
     let mut reasons: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (at, point) in patch.points.iter().enumerate().filter(|(_, point)| !is_solved(point)) {
         let reason = format!("{} {}", point.outcome.word(), point.reason).trim_end().to_string();

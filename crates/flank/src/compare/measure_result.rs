@@ -117,13 +117,13 @@ impl FlankHand {
     }
 }
 
-impl From<flank_export::Part> for FlankPart {
-    fn from(part: flank_export::Part) -> FlankPart {
+impl From<flank_export::NominalPart> for FlankPart {
+    fn from(part: flank_export::NominalPart) -> FlankPart {
         match part {
-            flank_export::Part::Grid => FlankPart::Grid,
-            flank_export::Part::Profile => FlankPart::Profile,
-            flank_export::Part::Lead => FlankPart::Lead,
-            flank_export::Part::Middle => FlankPart::Middle,
+            flank_export::NominalPart::Grid => FlankPart::Grid,
+            flank_export::NominalPart::Profile => FlankPart::Profile,
+            flank_export::NominalPart::Lead => FlankPart::Lead,
+            flank_export::NominalPart::Middle => FlankPart::Middle,
         }
     }
 }

@@ -46,7 +46,7 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Conver
     check_fit_alone(request)?;
     let graph = Graph::new();
     let (origin, job, target) = compiled(&graph, &request.jobs, &request.to, monitor)?;
-    let plan = Plan::of(&graph, &job, &target, &request.onto, &request.fit)?;
+    let plan = Plan::of_job(&graph, &job, &target, &request.onto, &request.fit)?;
     check_settings_alone(&plan, request)?;
     let session = Session::new(request.onto.evaluator, monitor);
     let target = plan.solved(session)?;
@@ -114,7 +114,7 @@ pub(crate) fn compiled<'g>(
     let mut compilation = spec::sound(compile_request(graph, which.file(), &request), monitor)?;
     let mut jobs = spec::asked_for(&mut compilation, which, monitor)?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
-    let origin = Origin::of(&compilation);
+    let origin = Origin::of_compilation(&compilation);
     match jobs.len() {
         1 => Ok((origin, jobs.remove(0), target)),
         _ => {
@@ -137,7 +137,7 @@ fn carry<'g>(
     let mut told = carried.failures();
     let is_followed = carried.source.motions.len() == 1 && told.is_empty();
     let working = session.begin(format!("polynomials and their proof on {}", carried.machine.name))?;
-    let series = is_followed.then(|| Series::of(&carried, request)).flatten();
+    let series = is_followed.then(|| Series::of_conversion(&carried, request)).flatten();
     drop(working);
     match &series {
         Some(series) => told.extend(series.unmet(request.tolerance, (&carried.machine.name, &carried.source))),
@@ -145,7 +145,12 @@ fn carry<'g>(
         None => {}
     }
     let is_series = is_followed && told.is_empty();
-    let rates = request.time.filter(|_| is_series).map(|seconds| Rates::of(&carried, seconds)).transpose()?.flatten();
+    let rates = request
+        .time
+        .filter(|_| is_series)
+        .map(|seconds| Rates::of_conversion(&carried, seconds))
+        .transpose()?
+        .flatten();
     let mut table = Table::new(job, &carried, (series, rates), request);
     let tube = table.series.as_ref().and_then(|series| series.tube.as_ref().ok());
     table.nc_deviation = (is_series && !request.nc.is_empty()).then(|| blocks::nc_deviation(&carried, tube));
@@ -228,14 +233,14 @@ struct Plan<'t, 'g> {
 impl<'t, 'g> Plan<'t, 'g> {
     /// # Errors
     /// In words, if a name is not known, it is not clear what is meant, or the machine has not the axes for it.
-    fn of(
+    fn of_job(
         graph: &'g Graph,
         job: &'t Job<'g>,
         target: &'t Job<'g>,
         onto: &Onto,
         fit: &[String],
     ) -> Result<Plan<'t, 'g>, String> {
-        let chosen = Chosen::of(job, onto.surface.as_deref())?;
+        let chosen = Chosen::of_job(job, onto.surface.as_deref())?;
         let machine = &target.machines[0];
         let [work, tool] = [
             frame(machine, &chosen.work, onto.work_frame.as_deref(), "option `work_frame`")?,
@@ -261,7 +266,7 @@ impl<'t, 'g> Plan<'t, 'g> {
     /// In words, if there are too many of them.
     fn solved(self, session: Session<'_>) -> Result<Target<'t, 'g>, Failure> {
         let Plan { job, machine, chosen, chain, free, settings, bindings } = self;
-        let source = Source::of(chosen, session)?;
+        let source = Source::of_chosen(chosen, session)?;
         let axes = free.iter().map(|axis| target_axis(axis)).collect();
         Ok(Target { job, machine, source, chain, free, axes, settings, bindings })
     }
@@ -390,7 +395,7 @@ impl<'j, 'g> Conversion<'j, 'g> {
         (onto, session): (&Onto, Session<'j>),
         positions: u32,
     ) -> Result<Conversion<'j, 'g>, Failure> {
-        let plan = Plan::of(graph, job, target, onto, &[])?;
+        let plan = Plan::of_job(graph, job, target, onto, &[])?;
         match plan.settings.first() {
             Some(open) => Err(format!("{} has no value: option `set {}=…`", open.name, open.name).into()),
             None => Conversion::on(plan.solved(session)?, positions, session),

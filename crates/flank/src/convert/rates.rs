@@ -18,7 +18,7 @@ impl Rates {
     ///
     /// # Errors
     /// In words, if the time is so short that they are no numbers.
-    pub(crate) fn of(carried: &Conversion<'_, '_>, seconds: f64) -> Result<Option<Rates>, String> {
+    pub(crate) fn of_conversion(carried: &Conversion<'_, '_>, seconds: f64) -> Result<Option<Rates>, String> {
         let range = carried.source.ranges[0];
         let rate = (range.high - range.low) / seconds;
         let row = |(at, posture): (&Vec<f64>, &_)| -> Option<Vec<[f64; 3]>> {

@@ -33,7 +33,7 @@ pub(crate) struct Series {
 }
 
 impl Series {
-    pub(crate) fn of(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<Series> {
+    pub(crate) fn of_conversion(carried: &Conversion<'_, '_>, request: &ConvertRequest) -> Option<Series> {
         let Conversion { source, problem, positions, line, .. } = carried;
         let about = at(source.ranges[0], 0.5);
         let middle = middle(carried, about)?;

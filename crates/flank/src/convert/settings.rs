@@ -199,7 +199,7 @@ impl Found<'_, '_, '_> {
         let Found { target, fit, .. } = self;
         let setting = |(k, (setting, value)): (usize, (&&RangedVariable<'_>, &f64))| FoundSetting {
             name: short(setting),
-            unit: UnitSymbol::of(setting.dimension),
+            unit: UnitSymbol::of_dimension(setting.dimension),
             value: units::shown(setting.dimension, *value),
             determined: !fit.undetermined.contains(&k),
         };

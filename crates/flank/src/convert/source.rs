@@ -69,7 +69,7 @@ pub(super) struct Chosen<'j, 'g> {
 impl<'j, 'g> Chosen<'j, 'g> {
     /// # Errors
     /// In words, if it is not clear which tool is meant, or nothing moves.
-    pub(super) fn of(job: &'j Job<'g>, asked: Option<&str>) -> Result<Chosen<'j, 'g>, String> {
+    pub(super) fn of_job(job: &'j Job<'g>, asked: Option<&str>) -> Result<Chosen<'j, 'g>, String> {
         let path =
             |surface: &GeneratedSurface<'g>| (surface.frame.clone(), surface.generation.tool_frame().to_string());
         let named = |surface: &&&GeneratedSurface<'g>| match asked {
@@ -113,7 +113,7 @@ impl<'j, 'g> Source<'j, 'g> {
     ///
     /// # Errors
     /// In words, if a surface has more points than can be carried over.
-    pub(super) fn of(chosen: Chosen<'j, 'g>, session: Session) -> Result<Source<'j, 'g>, Failure> {
+    pub(super) fn of_chosen(chosen: Chosen<'j, 'g>, session: Session) -> Result<Source<'j, 'g>, Failure> {
         let Chosen { job, work, tool, mates, is_one_of_several, motions } = chosen;
         let wanted = SolveOptions {
             geometry: false,

@@ -124,7 +124,7 @@ impl Table {
         let (low, high) = self.ends(k);
         let [low, high] = [low, high].map(|x| finite(units::shown(axis.dimension, x)));
         let travel = axis.travel.map(|travel| Travel::new(axis.dimension, travel));
-        AxisExtent { name: axis.name.clone(), unit: UnitSymbol::of(axis.dimension), low, high, travel }
+        AxisExtent { name: axis.name.clone(), unit: UnitSymbol::of_dimension(axis.dimension), low, high, travel }
     }
 
     fn position(&self, at: &[f64], posture: &Posture) -> AxisPosition {

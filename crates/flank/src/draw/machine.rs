@@ -110,7 +110,7 @@ impl Numbers {
         Numbers { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] }
     }
 
-    fn of<'g>(pose: Pose<'g>, bindings: &Bindings<'g>) -> Numbers {
+    fn of_pose<'g>(pose: Pose<'g>, bindings: &Bindings<'g>) -> Numbers {
         let entries = pose.rotation.entries().map(|entry| number(entry, bindings));
         let axes = [0, 1, 2].map(|column| [0, 1, 2].map(|row| entries[3 * row + column]));
         Numbers { axes, origin: pose.translation.0.map(|x| number(x, bindings)) }
@@ -143,7 +143,7 @@ impl<'g> Reader<'_, '_, 'g> {
         let mut links = Vec::new();
         let mut pose = start;
         for step in &frame.steps {
-            let next = pose.then(&Numbers::of(self.pose(*step), self.posture));
+            let next = pose.then(&Numbers::of_pose(self.pose(*step), self.posture));
             match *step {
                 Step::Translate(by) => self.shifts(by, &pose, &mut links),
                 Step::Rotate(axis, angle) => {

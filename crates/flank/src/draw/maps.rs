@@ -22,7 +22,7 @@ struct Shown {
 
 impl Shown {
     /// The chosen surfaces with new fields.
-    fn of(subject: &Subject<'_, '_>, fields: impl Fn(usize) -> Vec<Field>) -> Shown {
+    fn of_surfaces(subject: &Subject<'_, '_>, fields: impl Fn(usize) -> Vec<Field>) -> Shown {
         let patch = |&at: &usize| Patch { fields: fields(at), ..subject.dataset.patches[at].clone() };
         let patches: Vec<Patch> = subject.chosen.iter().map(patch).collect();
         let all = patches.iter().enumerate().flat_map(|(at, patch)| (0..patch.fields.len()).map(move |k| (at, k)));
@@ -32,7 +32,7 @@ impl Shown {
 
     /// Fields that the surfaces have already, by their places in each.
     fn existing(subject: &Subject<'_, '_>, places: impl Fn(&[Field]) -> Vec<usize>) -> Shown {
-        Shown::of(subject, |at| {
+        Shown::of_surfaces(subject, |at| {
             let fields = &subject.dataset.patches[at].fields;
             places(fields).into_iter().filter_map(|place| fields.get(place).cloned()).collect()
         })
@@ -93,7 +93,7 @@ pub(super) fn curvature(subject: &Subject<'_, '_>, options: &PictureOptions) -> 
             field("mean curvature", "1/mm", "(k1 + k2) / 2", both(|a, b| 0.5 * (a + b))),
         ]
     };
-    let shown = Shown::of(subject, of);
+    let shown = Shown::of_surfaces(subject, of);
     if !shown.has_values() {
         return Err("no point is solved, or none has curvatures".to_string());
     }
@@ -165,7 +165,7 @@ pub(super) fn residual(subject: &Subject<'_, '_>, options: &PictureOptions) -> R
             ),
         }]
     };
-    let shown = Shown::of(subject, field);
+    let shown = Shown::of_surfaces(subject, field);
     let note = "Largest residual of the solved equations: meshing, in mm per mm or radian of its motion, and the two \
         coordinates that the point was asked for by, in mm.";
     let picture = field_maps(&shown.dataset, &title(subject, "residual"), shown.first(), &shown.note(note), options);
@@ -198,7 +198,7 @@ pub(super) fn contact_lines(subject: &Subject<'_, '_>, options: &PictureOptions)
         };
         moving.map(values).collect()
     };
-    let shown = Shown::of(subject, fields);
+    let shown = Shown::of_surfaces(subject, fields);
     let note = if motions.len() == 1 {
         "Contact lines: on each, tool and work touch at the same moment."
     } else {
@@ -219,7 +219,9 @@ pub(super) fn topography(subject: &Subject<'_, '_>, options: &PictureOptions) ->
         Ok(shown) => (shown, cut::NOTE, "heights that single edges leave, above the measuring grid"),
         Err(_) => {
             subject.middle()?;
-            let shown = Shown::of(subject, |at| heights_over_plane(&subject.dataset.patches[at]).into_iter().collect());
+            let shown = Shown::of_surfaces(subject, |at| {
+                heights_over_plane(&subject.dataset.patches[at]).into_iter().collect()
+            });
             let note = "Heights of the flank over the plane that fits its points best, plus is material. The grid below is \
                 the flank turned into the axial plane.";
             (shown, note, "heights over the plane that fits best")

@@ -75,7 +75,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(P
     }
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let origin = Origin::of(&compilation);
+    let origin = Origin::of_compilation(&compilation);
     let session = Session::new(request.evaluator, monitor);
     let done = match &request.reference {
         Some(from) => vec![comparison::plot(&jobs, from, (request, session), &origin)?],

@@ -52,14 +52,14 @@ impl<'j, 'g> Subject<'j, 'g> {
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
         let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, Failure>>()?;
-        Ok(Subject::of(job, solved, names, header)?)
+        Ok(Subject::of_solved(job, solved, names, header)?)
     }
 
     /// Of surfaces that are solved; all of them if none is named.
     ///
     /// # Errors
     /// In words, if a surface that is named is not among them.
-    pub(crate) fn of(
+    pub(crate) fn of_solved(
         job: &'j Job<'g>,
         solved: Vec<Solved<'j, 'g>>,
         names: &[&'j str],

@@ -49,7 +49,7 @@ pub struct Explanation {
 
 impl Explanation {
     /// Of one code, with its page.
-    pub fn of(code: Code) -> Explanation {
+    pub fn of_code(code: Code) -> Explanation {
         let ErrorCode { code: name, severity, title } = code.into();
         Explanation {
             code: Some(name),

@@ -11,7 +11,7 @@ pub(super) struct Functions<'g> {
 }
 
 impl<'g> Functions<'g> {
-    pub(super) fn of(job: &Job<'g>) -> Functions<'g> {
+    pub(super) fn of_job(job: &Job<'g>) -> Functions<'g> {
         let parameters = job.parameters.iter().map(|parameter| parameter.variable).collect();
         Functions { parameters, text: String::new(), names: Vec::new() }
     }

@@ -8,7 +8,7 @@ use flank_expr::{Expr, Graph};
 use super::functions::Functions;
 use crate::solve::unit;
 
-pub(super) fn of<'g>(
+pub(super) fn page_machine<'g>(
     graph: &'g Graph,
     job: &Job<'g>,
     (number, machine): (usize, &Machine<'g>),

@@ -44,7 +44,7 @@ const BEYOND: f64 = 0.15;
 pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(ViewResult)) -> Result<(), Failure> {
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let origin = Origin::of(&compilation);
+    let origin = Origin::of_compilation(&compilation);
     for job in solve::asked(&jobs, monitor)? {
         let wanted = wanted(Session::new(request.evaluator, monitor));
         stream::check_kept(job, &job.surfaces, wanted)?;
@@ -83,7 +83,7 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
 /// get their plain names.
 fn tally(solved: &[Solved<'_, '_>], patches: &mut [Patch]) -> Tally {
     let (surfaces, lines) = patches.split_at_mut(solved.len());
-    let mut tally = Tally::of(&*lines);
+    let mut tally = Tally::of_patches(&*lines);
     for (solved, patch) in solved.iter().zip(surfaces) {
         patch.name.clone_from(&solved.surface.name);
         tally.asked += solved.summary.asked;
@@ -151,19 +151,20 @@ fn write<'g>(
 
 /// What the page shows beside the points.
 fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scene {
-    let mut functions = Functions::of(job);
-    let surfaces: Vec<_> = solved.iter().map(|solved| surfaces::of(graph, job, solved, &mut functions)).collect();
+    let mut functions = Functions::of_job(job);
+    let surfaces: Vec<_> =
+        solved.iter().map(|solved| surfaces::page_surface(graph, job, solved, &mut functions)).collect();
     Scene {
         doc: job.doc.clone(),
         motions: job.motions.iter().map(|motion| page_motion(motion, solved)).collect(),
-        parameters: parameters::of(job, solved),
+        parameters: parameters::page_parameters(job, solved),
         machines: job
             .machines
             .iter()
             .enumerate()
-            .map(|(k, m)| machines::of(graph, job, (k, m), &mut functions))
+            .map(|(k, m)| machines::page_machine(graph, job, (k, m), &mut functions))
             .collect(),
-        tools: tools::of(job, solved, &mut functions),
+        tools: tools::page_tools(job, solved, &mut functions),
         surfaces,
         definitions: parameters::definitions(job, &mut functions),
         notes: Vec::new(),

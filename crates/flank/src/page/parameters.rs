@@ -18,7 +18,7 @@ const OF_ANGLE: f64 = 0.1;
 const NOTHING: f64 = 1e-5;
 
 /// In the order of the job.
-pub(super) fn of(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<PageParameter> {
+pub(super) fn page_parameters(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<PageParameter> {
     let reaches: Vec<(f64, &Sensitivity)> =
         solved.iter().filter_map(|solved| Some((size(solved), solved.sensitivity.as_ref()?))).collect();
     let page = |parameter: &Parameter<'_>| PageParameter {

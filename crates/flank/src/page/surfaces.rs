@@ -7,7 +7,7 @@ use flank_expr::{Expr, Graph};
 use super::functions::Functions;
 use crate::solve::solved::Solved;
 
-pub(super) fn of<'g>(
+pub(super) fn page_surface<'g>(
     graph: &'g Graph,
     job: &Job<'g>,
     solved: &Solved<'_, 'g>,

@@ -20,7 +20,7 @@ const CHORD: f64 = 1e-3;
 const NO_RISE: f64 = 1e-9;
 
 /// Each tool once, however many surfaces it makes.
-pub(super) fn of<'g>(job: &Job<'g>, all: &[Solved<'_, 'g>], functions: &mut Functions<'g>) -> Vec<PageTool> {
+pub(super) fn page_tools<'g>(job: &Job<'g>, all: &[Solved<'_, 'g>], functions: &mut Functions<'g>) -> Vec<PageTool> {
     let mut tools: Vec<PageTool> = Vec::new();
     let mut turns: HashMap<&str, Option<Screw>> = HashMap::new();
     for (number, solved) in all.iter().enumerate() {

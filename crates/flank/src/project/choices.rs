@@ -123,7 +123,7 @@ choices! {
 
 impl ReportFormat {
     /// What a path says it is; nothing for a folder.
-    pub fn of(path: &Path) -> Option<ReportFormat> {
+    pub fn of_path(path: &Path) -> Option<ReportFormat> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match &*extension {
             "html" | "htm" => Some(ReportFormat::Html),

@@ -93,11 +93,11 @@ impl Findings {
             code: diagnostic.code.as_str(),
             severity: diagnostic.severity().into(),
             message: diagnostic.message.clone(),
-            place: Place::of(&self.sources, diagnostic.span),
+            place: Place::of_span(&self.sources, diagnostic.span),
             notes: diagnostic
                 .notes
                 .iter()
-                .map(|note| Note { place: Place::of(&self.sources, note.span), text: note.text.clone() })
+                .map(|note| Note { place: Place::of_span(&self.sources, note.span), text: note.text.clone() })
                 .collect(),
             help: diagnostic.help.clone(),
         }
@@ -105,7 +105,7 @@ impl Findings {
 }
 
 impl Place {
-    pub(crate) fn of(sources: &Sources, span: Span) -> Place {
+    pub(crate) fn of_span(sources: &Sources, span: Span) -> Place {
         let (path, line, column) = sources.place(span);
         Place { file: shown_path(path), line, column, text: sources.text(span).to_string() }
     }

@@ -22,7 +22,7 @@ pub enum UnitSymbol {
 }
 
 impl UnitSymbol {
-    pub(crate) fn of(dimension: Dimension) -> UnitSymbol {
+    pub(crate) fn of_dimension(dimension: Dimension) -> UnitSymbol {
         match dimension {
             Dimension::LENGTH => UnitSymbol::Millimetre,
             Dimension::ANGLE => UnitSymbol::Degree,
@@ -57,7 +57,12 @@ impl Extent {
     pub(crate) fn new(name: &str, dimension: Dimension, ends: Option<(f64, f64)>) -> Extent {
         let shown = |x: f64| units::shown(dimension, x);
         let (low, high) = ends.unzip();
-        Extent { name: name.to_string(), unit: UnitSymbol::of(dimension), low: low.map(shown), high: high.map(shown) }
+        Extent {
+            name: name.to_string(),
+            unit: UnitSymbol::of_dimension(dimension),
+            low: low.map(shown),
+            high: high.map(shown),
+        }
     }
 
     /// Both ends, if anything was found.
@@ -79,7 +84,11 @@ pub struct NamedValue {
 
 impl NamedValue {
     pub(crate) fn new(name: &str, dimension: Dimension, value: f64) -> NamedValue {
-        NamedValue { name: name.to_string(), unit: UnitSymbol::of(dimension), value: units::shown(dimension, value) }
+        NamedValue {
+            name: name.to_string(),
+            unit: UnitSymbol::of_dimension(dimension),
+            value: units::shown(dimension, value),
+        }
     }
 }
 
@@ -94,7 +103,7 @@ pub struct NamedUnit {
 
 impl NamedUnit {
     pub(crate) fn new(name: &str, dimension: Dimension) -> NamedUnit {
-        NamedUnit { name: name.to_string(), unit: UnitSymbol::of(dimension) }
+        NamedUnit { name: name.to_string(), unit: UnitSymbol::of_dimension(dimension) }
     }
 }
 

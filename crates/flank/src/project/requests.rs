@@ -153,7 +153,7 @@ pub struct SolveRequest {
 
 impl SolveRequest {
     /// Points as CSV and a picture, in the folder `build`; of a [`Job`](crate::Job), or of some in a spec.
-    pub fn of(jobs: impl Into<JobSelection>) -> SolveRequest {
+    pub fn new(jobs: impl Into<JobSelection>) -> SolveRequest {
         SolveRequest {
             jobs: jobs.into(),
             out: "build".into(),

@@ -85,7 +85,7 @@ pub(crate) struct Origin {
 }
 
 impl Origin {
-    pub(crate) fn of(compilation: &Compilation<'_>) -> Origin {
+    pub(crate) fn of_compilation(compilation: &Compilation<'_>) -> Origin {
         let mut hash = Sha256::new();
         for (_, source) in compilation.sources.files() {
             hash.update((source.text.len() as u64).to_le_bytes());
@@ -105,7 +105,7 @@ impl Origin {
                 surface.name == *name || format!("{job}.{}", surface.name) == *name
             };
             let found = surfaces().find(is_meant);
-            message.place = found.map(|(_, surface)| Place::of(&self.sources, surface.written));
+            message.place = found.map(|(_, surface)| Place::of_span(&self.sources, surface.written));
         }
         messages
     }

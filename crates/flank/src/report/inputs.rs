@@ -189,7 +189,7 @@ pub(super) fn motions_told(findings: &Findings<'_, '_>) -> Vec<PassedMotion> {
         let shown = |value: f64| units::shown(motion.dimension, value);
         PassedMotion {
             name: motion.name.clone(),
-            unit: UnitSymbol::of(motion.dimension),
+            unit: UnitSymbol::of_dimension(motion.dimension),
             is_count: motion.is_count,
             low: shown(motion.low),
             high: shown(motion.high),

@@ -185,7 +185,7 @@ fn axis_told(findings: &Findings<'_, '_>, run: &Run<'_, '_>) -> BuiltAxis {
         },
         law: text(axis.law),
         law_with_values: with_values(findings, axis),
-        unit: UnitSymbol::of(axis.dimension),
+        unit: UnitSymbol::of_dimension(axis.dimension),
         low: run.over.map(|range| shown(range.low)),
         high: run.over.map(|range| shown(range.high)),
         travel: axis.travel.map(|travel| Travel::new(axis.dimension, travel)),

@@ -52,10 +52,10 @@ pub fn report(
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let jobs = solve::asked(&jobs, monitor)?;
-    let origin = Origin::of(&compilation);
-    let target = Target::of(request, &jobs)?;
+    let origin = Origin::of_compilation(&compilation);
+    let target = Target::of_request(request, &jobs)?;
     for job in jobs {
-        let findings = Findings::of(job, &compilation.sources, &origin, (request, monitor))?;
+        let findings = Findings::of_job(job, &compilation.sources, &origin, (request, monitor))?;
         let document = findings.document();
         check(monitor)?;
         let written = target.write(&findings, &document, monitor)?;
@@ -84,7 +84,7 @@ struct Findings<'j, 'g> {
 }
 
 impl<'j, 'g> Findings<'j, 'g> {
-    fn of(
+    fn of_job(
         job: &'j Job<'g>,
         sources: &'j Sources,
         origin: &'j Origin,
@@ -114,7 +114,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         let header = solve::header(&[job], &request.jobs, origin);
         // the page says once where all its pictures come from
         let unsigned = Header { spec: String::new(), ..header.clone() };
-        let subject = Subject::of(job, solved, &[], unsigned)?;
+        let subject = Subject::of_solved(job, solved, &[], unsigned)?;
         let drawings = draw::defaults(&subject, PictureOptions::default());
         Ok(Findings {
             job,
@@ -163,7 +163,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         sections.extend([extremes::section(self), ends::section(self)]);
         sections.extend(influences::section(self));
         sections.extend(pictures::section(self));
-        let unchecked = unchecked::of(self);
+        let unchecked = unchecked::unchecked(self);
         let blocks = vec![
             Block::Heading("In this job".to_string()),
             Block::List(unchecked.of_job),
@@ -224,7 +224,7 @@ impl<'j, 'g> Findings<'j, 'g> {
 
     fn result(&self, document: &Document, files: Vec<String>) -> ReportResult {
         let header = &self.header;
-        let unchecked = unchecked::of(self);
+        let unchecked = unchecked::unchecked(self);
         let [asked, solved] = self.counts();
         let picture = |figure: &Figure| ReportedPicture { name: figure.name.clone(), shows: figure.caption.clone() };
         ReportResult {

@@ -9,13 +9,13 @@ use crate::project::choices::{Choice, PlotKind};
 /// The pictures that matter for the job, without those that stand elsewhere on the page.
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
     let blocks: Vec<Block> =
-        findings.drawings.iter().skip(1).map(|(what, drawing)| of(findings, *what, drawing)).collect();
+        findings.drawings.iter().skip(1).map(|(what, drawing)| block_of_drawing(findings, *what, drawing)).collect();
     (!blocks.is_empty()).then(|| ReportSection { title: "Pictures".to_string(), blocks })
 }
 
 /// The first of them, for the opening.
 pub(super) fn first(findings: &Findings<'_, '_>) -> Option<Block> {
-    findings.drawings.first().map(|(what, drawing)| of(findings, *what, drawing))
+    findings.drawings.first().map(|(what, drawing)| block_of_drawing(findings, *what, drawing))
 }
 
 /// Another one, if it fits the job and is not among those that matter anyway.
@@ -24,10 +24,10 @@ pub(super) fn figure(findings: &Findings<'_, '_>, what: PlotKind) -> Option<Bloc
         return None;
     }
     let drawing = draw::draw(&findings.subject, what, &[], PictureOptions::default()).ok()?;
-    Some(of(findings, what, &drawing))
+    Some(block_of_drawing(findings, what, &drawing))
 }
 
-fn of(findings: &Findings<'_, '_>, what: PlotKind, drawing: &Drawing) -> Block {
+fn block_of_drawing(findings: &Findings<'_, '_>, what: PlotKind, drawing: &Drawing) -> Block {
     let name = format!("{}.report.{}", findings.job.name, what.name());
     let caption = format!("{}: {}", what.name(), drawing.shows);
     Block::Figure(Figure { name, picture: drawing.picture.clone(), caption })

@@ -25,7 +25,7 @@ impl Target {
     /// In words, if one file is to hold several formats.
     pub(super) fn check(request: &ReportRequest) -> Result<(), Failure> {
         let out = &request.out;
-        let format = ReportFormat::of(out);
+        let format = ReportFormat::of_path(out);
         match request.format.iter().find(|other| format.is_some_and(|format| **other != format)) {
             Some(other) => {
                 let message =
@@ -38,9 +38,9 @@ impl Target {
 
     /// # Errors
     /// In words, if one file is to hold several reports.
-    pub(super) fn of(request: &ReportRequest, jobs: &[&Job<'_>]) -> Result<Target, String> {
+    pub(super) fn of_request(request: &ReportRequest, jobs: &[&Job<'_>]) -> Result<Target, String> {
         let out = &request.out;
-        let Some(format) = ReportFormat::of(out) else {
+        let Some(format) = ReportFormat::of_path(out) else {
             let formats = if request.format.is_empty() { vec![ReportFormat::Html] } else { request.format.clone() };
             return Ok(Target { folder: out.clone(), file: None, formats });
         };

@@ -13,7 +13,7 @@ pub(super) struct Unchecked {
     pub(super) always: Vec<String>,
 }
 
-pub(super) fn of(findings: &Findings<'_, '_>) -> Unchecked {
+pub(super) fn unchecked(findings: &Findings<'_, '_>) -> Unchecked {
     let of_job = [
         not_sampled(findings),
         not_certified(findings),

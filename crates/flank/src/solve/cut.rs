@@ -22,7 +22,7 @@ pub(crate) struct Cut {
 }
 
 /// Nothing if the job does not ask for it.
-pub(crate) fn of<'g>(
+pub(crate) fn left_by_edges<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
     points: &[SurfacePoint],

@@ -63,7 +63,7 @@ pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
     let start = Instant::now();
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let origin = Origin::of(&compilation);
+    let origin = Origin::of_compilation(&compilation);
     let wanted = SolveOptions {
         geometry: request.geometry,
         sensitivity: request.sensitivity,

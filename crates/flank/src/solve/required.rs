@@ -81,7 +81,7 @@ pub(crate) fn told(solved: &Solved<'_, '_>) -> Vec<MissedRequirement> {
         MissedRequirement {
             message: broken.limit.message.clone(),
             name: of.name.clone(),
-            unit: UnitSymbol::of(of.dimension),
+            unit: UnitSymbol::of_dimension(of.dimension),
             points: broken.places.count,
             low,
             high,

@@ -47,7 +47,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         fields.extend(geometry::fields(job, surface, sample, &points));
     }
     fields.extend(radii.as_deref().map(certify::field));
-    let cut = cut::of(job, surface, &points, wanted.session);
+    let cut = cut::left_by_edges(job, surface, &points, wanted.session);
     fields.extend(cut.iter().flat_map(Cut::fields));
     let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
     let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
