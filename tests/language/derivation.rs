@@ -1,5 +1,5 @@
 //! What `flank derive` prints is true: the printed text is read back, its expressions are evaluated at values at random, and
-//! matrices, product, vector part, twists and equation of meshing are held against products of plain numbers.
+//! matrices, product, vector part, twists and equation of meshing are checked against products of plain numbers.
 
 #[path = "../../crates/expr/tests/printing/parser.rs"]
 mod parser;

@@ -248,7 +248,7 @@ fn a_hypoid_pinion_meets_dense_matrices() {
 }
 
 /// Hypoid settings that nobody made for each other: tilts to 30 degrees and offsets to 40 mm, both signs, both flanks, both hands.
-/// Points are found by blade and roll, and held against the matrices and against the blade on its whole way: it comes to within a
+/// Points are found by blade and roll, and checked against the matrices and against the blade on its whole way: it comes to within a
 /// step of each point that is solved, and never nearer; through those that are cut away it goes.
 #[test]
 fn hypoid_settings_of_all_kinds_meet_dense_matrices() {

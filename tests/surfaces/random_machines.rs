@@ -1,4 +1,4 @@
-//! Machines that nobody designed: random chains of frames, random laws, three tools. What is solved is held against 4 × 4
+//! Machines that nobody designed: random chains of frames, random laws, three tools. What is solved is checked against 4 × 4
 //! matrices multiplied by another library and against finite differences, which know nothing of twists or meshing.
 
 use std::fmt::Write;

@@ -44,7 +44,7 @@ pub(crate) fn eprint(text: &str) {
 }
 
 /// Whether the program was started without a stdout. Before `main` the standard library opens `/dev/null` in its place, which
-/// cannot be told from one that the caller wants; what it does has therefore to be looked at earlier.
+/// cannot be distinguished from one that the caller wants; what it does has therefore to be looked at earlier.
 #[cfg(target_os = "linux")]
 mod closed {
     use std::sync::atomic::{AtomicBool, Ordering};

@@ -96,7 +96,7 @@ pub(crate) fn findings_in_full(findings: &Findings) -> String {
     }
     let mut out = format!("{}{}\n", with_flags(&findings.rendered(true)), counted(findings.counts()));
     if let Some(first) = findings.list().iter().find(|finding| finding.severity == flank::Severity::Error) {
-        out += &format!("`flank explain {}` tells more\n", first.code);
+        out += &format!("for more about this error: `flank explain {}`\n", first.code);
     }
     out
 }

@@ -72,7 +72,7 @@ fn main() -> ExitCode {
     ended(run(&command).unwrap_or_else(|failure| failure.tell(command.is_json())))
 }
 
-/// What the caller is told at the end: most of all what went wrong.
+/// What the caller reads at the end: most of all what went wrong.
 fn ended(ending: Ending) -> ExitCode {
     let is_lost = ending == Ending::Done && console::is_unread();
     ExitCode::from(if is_lost { Ending::Unread } else { ending }.code())

@@ -1,6 +1,6 @@
 //! What happens where the system gives no more memory: the program ends with words and an exit code of its own.
 //!
-//! What jobs ask for is estimated before ([`flank::solve`]); this is for what that does not see, and for systems
+//! What jobs ask for is estimated before ([`flank::solve`]); this is for what the estimate misses, and for systems
 //! that have less. A system that promises memory which it has not (as Linux does by default) ends a program by itself instead.
 #![allow(unsafe_code)] // an allocator is unsafe to write; this one hands everything to the system's
 
@@ -52,10 +52,10 @@ fn granted(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
-/// Whether what ends the program is told as a document on stdout, too.
+/// Whether what ends the program goes to stdout as a document, too.
 static AS_DOCUMENT: AtomicBool = AtomicBool::new(false);
 
-/// Has it told so.
+/// Makes it so.
 pub(crate) fn tell_as_document() {
     AS_DOCUMENT.store(true, Ordering::Relaxed);
 }

@@ -97,7 +97,7 @@ impl Drop for Ticker {
     }
 }
 
-/// Writes the line until the work is over. Who cannot be written to is not told.
+/// Writes the line until the work is over. What cannot be written is dropped.
 fn tick(shared: &(Mutex<State>, Condvar), mut out: Box<dyn Write + Send>, [quiet, every]: [Duration; 2]) {
     let (state, changed) = shared;
     let start = Instant::now();

@@ -154,7 +154,7 @@ fn errors_end_with_where_to_read_more() {
     let folder = folder("more");
     let wrong = written(&folder, "wrong.chain", "tool t {\n    param r : lenght\n    param r : length = 3 deg\n}\n");
     let told = text(&flank(&["check", &wrong]).stderr);
-    assert!(told.ends_with("3 errors\n`flank explain E0201` tells more\n"), "{told}");
+    assert!(told.ends_with("3 errors\nfor more about this error: `flank explain E0201`\n"), "{told}");
     assert_eq!(told.matches("flank explain").count(), 1);
     let right = text(&flank(&["check", "specs/machines/cradle.chain"]).stderr);
     assert!(!right.contains("flank explain"), "{right}");

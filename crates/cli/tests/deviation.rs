@@ -41,7 +41,7 @@ fn normals_that_face_apart_are_told() {
     assert!(!of("flank_minus").contains("opposite sides"));
 }
 
-/// Two surfaces that are both sampled by a coordinate of the spec's own are held against each other by it.
+/// Two surfaces that are both sampled by a coordinate of the spec's own are compared by it.
 #[test]
 fn a_worm_wheel_lies_off_the_conjugate_one() {
     let out = folder("worm_wheel");

@@ -1,4 +1,4 @@
-//! What `flank solve` says of points of random generated surfaces is held against trying, as `flank-generated` does.
+//! What `flank solve` says of points of random generated surfaces is checked against trying, as `flank-generated` does.
 //!
 //! `FLANK_GENERATED_CASES` is how many numbers are drawn, of which five in six make a case, `FLANK_GENERATED_FIRST` the first of them. The specs of cases with a finding
 //! go into the folder `FLANK_GENERATED_FOLDER`. `FLANK_GENERATED_PROGRAM` is another build of the program.

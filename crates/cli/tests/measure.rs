@@ -412,7 +412,7 @@ fn what_is_missing_or_wrong_is_told() {
         (&["measure", PINION, "--surface", "flank"][..], 1, "there is no surface `flank`"),
         (&["measure", PINION, "--rows", "1"], 2, "write a whole number from 2 to 1000"),
         (&["measure", PINION, "--margin", "0.5"], 2, "from 0 to below 0.5"),
-        (&["deviation", PINION, "concave"], 2, "`concave` is held against: --reference SURFACE or --measured FILE"),
+        (&["deviation", PINION, "concave"], 2, "`concave` is compared with: --reference SURFACE or --measured FILE"),
         (&["measure", PINION, "--rows", "-1"], 2, "write a whole number from 2 to 1000"),
         (&["measure", PINION, "--margin", "-0.1"], 2, "write one share or two"),
         (&["deviation", PINION, "concave", "--reference", "convex", "--margin", "0.1"], 2, "--margin says where"),

@@ -47,7 +47,7 @@ fn sensitivity_is_ranked_written_and_drawn() {
     assert_eq!(sensitivity["counts"], serde_json::json!(["teeth"]));
 }
 
-/// Parameters are ranked by what a usual change of each does, not by numbers in units that cannot be held against each other.
+/// Parameters are ranked by what a usual change of each does, not by numbers in units that cannot be compared.
 #[test]
 fn parameters_are_ranked_by_what_a_usual_change_does() {
     let out = folder("sensitivity_rank");

@@ -1,4 +1,4 @@
-//! One flank held against another: ease-off with slopes, crownings and bias.
+//! One flank compared with another: ease-off with slopes, crownings and bias.
 
 use std::sync::Arc;
 

@@ -56,7 +56,7 @@ pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredF
 pub use convert::convert;
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
-    FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, UnseenMotion,
+    FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
 };
 pub use derive::derive;
 pub use derive::result::{

@@ -1,4 +1,4 @@
-//! The program's verdicts held against trying, and against its own on other grids, by other coordinates, in wider ranges.
+//! The program's verdicts checked against trying, and against its own on other grids, by other coordinates, in wider ranges.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ const TOUCH: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 /// Heights that are rounding of a touch alone, mm.
 const NOTHING: f64 = 1e-12;
-/// A point that stays or goes only by less than this is not held against the program, mm.
+/// A point that stays or goes only by less than this is not counted against the program, mm.
 const CLEAR: f64 = 1e-4;
 /// Shares of the ranges within which it is rounding whether a point is in them.
 const EDGE: f64 = 1e-6;
@@ -30,7 +30,7 @@ const MISPLACED: f64 = 1e-7;
 const BEYOND: f64 = 0.02;
 /// Points farther apart than this are on two branches, mm.
 const APART: f64 = 1e-3;
-/// Of grids with more points not each is held against all positions.
+/// Of grids with more points not each is checked against all positions.
 const MANY: usize = 60;
 /// How many points of a grid are looked for in other ways.
 const LOOKED_FOR: usize = 4;

@@ -1,4 +1,4 @@
-//! Random generated surfaces with cusps, self-crossings and bifurcations. What a program says of their points is held against trying
+//! Random generated surfaces with cusps, self-crossings and bifurcations. What a program says of their points is checked against trying
 //! the tool at many positions, and against what it says of the same points in other grids, by other coordinates, in wider ranges.
 
 #![allow(unreachable_pub)] // its modules are its own

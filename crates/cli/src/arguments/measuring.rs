@@ -72,7 +72,7 @@ The deviation is signed, in um, plus is material: along the normal of the surfac
 A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are laid onto each
 other. Without --no-align the surface is first turned about z until both meet in the middle of the grid.
 
-With --measured, the points of a file are held against the surface: a CSV table with row and column as `flank measure` counts them,
+With --measured, the points of a file are compared with the surface: a CSV table with row and column as `flank measure` counts them,
 and x, y, z in mm or deviation_um. Without --no-align they are first turned about z until the sum of the squares is least.
 
 Examples:
@@ -84,10 +84,10 @@ pub(crate) struct Deviation {
     pub(crate) which: JobArguments,
     /// The surface
     pub(crate) surface: String,
-    /// The surface that it is held against; it is sampled in the spec
+    /// The surface that it is compared with; it is sampled in the spec
     #[arg(long, value_name = "SURFACE", conflicts_with = "measured")]
     pub(crate) reference: Option<String>,
-    /// Measured points that are held against the surface, which is sampled in the spec
+    /// Measured points that are compared with the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]
     pub(crate) measured: Option<PathBuf>,
     /// Rows of the grid that was measured; the largest that the file names otherwise

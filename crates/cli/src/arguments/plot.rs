@@ -29,7 +29,7 @@ pub(crate) struct Plot {
     /// The surfaces that pictures show, several with commas; otherwise maps show the first that is sampled
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) surface: Vec<String>,
-    /// The surface that the one of --surface is held against: for deviation and topography
+    /// The surface that the one of --surface is compared with: for deviation and topography
     #[arg(long, value_name = "SURFACE", requires = "surface")]
     pub(crate) reference: Option<String>,
     /// The parameters or settings whose influence `sensitivity` shows; those that do most otherwise

@@ -131,7 +131,7 @@ impl View {
 }
 
 /// From where to look: along the average normal, from beyond the tips and from the side of plus z. Flanks that oppose
-/// each other are looked at between them and more along z, where both can be told apart.
+/// each other are looked at between them and more along z, where both can be distinguished.
 fn eye_direction(nodes: &[Node]) -> Vector {
     let normals: Vec<Vector> = nodes.iter().filter_map(|node| node.normal).collect();
     let sum = normals.iter().fold([0.0; 3], |sum, &normal| add(sum, normal));

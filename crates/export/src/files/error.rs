@@ -75,7 +75,7 @@ pub enum Malformed {
     #[error("the motion table's rates are not all there, or not all finite")]
     RateNumber,
     /// A solved point has an infinity or a NaN somewhere.
-    #[error("surface `{surface}`, point ({i}, {j}) is said to be solved, but not all of its numbers are finite")]
+    #[error("surface `{surface}`, point ({i}, {j}) is marked as solved, but not all of its numbers are finite")]
     NotANumber {
         /// Name of the patch.
         surface: String,
@@ -125,7 +125,7 @@ pub struct FileError {
 impl From<parquet::errors::ParquetError> for WriteError {
     fn from(error: parquet::errors::ParquetError) -> WriteError {
         match error {
-            // what the disk says is said as for every other format
+            // errors of the disk read as for every other format
             parquet::errors::ParquetError::External(inner) => match inner.downcast::<io::Error>() {
                 Ok(refused) => WriteError::Io(*refused),
                 Err(other) => WriteError::Parquet(parquet::errors::ParquetError::External(other)),

@@ -98,7 +98,7 @@ impl MachineAxis {
         ends.map(|end| plain(if self.is_rotary { degrees(end) } else { end }))
     }
 
-    /// Where the control sees it, mm or radians.
+    /// As the control counts it, mm or radians.
     pub(crate) fn programmed(&self, position: f64) -> f64 {
         if self.reversed { self.offset - position } else { self.offset + position }
     }

@@ -94,7 +94,7 @@ struct SurfaceOut<'a> {
     points: PointsOut<'a>,
 }
 
-/// What is said of a field before its values.
+/// The head of a field, before its values.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "WrittenField")]
 struct FieldOut<'a> {
@@ -174,7 +174,7 @@ impl Serialize for PointsOut<'_> {
         let patch = self.0.outline();
         let mut list = serializer.serialize_seq(Some(patch.rows.count.saturating_mul(patch.columns.count)))?;
         let mut first = 0;
-        // what the stream says goes out as it is: its kind is told in words later
+        // what the stream says goes out as it is: its kind is put into words later
         let mut refused = None;
         let handed_over = self.0.bands(&mut |points| {
             for (i, j, point) in patch.numbered(first, points) {

@@ -1,4 +1,4 @@
-//! Documents held against the schemas of what is written.
+//! Documents checked against the schemas of what is written.
 
 use serde_json::Value;
 

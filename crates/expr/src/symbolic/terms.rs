@@ -1,4 +1,4 @@
-//! Short sums of products in one normal form, for what construction by rules does not see: a factor that all components of
+//! Short sums of products in one normal form, for what construction by rules misses: a factor that all components of
 //! a vector share, sin² + cos² spread over several terms. Only sums of a few terms are ever written out.
 
 use std::cell::LazyCell;

@@ -5,7 +5,7 @@ use crate::symbolic::graph::{Expr, Graph, Node, Placed};
 impl Graph {
     /// Values of the expressions; `values` holds one number per variable of the graph, in order of creation.
     ///
-    /// Every other evaluator is held against this one.
+    /// Every other evaluator is tested against this one.
     ///
     /// # Panics
     /// If an expression depends on a variable beyond the end of `values`.

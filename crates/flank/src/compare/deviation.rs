@@ -22,13 +22,13 @@ use crate::solve::branches;
 use crate::solve::starts::{self, Starts};
 use crate::solve::{self, SolveOptions, bound, problem};
 
-/// What a surface is held against.
+/// What a surface is compared with.
 enum Second<'a> {
     DeviationMap(&'a Path),
     Surface(&'a str),
 }
 
-/// Holds one surface against another, or measured points against a surface, and writes how far they lie apart.
+/// Compares one surface with another, or measured points with a surface, and writes how far they lie apart.
 ///
 /// # Errors
 /// What is wrong with the spec or the measured points; what does not go together; that a file cannot be written.
@@ -50,7 +50,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
         (None, Some(name)) => Second::Surface(name),
         (None, None) => {
             let message = format!(
-                "say what `{}` is held against: option `reference SURFACE` or option `measured FILE`",
+                "say what `{}` is compared with: option `reference SURFACE` or option `measured FILE`",
                 request.surface
             );
             return Err(Failure::Request(message));
@@ -104,7 +104,7 @@ fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> Vec<Remark> {
         })
     });
     let mut told: Vec<Remark> = told.collect();
-    // a surface may be held against itself
+    // a surface may be compared with itself
     told.dedup();
     told
 }
@@ -159,7 +159,7 @@ pub(crate) fn measure<'j, 'g>(
     })
 }
 
-/// The points of a surface at values of two coordinates, and what is told of its branches where several qualify.
+/// The points of a surface at values of two coordinates, and its branches where several qualify.
 fn solved<'g>(
     of: Named<'_, 'g>,
     (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),

@@ -13,7 +13,7 @@ use crate::project::remark::{NotDone, Remark};
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(tag = "schema", rename = "flank.deviation/1")]
 pub struct DeviationResult {
-    /// Null where measured points are held against `from`.
+    /// Null where measured points are compared with `from`.
     pub surface: Option<String>,
     /// The job of that surface.
     #[serde(skip)]
@@ -22,9 +22,9 @@ pub struct DeviationResult {
     pub frame: Option<String>,
     /// The file of measured points.
     pub measured: Option<String>,
-    /// The surface that it is held against.
+    /// The surface that it is compared with.
     pub from: String,
-    /// The job of the surface that it is held against.
+    /// The job of the surface that it is compared with.
     #[serde(skip)]
     pub from_job: String,
     /// Laid onto `frame`.
@@ -86,7 +86,7 @@ impl DeviationResult {
         self.counts
     }
 
-    /// The points of the surface that it is held against, in its frame, mm, row by row.
+    /// The points of the surface that it is compared with, in its frame, mm, row by row.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
@@ -96,7 +96,7 @@ impl DeviationResult {
         &self.deviations
     }
 
-    /// What is held against the other: the surface with its job, or the file.
+    /// What is compared with the other: the surface with its job, or the file.
     fn held(&self) -> String {
         match (&self.job, &self.surface, &self.frame) {
             (Some(job), Some(surface), Some(frame)) => format!("{job}.{surface} ({frame})"),

@@ -1,4 +1,4 @@
-//! `flank deviation --measured`: measured points held against the nominal surface.
+//! `flank deviation --measured`: measured points compared with the nominal surface.
 
 use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
 use flank_solver::{Inspection, Outcome, SurfacePoint, beside};
@@ -76,7 +76,7 @@ pub(crate) fn inspect<'j, 'g>(
     })
 }
 
-/// Rows and columns of the grid: those that the file names, or as many more as there are said to be.
+/// Rows and columns of the grid: those that the file names, or the larger numbers of the request.
 fn counts(named: [usize; 2], request: &DeviationRequest) -> Result<[usize; 2], String> {
     let [rows, columns] =
         [(request.rows, named[0], "rows"), (request.columns, named[1], "columns")].map(|(said, named, what)| {

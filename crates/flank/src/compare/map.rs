@@ -31,7 +31,7 @@ impl Named<'_, '_> {
     }
 }
 
-/// What is held against a surface.
+/// What is compared with a surface.
 pub(crate) enum ComparedWith<'j, 'g> {
     Surface(Named<'j, 'g>),
     /// So many measured points of a file.
@@ -64,7 +64,7 @@ impl ComparedWith<'_, '_> {
     }
 }
 
-/// One surface, or what was measured of it, held against a surface.
+/// One surface, or what was measured of it, compared with a surface.
 pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) held: ComparedWith<'j, 'g>,
     pub(crate) from: Named<'j, 'g>,
@@ -79,7 +79,7 @@ pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) deviations: Vec<Option<f64>>,
     /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
     pub(crate) is_opposite: bool,
-    /// Why nothing could be held against the other, with a way out; empty if it could.
+    /// Why nothing could be compared with the other, with a way out; empty if it could.
     pub(crate) refused: Vec<NotDone>,
     /// Points at whose places the surface is cut away.
     pub(crate) cut_away: usize,
@@ -184,7 +184,7 @@ impl DeviationMap<'_, '_> {
         }
     }
 
-    /// What is said of it, with the files that were written.
+    /// The result, with the files that were written.
     pub(super) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
         let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
         let direction = |k: usize| {

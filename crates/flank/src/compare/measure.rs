@@ -19,10 +19,10 @@ use crate::project::spec::Origin;
 use crate::solve;
 use crate::solve::SolveOptions;
 
-/// Rows and columns of the grid that tells how a flank lies.
+/// Rows and columns of the grid that shows how a flank lies.
 const TRIAL: usize = 13;
 
-/// Writes nominal points and normals of surfaces for measuring machines. `each` is given what is to be said of each job.
+/// Writes nominal points and normals of surfaces for measuring machines. `each` is given the result of each job.
 ///
 /// # Errors
 /// What is wrong with the spec; that a surface has no grid, or several branches; that a file cannot be written.

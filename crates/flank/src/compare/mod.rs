@@ -1,4 +1,4 @@
-//! One surface held against another, against measured points, and nominal points for measuring machines.
+//! One surface compared with another, with measured points, and nominal points for measuring machines.
 
 pub(crate) mod deviation;
 pub(crate) mod deviation_result;

@@ -72,7 +72,7 @@ pub(super) fn told(carried: &Conversion<'_, '_>) -> Vec<NotDone> {
     each.map(|(_, told, count)| NotDone::new(NotDoneKind::NotReached, name, message(told, *count))).collect()
 }
 
-/// All axes that have to stand beyond their travels, that which is farthest beyond, as a share of its travel, first.
+/// All axes that have to stand beyond their travels, the farthest beyond, as a share of its travel, first.
 fn beyond(carried: &Conversion<'_, '_>, posture: &Posture) -> (String, String) {
     let farthest = carried.problem.beyond(&posture.axes);
     let mut kind: Vec<&str> = farthest.iter().map(|(k, _)| carried.free[*k].name.as_str()).collect();
@@ -166,7 +166,7 @@ fn lost(carried: &Conversion<'_, '_>, is_singular: bool, near: &Posture, at: &[f
     }
 }
 
-/// The largest distance of the tool's points that touch the flank from the axis about which it may turn unseen, mm.
+/// The largest distance of the tool's points that touch the flank from its axis of symmetry, mm.
 fn tool_radius(source: &Source<'_, '_>) -> Option<f64> {
     let turn = source.symmetries.iter().find(|screw| screw.angular != [0.0; 3])?;
     source.flanks.iter().filter_map(|flank| flank.tool_radius(turn)).reduce(f64::max)

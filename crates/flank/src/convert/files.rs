@@ -37,7 +37,7 @@ pub(super) fn write(
     let name = format!("{}{own}_on_{}", table.of.job, table.of.machine);
     let motion = motion_table(table, header);
     let seconds = || request.time.expect("an NC program is asked for with its cutting time");
-    // what one of the controls cannot do is told before there is a file
+    // what one of the controls cannot do is an error before there is a file
     for dialect in distinct(&request.nc) {
         write_nc(&motion, dialect.into(), seconds(), &mut std::io::sink()).map_err(|error| error.to_string())?;
     }

@@ -59,7 +59,7 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Conver
 }
 
 /// # Errors
-/// If a program is asked for that would go nowhere: told before any file is written.
+/// If a program is asked for that would go nowhere, before any file is written.
 fn check_positions(request: &ConvertRequest) -> Result<(), Failure> {
     if request.nc.is_empty() || request.positions > 1 {
         return Ok(());
@@ -287,7 +287,7 @@ impl<'t, 'g> Target<'t, 'g> {
             .map_err(|error| refused(&error, self.machine, &self.free))
     }
 
-    /// Postures at all positions. Where an axis that the tool does not see would go beyond its travel, the tool is turned about itself
+    /// Postures at all positions. Where an axis that leaves the tool unchanged would go beyond its travel, the tool is turned about itself
     /// so that it need not.
     fn postures(&mut self, positions: &[Vec<f64>]) -> Result<(PoseProblem<'g>, Vec<Posture>), String> {
         let found = self.postures_of(&self.chain, &self.axes, positions)?;
@@ -312,7 +312,7 @@ impl<'t, 'g> Target<'t, 'g> {
         Ok(found)
     }
 
-    /// Of each axis that ends what it does to the tool, if the tool does not see it, and how much of it per mm or radian.
+    /// Of each axis that ends what it does to the tool, if that leaves the tool unchanged, and how much of it per mm or radian.
     fn unseen_motions(&self) -> Vec<Option<(Screw, f64)>> {
         let settled = self.chain.substituted(&self.bindings);
         let axes: Vec<Expr<'g>> = self.axes.iter().map(|axis| axis.variable).collect();
@@ -322,7 +322,7 @@ impl<'t, 'g> Target<'t, 'g> {
         self.axes.iter().map(of).collect()
     }
 
-    /// The chain with the tool moved along itself by as much as brings axes that it does not see to the middle of their travels.
+    /// The chain with the tool moved along itself by as much as brings axes that leave it unchanged to the middle of their travels.
     fn turned(&self, unseen: &[Option<(Screw, f64)>], line: &[Posture]) -> Chain<'g> {
         let graph = self.free[0].variable.graph();
         let steps = self.axes.iter().zip(unseen).enumerate().flat_map(|(k, (axis, unseen))| {

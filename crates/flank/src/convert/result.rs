@@ -35,8 +35,8 @@ pub struct AxisMotion {
     pub made_at: Option<Vec<f64>>,
     /// That move the tool against the work.
     pub axes: Vec<AxisExtent>,
-    /// Motions of the tool against itself, in its frame.
-    pub unseen_by_the_tool: Vec<UnseenMotion>,
+    /// Motions that leave the tool unchanged, in its frame.
+    pub tool_symmetries: Vec<ToolSymmetry>,
     /// In the order in which they are passed.
     pub positions: Vec<AxisPosition>,
     /// Null where the axes are not followed over one motion.
@@ -91,9 +91,9 @@ pub struct AxisExtent {
     pub travel: Option<Travel>,
 }
 
-/// A motion along which the tool slides within itself.
+/// A motion that leaves the tool unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct UnseenMotion {
+pub struct ToolSymmetry {
     /// Turn, rad.
     pub angular: [f64; 3],
     /// Velocity of the origin, mm.
@@ -207,7 +207,7 @@ pub struct FoundSetting {
     pub unit: UnitSymbol,
     /// In its unit.
     pub value: f64,
-    /// Whether the poses tell it.
+    /// Whether the poses determine it.
     pub determined: bool,
 }
 
@@ -244,7 +244,7 @@ impl fmt::Display for FoundSettings {
             format!("{} {}", fixed(value, decimals), unit.symbol()).trim_end().to_string()
         };
         let setting = |of: &FoundSetting| {
-            let told = if of.determined { "" } else { "the poses do not tell" };
+            let told = if of.determined { "" } else { "not determined by the poses" };
             [of.name.clone(), text(of.value, 9, of.unit), told.to_string()]
         };
         let axis = |(k, axis): (usize, &NamedUnit)| {

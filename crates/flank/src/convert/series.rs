@@ -83,9 +83,9 @@ impl Series {
         let tolerance = tolerance.filter(|_| !self.meets)?;
         let Some((order, least)) = self.deviations.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else {
             let why = if source.flanks.is_empty() {
-                "the points tell where a face of the tool touches the flank, and this tool is an edge; say the order (option `order`)"
+                "the points show it where a face of the tool touches the flank, and this tool is an edge; give the order (option `order`)"
             } else {
-                "the points of the flank tell, and none is sampled and solved; add a `sample`, or say the order (option `order`)"
+                "the points of the flank show it, and none is sampled and solved; add a `sample`, or give the order (option `order`)"
             };
             return not_reached(format!(
                 "not reached: no order is known to keep the flank within {:.3e} um: {why}",

@@ -160,7 +160,7 @@ struct Found<'f, 't, 'g> {
     fit: SettingsFit,
     /// mm; none where no points are solved.
     deviation: Option<f64>,
-    /// Which points are not solved, as `flank solve` tells.
+    /// Which points are not solved, as `flank solve` reports.
     unsolved: Vec<NotDone>,
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct Source<'j, 'g> {
     pub(crate) ranges: Vec<Range>,
     /// Where all sampled points have the motions, if that is at one value of each.
     pub(crate) still: Option<Vec<f64>>,
-    /// What the tool does not see of its own motion.
+    /// Motions that leave the tool unchanged.
     pub(crate) symmetries: Vec<Screw>,
     /// The sampled points of each surface that a surface of the tool made, with that.
     pub(crate) flanks: Vec<Flank<'j, 'g>>,
@@ -48,7 +48,7 @@ pub(crate) struct Flank<'j, 'g> {
     pub(crate) points: Vec<SurfacePoint>,
 }
 
-/// The sampled points of a surface, and what is told of them.
+/// The sampled points of a surface, and why some are not solved.
 struct Made<'j, 'g> {
     surface: &'j GeneratedSurface<'g>,
     points: Vec<SurfacePoint>,
@@ -137,7 +137,7 @@ impl<'j, 'g> Source<'j, 'g> {
             .collect();
         // an edge, or a tool that is an envelope itself, is carried over as it stands
         let is_plain = tools.len() == count && !tools.is_empty();
-        let unseen = if is_plain {
+        let symmetries = if is_plain {
             symmetries(&tools).expect("a job without errors leaves nothing unbound")
         } else {
             Vec::new()
@@ -158,7 +158,7 @@ impl<'j, 'g> Source<'j, 'g> {
             motions,
             ranges,
             still,
-            symmetries: unseen,
+            symmetries,
             flanks,
             unsolved,
         })

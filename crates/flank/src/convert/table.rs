@@ -9,7 +9,7 @@ use super::Conversion;
 use super::rates::Rates;
 use super::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, MissingMotion, NcDeviation,
-    Remainders, UnseenMotion,
+    Remainders, ToolSymmetry,
 };
 use super::series::Series;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
@@ -108,8 +108,8 @@ impl Table {
             made_at: self.still.as_ref().map(shown),
             motions: self.motions.iter().map(named).collect(),
             axes: self.axes.iter().enumerate().map(|(k, axis)| self.extent(k, axis)).collect(),
-            unseen_by_the_tool: symmetries
-                .map(|screw| UnseenMotion { angular: screw.angular, linear: screw.linear })
+            tool_symmetries: symmetries
+                .map(|screw| ToolSymmetry { angular: screw.angular, linear: screw.linear })
                 .collect(),
             positions: self.positions.iter().zip(&self.line).map(|(at, posture)| self.position(at, posture)).collect(),
             polynomials: self.series.as_ref().map(|series| self.polynomials(series)),

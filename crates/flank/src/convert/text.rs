@@ -4,7 +4,7 @@ use std::fmt::{self, Formatter};
 
 use flank_export::fixed;
 
-use super::result::{AxisExtent, AxisMotion, AxisPolynomials, AxisRates, NcDeviation, UnseenMotion};
+use super::result::{AxisExtent, AxisMotion, AxisPolynomials, AxisRates, NcDeviation, ToolSymmetry};
 use crate::project::columns::aligned;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::units;
@@ -22,7 +22,7 @@ impl fmt::Display for AxisMotion {
                 each.map(|(motion, x)| format!("{} = {}", motion.name, with_unit(*x, 4, motion.unit))).collect();
             writeln!(f, "that is all of it: the sampled points are all made at {}", each.join(", "))?;
         }
-        self.unseen_by_the_tool.iter().try_for_each(|motion| writeln!(f, "the tool is unchanged by {motion}"))?;
+        self.tool_symmetries.iter().try_for_each(|motion| writeln!(f, "the tool is unchanged by {motion}"))?;
         let rows: Vec<[String; 4]> = self.axes.iter().filter_map(AxisExtent::cells).collect();
         if !rows.is_empty() {
             let head = ["axis", "from", "to", "travel"].map(String::from);
@@ -144,7 +144,7 @@ impl AxisExtent {
 }
 
 /// `a turn about [0, 0, 1]`.
-impl fmt::Display for UnseenMotion {
+impl fmt::Display for ToolSymmetry {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let shown = |v: [f64; 3]| format!("[{}]", v.map(|x| fixed(x, 6)).join(", "));
         if self.angular == [0.0; 3] {

@@ -1,4 +1,4 @@
-//! One surface held against another one, as a map and as a topography.
+//! One surface compared with another one, as a map and as a topography.
 
 use flank_chain_dsl::Job;
 use flank_draw::{PictureOptions, field_maps, topography};

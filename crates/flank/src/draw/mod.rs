@@ -55,7 +55,7 @@ pub(crate) struct Drawing {
 /// Why a kind of picture cannot be drawn.
 pub(crate) type Unfit = String;
 
-/// Draws pictures of jobs. `each` is given what is to be said of each job, when all are drawn.
+/// Draws pictures of jobs, and gives `each` their results when all are drawn.
 ///
 /// # Errors
 /// What is wrong with the spec; what does not go together, or does not fit the job; that a file cannot be written.

@@ -184,7 +184,7 @@ fn check_name(name: &str) -> Result<(), Failure> {
     }
 }
 
-/// What is told of a command line without tools, with those of the file if it can be read.
+/// The message about a command line without tools, with those of the file if it can be read.
 fn without_tools(text: Option<&str>) -> Failure {
     let document = text.and_then(|text| parsed(text).ok());
     let tools: Vec<_> = document.iter().flat_map(|document| Component::all(document.root_element(), TOOL)).collect();
@@ -378,7 +378,7 @@ fn on_one_line(text: &str) -> String {
     }
 }
 
-/// What is told of a file in a version of REXS that this is not made for.
+/// The message about a file in a version of REXS that this is not made for.
 fn unknown_version(version: Option<&str>) -> Option<String> {
     let number = |version: &str| {
         let (major, minor) = version.trim().split_once('.')?;

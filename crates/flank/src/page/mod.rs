@@ -29,7 +29,7 @@ use crate::solve::table;
 use crate::solve::{self, SolveOptions};
 use functions::Functions;
 
-/// What a surface can be coloured by and what a click tells of a point.
+/// What a surface can be coloured by and what a click shows of a point.
 fn wanted(session: Session<'_>) -> SolveOptions<'_> {
     SolveOptions { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, session }
 }
@@ -37,7 +37,7 @@ fn wanted(session: Session<'_>) -> SolveOptions<'_> {
 /// Share of what a motion passes over that its slider goes beyond.
 const BEYOND: f64 = 0.15;
 
-/// Writes a page in 3-D of each job. `each` is given what is to be said of each job.
+/// Writes a page in 3-D of each job, and gives `each` its result.
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.

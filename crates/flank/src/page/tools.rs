@@ -38,7 +38,7 @@ pub(super) fn page_tools<'g>(job: &Job<'g>, all: &[Solved<'_, 'g>], functions: &
     tools
 }
 
-/// What the tool of a surface looks like, whose number counts among those that are solved; `turn` is what it does not see.
+/// What the tool of a surface looks like, whose number counts among those that are solved; `turn` is the turn that leaves it unchanged.
 fn form<'g>(
     job: &Job<'g>,
     (number, generated): (usize, &GeneratedSurface<'g>),
@@ -69,7 +69,7 @@ fn range<'g>(generated: &GeneratedSurface<'g>, unknown: Expr<'g>) -> [f64; 2] {
     of.map_or([0.0, 1.0], |known| [known.low, known.high])
 }
 
-/// The rotation that none of the surfaces of a tool sees: all that stand in its frame together, since a plane or a cylinder by
+/// The rotation that leaves all surfaces of a tool unchanged: all that stand in its frame together, since a plane or a cylinder by
 /// itself may turn about more than the tool.
 fn turn<'g>(job: &Job<'g>, tool_frame: &str, all: &[Solved<'_, 'g>]) -> Option<Screw> {
     let parts = all.iter().map(|solved| solved.surface).filter(|made| made.generation.tool_frame() == tool_frame);

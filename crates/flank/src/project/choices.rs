@@ -34,7 +34,7 @@ pub(crate) fn named<C: Choice>(name: &str) -> Result<C, UnknownChoice> {
     found.ok_or_else(|| UnknownChoice { name: name.to_string(), known: known() })
 }
 
-/// An enum with names for its kinds; what is said of a kind is its doc comment.
+/// An enum with names for its kinds; the text about a kind is its doc comment.
 macro_rules! choices {
     ($(#[$meta:meta])* $choice:ident { $(#[doc = $about:literal] $kind:ident = $name:literal,)* }) => {
         $(#[$meta])*

@@ -35,7 +35,7 @@ impl<'a> Folder<'a> {
         Ok(Folder { path, origin, files: FileSet::default(), monitor, written: Vec::new() })
     }
 
-    /// Gives all files their names, and tells them.
+    /// Gives all files their names, and returns these.
     pub(crate) fn finish(self) -> Result<Vec<String>, Failure> {
         check(self.monitor)?;
         self.files.finish()?;

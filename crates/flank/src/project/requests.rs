@@ -178,7 +178,7 @@ pub struct PlotRequest {
     pub what: Vec<PlotKind>,
     /// The surfaces that pictures show; otherwise maps show the first that is sampled.
     pub surface: Vec<String>,
-    /// The surface that the one surface is held against.
+    /// The surface that the one surface is compared with.
     pub reference: Option<String>,
     /// The parameters whose influence is shown; those that do most otherwise.
     pub of: Vec<String>,
@@ -224,16 +224,16 @@ pub struct ViewRequest {
     pub evaluator: EvaluatorOptions,
 }
 
-/// One surface held against another, or measured points against a surface.
+/// One surface compared with another, or measured points with a surface.
 #[derive(Clone, Debug)]
 pub struct DeviationRequest {
     /// The jobs that the surfaces are looked for in.
     pub jobs: JobSelection,
     /// The surface.
     pub surface: String,
-    /// The surface that it is held against.
+    /// The surface that it is compared with.
     pub reference: Option<String>,
-    /// Measured points that are held against the surface.
+    /// Measured points that are compared with the surface.
     pub measured: Option<PathBuf>,
     /// Rows of the grid that was measured; the largest that the file names otherwise.
     pub rows: Option<u32>,

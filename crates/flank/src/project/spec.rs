@@ -1,4 +1,4 @@
-//! From a spec to jobs, with the findings told on the way.
+//! From a spec to jobs, with the findings reported on the way.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::project::monitor::Monitor;
 use crate::project::remark::{Message, Remark, RemarkKind};
 use crate::project::requests::JobSelection;
 
-/// The jobs that are asked for. Warnings are told.
+/// The jobs that are asked for. Warnings go to the monitor.
 ///
 /// # Errors
 /// What is wrong with the spec.
@@ -27,7 +27,7 @@ pub(crate) fn jobs<'g>(
     Ok((compilation, jobs))
 }
 
-/// A compilation without errors, whose warnings are told.
+/// A compilation without errors, whose warnings go to the monitor.
 ///
 /// # Errors
 /// All findings, if one is an error.
@@ -113,7 +113,7 @@ impl Origin {
     /// Reads a file that is no spec, of at most so many bytes.
     ///
     /// # Errors
-    /// Why it cannot be read, in the words that are said of specs.
+    /// Why it cannot be read, in the words used for specs.
     pub(crate) fn other_text(&mut self, files: &dyn Files, path: &Path, most: usize) -> Result<String, Failure> {
         let mut sources = Sources::default();
         match read_other_file(files, &mut sources, path, most) {

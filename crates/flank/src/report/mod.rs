@@ -39,7 +39,7 @@ use crate::solve::{self, SolveOptions};
 use result::{NotChecked, ReportResult, ReportedPicture};
 use target::Target;
 
-/// Writes all that is known of jobs, a page each. `each` is given what is to be said of each job.
+/// Writes all that is known of jobs, a page each, and gives `each` their results.
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.

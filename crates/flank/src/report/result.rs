@@ -194,7 +194,7 @@ pub enum AxisSource {
 /// What was solved of a surface, and how it was made.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ReportedSurface {
-    /// As `flank solve` tells it.
+    /// As `flank solve` reports it.
     #[serde(flatten)]
     pub solved: SurfaceResult,
     /// How it is made.
@@ -265,7 +265,7 @@ pub struct ReportedLine {
     pub kind: &'static str,
     /// What changes along it.
     pub along: String,
-    /// Lines of this kind beside each other; the longest is told.
+    /// Lines of this kind beside each other; the longest is given.
     pub several: usize,
 }
 

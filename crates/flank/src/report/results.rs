@@ -178,7 +178,7 @@ fn requirements(findings: &Findings<'_, '_>) -> Option<Block> {
     }
 }
 
-/// What `flank solve` tells of each surface, and how it was made.
+/// What `flank solve` reports of each surface, and how it was made.
 pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<ReportedSurface> {
     let entry = |solved: &Solved<'_, '_>| {
         let generation = &solved.surface.generation;

@@ -85,7 +85,7 @@ fn not_kept(findings: &Findings<'_, '_>) -> Option<String> {
 fn not_excluded(findings: &Findings<'_, '_>) -> Option<String> {
     let names = those(findings, |solved| !solved.effort.undecided.is_empty())?;
     Some(format!(
-        "Whether the ranges hold further branches where the search began, for {names}; narrower ranges would tell."
+        "Whether the ranges hold further branches where the search began, for {names}; narrower ranges would show it."
     ))
 }
 

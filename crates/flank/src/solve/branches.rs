@@ -1,4 +1,4 @@
-//! What `flank solve` tells of branches: which there are where several qualify, and where none is excluded.
+//! What `flank solve` reports of branches: which there are where several qualify, and where none is excluded.
 
 use flank_chain_dsl::{Coordinate, Dimension, GeneratedSurface, RangedVariable};
 use flank_export::fixed;

@@ -1,4 +1,4 @@
-//! `flank solve --certify`: proofs that points are where they are said to be.
+//! `flank solve --certify`: proofs that points lie where they are reported.
 
 use flank_export::{Field, Values};
 use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};

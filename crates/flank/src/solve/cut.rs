@@ -89,7 +89,7 @@ impl Cut {
     }
 }
 
-/// At how many points it is not known what is left, and why.
+/// At how many points the height that is left is unknown, and why.
 pub(crate) fn unknown<'s>(of_surfaces: impl Iterator<Item = (&'s str, Option<&'s Cut>)>) -> Vec<NotDone> {
     let mut all = Vec::new();
     for (name, cut) in of_surfaces.filter_map(|(name, cut)| Some((name, cut?))) {

@@ -28,7 +28,7 @@ pub(crate) fn dataset(job: &Job<'_>, solved: &[Solved<'_, '_>], lines: &[&Line<'
     Dataset { header, patches: surfaces.chain(lines).collect() }
 }
 
-/// Where the data of a job comes from; of further jobs it is said what was set by hand.
+/// Where the data of a job comes from; of further jobs what was set by hand.
 pub(crate) fn header(jobs: &[&Job<'_>], which: &JobSelection, origin: &Origin) -> Header {
     let settings = which.set_in(jobs).into_iter().map(|(name, value)| format!("set by hand: {name} = {value}"));
     Header {

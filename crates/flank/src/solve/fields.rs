@@ -1,4 +1,4 @@
-//! What `flank solve` tells of the further fields of points.
+//! What `flank solve` reports of the further fields of points.
 
 use flank_export::Values;
 use flank_solver::Outcome;

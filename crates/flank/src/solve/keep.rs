@@ -8,7 +8,7 @@ use crate::project::units;
 
 /// Of values in messages.
 const DECIMALS: usize = 4;
-/// Branches are told apart by what differs by this share of its range at the least: the decimals can tell that.
+/// Branches are distinguished by what differs by this share of its range at the least: the decimals show that.
 const APART: f64 = 1e-3;
 
 /// A condition that one branch meets and the others do not.
@@ -98,7 +98,7 @@ fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
     (0..unknowns.len()).map(single).chain(pairs).collect()
 }
 
-/// What tells some branches apart, each known at some points: wholly if that can be, by the first point of each otherwise.
+/// What distinguishes some branches, each known at some points: wholly if that can be, by the first point of each otherwise.
 fn chosen(unknowns: &[RangedVariable<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
     let functions = functions(unknowns);
     let firsts: Vec<Vec<Vec<f64>>> = branches.iter().map(|points| points[..1].to_vec()).collect();
@@ -114,7 +114,7 @@ fn chosen(unknowns: &[RangedVariable<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Ke
     })
 }
 
-/// For each of some branches; none if there are not several, or nothing tells them apart. `courses` are the unknowns of each at
+/// For each of some branches; none if there are not several, or nothing distinguishes them. `courses` are the unknowns of each at
 /// further points, as far as they are known.
 pub(crate) fn proposed(
     unknowns: &[RangedVariable<'_>],

@@ -31,7 +31,7 @@ pub(crate) struct Line<'j, 'g> {
     pub(crate) is_open: bool,
 }
 
-/// What is not shown of the lines.
+/// What the lines do not show.
 pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> Vec<Remark> {
     let remark =
         |kind: RemarkKind, line: &Line<'_, '_>, message: String| Remark::new(kind, &line.surface.name, message);
@@ -42,7 +42,7 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> Vec<Remark> {
         );
         remark(RemarkKind::SeveralLines, line, message)
     });
-    // of a line without any point within the ranges the table tells as much
+    // of a line without any point within the ranges the table says as much
     let partly = lines.iter().filter(|line| line.summary.solved() > 0).filter_map(|line| {
         let [_, outside] = line.found();
         let by = reasons::outside(line.surface, &line.summary)?;
@@ -51,7 +51,7 @@ pub(crate) fn untold(lines: &[&Line<'_, '_>]) -> Vec<Remark> {
     });
     let open = lines.iter().filter(|line| line.is_open).map(|line| {
         let message = format!(
-            "{} is not found within the ranges, and not excluded: not all of them could be looked at; narrower ranges tell more",
+            "{} is not found within the ranges, and not excluded: not all of them could be looked at; narrower ranges show more",
             line.name
         );
         remark(RemarkKind::LineNotExcluded, line, message)

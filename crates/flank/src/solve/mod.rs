@@ -55,7 +55,7 @@ use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 
-/// Solves the surfaces of jobs, and writes their points and a picture. `each` is given what is to be said of each job.
+/// Solves the surfaces of jobs, and writes their points and a picture. `each` is given the result of each job.
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
@@ -130,7 +130,7 @@ fn solved_job(
     })
 }
 
-/// The jobs that ask for points; of the others it is told that they do not.
+/// The jobs that ask for points; a remark names the others.
 ///
 /// # Errors
 /// If none does.

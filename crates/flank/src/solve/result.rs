@@ -42,7 +42,7 @@ pub struct SolveResult {
 pub struct PointSummary {
     /// Of the surface; of a line with what it is.
     pub name: String,
-    /// In which positions are told.
+    /// Of the positions.
     pub frame: String,
     /// Points asked for.
     pub asked: usize,
@@ -189,7 +189,7 @@ pub struct BranchPoint {
     pub unknowns: Vec<NamedValue>,
     /// In the surface's frame, mm.
     pub position: [f64; 3],
-    /// What in a sample selects this branch; null where there is no other, or nothing tells it apart.
+    /// What in a sample selects this branch; null where there is no other, or nothing distinguishes it.
     pub keep: Option<Extent>,
 }
 
@@ -202,10 +202,10 @@ pub struct OpenRanges {
     pub why: &'static str,
 }
 
-/// Which positions of the tool points were held against.
+/// Which positions of the tool points were checked against.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ToolPositions {
-    /// Positions that points were not held against; null if all were looked at.
+    /// Positions that points were not checked against; null if all were looked at.
     pub not_looked_at: Option<&'static str>,
     /// How deep in the tool's steel the deepest point that is cut away was seen, mm.
     pub deepest: Option<f64>,
@@ -498,7 +498,7 @@ fn six_digits(x: f64) -> String {
 impl SensitivityTable {
     fn write(&self, name: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.points == 0 {
-            return writeln!(f, "\n{name}: no point is solved, so it cannot be said what moves it");
+            return writeln!(f, "\n{name}: no point is solved, so what moves it is unknown");
         }
         let head = ["parameter", "rms", "largest", "normal displacement in", "usual change", "rms um", "largest um"];
         let rows = self.parameters.iter().map(ParameterInfluence::cells);
@@ -510,7 +510,7 @@ impl SensitivityTable {
             writeln!(f, "  no influence, {} of {of}: {}", idle.len(), idle.join(", "))?;
         }
         if !self.counts.is_empty() {
-            writeln!(f, "  counts, which do not change by little: {}", self.counts.join(", "))?;
+            writeln!(f, "  integers, which have no derivative: {}", self.counts.join(", "))?;
         }
         Ok(())
     }

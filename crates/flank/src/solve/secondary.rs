@@ -9,16 +9,16 @@ use crate::project::units;
 use crate::solve::result::ToolPositions;
 use crate::solve::surface::ranges;
 
-/// Which positions of its tool the points of a surface were held against, and what was found.
+/// Which positions of its tool the points of a surface were checked against, and what was found.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Positions {
-    /// As [`Judged`] tells.
+    /// With the verdict.
     Seen(Judged),
     /// None: what was not looked at, and why.
     Unseen(&'static str),
 }
 
-/// The points of surfaces of so many are not held against other positions.
+/// The points of surfaces of so many are not checked against other positions.
 pub(crate) const STREAMED: Positions = Positions::Unseen("all other positions, there are too many points");
 
 /// Marks the points of a grid that the tool cuts away in another position: by the surface generated, or by another one that the job
@@ -94,7 +94,7 @@ fn is_of_same_tool(one: &GeneratedSurface<'_>, other: &GeneratedSurface<'_>) -> 
 }
 
 impl Positions {
-    /// Which positions the points were not held against; `None` if they were against all.
+    /// Which positions the points were not checked against; `None` if they were against all.
     fn unseen(&self) -> Option<&'static str> {
         match self {
             Positions::Unseen(reason) => Some(reason),
@@ -127,7 +127,7 @@ pub(crate) fn depth(positions: &Positions, by: usize) -> String {
     deepest.map_or(String::new(), |depth| format!(", by up to {}", units::text(Dimension::LENGTH, depth, 6)))
 }
 
-/// Of each surface that was not held against all positions of its tool, its name and what was not looked at.
+/// Of each surface that was not checked against all positions of its tool, its name and what was not looked at.
 pub(crate) fn unseen<'s>(of_surfaces: impl Iterator<Item = (&'s str, &'s Positions)>) -> Vec<String> {
     of_surfaces.filter_map(|(name, positions)| Some(format!("{name}: {}", positions.unseen()?))).collect()
 }

@@ -21,7 +21,7 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) bindings: Vec<(Expr<'g>, Expr<'g>)>,
     /// Ranges that would reach the points that are outside.
     pub(crate) needed: Vec<Needed>,
-    /// What is told of its points.
+    /// Its points, counted.
     pub(crate) summary: Summary,
     /// All of them; some for a picture if there are too many to keep.
     pub(crate) points: Vec<SurfacePoint>,
@@ -32,7 +32,7 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) effort: GridReport,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,
-    /// Which positions of its tool its points were held against.
+    /// Which positions of its tool its points were checked against.
     pub(crate) positions: Positions,
     /// Where each of the branches at the anchor is.
     pub(crate) branches: Vec<SurfacePoint>,
@@ -55,7 +55,7 @@ impl Solved<'_, '_> {
         (&self.surface.name, self.cut.as_ref())
     }
 
-    /// Its name, with which positions of its tool its points were held against.
+    /// Its name, with which positions of its tool its points were checked against.
     pub(crate) fn positions_tried(&self) -> (&str, &Positions) {
         (&self.surface.name, &self.positions)
     }

@@ -7,7 +7,7 @@ use flank_solver::{Outcome, SurfacePoint};
 
 /// Coordinates that are functions of the place alone, on whatever surface it lies.
 const OF_PLACES: [&str; 5] = ["x", "y", "z", "rho", "polar_angle"];
-/// Points are told by radius and height, which a turn about z leaves as they are, unless such a turn moves them along their
+/// Points are given by radius and height, which a turn about z leaves as they are, unless such a turn moves them along their
 /// normals by less than this share of what another way does: hardly more than nothing, as on a root cylinder or an end face.
 const HARDLY: f64 = 0.02;
 

@@ -1,6 +1,6 @@
 //! Surfaces of more points than are kept: solved band after band, as often as they are needed.
 //!
-//! What needs all points of a surface together is told what it would take before anything is solved.
+//! What needs all points of a surface together is refused before anything is solved if it would take too much.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_export::{Axis, Banded, Field, Patch, Point, Taker, WriteError};

@@ -1,4 +1,4 @@
-//! What is told of points once each of them has been seen.
+//! Points, counted once each of them has been looked at.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

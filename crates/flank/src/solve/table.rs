@@ -1,4 +1,4 @@
-//! What `flank solve` tells of its work.
+//! What `flank solve` reports of its work.
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
 
@@ -23,7 +23,7 @@ impl Solved<'_, '_> {
         summary(&self.surface.name, self.surface, &self.summary)
     }
 
-    /// What is told of it, without its points.
+    /// Its result, without its points.
     pub(crate) fn result(&self) -> SurfaceResult {
         SurfaceResult {
             summary: self.told(),

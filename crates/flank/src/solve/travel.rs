@@ -45,7 +45,7 @@ impl<'j> Run<'j, '_> {
         self.machine
     }
 
-    /// Whether it leaves its travel; `None` if it has none, or no place that could be told.
+    /// Whether it leaves its travel; `None` if it has none, or no known place.
     pub(crate) fn is_beyond(&self) -> Option<bool> {
         let (found, (low, high)) = self.over.zip(self.axis.travel)?;
         let slack = SLACK * (high - low);

@@ -81,7 +81,7 @@ export class Slider {
     }
 }
 
-/** A table of names and values; a third cell tells more. */
+/** A table of names and values; a third cell has more. */
 export function table(rows) {
     return element("table", {}, ...rows.map(([name, value, more]) =>
         element("tr", {},

@@ -168,7 +168,7 @@ export class WorkSurface {
     }
 
     /**
-     * What it can be coloured by, and what a click tells, in the units that are shown. `isOwn` marks numbers that hold for the
+     * What it can be coloured by, and what a click shows, in the units that are shown. `isOwn` marks numbers that hold for the
      * job's own values only.
      */
     quantities() {
