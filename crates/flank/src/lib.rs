@@ -3,7 +3,8 @@
 //! A [`Project`] is a spec with the files that it uses, a [`Job`] one job of it with its values and all its texts ([`Project::job`]). What
 //! works on the text alone takes a project: [`check`], [`lay_out`]. What works on jobs takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
 //! [`deviation`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
-//! whose schema [`schemas`] has, its `Display` a text for people, and what was not done stands in it ([`Answer::not_done`]). What is wrong
+//! whose schema [`schemas`] has, its `Display` a text for people, and what was not done ([`Answer::not_done`]) and what else is to be known
+//! ([`Answer::remarks`]) stand in it as data: a code, what it is about, its place in the spec. What is wrong
 //! with a spec comes as [`Findings`], data with a code and a place. Messages name the fields of requests as "option `no_align`", or with a
 //! value as "option `set teeth=25`", so that a shell can spell them its way.
 //!

@@ -147,16 +147,16 @@ pub(crate) struct JobArguments {
 /// How the numbers are worked out; it changes no bit of them.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct EvaluatorArguments {
-    /// Make no machine code of the equations: they are gone through instruction by instruction, the results are the same bit
-    /// for bit. For systems that forbid such memory, and to rule it out as a cause
+    /// Interpret the equations instead of compiling them to machine code; the results are the same bit for bit. For systems
+    /// that forbid executable memory, and to rule out machine code as a cause
     #[arg(long)]
     no_jit: bool,
-    /// How many threads share the work, at most four for each processor; otherwise as RAYON_NUM_THREADS says in the environment, and
-    /// without that one for each processor
+    /// Number of threads, at most four for each processor; otherwise the environment's RAYON_NUM_THREADS, and without that one for
+    /// each processor
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<NonZero<usize>>,
 
-    /// Boxes that a search for all branches looks at before it leaves the rest of the ranges undecided
+    /// Boxes that a search for all branches examines before it reports the rest of the ranges as undecided
     #[arg(long, value_name = "N", default_value_t = EvaluatorOptions::default().boxes, value_parser = clap::value_parser!(u64).range(1..=MOST_ASKED_FOR))]
     boxes: u64,
 }

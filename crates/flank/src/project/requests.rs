@@ -68,9 +68,9 @@ impl JobSelection {
 /// How the numbers are worked out; it changes no bit of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EvaluatorOptions {
-    /// Whether equations become machine code; otherwise they are gone through instruction by instruction.
+    /// Whether equations are compiled to machine code; otherwise they are interpreted.
     pub machine_code: bool,
-    /// Boxes that a search for all branches looks at before it leaves the rest of the ranges undecided.
+    /// Boxes that a search for all branches examines before it reports the rest of the ranges as undecided.
     pub boxes: u64,
 }
 

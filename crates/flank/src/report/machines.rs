@@ -86,8 +86,7 @@ fn axes(findings: &Findings<'_, '_>, machine: &Machine<'_>) -> Block {
 /// From where to where an axis goes, its travel, and whether that is enough.
 fn reach(run: &Run<'_, '_>) -> [String; 5] {
     let axis = run.axis;
-    let show =
-        |value: f64| units::text(axis.dimension, value, 4).trim_end_matches(|c: char| !c.is_ascii_digit()).to_string();
+    let show = |value: f64| units::digits(axis.dimension, value, 4);
     let place = |value: Option<f64>| value.map_or("\u{2013}".to_string(), show);
     let travel = axis.travel.map_or("not stated".to_string(), |(low, high)| format!("{} .. {}", show(low), show(high)));
     let within = match run.is_beyond() {
