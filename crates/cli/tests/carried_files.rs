@@ -54,7 +54,7 @@ fn numbers_that_are_not_known_are_said_to_be() {
     assert!(head.contains(unknown), "{head}");
     let (code, _, told) = converted(&[&gear[..], &["--tolerance", "1um"]].concat(), &out);
     assert_eq!(code, Some(3));
-    assert!(told.contains("this tool is an edge; say the order"), "{told}");
+    assert!(told.contains("this tool is an edge; give the order"), "{told}");
 }
 
 /// A control that has no such axis is told before anything is written, also if another one has it.

@@ -18,7 +18,7 @@ fn sensitivity_is_ranked_written_and_drawn() {
         "um/0.001",
         "no influence, ",
         "face_width",
-        "by little: teeth",
+        "integers, which have no derivative: teeth",
     ] {
         assert!(table.contains(part), "{part} in\n{table}");
     }

@@ -114,7 +114,7 @@ pub(super) fn sensitivity(
     let place = |name: &String| {
         let found = parameters.iter().position(|parameter| parameter == name);
         found.ok_or(format!(
-            "there is no parameter or setting `{name}` that changes by little; there is: {}",
+            "there is no parameter or setting `{name}` with a derivative; there is: {}",
             parameters.join(", ")
         ))
     };
