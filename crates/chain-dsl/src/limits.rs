@@ -13,7 +13,7 @@ pub struct Limit {
     /// What is counted, as the tables of the documentation say it.
     pub what: &'static str,
     unit: Unit,
-    /// What is told who goes beyond, `{}` being the greatest number.
+    /// The message about what goes beyond, `{}` being the greatest number.
     message: &'static str,
     /// The way out.
     help: &'static str,

@@ -44,7 +44,7 @@ pub struct Parameter<'g> {
     pub definition: Expr<'g>,
     /// Its value, mm or radians.
     pub value: f64,
-    /// Whether it counts something: then it is a whole number and does not change by little.
+    /// Whether it counts something: then it is a whole number and has no derivative.
     pub is_count: bool,
     /// Between which values it must lie, if that is stated.
     pub range: Option<(f64, f64)>,
@@ -264,7 +264,7 @@ pub struct PointRequirement<'g> {
     pub of: Coordinate<'g>,
     /// Lower and upper end.
     pub ends: (f64, f64),
-    /// What is told where it does not, in the words of the spec.
+    /// The message where it does not, in the words of the spec.
     pub message: String,
 }
 

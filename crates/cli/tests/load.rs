@@ -43,7 +43,7 @@ fn plain(path: &Path) -> &str {
     path.to_str().expect("a plain path")
 }
 
-/// The rotation that a tool does not see is found from the points of all its surfaces: 12,150 rows here, whose square would be 1.2 GB.
+/// The rotation that leaves a tool unchanged is found from the points of all its surfaces: 12,150 rows here, whose square would be 1.2 GB.
 #[test]
 #[cfg(target_os = "linux")]
 fn the_page_of_many_surfaces_takes_memory_in_proportion() {

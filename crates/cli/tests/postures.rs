@@ -83,7 +83,7 @@ fn another_elbow_or_turn_is_taken_where_it_stays_within_the_travels() {
             format!("machine tt extends five_axis_table_table {{ axis C : rotary in {low} deg .. {high} deg }}");
         check(trunnion, &extended, &[("C", low, high)]);
     }
-    // the cutter's spindle, whose turns the cutter does not see, turns by 21.8 degrees
+    // the cutter's spindle, which leaves the cutter unchanged, turns by 21.8 degrees
     let table = check(
         "machines/free_form",
         "machine held extends free_form { axis C : rotary in -11 deg .. 11 deg }",

@@ -34,7 +34,7 @@ impl FromStr for Code {
     }
 }
 
-/// The code that differs in one letter; of several the one with the nearest number: `E0309` was perhaps `E0308`.
+/// The code that differs in one letter; of several the one with the nearest number: `E0311` was perhaps `E0310`.
 fn nearest(wanted: &str) -> Option<Code> {
     let number = |text: &str| text.trim_start_matches(|c: char| !c.is_ascii_digit()).parse().unwrap_or(0_u32);
     let mut codes = Code::ALL.to_vec();
@@ -60,8 +60,8 @@ mod tests {
     fn the_nearest_code_is_named() {
         let nearest = |text: &str| text.parse::<Code>().expect_err("not a code").nearest;
         assert_eq!(nearest("E301"), Some(Code::WrongDimension));
-        assert_eq!(nearest("E0310"), Some(Code::WrongDimension));
-        assert_eq!(nearest("E0319"), Some(Code::Unmet));
+        assert_eq!(nearest("E0311"), Some(Code::Unproven));
+        assert_eq!(nearest("E0399"), Some(Code::Unmet));
         assert_eq!(nearest("E0999"), None);
         assert_eq!(nearest("dimension"), None);
         let told = "E301".parse::<Code>().expect_err("not a code").to_string();

@@ -49,7 +49,7 @@ fn are_independent<'g>(surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2
         }
         let slopes = graph.evaluate(&slopes, &values);
         let mut rows = DMatrix::from_fn(size, size, |i, j| slopes[i * size + j] * widths[j]);
-        // a motion that only slides is told elsewhere
+        // a motion that only slides is reported elsewhere
         if rows.row_iter().take(made.constraints.len()).any(|row| row.norm() == 0.0) {
             continue;
         }

@@ -315,7 +315,7 @@ pub enum Side {
     Towards(Expression),
 }
 
-/// `require condition, "message"`: what must hold of the values, and what is told if it does not.
+/// `require condition, "message"`: what must hold of the values, and the message if it does not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
     /// The condition.

@@ -30,7 +30,7 @@ const FREE_TURNS: f64 = 1e4;
 /// Where the axes of the target machine have to stand while the source's motions run.
 #[derive(Clone, Debug)]
 pub struct PoseProblem<'g> {
-    /// From work to tool on the target machine, with what the tool does not see of its own motion.
+    /// From work to tool on the target machine, followed by the motions that leave the tool unchanged.
     chain: Chain<'g>,
     /// Axes, then amounts of the tool's own symmetries.
     unknowns: Vec<Expr<'g>>,
@@ -110,8 +110,8 @@ impl Posture {
 }
 
 impl<'g> PoseProblem<'g> {
-    /// `target` and `source` lead from work to tool on the two machines; `symmetries` are what the tool does not see of its own
-    /// motion ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go.
+    /// `target` and `source` lead from work to tool on the two machines; `symmetries` are the motions that leave the tool
+    /// unchanged ([`symmetries`](crate::symmetries)). `reach` is a length (mm) beyond which no linear axis without travel has to go.
     ///
     /// An axis of the target that only turns or shifts the tool along itself takes over what the source does there; where there are
     /// axes enough without it, the tool stands exactly as on the source.
@@ -192,7 +192,7 @@ impl<'g> PoseProblem<'g> {
         &self.chain
     }
 
-    /// A chain that ends in the tool's frame, as the machine's with its parameters as symbols, followed by what the tool does not see.
+    /// A chain that ends in the tool's frame, as the machine's with its parameters as symbols, followed by the motions that leave the tool unchanged.
     pub fn slipped(&self, to_tool: &Chain<'g>) -> Chain<'g> {
         to_tool.then(&Chain::new(self.unknowns[0].graph(), self.slips.clone()))
     }
@@ -365,7 +365,7 @@ impl<'g> PoseProblem<'g> {
         Posture { outcome, axes, missing, unknowns: solution.unknowns }
     }
 
-    /// Ranges in which Newton may go anywhere: what lies beyond an axis's travel is told, not prevented.
+    /// Ranges in which Newton may go anywhere: what lies beyond an axis's travel is reported, not prevented.
     pub(crate) fn wide(&self) -> Vec<Range> {
         let wide = |range: &Range| range.wider_by(FREE_TURNS);
         self.search[1].iter().map(wide).collect()

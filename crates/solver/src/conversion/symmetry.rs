@@ -1,4 +1,4 @@
-//! Rigid motions that a tool's surface does not see: it slides along itself.
+//! Rigid motions that leave a tool's surface unchanged: it slides along itself.
 
 use faer::Mat;
 use faer::linalg::solvers::{Solve, Svd};
@@ -79,7 +79,7 @@ pub fn symmetries(surfaces: &[(&Surface<'_>, Vec<Range>)]) -> Result<Vec<Screw>,
 }
 
 /// Basis of the motions that no row sees, reduced so that rotations come first and each has as few components as can be; none where
-/// there are no rows: nothing shows then that a motion is not seen. Angular speeds count by the `size` of the surface, so that both kinds of
+/// there are no rows: nothing shows then that a motion leaves it unchanged. Angular speeds count by the `size` of the surface, so that both kinds of
 /// motion are of one order.
 fn unseen(rows: &[[f64; 6]], size: f64) -> Vec<Screw> {
     if rows.is_empty() {
@@ -150,7 +150,7 @@ pub(crate) fn doubled<'g>(
     Ok(None)
 }
 
-/// The motion of the tool that an axis makes, if the tool does not see it, wherever the other axes stand; and how much of it per mm
+/// The motion of the tool that an axis makes, if it leaves the tool unchanged, wherever the other axes stand; and how much of it per mm
 /// or radian of the axis.
 ///
 /// # Errors
@@ -204,7 +204,7 @@ fn along<'g>(
 mod tests {
     use super::*;
 
-    /// A sphere, whose normals all go through its middle, does not see a turn about it; what is no number anywhere shows nothing.
+    /// A sphere, whose normals all go through its middle, is unchanged by a turn about it; what is no number anywhere shows nothing.
     #[test]
     fn where_nothing_is_looked_at_nothing_is_unseen() {
         let graph = Graph::new();

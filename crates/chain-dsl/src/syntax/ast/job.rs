@@ -178,7 +178,7 @@ pub struct Keep {
 pub struct PointRequirement {
     /// A function of the points and where it must lie.
     pub within: Keep,
-    /// What is told of points where it does not.
+    /// The message about points where it does not.
     pub message: String,
 }
 

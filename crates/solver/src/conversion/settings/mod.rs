@@ -84,8 +84,8 @@ pub struct SettingsFit {
 }
 
 impl<'g> SettingsProblem<'g> {
-    /// `source` leads from work to tool on the other machine, in `motions`; `symmetries` are what the tool does not see of its own
-    /// motion. Nothing on the way is longer than `reach`, mm, by much.
+    /// `source` leads from work to tool on the other machine, in `motions`; `symmetries` are the motions that leave the tool
+    /// unchanged. Nothing on the way is longer than `reach`, mm, by much.
     ///
     /// # Errors
     /// If something depends on a variable that is not given.
