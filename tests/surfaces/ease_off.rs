@@ -43,7 +43,7 @@ fn the_ease_off_ends_on_the_flank() {
         assert!(apart < 1e-10, "point {k}: {apart:e} mm");
     }
     // the numbers describe the map: what they leave of it is a small part
-    let ease_off = EaseOff::of(&found, sample.counts).expect("a full map");
+    let ease_off = EaseOff::of_deviations(&found, sample.counts).expect("a full map");
     let value = |k: usize| {
         let (v, u) =
             (2.0 * (k / sample.counts[1]) as f64 / 24.0 - 1.0, 2.0 * (k % sample.counts[1]) as f64 / 44.0 - 1.0);
@@ -111,7 +111,7 @@ fn the_numbers_follow_from_the_tables() {
     assert!(difference(&map, &by_hand) < 0.5, "{map:?} {by_hand:?}");
     // by rows from root to tip, as a sample would ask for them
     let by_rows: Vec<Option<f64>> = (0..20).map(|k| Some(map[k % 5 * 4 + k / 5])).collect();
-    let found = EaseOff::of(&by_rows, [4, 5]).expect("a full map");
+    let found = EaseOff::of_deviations(&by_rows, [4, 5]).expect("a full map");
     let found = [found.slopes[0], found.slopes[1], found.crownings[0], found.crownings[1], found.bias];
     assert!(difference(&found, &wanted) < 0.5, "{found:?} {wanted:?}");
     // what the identification of the settings was after: crownings of 50 and 25 um over the whole profile, the rest zero

@@ -278,7 +278,7 @@ impl<'g> Builder<'_, 'g> {
         self.surfaces[index].0.trimmed_by.push(other);
     }
 
-    /// In which frames two surfaces are given that cannot be held against each other: two of one machine. Frames of two machines are
+    /// In which frames two surfaces are given that cannot be compared: two of one machine. Frames of two machines are
     /// both the work.
     pub(super) fn two_frames(&self, paths: [&ast::Path; 2], surfaces: [usize; 2]) -> Option<String> {
         let [(one, own), (other, its)] = surfaces.map(|k| &self.surfaces[k]);

@@ -1,4 +1,4 @@
-//! The two ways of reading, whole and in pieces, held against each other on texts that were damaged at random.
+//! The two ways of reading, whole and in pieces, compared on texts that were damaged at random.
 
 use std::ops::Range;
 

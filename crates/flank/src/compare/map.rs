@@ -1,4 +1,4 @@
-//! A surface, or what was measured of it, held against a surface: what is known of it, and how it is written.
+//! A surface, or what was measured of it, compared with a surface: what is known of it, and how it is written.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_draw::{PictureOptions, field_maps};
@@ -159,7 +159,7 @@ impl DeviationMap<'_, '_> {
     }
 
     fn ease_off(&self) -> Option<EaseOff> {
-        EaseOff::of(&self.deviations, self.counts)
+        EaseOff::of_deviations(&self.deviations, self.counts)
     }
 
     /// Way from the first to the last point of the middle column, and of the middle row, mm.

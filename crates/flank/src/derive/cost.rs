@@ -9,7 +9,7 @@ use crate::solve::{bound, ranges};
 
 impl SurfaceCost {
     /// None if no points are asked for.
-    pub(super) fn of(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Option<SurfaceCost> {
+    pub(super) fn of_surface(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Option<SurfaceCost> {
         let sample = surface.sample.as_ref()?;
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let is_motion = |unknown: &Expr<'_>| job.motions.iter().any(|motion| motion.variable == *unknown);

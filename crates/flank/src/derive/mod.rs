@@ -106,7 +106,7 @@ fn explicit_page<'g>(job: &Job<'g>, carried: &Conversion<'_, 'g>, explicit: &Exp
 fn cost(jobs: &[Job<'_>]) -> Result<DeriveResult, Failure> {
     let of = |job: &Job<'_>| {
         let surfaces: Vec<SurfaceCost> =
-            job.surfaces.iter().filter_map(|surface| SurfaceCost::of(job, surface)).collect();
+            job.surfaces.iter().filter_map(|surface| SurfaceCost::of_surface(job, surface)).collect();
         match surfaces.is_empty() {
             true => {
                 Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into())

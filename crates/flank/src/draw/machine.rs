@@ -75,7 +75,7 @@ fn bodies(subject: &Subject<'_, '_>, point: &flank_solver::SurfacePoint, work: &
             ..point.clone()
         });
         flanks.push(Patch { points: points.collect(), fields: Vec::new(), ..patch.clone() });
-        let Ok(tool) = Tool::of(subject.job, subject.solved[at].surface) else { continue };
+        let Ok(tool) = Tool::of_surface(subject.job, subject.solved[at].surface) else { continue };
         let on_tool = |[position, normal]: [[f64; 3]; 2]| Point {
             outcome: Outcome::Solved,
             position: work.point(position),

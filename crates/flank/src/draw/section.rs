@@ -22,7 +22,7 @@ const MOST_TOUCHED: usize = 14;
 const POINTS: usize = 61;
 
 pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
-    let drawn = of(subject)?;
+    let drawn = section_of(subject)?;
     let shows = format!(
         "{} across the tooth, {} of the tool",
         counted(drawn.surfaces.len(), "surface"),
@@ -31,12 +31,12 @@ pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Resul
     Ok(Drawing { picture: section(&drawn, options), shows })
 }
 
-fn of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
-    let cut = Cut::of(subject)?;
+fn section_of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
+    let cut = Cut::through_middle(subject)?;
     let mates = subject.mates();
     let mut tools = Vec::new();
     for &at in &mates {
-        tools.push(Tool::of(subject.job, subject.solved[at].surface)?);
+        tools.push(Tool::of_surface(subject.job, subject.solved[at].surface)?);
     }
     let line = |&at: &usize| {
         let solved = &subject.solved[at];
@@ -62,7 +62,7 @@ struct Cut(SectionPlane);
 
 impl Cut {
     /// The plane through the middle of the first surface, square to the tooth there.
-    fn of(subject: &Subject<'_, '_>) -> Result<Cut, Unfit> {
+    fn through_middle(subject: &Subject<'_, '_>) -> Result<Cut, Unfit> {
         let (at, point) = subject.middle()?;
         let patch = &subject.dataset.patches[subject.chosen[0]];
         let no_direction =
@@ -194,7 +194,7 @@ mod tests {
         let header = solve::header(&[&jobs[0]], &which, &spec::Origin::default());
         let session = Session::new(EvaluatorOptions::default(), &Unwatched);
         let subject = Subject::new(&jobs[0], &[], header, &[PlotKind::Section], session).expect("it is sampled");
-        of(&subject).expect("it has a section")
+        section_of(&subject).expect("it has a section")
     }
 
     /// How far a place is off the nearest point of a piece, and on which side of it: the sine of the way there against `out`.

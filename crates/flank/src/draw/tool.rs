@@ -24,7 +24,7 @@ pub(super) struct Tool {
 impl Tool {
     /// # Errors
     /// In words, if nothing has two parameters while the motions stand still.
-    pub(super) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>) -> Result<Tool, String> {
+    pub(super) fn of_surface<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>) -> Result<Tool, String> {
         let (generation, name) = (&surface.generation, &surface.name);
         match &generation.tool {
             _ if generation.process == Process::Move || generation.motions.is_empty() => {

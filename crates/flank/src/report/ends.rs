@@ -104,8 +104,8 @@ fn not_found(missing: &[&Line<'_, '_>]) -> Vec<(String, String)> {
 
 /// `singular line`, `intersection with fillet`.
 fn kind(line: &Line<'_, '_>) -> String {
-    match line.name.rsplit_once(".trimmed_by_") {
-        Some((_, other)) => format!("{} with {other}", line.kind),
+    match &line.trimmed_by {
+        Some(other) => format!("{} with {other}", line.kind),
         None => line.kind.to_string(),
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct Line<'j, 'g> {
     /// `flank.singular_line`, `flank.contact_limit`, `flank.trimmed_by_fillet`.
     pub(crate) name: String,
     pub(crate) kind: &'static str,
+    /// The surface that it is shared with, if the line is where that trims.
+    pub(crate) trimmed_by: Option<String>,
     /// What changes along it.
     pub(crate) along: String,
     pub(crate) summary: Summary,
@@ -134,10 +136,20 @@ impl<'j, 'g> Sought<'j, 'g> {
     fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, GridReport)) -> Line<'j, 'g> {
         let surface = self.surface;
         let name = format!("{}.{}", surface.name, self.kind.replace(' ', "_"));
-        let summary = Summary::of(surface.unknowns.len(), [1, points.len()], &points);
+        let summary = Summary::of_points(surface.unknowns.len(), [1, points.len()], &points);
         let is_open = summary.solved() == 0 && (effort.is_given_up || !effort.undecided.is_empty());
         let along = self.sample.coordinates[k].name.clone();
-        Line { surface, name, kind: self.kind, along, summary, points, several: effort.branches.len(), is_open }
+        Line {
+            surface,
+            name,
+            kind: self.kind,
+            trimmed_by: None,
+            along,
+            summary,
+            points,
+            several: effort.branches.len(),
+            is_open,
+        }
     }
 }
 

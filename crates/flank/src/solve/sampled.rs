@@ -49,8 +49,8 @@ pub(crate) fn solve_surface<'j, 'g>(
     fields.extend(radii.as_deref().map(certify::field));
     let cut = cut::left_by_edges(job, surface, &points, wanted.session);
     fields.extend(cut.iter().flat_map(Cut::fields));
-    let sensitivity = wanted.sensitivity.then(|| sensitivity::of(job, surface, &points));
-    let summary = Summary::of(surface.unknowns.len(), sample.counts, &points);
+    let sensitivity = wanted.sensitivity.then(|| sensitivity::over_points(job, surface, &points));
+    let summary = Summary::of_points(surface.unknowns.len(), sample.counts, &points);
     let kept_out = kept_out(job, surface, (&effort, &summary), wanted.session);
     Some(Ok(Solved {
         surface,
@@ -98,7 +98,7 @@ fn in_bands<'j, 'g>(
         effort,
         radii: None,
         fields: if is_of_drawn { geometry::fields(job, surface, sample, &drawn) } else { Vec::new() },
-        sensitivity: wanted.sensitivity.then(|| sensitivity::of(job, surface, &drawn)),
+        sensitivity: wanted.sensitivity.then(|| sensitivity::over_points(job, surface, &drawn)),
         points: drawn,
         trims: Vec::new(),
         positions: secondary::STREAMED,

@@ -41,7 +41,7 @@ struct Influence {
     moves: bool,
 }
 
-pub(crate) fn of<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
+pub(crate) fn over_points<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, points: &[SurfacePoint]) -> Sensitivity {
     let changing =
         |p: &Parameter<'g>| flank_solver::Parameter { variable: p.variable, definition: p.definition, value: p.value };
     let parameters: Vec<_> = job.parameters.iter().map(changing).collect();

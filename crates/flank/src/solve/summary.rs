@@ -95,7 +95,7 @@ impl Summary {
         }
     }
 
-    pub(crate) fn of(unknowns: usize, counts: [usize; 2], points: &[SurfacePoint]) -> Summary {
+    pub(crate) fn of_points(unknowns: usize, counts: [usize; 2], points: &[SurfacePoint]) -> Summary {
         let mut summary = Summary::new(unknowns, counts);
         points.iter().for_each(|point| summary.add(point));
         summary

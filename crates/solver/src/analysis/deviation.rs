@@ -18,7 +18,7 @@ const A_TURN: Range = Range { low: -2.0 * std::f64::consts::PI, high: 2.0 * std:
 /// Points that a thread takes at a time.
 const TILE: usize = 16 * LANES;
 
-/// A surface that is held against points of another one: of the same body in the same frame, but for a turn about its z axis.
+/// A surface that is compared with points of another one: of the same body in the same frame, but for a turn about its z axis.
 #[derive(Clone, Debug)]
 pub struct Deviation {
     /// Unknowns of the surface and a distance; the point, the normal and the turn are parameters.
@@ -158,7 +158,7 @@ impl EaseOff {
     ///
     /// # Panics
     /// If there are not `counts[0] · counts[1]` values.
-    pub fn of(deviations: &[Option<f64>], counts: [usize; 2]) -> Option<EaseOff> {
+    pub fn of_deviations(deviations: &[Option<f64>], counts: [usize; 2]) -> Option<EaseOff> {
         let [rows, columns] = counts;
         assert_eq!(deviations.len(), rows * columns, "one value for each point of the grid");
         let share = |k: usize, count: usize| if count > 1 { 2.0 * k as f64 / (count - 1) as f64 - 1.0 } else { 0.0 };
@@ -241,10 +241,10 @@ mod tests {
         };
         let mut deviations: Vec<Option<f64>> = (0..rows * columns).map(value).collect();
         deviations[3] = None;
-        let found = EaseOff::of(&deviations, [rows, columns]).expect("enough values");
+        let found = EaseOff::of_deviations(&deviations, [rows, columns]).expect("enough values");
         let wanted = EaseOff { slopes: [4.0, -6.0], crownings: [50.0, 25.0], bias: 6.0 };
         let numbers = |of: &EaseOff| [of.slopes[0], of.slopes[1], of.crownings[0], of.crownings[1], of.bias];
         assert!(numbers(&found).iter().zip(numbers(&wanted)).all(|(a, b)| (a - b).abs() < 1e-11), "{found:?}");
-        assert_eq!(EaseOff::of(&[Some(1.0); 5], [1, 5]), None, "one row has no slope across");
+        assert_eq!(EaseOff::of_deviations(&[Some(1.0); 5], [1, 5]), None, "one row has no slope across");
     }
 }

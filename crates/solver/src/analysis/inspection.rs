@@ -19,7 +19,7 @@ const UNMOVED: f64 = 1e-9;
 /// The turn settles in a few steps: what it does to a deviation is known but for what the normal changes on the way to the foot.
 const MOST_STEPS: usize = 20;
 
-/// A surface that measured points are held against: each has its foot on it, where the surface's normal goes through the point.
+/// A surface that measured points are compared with: each has its foot on it, where the surface's normal goes through the point.
 #[derive(Clone, Debug)]
 pub struct Inspection {
     /// Unknowns of the surface and a distance along its normal; the point is a parameter.

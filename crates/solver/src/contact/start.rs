@@ -67,7 +67,7 @@ impl ContactProblem {
     pub(super) fn touching_near(&self, roll: f64, unknowns: &[f64], normal: &Vector3<f64>) -> Option<ContactPoint> {
         let mut normal = *normal;
         let mut start = unknowns.to_vec();
-        // the directions that the normals are held against turn with them
+        // the directions in which the normals are compared turn with them
         for _ in 0..2 {
             let mut evaluation = self.touching.evaluation(&parameters(roll, &normal));
             let solution = solve_with(&mut evaluation, &self.ranges, &start);

@@ -184,7 +184,7 @@ impl<'g> ExplicitProblem<'_, 'g> {
     /// # Panics
     /// If the line is empty, or something depends on a variable that is neither a motion nor bound.
     pub fn solve(&self) -> Result<Explicit<'g>, NotExplicit> {
-        let form = Form::of(self)?;
+        let form = Form::of_problem(self)?;
         let sides = [1.0, -1.0].map(|side| form.on_side(self, side));
         let [off, other] =
             sides.each_ref().map(|side| side.as_ref().map_or(f64::INFINITY, |side| self.off(side, true)));
@@ -271,7 +271,7 @@ struct Form<'g> {
 }
 
 impl<'g> Form<'g> {
-    fn of(problem: &ExplicitProblem<'_, 'g>) -> Result<Form<'g>, NotExplicit> {
+    fn of_problem(problem: &ExplicitProblem<'_, 'g>) -> Result<Form<'g>, NotExplicit> {
         let graph = problem.graph();
         let moves = |expr: Expr<'g>| -> Vec<usize> {
             let each = problem.unknowns.iter().enumerate();

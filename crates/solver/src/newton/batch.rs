@@ -62,16 +62,16 @@ enum End {
 
 impl<'s> LaneNewton<'s> {
     pub(crate) fn new(system: &'s System, ranges: &'s [Range]) -> LaneNewton<'s> {
-        LaneNewton::of(system, ranges, (&system.lanes.checked, &[]), system.lanes.expected.as_ref())
+        LaneNewton::with_tapes(system, ranges, (&system.lanes.checked, &[]), system.lanes.expected.as_ref())
     }
 
     /// The same with unknowns in closed form where equations give them; none if they give none.
     pub(crate) fn with_given(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
         let given = system.lanes.given.as_ref()?;
-        Some(LaneNewton::of(system, ranges, (&given.checked, &given.unknowns), given.expected.as_ref()))
+        Some(LaneNewton::with_tapes(system, ranges, (&given.checked, &given.unknowns), given.expected.as_ref()))
     }
 
-    fn of(
+    fn with_tapes(
         system: &'s System,
         ranges: &'s [Range],
         (checked, given): (&'s LaneTape, &'s [usize]),

@@ -56,7 +56,7 @@ pub(crate) fn scan(
     scan: Scan,
     is_sought: impl Fn(&Solution) -> bool,
 ) -> (Vec<Solution>, u64) {
-    let mut lanes = Lanes::of(evaluation);
+    let mut lanes = Lanes::over(evaluation);
     let mut candidates: Vec<(f64, u32)> = Vec::with_capacity(scan.probes as usize);
     let probes: Vec<u32> = (1..=scan.probes).collect();
     for numbers in probes.chunks(LANES) {
@@ -95,7 +95,7 @@ struct Lane<'l, 's>(&'l Lanes<'s>, usize);
 
 impl<'s> Lanes<'s> {
     /// With the parameters of an evaluation.
-    fn of(evaluation: &Evaluation<'s>) -> Lanes<'s> {
+    fn over(evaluation: &Evaluation<'s>) -> Lanes<'s> {
         let (system, parameters) = (evaluation.system(), evaluation.parameters());
         let mut evaluator = system.in_lanes();
         for (k, parameter) in parameters.iter().enumerate() {
@@ -168,7 +168,7 @@ mod tests {
         let starts: Vec<Vec<f64>> = (1..=5 * LANES as u32 + 3).map(|k| probe(&ranges, k)).collect();
         for level in [0.1, 0.9, 7.0] {
             let mut evaluation = system.evaluation(&[level]);
-            let together = Lanes::of(&evaluation).descend(&ranges, starts.clone());
+            let together = Lanes::over(&evaluation).descend(&ranges, starts.clone());
             let together: Vec<Solution> = together.into_iter().map(|one| one.ended(&mut evaluation)).collect();
             for (start, together) in starts.iter().zip(together) {
                 assert_eq!(together, solve_with(&mut evaluation, &ranges, start), "from {start:?}");

@@ -78,12 +78,12 @@ pub(crate) struct Targets<'w> {
 }
 
 impl Targets<'_> {
-    fn of(&self, rows: impl IntoIterator<Item = usize>) -> Vec<[f64; 2]> {
+    fn on_rows(&self, rows: impl IntoIterator<Item = usize>) -> Vec<[f64; 2]> {
         rows.into_iter().flat_map(|i| (0..self.counts[1]).map(move |j| (self.target)(i, j))).collect()
     }
 
     pub(crate) fn all(&self) -> Vec<[f64; 2]> {
-        self.of(0..self.counts[0])
+        self.on_rows(0..self.counts[0])
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -110,7 +110,7 @@ pub(crate) fn solve_in_bands<E>(
     let [rows, columns] = wanted.counts;
     let mut places: Vec<usize> = (0..rows).step_by(spacing(points, columns)).chain([rows - 1]).collect();
     places.dedup();
-    let targets = wanted.of(places.iter().copied());
+    let targets = wanted.on_rows(places.iter().copied());
     let mut apart = Grid::new(system, ranges, (&targets, [places.len(), columns]), None);
     apart.are_rows_apart = true;
     let mut solvers = Solvers::new(system, ranges);
@@ -211,7 +211,7 @@ impl Bands<'_> {
         // the rows of the grid that the lines of the field are
         let lines: Vec<usize> =
             before.iter().copied().chain(places[k] + 1..places[k + 1]).chain(behind.iter().copied()).collect();
-        let targets = wanted.of(lines.iter().copied());
+        let targets = wanted.on_rows(lines.iter().copied());
         let mut grid = Grid::new(system, ranges, (&targets, [lines.len(), columns]), memory.take());
         let mut field = grid.field();
         if is_ambiguous {

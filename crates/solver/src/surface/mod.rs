@@ -96,7 +96,7 @@ impl SurfaceProblem {
         is_curved: bool,
     ) -> Result<SurfaceProblem, TapeError> {
         let conditions = surface.surface().clearance_minors();
-        SurfaceProblem::of(surface, (coordinates, is_curved), &conditions, Several::Refuse)
+        SurfaceProblem::with_conditions(surface, (coordinates, is_curved), &conditions, Several::Refuse)
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
@@ -117,10 +117,10 @@ impl SurfaceProblem {
         quantity: Expr<'g>,
         along: Expr<'g>,
     ) -> Result<SurfaceProblem, TapeError> {
-        SurfaceProblem::of(surface, ([quantity, along], false), &[], Several::TakeWidest)
+        SurfaceProblem::with_conditions(surface, ([quantity, along], false), &[], Several::TakeWidest)
     }
 
-    fn of<'g>(
+    fn with_conditions<'g>(
         surface: &BoundSurface<'g>,
         (coordinates, is_curved): ([Expr<'g>; 2], bool),
         conditions: &[Expr<'g>],

@@ -1,4 +1,4 @@
-//! Which points of a grid are held against the tool's positions.
+//! Which points of a grid are checked against the tool's positions.
 
 use nalgebra::Vector3;
 
@@ -27,7 +27,7 @@ pub struct Judged {
     pub unseen: Option<Unseen>,
 }
 
-/// Positions that points were not held against.
+/// Positions that points were not checked against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
     /// Those that differ from a point's own in several motions at once.
@@ -55,7 +55,7 @@ impl SecondaryCutting {
     /// Marks the solved points of a grid, row by row, that the tool cuts away in another position, as
     /// [`CutBy::ItsToolElsewhere`]. The motions are the last of a point's unknowns.
     ///
-    /// Points are held against all positions that differ from their own in one motion. Where a grid has many, some of them are, evenly spread,
+    /// Points are checked against all positions that differ from their own in one motion. Where a grid has many, some of them are, evenly spread,
     /// and all where verdicts change; what lies between points of one verdict has it too.
     ///
     /// # Panics

@@ -1,7 +1,7 @@
 //! Whether the tool, in another of its positions, cuts away a point that it generates.
 //!
 //! The clearance's Hessian ([`Surface::clearance_minors`]) tells of the positions just before and after. Here each point goes through
-//! the tool's frame as the motions have it, and is held against all pieces of the tool's surface: where it crosses one, the tool's
+//! the tool's frame as the motions have it, and is checked against all pieces of the tool's surface: where it crosses one, the tool's
 //! steel has been on both sides of it.
 
 mod grid;

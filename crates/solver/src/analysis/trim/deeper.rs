@@ -23,7 +23,7 @@ pub(super) fn mark_deeper<'g>(
     points_of_by: &dyn Fn([Expr<'g>; 2]) -> SurfaceProblem,
 ) -> Result<(), TapeError> {
     let Some(places) = Places::telling(points) else { return Ok(()) };
-    let coordinates = places.of(by.surface().position.0, |x, y| (x * x + y * y).sqrt());
+    let coordinates = places.values(by.surface().position.0, |x, y| (x * x + y * y).sqrt());
     let (near, _) = points_of_by(coordinates).solve(&places.targets(points), counts);
     let off = Deviation::new(by)?.map(points, &near, 0.0);
     for ((point, near), off) in points.iter_mut().zip(&near).zip(off) {
@@ -65,7 +65,7 @@ impl Places {
         Some(best.0)
     }
 
-    fn of<T: Copy>(self, [x, y, z]: [T; 3], radius: impl Fn(T, T) -> T) -> [T; 2] {
+    fn values<T: Copy>(self, [x, y, z]: [T; 3], radius: impl Fn(T, T) -> T) -> [T; 2] {
         match self {
             Places::RadiusAndHeight => [radius(x, y), z],
             Places::Without(0) => [y, z],
@@ -77,7 +77,7 @@ impl Places {
     /// Their values at points; where one is not solved, those of the solved one before it, or of the first.
     fn targets(self, points: &[SurfacePoint]) -> Vec<[f64; 2]> {
         let target =
-            |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.of(point.position, f64::hypot));
+            |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.values(point.position, f64::hypot));
         let mut last = points.iter().find_map(target).unwrap_or_default();
         let targets = points.iter().map(|point| {
             last = target(point).unwrap_or(last);

@@ -47,7 +47,7 @@ impl Mark {
         matches!(self, Mark::Solved | Mark::CutByItsTool | Mark::Outside | Mark::NotKept)
     }
 
-    fn of(outcome: Outcome) -> Mark {
+    fn of_outcome(outcome: Outcome) -> Mark {
         match outcome {
             Outcome::Solved => Mark::Solved,
             Outcome::CutAway(_) | Outcome::Undecided => Mark::CutByItsTool,
@@ -128,10 +128,10 @@ impl Field {
     /// Nothing known of `counts` rows and columns, with room for `extras` further numbers a point; in the memory of another
     /// field if there is one.
     pub(crate) fn new(ranges: &[Range], counts: [usize; 2], extras: usize, memory: Option<Field>) -> Field {
-        Field::of(Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras), ranges, memory)
+        Field::shaped(Shape::new(Lines::Rows, counts, ranges.len(), ranges.len() + 2 + extras), ranges, memory)
     }
 
-    fn of(shape: Shape, ranges: &[Range], memory: Option<Field>) -> Field {
+    fn shaped(shape: Shape, ranges: &[Range], memory: Option<Field>) -> Field {
         let (values, marks, memory) =
             memory.map_or_else(Default::default, |field| (field.values, field.marks, field.memory));
         let mut field = Field { shape, ranges: ranges.to_vec(), values, marks, loose: Vec::new(), memory };
@@ -247,7 +247,7 @@ impl Field {
     /// Changes the verdict on a root, and nothing else.
     pub(crate) fn judge(&mut self, point: usize, outcome: Outcome) {
         let (block, lane) = self.shape.place(point);
-        self.marks[block][lane] = Mark::of(outcome);
+        self.marks[block][lane] = Mark::of_outcome(outcome);
         if let Outcome::NotKept { condition } = outcome {
             self.set_determinant(point, condition as f64);
         }
@@ -336,7 +336,7 @@ impl Field {
         self.set(point, self.shape.size, determinant);
         self.set(point, self.shape.size + 1, solution.residual);
         let (block, lane) = self.shape.place(point);
-        self.marks[block][lane] = Mark::of(solution.outcome);
+        self.marks[block][lane] = Mark::of_outcome(solution.outcome);
         self.loose.push(point);
     }
 
@@ -416,7 +416,7 @@ impl Field {
         let Shape { size, planes, .. } = self.shape;
         // beside each other these lines are lanes of lines that go across them
         let shape = Shape::new(Lines::Columns, [lines.len(), places.len()], size, planes);
-        let mut across = Field::of(shape, &self.ranges, self.memory.take().map(|memory| *memory));
+        let mut across = Field::shaped(shape, &self.ranges, self.memory.take().map(|memory| *memory));
         let own = self.shape;
         // of what lies beside each other in either field, one after the other
         let pairs = || {
@@ -481,7 +481,7 @@ fn take(
     let outcome = newton.outcome(lane);
     // what the conditions call singular is told by the careful path
     if outcome != Outcome::Singular {
-        marks[column] = Mark::of(outcome);
+        marks[column] = Mark::of_outcome(outcome);
         keep(shape, values, column, newton, lane);
     }
 }
