@@ -54,7 +54,8 @@ pub fn convert(request: &ConvertRequest, monitor: &dyn Monitor) -> Result<Conver
         ConvertResult::Motion(Box::new(carry(&job, target, &origin, (request, session))?))
     } else {
         let found = settings::find(&job, &target, (request, session))?;
-        ConvertResult::Settings(FoundSettings { not_done: origin.located(&[&job], found.not_done), ..found })
+        let not_done = origin.located(&[&job], found.not_done);
+        ConvertResult::Settings(Box::new(FoundSettings { not_done, ..found }))
     })
 }
 

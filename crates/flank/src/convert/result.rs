@@ -19,7 +19,7 @@ pub enum ConvertResult {
     /// How the axes move.
     Motion(Box<AxisMotion>),
     /// Which settings do the same.
-    Settings(FoundSettings),
+    Settings(Box<FoundSettings>),
 }
 
 /// The axis positions at which another machine holds its tool to the work as the job's own does, of `flank convert`.

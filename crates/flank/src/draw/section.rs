@@ -22,7 +22,7 @@ const MOST_TOUCHED: usize = 14;
 const POINTS: usize = 61;
 
 pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
-    let drawn = section_of(subject)?;
+    let drawn = across_tooth(subject)?;
     let shows = format!(
         "{} across the tooth, {} of the tool",
         counted(drawn.surfaces.len(), "surface"),
@@ -31,7 +31,7 @@ pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Resul
     Ok(Drawing { picture: section(&drawn, options), shows })
 }
 
-fn section_of(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
+fn across_tooth(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
     let cut = Cut::through_middle(subject)?;
     let mates = subject.mates();
     let mut tools = Vec::new();
@@ -194,7 +194,7 @@ mod tests {
         let header = solve::header(&[&jobs[0]], &which, &spec::Origin::default());
         let session = Session::new(EvaluatorOptions::default(), &Unwatched);
         let subject = Subject::new(&jobs[0], &[], header, &[PlotKind::Section], session).expect("it is sampled");
-        section_of(&subject).expect("it has a section")
+        across_tooth(&subject).expect("it has a section")
     }
 
     /// How far a place is off the nearest point of a piece, and on which side of it: the sine of the way there against `out`.

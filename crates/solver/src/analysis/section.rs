@@ -23,15 +23,15 @@ pub struct SectionPlane {
 impl SectionPlane {
     /// The distance of a place from the plane, mm; plus on the side of the normal.
     pub fn height(&self, place: [f64; 3]) -> f64 {
-        dot(self.normal, self.from_point(place))
+        dot(self.normal, self.off_point(place))
     }
 
     /// A place in the axes of the section, mm.
     pub fn in_axes(&self, place: [f64; 3]) -> [f64; 2] {
-        self.axes.map(|axis| dot(axis, self.from_point(place)))
+        self.axes.map(|axis| dot(axis, self.off_point(place)))
     }
 
-    fn from_point(&self, place: [f64; 3]) -> [f64; 3] {
+    fn off_point(&self, place: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| place[k] - self.point[k])
     }
 
