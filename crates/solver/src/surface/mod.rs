@@ -100,8 +100,8 @@ impl SurfaceProblem {
     }
 
     /// Points of the line on `surface` on which `quantity` is zero, at given values of one more coordinate: solve it with
-    /// targets `[0, value]`. The singular line has the last of [`Surface::clearance_minors`] as its quantity, the limit of
-    /// the contact on the tool [`Surface::contact_limit`].
+    /// targets `[0, value]`. The singular line has the last of [`clearance_minors`](flank_expr::geometry::Surface::clearance_minors) as its quantity, the limit of
+    /// the contact on the tool [`contact_limit`](flank_expr::geometry::Surface::contact_limit).
     ///
     /// Of several such lines in the ranges the one is taken that reaches the most points; [`GridReport`] tells of the others. No
     /// point of the line is cut away or singular by the clearance's Hessian: the line is where that changes. The rest is

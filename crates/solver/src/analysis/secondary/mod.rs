@@ -1,6 +1,6 @@
 //! Whether the tool, in another of its positions, cuts away a point that it generates.
 //!
-//! The clearance's Hessian ([`Surface::clearance_minors`]) tells of the positions just before and after. Here each point goes through
+//! The clearance's Hessian ([`clearance_minors`](flank_expr::geometry::Surface::clearance_minors)) tells of the positions just before and after. Here each point goes through
 //! the tool's frame as the motions have it, and is checked against all pieces of the tool's surface: where it crosses one, the tool's
 //! steel has been on both sides of it.
 
