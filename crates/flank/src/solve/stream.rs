@@ -169,15 +169,13 @@ impl<'j, 'g> Streamed<'j, 'g> {
         let session = wanted.session;
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let axis = |k: usize| Axis { label: sample.labels[k].clone(), count: sample.counts[k] };
+        let problem = problem(job, surface, coordinates, session);
+        let has_numbers = numbers_of_all(surface, sample, wanted) > 0;
         Streamed {
             job,
             surface,
             sample,
-            problem: if numbers_of_all(surface, sample, wanted) > 0 {
-                problem(job, surface, coordinates, session).at_once(BESIDE_NUMBERS)
-            } else {
-                problem(job, surface, coordinates, session)
-            },
+            problem: if has_numbers { problem.at_once(BESIDE_NUMBERS) } else { problem },
             outline: patch(job, &surface.name, surface, [axis(0), axis(1)], &[]),
             session,
         }

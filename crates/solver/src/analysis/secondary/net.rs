@@ -456,7 +456,7 @@ mod tests {
         let [u, v] = unknowns;
         let height = u * u * 0.011 - v * v * 0.033 + u * v * 0.009;
         let position = geometry::Vector3([u + v * 0.8, v, height]);
-        let surface = flank_expr::geometry::Surface::parametric(unknowns, position, false);
+        let surface = geometry::Surface::parametric(unknowns, position, false);
         let ranges = [Range { low: -10.0, high: 10.0 }, Range { low: -12.0, high: 12.0 }];
         let piece = Piece::new(0, &BoundSurface::new(&surface, ranges.to_vec(), &[])).expect("nothing is unbound");
         let place = |k: usize| {
