@@ -33,7 +33,10 @@ pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter};
 pub use analysis::trim::{Trim, trim};
-pub use contact::{ContactPath, ContactPoint, ContactProblem, ContactState, NoContact, RollingPair};
+pub use contact::{
+    Carried, ContactPath, ContactPoint, ContactProblem, ContactState, Engagement, FlankEdge, NoContact, Outline,
+    OutlineSegment, RollingPair,
+};
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};
 pub use conversion::explicit::{Explicit, ExplicitProblem, Given, NotExplicit};

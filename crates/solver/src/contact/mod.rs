@@ -4,9 +4,13 @@
 //! lag. They touch where positions agree and normals are opposite: with the constraints of both as many equations as unknowns, so that
 //! a contact is a curve over the roll.
 
+mod edge;
+mod mesh;
+mod outline;
 mod path;
 mod point;
 mod start;
+mod touching;
 
 use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, Tape, TapeError};
@@ -14,6 +18,10 @@ use flank_expr::{Expr, Tape, TapeError};
 use crate::equations::solution::Range;
 use crate::equations::system::System;
 use crate::surface::bound::BoundSurface;
+use edge::EdgeSystems;
+pub use edge::FlankEdge;
+pub use mesh::{Carried, Engagement};
+pub use outline::{Outline, OutlineSegment};
 pub use path::ContactPath;
 pub use point::{ContactPoint, ContactState};
 pub use start::NoContact;
@@ -29,6 +37,8 @@ pub struct RollingPair<'s, 'g> {
     pub roll: Expr<'g>,
     /// What the contact determines, and between which values.
     pub lag: (Expr<'g>, Range),
+    /// Where the teeth of each member end; a flank without one reaches as far as its unknowns' ranges, and has no edges.
+    pub outlines: [Option<Outline>; 2],
 }
 
 /// The equations of a contact of two flanks.
@@ -45,6 +55,9 @@ pub struct ContactProblem {
     unknowns: [usize; 2],
     constraints: [usize; 2],
     ranges: Vec<Range>,
+    outlines: [Option<Outline>; 2],
+    /// Where an edge of either flank may touch.
+    edges: Option<EdgeSystems>,
 }
 
 impl ContactProblem {
@@ -71,13 +84,18 @@ impl ContactProblem {
         let followed = [&second.unknowns[..], &[lag]].concat();
         let given = [&first.unknowns[..], &[pair.roll]].concat();
         let inputs = [&unknowns[..], &[pair.roll]].concat();
+        let placed = [0, 1].map(|k| edge::PlacedFlank { own: own[k].surface(), placement: &pair.placements[k] });
+        let has_edges = pair.outlines.iter().any(Option::is_some);
+        let edges = has_edges.then(|| EdgeSystems::new(&placed, &unknowns, pair.roll)).transpose()?;
         Ok(ContactProblem {
             touching: System::one_by_one(&residuals, &unknowns, &parameters)?,
             through: System::one_by_one(&through, &followed, &given)?,
-            state: Tape::new(&point::outputs([&own[0], &own[1]], [&first, &second], pair.roll, lag), &inputs)?,
+            state: Tape::new(&point::outputs(&placed, [&first, &second], pair.roll, lag), &inputs)?,
             unknowns: [first.unknowns.len(), second.unknowns.len()],
             constraints: [first.constraints.len(), second.constraints.len()],
             ranges: [pair.surfaces[0].ranges(), pair.surfaces[1].ranges(), &[range]].concat(),
+            outlines: pair.outlines.clone(),
+            edges,
         })
     }
 

@@ -1,7 +1,5 @@
 //! A contact followed over the roll.
 
-use nalgebra::Vector3;
-
 use crate::contact::ContactProblem;
 use crate::contact::point::ContactPoint;
 use crate::contact::start::NoContact;
@@ -76,7 +74,7 @@ impl ContactProblem {
 
     fn step(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
         let expected = self.predicted(from, roll - from.roll)?;
-        let found = self.touching_near(roll, &expected, &Vector3::from(from.normal))?;
+        let found = self.touching_near(roll, &expected, &from.edges)?;
         let share = |a: &[f64], b: &[f64]| {
             let off = a.iter().zip(b).zip(&self.ranges).map(|((a, b), range)| ((a - b) / range.width()).abs());
             off.fold(0.0, f64::max)

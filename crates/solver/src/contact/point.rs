@@ -1,13 +1,14 @@
 //! What two flanks are like where they touch.
 
-use flank_expr::geometry::Surface;
+use flank_expr::geometry::{Surface, Vector3 as Vector};
 use flank_expr::{Expr, ScalarEvaluator};
 use nalgebra::{DMatrix, Matrix3x2, Vector3};
 
 use crate::analysis::geometry::{Curvature, Principal, curvature_in, tangents};
 use crate::contact::ContactProblem;
+use crate::contact::edge::{FlankEdge, PlacedFlank};
+use crate::contact::outline::Bound;
 use crate::equations::solution::Outcome;
-use crate::surface::bound::BoundSurface;
 
 /// Normals whose sum is shorter than this are opposite: beyond it they face the same way, the other root of the equations.
 const OPPOSITE: f64 = 1e-3;
@@ -37,17 +38,21 @@ pub struct ContactPoint {
     pub lag: f64,
     /// Its first and second derivative by the roll.
     pub lag_slopes: [f64; 2],
+    /// What touches: none for flank on flank, an edge on the other flank, two edges of one member for a corner, and one of each for edges
+    /// that cross.
+    pub edges: Vec<FlankEdge>,
     /// The unknowns of each flank.
     pub unknowns: [Vec<f64>; 2],
     /// In the frame that both members share.
     pub position: [f64; 3],
-    /// Unit vector out of the first member.
+    /// Unit vector out of the first member, along which both press on each other.
     pub normal: [f64; 3],
     /// The point in the frame of each member.
     pub in_members: [[f64; 3]; 2],
     /// How it moves over each flank as the roll goes on, in the frame of the member, mm per radian of roll.
     pub path: [[f64; 3]; 2],
-    /// How the flanks part, 1/mm: half of it times the square of the way from the point. `None` where a flank has no curvature.
+    /// How the flanks part, 1/mm: half of it times the square of the way from the point. `None` where a flank has no curvature, and where an
+    /// edge touches.
     pub gap: Option<Principal>,
     /// Whether it is a contact; `None` where that is not known.
     pub state: Option<ContactState>,
@@ -61,14 +66,17 @@ pub struct ContactPoint {
 
 /// All that [`ContactProblem::point`] reads, in the order in which it does.
 pub(super) fn outputs<'g>(
-    own: [&BoundSurface<'g>; 2],
+    flanks: &[PlacedFlank<'_, 'g>; 2],
     placed: [&Surface<'g>; 2],
     roll: Expr<'g>,
     lag: Expr<'g>,
 ) -> Vec<Expr<'g>> {
+    let graph = roll.graph();
     let mut outputs = Vec::new();
-    for (own, placed) in own.into_iter().zip(placed) {
-        let (own, p) = (own.surface(), &placed.unknowns);
+    for (flank, placed) in flanks.iter().zip(placed) {
+        let (own, p) = (flank.own, &placed.unknowns);
+        let axis = flank.placement.direction(Vector::constant(graph, [0.0, 0.0, 1.0]));
+        outputs.extend(axis.0.into_iter().chain(flank.placement.point(Vector::zero(graph)).0));
         outputs.extend(placed.position.0.into_iter().chain(placed.normal.0).chain(own.position.0));
         outputs.extend([roll, lag].iter().flat_map(|x| placed.position.derivative(*x).0));
         // column by column, as matrices are stored
@@ -82,15 +90,33 @@ pub(super) fn outputs<'g>(
 
 /// A flank at a point, with its derivatives by its unknowns as columns.
 pub(super) struct Member {
+    /// The member's axis, and a point of it.
+    axis: Vector3<f64>,
+    origin: Vector3<f64>,
     pub(super) position: Vector3<f64>,
     pub(super) normal: Vector3<f64>,
     own: Vector3<f64>,
     /// Derivatives of the position by the roll and by the lag.
-    moved: [Vector3<f64>; 2],
+    pub(super) moved: [Vector3<f64>; 2],
     own_slopes: DMatrix<f64>,
     slopes: DMatrix<f64>,
     normal_slopes: DMatrix<f64>,
     constraint_slopes: DMatrix<f64>,
+}
+
+impl Member {
+    /// The point in the axial section, `[z, rho]`.
+    pub(super) fn section(&self) -> [f64; 2] {
+        [self.own.z, self.own.x.hypot(self.own.y)]
+    }
+
+    /// Of a bound of its outline, in the frame of the contact.
+    pub(super) fn gradient(&self, bound: &Bound) -> Vector3<f64> {
+        let [by_z, by_rho] = bound.gradient(self.section());
+        let from_axis = self.position - self.origin;
+        let out = (from_axis - self.axis * self.axis.dot(&from_axis)).normalize();
+        self.axis * by_z + out * by_rho
+    }
 }
 
 /// Takes numbers off the front of a slice.
@@ -111,6 +137,8 @@ impl ContactProblem {
             let vector = |rest: &mut &[f64]| Vector3::from_column_slice(taken(rest, 3));
             let matrix = |rest: &mut &[f64], rows: usize| DMatrix::from_column_slice(rows, p, taken(rest, rows * p));
             Member {
+                axis: vector(&mut rest),
+                origin: vector(&mut rest),
                 position: vector(&mut rest),
                 normal: vector(&mut rest),
                 own: vector(&mut rest),
@@ -124,10 +152,11 @@ impl ContactProblem {
     }
 
     /// What is known of a root of the equations of touching.
-    pub(super) fn point(&self, outcome: Outcome, unknowns: &[f64], roll: f64) -> ContactPoint {
+    pub(super) fn point(&self, outcome: Outcome, unknowns: &[f64], roll: f64, edges: Vec<FlankEdge>) -> ContactPoint {
         let members = self.members(unknowns, roll);
         let [first, second] = &members;
-        let series = self.series(unknowns, roll, &first.normal);
+        let series = self.series(unknowns, roll, &edges);
+        let normal = self.pressing(&edges, &members);
         let slope = |k: usize| series.as_ref().map_or(f64::NAN, |series| series[k][1]);
         let lag = self.lag_at();
         let lag_slopes = series.as_ref().map_or([f64::NAN; 2], |series| [series[lag][1], 2.0 * series[lag][2]]);
@@ -140,31 +169,37 @@ impl ContactProblem {
         let over = [0, 1].map(|k| vector(&members[k].own_slopes * along(k)));
         let over_in_frame = [0, 1].map(|k| vector(&members[k].slopes * along(k)));
         let velocity = [0, 1].map(|k| members[k].moved[0] + members[k].moved[1] * lag_slopes[0]);
-        let in_plane = |v: Vector3<f64>| <[f64; 3]>::from(v - first.normal * first.normal.dot(&v));
-        let gap = self.gap(&members);
+        let in_plane = |v: Vector3<f64>| <[f64; 3]>::from(v - normal * normal.dot(&v));
+        let gap = if edges.is_empty() { self.gap(&members) } else { None };
+        let state =
+            if edges.is_empty() { gap.map(|gap| state(&gap.principal())) } else { Some(ContactState::Touching) };
         ContactPoint {
             outcome,
             roll,
+            edges,
             lag: unknowns[lag],
             lag_slopes,
             unknowns: [unknowns[..self.unknowns[0]].to_vec(), unknowns[self.unknowns[0]..lag].to_vec()],
             position: first.position.into(),
-            normal: first.normal.into(),
+            normal: normal.into(),
             in_members: [first.own.into(), second.own.into()],
             path: over.map(<[f64; 3]>::from),
             gap: gap.map(|gap| gap.principal()),
-            state: gap.map(|gap| state(&gap.principal())),
+            state,
             sliding: in_plane(velocity[0] - velocity[1]),
             // a member moves past the point as the point moves over the member, the other way
             entraining: in_plane(-0.5 * (over_in_frame[0] + over_in_frame[1])),
-            opening: opening(&members),
+            opening: opening(&members, &normal),
         }
     }
 
-    /// Whether the normals are opposite there, and not the same.
-    pub(super) fn faces(&self, unknowns: &[f64], roll: f64) -> bool {
-        let [first, second] = self.members(unknowns, roll);
-        (first.normal + second.normal).norm() < OPPOSITE
+    /// Whether the normals are opposite there, and not the same; where an edge touches, whether the flanks face each other at all.
+    pub(super) fn faces(edges: &[FlankEdge], [first, second]: &[Member; 2]) -> bool {
+        if edges.is_empty() {
+            (first.normal + second.normal).norm() < OPPOSITE
+        } else {
+            first.normal.dot(&second.normal) < 0.0
+        }
     }
 
     /// How the flanks part.
@@ -178,14 +213,14 @@ impl ContactProblem {
     }
 
     /// Series of the unknowns in the roll, to second order.
-    fn series(&self, unknowns: &[f64], roll: f64, normal: &Vector3<f64>) -> Option<Vec<Vec<f64>>> {
-        self.touching.series(unknowns, &parameters(roll, normal), 0, 2)
+    fn series(&self, unknowns: &[f64], roll: f64, edges: &[FlankEdge]) -> Option<Vec<Vec<f64>>> {
+        let (system, parameters) = self.equations(edges, unknowns, roll)?;
+        system.series(unknowns, &parameters, 0, 2)
     }
 
-    /// Where the contact goes: the unknowns a step of the roll on, to an order.
+    /// Where the contact goes: the unknowns a step of the roll on, to second order.
     pub(super) fn predicted(&self, from: &ContactPoint, step: f64) -> Option<Vec<f64>> {
-        let unknowns = from.all_unknowns();
-        let series = self.series(&unknowns, from.roll, &Vector3::from(from.normal))?;
+        let series = self.series(&from.all_unknowns(), from.roll, &from.edges)?;
         Some(series.iter().map(|c| c[0] + step * (c[1] + step * c[2])).collect())
     }
 }
@@ -196,9 +231,9 @@ pub(super) fn parameters(roll: f64, normal: &Vector3<f64>) -> Vec<f64> {
     [roll].into_iter().chain(tangents.iter().copied()).collect()
 }
 
-/// How far the second flank moves along the normal of the first for a step of the lag.
-pub(super) fn opening([first, second]: &[Member; 2]) -> f64 {
-    first.normal.dot(&(second.moved[1] - first.moved[1]))
+/// How far the second flank moves along a normal out of the first for a step of the lag.
+pub(super) fn opening([first, second]: &[Member; 2], normal: &Vector3<f64>) -> f64 {
+    normal.dot(&(second.moved[1] - first.moved[1]))
 }
 
 fn state(gap: &Principal) -> ContactState {

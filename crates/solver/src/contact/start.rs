@@ -7,13 +7,16 @@
 use nalgebra::Vector3;
 
 use crate::contact::ContactProblem;
-use crate::contact::point::{ContactPoint, ContactState, opening, parameters};
+use crate::contact::edge::FlankEdge;
+use crate::contact::point::{ContactPoint, ContactState, opening};
 use crate::equations::solution::Outcome;
 use crate::newton::scalar::solve_with;
 use crate::surface::points::SurfacePoint;
 
 /// Places, the most extreme first, from which a contact is looked for.
 const STARTS: usize = 12;
+/// A point that opens the pair less than the grid's most by this share of the lag's range is as high: rounding.
+const UNEVEN: f64 = 1e-12;
 /// A lag that moves the flank along the normal by less than this share of what it moves it at all does not open the pair.
 const LOCKED: f64 = 1e-6;
 
@@ -35,7 +38,12 @@ struct Passing {
     unknowns: Vec<f64>,
     /// What the lag is, with the sign with which more of it opens.
     height: f64,
-    normal: Vector3<f64>,
+}
+
+/// Whether a contact is one, whether it is on the flanks as far as they are looked for, and whether nothing opens the pair more.
+fn rank(point: &ContactPoint, least: f64) -> (bool, bool, bool) {
+    let is_contact = matches!(point.state, Some(ContactState::Touching | ContactState::Line));
+    (is_contact, point.outcome == Outcome::Solved, point.lag * point.opening.signum() >= least)
 }
 
 impl ContactProblem {
@@ -47,42 +55,29 @@ impl ContactProblem {
         let mut passing = self.passing(roll, points)?;
         passing.sort_by(|a, b| b.height.total_cmp(&a.height));
         let mut best: Option<ContactPoint> = None;
+        // no point that both flanks have may open the pair more than the contact does
+        let least = passing[0].height - UNEVEN * self.ranges[self.lag_at()].width();
         for start in passing.iter().take(STARTS) {
-            let Some(found) = self.touching_near(roll, &start.unknowns, &start.normal) else { continue };
-            let rank = |point: &ContactPoint| {
-                let is_contact = matches!(point.state, Some(ContactState::Touching | ContactState::Line));
-                (is_contact, point.outcome == Outcome::Solved)
-            };
-            if best.as_ref().is_none_or(|best| rank(&found) > rank(best)) {
-                best = Some(found);
-            }
-            if best.as_ref().is_some_and(|best| rank(best) == (true, true)) {
-                break;
+            for edges in self.ways() {
+                let Some(found) = self.touching_near(roll, &start.unknowns, &edges) else { continue };
+                if best.as_ref().is_none_or(|best| rank(&found, least) > rank(best, least)) {
+                    best = Some(found);
+                }
+                if best.as_ref().is_some_and(|best| rank(best, least) == (true, true, true)) {
+                    return Ok(best.expect("there is one"));
+                }
             }
         }
         best.ok_or(NoContact::NotFound)
     }
 
-    /// The contact near unknowns of both and a lag.
-    pub(super) fn touching_near(&self, roll: f64, unknowns: &[f64], normal: &Vector3<f64>) -> Option<ContactPoint> {
-        let mut normal = *normal;
-        let mut start = unknowns.to_vec();
-        // the directions in which the normals are compared turn with them
-        for _ in 0..2 {
-            let mut evaluation = self.touching.evaluation(&parameters(roll, &normal));
-            let solution = solve_with(&mut evaluation, &self.ranges, &start);
-            if !matches!(solution.outcome, Outcome::Solved | Outcome::Outside { .. }) {
-                return None;
-            }
-            let [first, _] = self.members(&solution.unknowns, roll);
-            let is_square = (first.normal - normal).norm() < 0.5;
-            (start, normal) = (solution.unknowns, first.normal);
-            if is_square {
-                let faces = self.faces(&start, roll);
-                return faces.then(|| self.point(solution.outcome, &start, roll));
-            }
-        }
-        None
+    /// With which edges a contact is looked for: flank on flank first.
+    fn ways(&self) -> Vec<Vec<FlankEdge>> {
+        let edges = |member: usize| {
+            let segments = self.outlines[member].as_ref().map_or(0, |outline| outline.segments().len());
+            (0..segments).map(move |segment| vec![FlankEdge { member, segment }])
+        };
+        std::iter::once(Vec::new()).chain(edges(0)).chain(edges(1)).collect()
     }
 
     fn passing(&self, roll: f64, [first, second]: [&[SurfacePoint]; 2]) -> Result<Vec<Passing>, NoContact> {
@@ -108,7 +103,11 @@ impl ContactProblem {
             let Some(through) = starts.into_iter().find_map(|start| self.through(roll, p, &start)) else { continue };
             let unknowns = [p, &through[..]].concat();
             let members = self.members(&unknowns, roll);
-            let opening = opening(&members);
+            last = Some(through);
+            if self.beyond(&members).is_some() {
+                continue;
+            }
+            let opening = opening(&members, &members[0].normal);
             let least = LOCKED * members[1].position.norm().max(1.0);
             if members[0].normal.dot(&members[1].normal) > 0.0 {
                 refused = refused.or(Some(NoContact::SameSide));
@@ -116,9 +115,8 @@ impl ContactProblem {
                 refused = refused.or(Some(NoContact::Locked));
             } else {
                 let height = unknowns[self.lag_at()] * opening.signum();
-                found.push(Passing { unknowns, height, normal: members[0].normal });
+                found.push(Passing { unknowns, height });
             }
-            last = Some(through);
         }
         if found.is_empty() { Err(refused.unwrap_or(NoContact::Apart)) } else { Ok(found) }
     }

@@ -1,0 +1,151 @@
+//! A pair of teeth on its way through the mesh, and all pairs together.
+//!
+//! The lag of the next pair is that of this one a pitch of the roll later, so that one pair followed from its first touch to its last says
+//! what all do. At each roll position the pair that opens the members most carries: the composite lag.
+
+use crate::contact::ContactProblem;
+use crate::contact::point::ContactPoint;
+
+/// Steps of Newton, safeguarded by halving, until a place of the roll is settled, and the share of a pitch at which it is.
+const MOST_STEPS: usize = 60;
+const SETTLED: f64 = 1e-14;
+
+/// A pair of teeth from where it begins to touch to where it ends, at even steps of the roll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Engagement {
+    /// How far the members roll from one pair of teeth to the next.
+    pub pitch: f64,
+    /// Steps of a pitch.
+    pub steps: usize,
+    /// At which step of the roll the first point is, counted from where it was begun.
+    pub first: isize,
+    /// Where the pair touches, in the order of the roll.
+    pub points: Vec<ContactPoint>,
+    /// Whether it ends before a limit of the roll: the pair is out of reach there.
+    pub is_whole: [bool; 2],
+}
+
+/// Which pair carries at a roll position, and the one next to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// The pair that carries: how many pitches it is ahead.
+    pub pair: isize,
+    /// The composite lag.
+    pub lag: f64,
+    /// By how much the second pair stays behind; `None` where there is only one.
+    pub behind: Option<f64>,
+}
+
+impl ContactProblem {
+    /// The pair that touches at a contact, followed by even steps of the roll until it no longer touches, or to the ends of the roll.
+    pub fn engagement(&self, from: &ContactPoint, pitch: f64, steps: usize, limits: [f64; 2]) -> Engagement {
+        let follow = |way: isize| {
+            let mut found: Vec<ContactPoint> = Vec::new();
+            loop {
+                let at = found.last().unwrap_or(from);
+                let roll = from.roll + (way * (found.len() as isize + 1)) as f64 * pitch / steps as f64;
+                if !(limits[0]..=limits[1]).contains(&roll) {
+                    return (found, false);
+                }
+                match self.followed(at, roll) {
+                    Some(next) => found.push(next),
+                    None => return (found, true),
+                }
+            }
+        };
+        let ((mut points, begins), (after, ends)) = (follow(-1), follow(1));
+        let first = -(points.len() as isize);
+        points.reverse();
+        points.push(from.clone());
+        points.extend(after);
+        Engagement { pitch, steps, first, points, is_whole: [begins, ends] }
+    }
+
+    /// Where on the roll a contact of flank on flank begins or ends beside a point of it: where it comes to an edge, or the end of what a
+    /// tool's surface makes. `way` is -1 towards smaller rolls.
+    pub fn flank_end(&self, of: &Engagement, way: isize) -> Option<ContactPoint> {
+        let is_flank = |point: &&ContactPoint| point.edges.is_empty();
+        let inner = if way < 0 { of.points.iter().find(is_flank) } else { of.points.iter().rev().find(is_flank) }?;
+        let step = way as f64 * of.pitch / of.steps as f64;
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut best = inner.clone();
+        for _ in 0..MOST_STEPS {
+            let share = 0.5 * (low + high);
+            if (high - low) * step.abs() <= SETTLED * of.pitch {
+                break;
+            }
+            match self.followed(&best, inner.roll + share * step).filter(|point| point.edges.is_empty()) {
+                Some(point) => (best, low) = (point, share),
+                None => high = share,
+            }
+        }
+        Some(best)
+    }
+
+    /// The roll position between two at which two pairs carry together, `ahead` pitches apart: where the one hands over to the other.
+    pub fn transfer(&self, of: &Engagement, pairs: [isize; 2], between: [f64; 2]) -> Option<f64> {
+        let [mut low, mut high] = between;
+        let height = |roll: f64| {
+            let lags = pairs.map(|pair| {
+                self.pair_at(of, pair, roll)
+                    .map(|point| (point.lag * point.opening.signum(), point.lag_slopes[0] * point.opening.signum()))
+            });
+            let [Some(a), Some(b)] = lags else { return None };
+            Some((a.0 - b.0, a.1 - b.1))
+        };
+        let sign = height(low)?.0.signum();
+        let mut at = 0.5 * (low + high);
+        for _ in 0..MOST_STEPS {
+            let (value, slope) = height(at)?;
+            if value == 0.0 {
+                return Some(at);
+            }
+            if value.signum() == sign {
+                low = at
+            } else {
+                high = at
+            }
+            let next = at - value / slope;
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            if (next - at).abs() <= SETTLED * of.pitch {
+                return Some(next);
+            }
+            at = next;
+        }
+        Some(at)
+    }
+
+    /// A pair, some pitches ahead, at a roll position of the first.
+    pub fn pair_at(&self, of: &Engagement, pair: isize, roll: f64) -> Option<ContactPoint> {
+        let roll = roll + pair as f64 * of.pitch;
+        let near = of.points.iter().min_by(|a, b| (a.roll - roll).abs().total_cmp(&(b.roll - roll).abs()))?;
+        self.followed(near, roll)
+    }
+}
+
+impl Engagement {
+    /// The point of a pair, some pitches ahead, at a step of the roll; `None` where it does not touch.
+    pub fn point(&self, pair: isize, step: isize) -> Option<&ContactPoint> {
+        let at = step + pair * self.steps as isize - self.first;
+        self.points.get(usize::try_from(at).ok()?)
+    }
+
+    /// The pairs that may touch at a step of the roll, those behind first.
+    pub fn pairs(&self, step: isize) -> Vec<isize> {
+        let (steps, last) = (self.steps as isize, self.first + self.points.len() as isize - 1);
+        let lowest = (self.first - step).div_euclid(steps);
+        let highest = (last - step).div_euclid(steps) + 1;
+        (lowest..=highest).filter(|pair| self.point(*pair, step).is_some()).collect()
+    }
+
+    /// Which pair carries at a step of the roll; `None` where none touches.
+    pub fn carried(&self, step: isize) -> Option<Carried> {
+        let mut heights: Vec<(isize, &ContactPoint)> =
+            self.pairs(step).into_iter().filter_map(|pair| Some((pair, self.point(pair, step)?))).collect();
+        let height = |point: &ContactPoint| point.lag * point.opening.signum();
+        heights.sort_by(|a, b| height(b.1).total_cmp(&height(a.1)));
+        let (pair, point) = *heights.first()?;
+        let behind = heights.get(1).map(|(_, second)| height(point) - height(second));
+        Some(Carried { pair, lag: point.lag, behind })
+    }
+}

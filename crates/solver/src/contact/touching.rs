@@ -1,0 +1,82 @@
+//! A contact from a start value near it: flank on flank, or the edges that touch instead.
+
+use crate::contact::ContactProblem;
+use crate::contact::edge::FlankEdge;
+use crate::contact::point::{ContactPoint, Member, parameters};
+use crate::equations::solution::{Outcome, Solution};
+use crate::equations::system::System;
+use crate::newton::scalar::solve_with;
+
+/// Times that an edge comes to touch, or is left, on the way to the contact.
+const MOST_CHANGES: usize = 10;
+/// Edges that touch at a time: each leaves one direction less to move in.
+const MOST_EDGES: usize = 2;
+/// A multiplier below this, as a share of the slope of the lag, leaves its edge: less is rounding.
+const RELEASED: f64 = -1e-9;
+/// Times that the directions in which normals are compared are turned with them.
+const MOST_TURNS: usize = 2;
+
+impl ContactProblem {
+    /// The equations with which the members touch so, with the values of their parameters.
+    pub(super) fn equations(&self, edges: &[FlankEdge], unknowns: &[f64], roll: f64) -> Option<(&System, Vec<f64>)> {
+        if edges.is_empty() {
+            let [first, _] = self.members(unknowns, roll);
+            return Some((&self.touching, parameters(roll, &first.normal)));
+        }
+        let bounds: Option<Vec<[f64; 5]>> = edges.iter().map(|edge| Some(self.bound(*edge)?.numbers())).collect();
+        Some((self.edges.as_ref()?.system(edges), [roll].into_iter().chain(bounds?.concat()).collect()))
+    }
+
+    /// The contact near unknowns of both and a lag: with these edges, or with those that come to touch instead.
+    pub(super) fn touching_near(&self, roll: f64, unknowns: &[f64], edges: &[FlankEdge]) -> Option<ContactPoint> {
+        let (mut edges, mut start) = (edges.to_vec(), unknowns.to_vec());
+        for _ in 0..MOST_CHANGES {
+            let (root, members) = self.root(roll, &start, &edges)?;
+            let Some(changed) = self.changed(&edges, &members) else {
+                return Some(self.point(root.outcome, &root.unknowns, roll, edges));
+            };
+            (edges, start) = (changed, root.unknowns);
+        }
+        None
+    }
+
+    /// The root with these edges and no others, however far beyond other edges it lies.
+    pub(super) fn root(&self, roll: f64, start: &[f64], edges: &[FlankEdge]) -> Option<(Solution, [Member; 2])> {
+        let mut start = start.to_vec();
+        for _ in 0..MOST_TURNS {
+            let (system, parameters) = self.equations(edges, &start, roll)?;
+            let [before, _] = self.members(&start, roll);
+            let root = solve_with(&mut system.evaluation(&parameters), &self.ranges, &start);
+            if !matches!(root.outcome, Outcome::Solved | Outcome::Outside { .. }) {
+                return None;
+            }
+            let members = self.members(&root.unknowns, roll);
+            if !edges.is_empty() || (members[0].normal - before.normal).norm() < 0.5 {
+                return ContactProblem::faces(edges, &members).then_some((root, members));
+            }
+            start = root.unknowns;
+        }
+        None
+    }
+
+    /// Which edges touch instead: one more where the root lies beyond it, one less where the lag opens further away from it; `None` where
+    /// it is these.
+    fn changed(&self, edges: &[FlankEdge], members: &[Member; 2]) -> Option<Vec<FlankEdge>> {
+        let multipliers = self.multipliers(edges, members);
+        let least = (0..edges.len()).min_by(|a, b| multipliers[*a].total_cmp(&multipliers[*b]));
+        let mut changed = edges.to_vec();
+        match self.beyond(members).filter(|edge| !edges.contains(edge)) {
+            Some(edge) => {
+                if let Some(least) = least.filter(|_| edges.len() == MOST_EDGES) {
+                    changed.remove(least);
+                }
+                changed.push(edge);
+                changed.sort();
+            }
+            None => {
+                changed.remove(least.filter(|least| multipliers[*least] < RELEASED)?);
+            }
+        }
+        Some(changed)
+    }
+}
