@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use flank_expr::Graph;
 use flank_expr::geometry::{Axis, Chain, Step, Surface, Vector3};
 use flank_solver::{
-    BoundSurface, ContactPoint, ContactProblem, ContactState, FlankEdge, NoContact, Outcome, Outline, OutlineSegment,
-    Range, RollingPair, SurfacePoint, SurfaceProblem,
+    BoundSurface, ContactPoint, ContactProblem, ContactState, FlankEdge, GapProblem, NoContact, Outcome, Outline,
+    OutlineSegment, Range, RollingPair, SurfacePoint, SurfaceProblem,
 };
 use flank_tests::{difference, number, reference_json, vector};
 use serde_json::Value;
@@ -326,8 +326,13 @@ fn with_pair_in(
     let of = |name: &str| number(misalignment, name);
     let pinion = universal_flank(&graph, "pinion", -1.0, &inputs["pinion"]);
     let gear = universal_flank(&graph, "gear", 1.0, &inputs["gear"]);
-    let pinion = BoundSurface::new(&pinion, flank_ranges(7.0, 2.0), &[]);
-    let gear = BoundSurface::new(&gear, flank_ranges(9.0, -2.0), &[]);
+    // the blade begins at its edge's rounding, u = 0
+    let from_rounding = |mut ranges: Vec<Range>| {
+        ranges[0].low = 0.0;
+        ranges
+    };
+    let pinion = BoundSurface::new(&pinion, from_rounding(flank_ranges(7.0, 2.0)), &[]);
+    let gear = BoundSurface::new(&gear, from_rounding(flank_ranges(9.0, -2.0)), &[]);
     let (roll, lag) = (graph.variable("roll"), graph.variable("lag"));
     let along = |x: f64, y: f64, z: f64| Step::Translate(Vector3::constant(&graph, [x, y, z]));
     let ratio = number(inputs, "zP") / number(inputs, "zG");
@@ -381,10 +386,12 @@ fn the_error_is_least_where_the_table_has_its_vertex() {
     });
 }
 
-/// A blank from its corners `[z, rho]`: root toe, root heel, tip toe, tip heel.
+/// A blank from its corners `[z, rho]`: root toe, root heel, tip toe, tip heel. Its bore lies as far below the root as the tip above: the
+/// root is no end of a flank.
 fn blank(corners: &Value) -> Outline {
-    let corner = |k: usize| [0, 1].map(|x| corners[k][x].as_f64().expect("a length"));
-    let around = [("root", 0, 1), ("heel", 1, 3), ("tip", 3, 2), ("toe", 2, 0)];
+    let given = |k: usize, x: usize| corners[k][x].as_f64().expect("a length");
+    let corner = |k: usize| [0, 1].map(|x| if k < 2 { 2.0 * given(k, x) - given(k + 2, x) } else { given(k, x) });
+    let around = [("bore", 0, 1), ("heel", 1, 3), ("tip", 3, 2), ("toe", 2, 0)];
     let segment = |(name, from, to): (&str, usize, usize)| OutlineSegment {
         name: name.to_owned(),
         from: corner(from),
@@ -397,8 +404,8 @@ fn blank(corners: &Value) -> Outline {
 /// What touches, as the table calls it.
 fn kind(edges: &[FlankEdge]) -> String {
     const NAMES: [[&str; 4]; 2] = [
-        ["pinion root", "pinion heel", "pinion tip", "pinion toe"],
-        ["gear root", "gear heel", "gear tip", "gear toe"],
+        ["pinion bore", "pinion heel", "pinion tip", "pinion toe"],
+        ["gear bore", "gear heel", "gear tip", "gear toe"],
     ];
     let names: Vec<&str> = edges.iter().map(|edge| NAMES[edge.member][edge.segment]).collect();
     if names.is_empty() { "flank".to_owned() } else { names.join(" x ") }
@@ -456,6 +463,70 @@ fn pairs_of_teeth_carry_with_flanks_and_edges_as_solved_independently() {
             }
             let handed = problem.transfer(&of, [0, -1], [0.05, 0.2]).expect("one hands over to the other");
             assert!((handed - number(case, "transfer_thetaP")).abs() < 1e-9, "{handed} {}", case["transfer_thetaP"]);
+        });
+    }
+}
+
+/// Points of a flank at shares of a blank, lengthwise from toe to heel and profilewise from root to tip.
+fn nodes(surface: &BoundSurface<'_>, corners: &Value, [lengthwise, profilewise]: [&[f64]; 2]) -> Vec<SurfacePoint> {
+    let [x, y, z] = surface.surface().position.0;
+    let problem = SurfaceProblem::new(surface, [z, (x * x + y * y).sqrt()]).expect("nothing is unbound");
+    let corner = |k: usize, x: usize| corners[k][x].as_f64().expect("a length");
+    let at = |s: f64, t: f64| {
+        [0, 1].map(|x| {
+            let [root, tip] = [0, 2].map(|k| corner(k, x) * (1.0 - s) + corner(k + 1, x) * s);
+            root * (1.0 - t) + tip * t
+        })
+    };
+    let targets: Vec<[f64; 2]> = profilewise.iter().flat_map(|t| lengthwise.iter().map(|s| at(*s, *t))).collect();
+    problem.solve(&targets, [profilewise.len(), lengthwise.len()]).0
+}
+
+/// How near the pinion comes to the gear's flank over three pitches of the composite motion, on 9 x 17 nodes: the table's gaps to 1e-9 mm,
+/// and of the compound's film as many nodes as it has. None is below zero, so that nothing reaches into the mate.
+#[test]
+fn the_mate_comes_as_near_as_solved_independently() {
+    let reference = reference_json("contact_edges_a.json");
+    let inputs = &reference["inputs"];
+    for case in reference["cases"].as_array().expect("cases") {
+        let outlines = ["pinion_blank", "gear_blank"].map(|name| Some(blank(&inputs[name])));
+        with_pair_in(outlines, &case["misalignment"], inputs, |pair| {
+            let rolls = rolls(rows_of(case), "thetaP");
+            let problem = ContactProblem::new(pair).expect("nothing is unbound");
+            let points = pair.surfaces.map(grid);
+            let first = problem.find(rolls[10], [&points[0], &points[1]]).expect("the flanks touch");
+            let of = problem.engagement(&first, TAU / 19.0, 20, [-2.0, 2.0]);
+            let positions: Vec<[f64; 2]> = (0..60)
+                .map(|k| {
+                    let roll = rolls[k % 20] + (k as f64 / 20.0).floor() * of.pitch - of.pitch;
+                    [roll, of.carried(k as isize - 30).expect("a pair carries").lag]
+                })
+                .collect();
+            let pattern = &case["pattern"];
+            let shares = ["lengthwise", "profilewise"].map(|name| -> Vec<f64> {
+                pattern[name].as_array().expect("shares").iter().map(|share| share.as_f64().expect("a share")).collect()
+            });
+            assert_eq!(shares.each_ref().map(Vec::len), [17, 9]);
+            let nodes = nodes(pair.surfaces[1], &inputs["gear_blank"], [&shares[0], &shares[1]]);
+            let gaps = GapProblem::new(pair, 1).expect("nothing is unbound");
+            let least = gaps.least(&nodes, &positions, &points[0]);
+            let table =
+                pattern["least_gap"].as_array().expect("rows").iter().flat_map(|row| row.as_array().expect("gaps"));
+            for ((gap, expected), node) in least.iter().zip(table).zip(&nodes) {
+                let Some(gap) = gap else {
+                    assert!(expected.is_null(), "{expected} {node:?}");
+                    continue;
+                };
+                let expected = expected.as_f64().expect("a gap");
+                // where the table has given up the pair, see above, it has no gaps at some of the nodes
+                let is_given_up =
+                    |position: usize| position >= 40 && rows_of(case)[position - 40]["pairs"][2]["kind"] == "none";
+                let is_nearer = gap.distance < expected && is_given_up(gap.position);
+                assert!((gap.distance - expected).abs() < 1e-9 || is_nearer, "{gap:?} {expected} {node:?}");
+                assert!(gap.distance >= 0.0);
+            }
+            let within = least.iter().flatten().filter(|gap| gap.distance < 0.00635).count();
+            assert_eq!(within as u64, pattern["nodes_within"].as_u64().expect("a number"));
         });
     }
 }

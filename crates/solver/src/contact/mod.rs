@@ -8,6 +8,7 @@ mod edge;
 mod mesh;
 mod outline;
 mod path;
+mod pattern;
 mod point;
 mod start;
 mod touching;
@@ -23,6 +24,7 @@ pub use edge::FlankEdge;
 pub use mesh::{Carried, Engagement};
 pub use outline::{Outline, OutlineSegment};
 pub use path::ContactPath;
+pub use pattern::{Gap, GapProblem};
 pub use point::{ContactPoint, ContactState};
 pub use start::NoContact;
 
