@@ -34,8 +34,8 @@ pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter};
 pub use analysis::trim::{Trim, trim};
 pub use contact::{
-    Carried, ContactPath, ContactPoint, ContactProblem, ContactState, Engagement, FlankEdge, Gap, GapProblem,
-    NoContact, Outline, OutlineSegment, RollingPair,
+    Carried, ContactChange, ContactPath, ContactPoint, ContactProblem, ContactState, Engagement, FlankEdge, Gap,
+    GapProblem, NoContact, Outline, OutlineSegment, RollingPair,
 };
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};

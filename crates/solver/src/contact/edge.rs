@@ -28,8 +28,8 @@ pub(super) struct PlacedFlank<'s, 'g> {
     pub(super) placement: &'s Chain<'g>,
 }
 
-/// The equations of each way to touch with edges. Unknowns are those of both flanks and the lag; parameters the roll, then the numbers
-/// of each bound.
+/// The equations of each way to touch with edges. Unknowns are those of both flanks and the lag; parameters the roll and what the contact is
+/// differentiated by, then the numbers of each bound.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeSystems {
     edge: [System; 2],
@@ -41,9 +41,9 @@ impl EdgeSystems {
     pub(super) fn new<'g>(
         flanks: &[PlacedFlank<'_, 'g>; 2],
         unknowns: &[Expr<'g>],
-        roll: Expr<'g>,
+        given: &[Expr<'g>],
     ) -> Result<EdgeSystems, TapeError> {
-        let graph = roll.graph();
+        let graph = given[0].graph();
         let [a, b] =
             ["first", "second"].map(|of| BoundNames::new(&|name| graph.variable(format!("{of} bound {name}"))));
         let [first, second] = flanks.each_ref().map(|flank| flank.own.moved(flank.placement));
@@ -51,7 +51,7 @@ impl EdgeSystems {
         let both = [&first.constraints[..], &second.constraints, &apart].concat();
         let system = |further: &[Expr<'g>], bounds: &[&BoundNames<'g>]| {
             let numbers = bounds.iter().flat_map(|bound| bound.numbers);
-            let parameters: Vec<Expr<'g>> = [roll].into_iter().chain(numbers).collect();
+            let parameters: Vec<Expr<'g>> = given.iter().copied().chain(numbers).collect();
             System::one_by_one(&[&both, further].concat(), unknowns, &parameters)
         };
         let edge = |k: usize, other: &Surface<'g>| {

@@ -4,6 +4,7 @@
 //! lag. They touch where positions agree and normals are opposite: with the constraints of both as many equations as unknowns, so that
 //! a contact is a curve over the roll.
 
+mod change;
 mod edge;
 mod mesh;
 mod outline;
@@ -19,6 +20,7 @@ use flank_expr::{Expr, Tape, TapeError};
 use crate::equations::solution::Range;
 use crate::equations::system::System;
 use crate::surface::bound::BoundSurface;
+pub use change::ContactChange;
 use edge::EdgeSystems;
 pub use edge::FlankEdge;
 pub use mesh::{Carried, Engagement};
@@ -41,12 +43,15 @@ pub struct RollingPair<'s, 'g> {
     pub lag: (Expr<'g>, Range),
     /// Where the teeth of each member end; a flank without one reaches as far as its unknowns' ranges, and has no edges.
     pub outlines: [Option<Outline>; 2],
+    /// Mounting errors and settings by which the contact is differentiated, with their values.
+    pub parameters: Vec<(Expr<'g>, f64)>,
 }
 
 /// The equations of a contact of two flanks.
 #[derive(Clone, Debug)]
 pub struct ContactProblem {
-    /// Unknowns of the first flank, of the second, the lag; the roll and two directions are parameters.
+    /// Unknowns of the first flank, of the second, the lag; the roll, what the contact is differentiated by, and two directions are
+    /// parameters.
     touching: System,
     /// Unknowns of the second flank and the lag, at which it passes through a point of the first one: the unknowns of the first flank
     /// and the roll are parameters.
@@ -58,6 +63,8 @@ pub struct ContactProblem {
     constraints: [usize; 2],
     ranges: Vec<Range>,
     outlines: [Option<Outline>; 2],
+    /// Of what the contact is differentiated by.
+    values: Vec<f64>,
     /// Where an edge of either flank may touch.
     edges: Option<EdgeSystems>,
 }
@@ -81,24 +88,41 @@ impl ContactProblem {
         let constraints = |surface: &Surface<'g>| surface.constraints.clone();
         let residuals = [constraints(&first), constraints(&second), apart.0.to_vec(), opposite.to_vec()].concat();
         let unknowns = [&first.unknowns[..], &second.unknowns, &[lag]].concat();
-        let parameters = [&[pair.roll][..], &directions[0].0, &directions[1].0].concat();
+        let given: Vec<Expr<'_>> =
+            [pair.roll].into_iter().chain(pair.parameters.iter().map(|(name, _)| *name)).collect();
+        let parameters = [&given[..], &directions[0].0, &directions[1].0].concat();
         let through = [constraints(&second), apart.0.to_vec()].concat();
         let followed = [&second.unknowns[..], &[lag]].concat();
-        let given = [&first.unknowns[..], &[pair.roll]].concat();
-        let inputs = [&unknowns[..], &[pair.roll]].concat();
+        let of_first = [&first.unknowns[..], &given].concat();
+        let inputs = [&unknowns[..], &given].concat();
         let placed = [0, 1].map(|k| edge::PlacedFlank { own: own[k].surface(), placement: &pair.placements[k] });
         let has_edges = pair.outlines.iter().any(Option::is_some);
-        let edges = has_edges.then(|| EdgeSystems::new(&placed, &unknowns, pair.roll)).transpose()?;
+        let edges = has_edges.then(|| EdgeSystems::new(&placed, &unknowns, &given)).transpose()?;
         Ok(ContactProblem {
             touching: System::one_by_one(&residuals, &unknowns, &parameters)?,
-            through: System::one_by_one(&through, &followed, &given)?,
+            through: System::one_by_one(&through, &followed, &of_first)?,
             state: Tape::new(&point::outputs(&placed, [&first, &second], pair.roll, lag), &inputs)?,
             unknowns: [first.unknowns.len(), second.unknowns.len()],
             constraints: [first.constraints.len(), second.constraints.len()],
             ranges: [pair.surfaces[0].ranges(), pair.surfaces[1].ranges(), &[range]].concat(),
             outlines: pair.outlines.clone(),
+            values: pair.parameters.iter().map(|(_, value)| *value).collect(),
             edges,
         })
+    }
+
+    /// The same pair with other values of what it is differentiated by.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn with_values(&self, values: &[f64]) -> ContactProblem {
+        assert_eq!(values.len(), self.values.len(), "one value for each parameter");
+        ContactProblem { values: values.to_vec(), ..self.clone() }
+    }
+
+    /// The roll, then the values of what the contact is differentiated by.
+    fn given(&self, roll: f64) -> impl Iterator<Item = f64> {
+        [roll].into_iter().chain(self.values.iter().copied())
     }
 
     fn lag_at(&self) -> usize {

@@ -19,11 +19,13 @@ const TILE: usize = 2 * LANES;
 /// Distances from points of one flank along its normals to the other flank.
 #[derive(Clone, Debug)]
 pub struct GapProblem {
-    /// Unknowns of the mate and a distance; a point and a normal in the mate's frame are parameters.
+    /// Unknowns of the mate and a distance; a point and a normal in the mate's frame are parameters, and those of the pair.
     along_normal: System,
     ranges: Vec<Range>,
     outline: Option<Outline>,
-    /// From the roll and the lag: where the flank's origin and axes are in the mate's frame.
+    /// Of the pair's parameters.
+    values: Vec<f64>,
+    /// From the roll, the lag and the pair's parameters: where the flank's origin and axes are in the mate's frame.
     pose: Tape,
 }
 
@@ -50,7 +52,8 @@ impl GapProblem {
         let reached = point + normal.map(|part| part * distance);
         let residuals = pair.surfaces[mate].constrained((surface.position - reached).0);
         let unknowns = [&surface.unknowns[..], &[distance]].concat();
-        let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).collect();
+        let given: Vec<Expr<'_>> = pair.parameters.iter().map(|(name, _)| *name).collect();
+        let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).chain(given.iter().copied()).collect();
         let t_mate_flank = pair.placements[mate].inverse().then(&pair.placements[member]).pose();
         let axes = t_mate_flank.rotation.entries();
         let pose: Vec<Expr<'_>> = t_mate_flank.translation.0.into_iter().chain(axes).collect();
@@ -58,7 +61,8 @@ impl GapProblem {
             along_normal: System::new(&residuals, &unknowns, &parameters)?,
             ranges: [pair.surfaces[mate].ranges(), &[FARTHEST]].concat(),
             outline: pair.outlines[mate].clone(),
-            pose: Tape::new(&pose, &[pair.roll, pair.lag.0])?,
+            values: pair.parameters.iter().map(|(_, value)| *value).collect(),
+            pose: Tape::new(&pose, &[&[pair.roll, pair.lag.0][..], &given].concat())?,
         })
     }
 
@@ -75,7 +79,7 @@ impl GapProblem {
 
     fn pose_at(&self, position: [f64; 2]) -> [f64; 12] {
         let mut pose = [0.0; 12];
-        ScalarEvaluator::new(&self.pose).run(&position, &mut pose);
+        ScalarEvaluator::new(&self.pose).run(&[&position[..], &self.values].concat(), &mut pose);
         pose
     }
 
@@ -98,7 +102,7 @@ impl GapProblem {
             let before = |lane: usize| feet.last().and_then(|feet: &Vec<Option<Vec<f64>>>| feet[lane].clone());
             for lane in (0..nodes.len()).filter(|lane| active[*lane]) {
                 let start = before(lane).unwrap_or_else(|| nearest(&asked[lane], mate));
-                newton.put(lane, start.into_iter(), &asked[lane]);
+                newton.put(lane, start.into_iter(), &self.parameters(&asked[lane]));
             }
             newton.run(&active, true);
             let mut foot = |lane: usize| {
@@ -143,8 +147,12 @@ impl GapProblem {
         feet.enumerate().filter_map(gap).min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
+    fn parameters(&self, asked: &[f64; 6]) -> Vec<f64> {
+        [&asked[..], &self.values].concat()
+    }
+
     fn alone(&self, asked: &[f64; 6], start: &[f64]) -> Option<Vec<f64>> {
-        let solution = solve(&self.along_normal, &self.ranges, asked, start);
+        let solution = solve(&self.along_normal, &self.ranges, &self.parameters(asked), start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }
 

@@ -95,7 +95,7 @@ pub(super) struct Member {
     origin: Vector3<f64>,
     pub(super) position: Vector3<f64>,
     pub(super) normal: Vector3<f64>,
-    own: Vector3<f64>,
+    pub(super) own: Vector3<f64>,
     /// Derivatives of the position by the roll and by the lag.
     pub(super) moved: [Vector3<f64>; 2],
     own_slopes: DMatrix<f64>,
@@ -130,8 +130,14 @@ impl ContactProblem {
     /// Both flanks at unknowns, lag and roll.
     pub(super) fn members(&self, unknowns: &[f64], roll: f64) -> [Member; 2] {
         let mut out = vec![0.0; self.state.output_count()];
-        ScalarEvaluator::new(&self.state).run(&[unknowns, &[roll]].concat(), &mut out);
-        let mut rest = &out[..];
+        ScalarEvaluator::new(&self.state)
+            .run(&unknowns.iter().copied().chain(self.given(roll)).collect::<Vec<f64>>(), &mut out);
+        self.members_from(&out)
+    }
+
+    /// From what the tape of the state gives.
+    pub(super) fn members_from(&self, out: &[f64]) -> [Member; 2] {
+        let mut rest = out;
         [0, 1].map(|k| {
             let (p, c) = (self.unknowns[k], self.constraints[k]);
             let vector = |rest: &mut &[f64]| Vector3::from_column_slice(taken(rest, 3));
@@ -203,7 +209,7 @@ impl ContactProblem {
     }
 
     /// How the flanks part.
-    fn gap(&self, members: &[Member; 2]) -> Option<Curvature> {
+    pub(super) fn gap(&self, members: &[Member; 2]) -> Option<Curvature> {
         let tangents: Matrix3x2<f64> = tangents(members[0].normal);
         let each = members
             .each_ref()
@@ -215,7 +221,7 @@ impl ContactProblem {
     /// Series of the unknowns in the roll, to second order.
     fn series(&self, unknowns: &[f64], roll: f64, edges: &[FlankEdge]) -> Option<Vec<Vec<f64>>> {
         let (system, parameters) = self.equations(edges, unknowns, roll)?;
-        system.series(unknowns, &parameters, 0, 2)
+        system.series(unknowns, &parameters, &[(0, 1.0)], 2)
     }
 
     /// Where the contact goes: the unknowns a step of the roll on, to second order.
@@ -225,10 +231,10 @@ impl ContactProblem {
     }
 }
 
-/// The roll, then two directions square to a normal.
-pub(super) fn parameters(roll: f64, normal: &Vector3<f64>) -> Vec<f64> {
-    let tangents = tangents(*normal);
-    [roll].into_iter().chain(tangents.iter().copied()).collect()
+/// Two directions square to a normal.
+pub(super) fn directions(normal: &Vector3<f64>) -> impl Iterator<Item = f64> {
+    let tangents: [f64; 6] = std::array::from_fn(|k| tangents(*normal)[k]);
+    tangents.into_iter()
 }
 
 /// How far the second flank moves along a normal out of the first for a step of the lag.

@@ -123,7 +123,7 @@ impl ContactProblem {
 
     /// Unknowns of the second flank and the lag at which it passes through a point of the first.
     fn through(&self, roll: f64, p: &[f64], start: &[f64]) -> Option<Vec<f64>> {
-        let mut evaluation = self.through.evaluation(&[p, &[roll]].concat());
+        let mut evaluation = self.through.evaluation(&p.iter().copied().chain(self.given(roll)).collect::<Vec<f64>>());
         let solution = solve_with(&mut evaluation, &self.ranges[self.unknowns[0]..], start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }

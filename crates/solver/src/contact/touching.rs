@@ -2,7 +2,7 @@
 
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
-use crate::contact::point::{ContactPoint, Member, parameters};
+use crate::contact::point::{ContactPoint, Member, directions};
 use crate::equations::solution::{Outcome, Solution};
 use crate::equations::system::System;
 use crate::newton::scalar::solve_with;
@@ -21,10 +21,10 @@ impl ContactProblem {
     pub(super) fn equations(&self, edges: &[FlankEdge], unknowns: &[f64], roll: f64) -> Option<(&System, Vec<f64>)> {
         if edges.is_empty() {
             let [first, _] = self.members(unknowns, roll);
-            return Some((&self.touching, parameters(roll, &first.normal)));
+            return Some((&self.touching, self.given(roll).chain(directions(&first.normal)).collect()));
         }
-        let bounds: Option<Vec<[f64; 5]>> = edges.iter().map(|edge| Some(self.bound(*edge)?.numbers())).collect();
-        Some((self.edges.as_ref()?.system(edges), [roll].into_iter().chain(bounds?.concat()).collect()))
+        let bounds: Option<Vec<_>> = edges.iter().map(|edge| Some(self.bound(*edge)?.numbers())).collect();
+        Some((self.edges.as_ref()?.system(edges), self.given(roll).chain(bounds?.concat()).collect()))
     }
 
     /// The contact near unknowns of both and a lag: with these edges, or with those that come to touch instead.

@@ -287,7 +287,7 @@ impl<'g> PoseProblem<'g> {
     /// Series of each unknown, axes first, in powers of the change of one of the motions, about a posture: coefficients up to an order, constant
     /// first; `None` where the posture is singular.
     pub fn series(&self, posture: &Posture, motions: &[f64], along: usize, order: usize) -> Option<Vec<Vec<f64>>> {
-        self.system.series(&posture.unknowns, motions, along, order)
+        self.system.series(&posture.unknowns, motions, &[(along, 1.0)], order)
     }
 
     /// How near a posture is to a singular one: the least change of the pose that axes can make together, as a share of the largest,

@@ -7,12 +7,18 @@ use flank_expr::TaylorEvaluator;
 use crate::equations::system::{Linearized, System};
 
 impl System {
-    /// Series of each unknown in powers of the change of one of the parameters, about a root: coefficients up to an order, constant
+    /// Series of each unknown in powers of h, about a root, where parameters change by multiples of h: coefficients up to an order, constant
     /// first; `None` where the root is singular.
     ///
     /// Order by order, `J q_k = −F_k` with F_k the coefficient of the residuals along the series so far: exact but for rounding, no
     /// differences.
-    pub(crate) fn series(&self, root: &[f64], parameters: &[f64], along: usize, order: usize) -> Option<Vec<Vec<f64>>> {
+    pub(crate) fn series(
+        &self,
+        root: &[f64],
+        parameters: &[f64],
+        along: &[(usize, f64)],
+        order: usize,
+    ) -> Option<Vec<Vec<f64>>> {
         let (size, terms) = (self.size(), order + 1);
         let mut evaluation = self.evaluation(parameters);
         evaluation.at(root);
@@ -21,7 +27,7 @@ impl System {
         let mut inputs = vec![0.0; terms * (size + parameters.len())];
         root.iter().chain(parameters).enumerate().for_each(|(k, x)| inputs[terms * k] = *x);
         if order > 0 {
-            inputs[terms * (size + along) + 1] = 1.0;
+            along.iter().for_each(|(k, rate)| inputs[terms * (size + k) + 1] = *rate);
         }
         let mut outputs = vec![0.0; terms * size];
         let mut evaluator = TaylorEvaluator::new(self.residual_tape(), order);
