@@ -57,7 +57,8 @@ pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
-    Axis, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, NcWord, Parameter, PieceEnds,
-    PointRequirement, Process, RangedVariable, Sample, SampleEnds, SampleGrid, ToolShape, ValueSource,
+    Axis, Contact, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, MountingAxis, NcWord,
+    OutlineCurve, OutlineSegment, Parameter, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
+    SampleGrid, Solid, ToolShape, ValueSource,
 };
 pub use values::dimension::Dimension;

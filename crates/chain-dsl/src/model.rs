@@ -29,6 +29,92 @@ pub struct Job<'g> {
     pub machines: Vec<Machine<'g>>,
     /// Its surfaces, in order.
     pub surfaces: Vec<GeneratedSurface<'g>>,
+    /// Those of its motions that a contact determines.
+    pub unknowns: Vec<Expr<'g>>,
+    /// Bodies that its surfaces bound.
+    pub solids: Vec<Solid>,
+    /// Flanks that roll on each other.
+    pub contacts: Vec<Contact<'g>>,
+}
+
+/// Two flanks on a pair of shafts that roll on each other.
+#[derive(Clone, Debug)]
+pub struct Contact<'g> {
+    /// Its name.
+    pub name: String,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// The flanks, as indices into the surfaces of the job.
+    pub surfaces: [usize; 2],
+    /// The frames that they are mounted on, as `m.pinion`.
+    pub frames: [String; 2],
+    /// From the root of the pair's machine to each flank, in the roll, the unknown, mounting errors and parameters.
+    pub placements: [Chain<'g>; 2],
+    /// What is added to the laws of the axes on the way: zero, unless the pair is mounted wrong.
+    pub errors: Vec<MountingAxis<'g>>,
+    /// The motion that the pair rolls by.
+    pub roll: RangedVariable<'g>,
+    /// The unknown that the contact determines.
+    pub lag: RangedVariable<'g>,
+    /// How far it rolls from one pair of teeth to the next, mm or radians, if that is said.
+    pub every: Option<f64>,
+    /// Where its name is written.
+    pub written: Span,
+}
+
+/// An axis of a pair's machine that may be mounted wrong.
+#[derive(Clone, Debug)]
+pub struct MountingAxis<'g> {
+    /// Its name, as `m.E`.
+    pub name: String,
+    /// What is added to its law.
+    pub variable: Expr<'g>,
+    /// A length or an angle.
+    pub dimension: Dimension,
+}
+
+/// A body of revolution with tooth spaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// Its name.
+    pub name: String,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// The frame about whose z axis it is turned, as `m.work`.
+    pub frame: String,
+    /// Its outline in the axial section `[z, rho]`, mm: closed, the material on the left.
+    pub outline: Vec<OutlineSegment>,
+    /// How many tooth spaces it has.
+    pub teeth: u32,
+    /// The surfaces of one space from one side to the other, as indices into the surfaces of the job.
+    pub space: Vec<usize>,
+    /// Where its name is written.
+    pub written: Span,
+}
+
+/// A segment of an outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutlineSegment {
+    /// Its name: tip, toe, heel.
+    pub name: String,
+    /// Where it begins.
+    pub from: [f64; 2],
+    /// Where it ends.
+    pub to: [f64; 2],
+    /// What it runs along.
+    pub curve: OutlineCurve,
+}
+
+/// What a segment of an outline runs along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OutlineCurve {
+    /// A straight line.
+    Line,
+    /// An arc of less than half a turn.
+    Arc {
+        /// Its centre.
+        center: [f64; 2],
+    },
 }
 
 /// A named constant of a job.

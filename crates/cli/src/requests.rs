@@ -1,11 +1,11 @@
 //! From arguments to what is asked of the library.
 
 use flank::{
-    ConvertRequest, DeriveRequest, DeviationRequest, JobSelection, MeasureRequest, PlotRequest, ReportRequest,
-    SolveRequest, ViewRequest,
+    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, JobSelection, MeasureRequest, PlotRequest,
+    ReportRequest, SolveRequest, ViewRequest,
 };
 
-use crate::arguments::{Convert, Derive, Deviation, JobArguments, Measure, Onto, Plot, Report, Solve, View};
+use crate::arguments::{Contact, Convert, Derive, Deviation, JobArguments, Measure, Onto, Plot, Report, Solve, View};
 use crate::failure::Failure;
 use crate::spec;
 
@@ -82,6 +82,24 @@ impl Deviation {
             columns: self.columns,
             margin: self.margin.margin,
             no_align: self.no_align,
+            out: self.out.clone(),
+            format: self.format.clone(),
+            no_picture: self.no_picture,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Contact {
+    pub(crate) fn request(&self) -> Result<ContactRequest, Failure> {
+        Ok(ContactRequest {
+            jobs: self.which.jobs()?,
+            contact: self.contact.clone(),
+            errors: self.errors.clone(),
+            positions: self.positions,
+            compound: self.compound,
+            sensitivity: self.sensitivity,
+            vhj: self.vhj,
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,

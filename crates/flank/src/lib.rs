@@ -40,6 +40,7 @@
 //! ```
 
 mod compare;
+mod contact;
 mod convert;
 mod derive;
 mod draw;
@@ -54,6 +55,11 @@ pub use compare::deviation::deviation;
 pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
 pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
+pub use contact::contact;
+pub use contact::result::{
+    Backlash, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult, FlankEnd, LeadingEdge,
+    MountedError, MountingInfluence, PlaceOnFlank, TransmissionError, VhjRow,
+};
 pub use convert::convert;
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
@@ -92,8 +98,8 @@ pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
-    ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, JobSelection, MeasureRequest, Onto,
-    PlotRequest, ReportRequest, SolveRequest, ViewRequest,
+    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, JobSelection,
+    MeasureRequest, MountingError, Onto, PlotRequest, ReportRequest, SolveRequest, ViewRequest,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
@@ -119,11 +125,13 @@ const _: () = {
     is_shared::<ReportRequest>();
     is_shared::<ViewRequest>();
     is_shared::<DeviationRequest>();
+    is_shared::<ContactRequest>();
     is_shared::<MeasureRequest>();
     is_shared::<ConvertRequest>();
     is_shared::<DeriveRequest>();
     is_shared::<SolveResult>();
     is_shared::<DeviationResult>();
+    is_shared::<ContactResult>();
     is_shared::<MeasureResult>();
     is_shared::<ConvertResult>();
     is_shared::<DeriveResult>();

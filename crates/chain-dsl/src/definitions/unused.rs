@@ -66,6 +66,14 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                             let help = format!("drive an axis with it: `drive m.X = {}`", motion.name.node);
                             context.report(Diagnostic::new(Code::UnusedMotion, motion.name.span, message).help(help));
                         }
+                        JobStatement::Unknown(unknown) if !used.has(&unknown.name) => {
+                            let message = format!("`{}` is determined by no contact", unknown.name.node);
+                            let help = format!(
+                                "name it in one: `contact drive_side = a with b, over: turn, for: {}`",
+                                unknown.name.node
+                            );
+                            context.report(Diagnostic::new(Code::UnusedMotion, unknown.name.span, message).help(help));
+                        }
                         _ => {}
                     }
                 }
@@ -205,7 +213,17 @@ impl Used {
                     instance.settings.iter().for_each(|setting| self.expression(&setting.value));
                 }
                 JobStatement::Mount { frame, .. } => self.path(frame),
-                JobStatement::Motion(motion) => self.range(&motion.range),
+                JobStatement::Motion(motion) | JobStatement::Unknown(motion) => self.range(&motion.range),
+                JobStatement::Profile(profile) => {
+                    profile.segments.iter().for_each(|segment| self.expression(&segment.value));
+                }
+                JobStatement::Solid(solid) => {
+                    self.path(&solid.frame);
+                    self.expression(&solid.value);
+                }
+                JobStatement::Contact(contact) => {
+                    contact.arguments.iter().for_each(|argument| self.expression(&argument.value));
+                }
                 JobStatement::Drive(drive) => drive.values.iter().for_each(|value| self.expression(value)),
                 JobStatement::Surface(surface) => {
                     self.path(&surface.frame);

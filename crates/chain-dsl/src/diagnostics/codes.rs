@@ -82,6 +82,8 @@ codes! {
     Trim              = "E0512" Error "a surface cannot be trimmed by this one";
     Cut               = "E0513" Error "a surface cannot be cut by these edges";
     UnevenLists       = "E0514" Error "two lists that belong together are not of one length";
+    Contact           = "E0515" Error "two flanks cannot be in contact";
+    Solid             = "E0516" Error "a solid is not a body";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";

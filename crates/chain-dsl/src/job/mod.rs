@@ -4,9 +4,11 @@ pub(crate) mod sample;
 
 mod available;
 mod axes;
+mod contact;
 mod cut;
 mod independence;
 mod sliding;
+mod solid;
 mod surfaces;
 mod sweep;
 
@@ -18,13 +20,16 @@ use flank_expr::Expr;
 
 use crate::definitions::instance::{Binder, Overrides, Source};
 use crate::definitions::machine::{self, Built, Machines};
+use crate::definitions::profile;
 use crate::definitions::requirement;
 use crate::definitions::tool::{self, BuiltTool, Tools};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
-use crate::model::{GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, ValueSource, within};
+use crate::model::{
+    Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, within,
+};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
 use crate::values::value::{Scope, Value};
@@ -55,6 +60,10 @@ struct Builder<'a, 'g> {
     machines: Vec<(Name, String, Built<'g>)>,
     tools: Vec<(Name, String, BuiltTool<'g>)>,
     motions: Vec<RangedVariable<'g>>,
+    /// Those of the motions that a contact determines.
+    unknowns: Vec<Expr<'g>>,
+    solids: Vec<Solid>,
+    contacts: Vec<Contact<'g>>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,
@@ -85,6 +94,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             machines: Vec::new(),
             tools: Vec::new(),
             motions: Vec::new(),
+            unknowns: Vec::new(),
+            solids: Vec::new(),
+            contacts: Vec::new(),
             mounts: HashMap::new(),
             lost_mounts: 0,
             drives: HashMap::new(),
@@ -156,6 +168,8 @@ pub(crate) fn build<'g>(
         match statement {
             JobStatement::Trim { surface, by } => builder.trim(context, surface, by, job),
             JobStatement::Cut { surface, by } => builder.cut(context, surface, by, job),
+            JobStatement::Solid(solid) => builder.solid(context, solid, job),
+            JobStatement::Contact(contact) => builder.contact(context, contact, job),
             JobStatement::Sample(sample) => builder.sample(context, sample, job),
             _ => {}
         }
@@ -185,7 +199,19 @@ impl<'g> Builder<'_, 'g> {
         // a setting comes after the job parameters that it is made of, and those were made first
         parameters.sort_by_key(|parameter| parameter.variable.as_variable());
         let surfaces = self.surfaces.into_iter().map(|(surface, _)| surface).collect();
-        Job { name, doc, file: file.to_path_buf(), parameters, settings, motions: self.motions, machines, surfaces }
+        Job {
+            name,
+            doc,
+            file: file.to_path_buf(),
+            parameters,
+            settings,
+            motions: self.motions,
+            machines,
+            surfaces,
+            unknowns: self.unknowns,
+            solids: self.solids,
+            contacts: self.contacts,
+        }
     }
 
     fn define(&mut self, context: &mut Context<'g>, name: &Name) {
@@ -206,10 +232,12 @@ impl<'g> Builder<'_, 'g> {
                 let value = context.evaluate(&binding.value, &self.scope);
                 self.scope.insert(binding.name.node.clone(), value);
             }
-            JobStatement::Motion(motion) => {
+            JobStatement::Motion(motion) | JobStatement::Unknown(motion) => {
+                let is_unknown = matches!(statement, JobStatement::Unknown(_));
                 self.define(context, &motion.name);
-                sample::check_unknown(context, &motion.name, "motion");
+                sample::check_unknown(context, &motion.name, if is_unknown { "unknown" } else { "motion" });
                 let bounded = tool::bounded(context, motion, &self.scope, Role::Motion);
+                self.unknowns.extend(bounded.iter().filter(|_| is_unknown).map(|bounded| bounded.variable));
                 let value = match &bounded {
                     Some(bounded) => Value::Scalar(bounded.variable, bounded.dimension),
                     None => Value::Poison,
@@ -225,6 +253,12 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Tool(instance) => self.tool(context, instance),
             JobStatement::Surface(surface) => surface.names.iter().for_each(|name| self.define(context, name)),
             JobStatement::Require(required) => requirement::check(context, required, &self.scope, self.user),
+            JobStatement::Profile(written) => {
+                self.define(context, &written.name);
+                profile::build(context, written, &mut self.scope);
+            }
+            JobStatement::Solid(solid) => self.define(context, &solid.name),
+            JobStatement::Contact(contact) => self.define(context, &contact.name),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }

@@ -170,6 +170,13 @@ impl<'g> Builder<'_, 'g> {
             return None;
         };
         let found = self.motions.iter().find(|motion| motion.name == name.node).cloned();
+        if found.as_ref().is_some_and(|found| self.unknowns.contains(&found.variable)) {
+            let message =
+                format!("`{}` is an unknown: a contact determines it, and nothing generates by it", name.node);
+            let help = format!("declare a motion: `motion {} : angle in … .. …`", name.node);
+            context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+            return None;
+        }
         if found.is_none() && !matches!(self.scope.get(&name.node), Some(Value::Poison)) {
             if self.names.contains_key(&name.node) {
                 let message = format!("`{}` is not a motion", name.node);
@@ -248,7 +255,14 @@ impl<'g> Builder<'_, 'g> {
                 || available.unknowns.iter().any(|unknown| unknown.variable == motion.variable);
             !taken && !driven.twist(motion.variable).is_zero()
         };
-        let free: Vec<&str> = self.motions.iter().filter(is_free).map(|motion| motion.name.as_str()).collect();
+        let free: Vec<&RangedVariable<'g>> = self.motions.iter().filter(is_free).collect();
+        if let Some(unknown) = free.iter().find(|free| self.unknowns.contains(&free.variable)) {
+            let message = format!("the tool also moves with `{}`, an unknown that a contact determines", unknown.name);
+            let help = "generate on a machine of its own, and mount the flanks on the machine of the pair";
+            context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
+            return false;
+        }
+        let free: Vec<&str> = free.into_iter().map(|motion| motion.name.as_str()).collect();
         if !free.is_empty() {
             let (them, all) = (if free.len() == 1 { "it" } else { "them" }, quoted(&free));
             let message = format!("the tool also moves with {all}, but the envelope is not over {them}");

@@ -8,8 +8,8 @@ mod job;
 use crate::diagnostics::source::{Name, Span, Spanned};
 
 pub use job::{
-    Change, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
-    SampleValues, Sampled, Variant,
+    Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
+    SampleValues, Sampled, Solid, Variant,
 };
 
 /// One parsed file.

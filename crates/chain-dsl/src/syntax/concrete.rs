@@ -93,8 +93,9 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::equals => return parts.push(Part { text: &pair.as_str()[..1], ..Part::leaf(Kind::Token, &pair) }),
         Rule::expression => return parts.push(expression(pair)),
         Rule::function => return parts.push(function(pair)),
-        Rule::motion => return parts.push(motion(pair)),
+        Rule::motion | Rule::unknown => return parts.push(motion(pair)),
         Rule::frame => return parts.push(frame(pair)),
+        Rule::contact => return parts.push(contact(pair)),
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
@@ -104,7 +105,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         }
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
-        Rule::trim | Rule::cut => Kind::Statement,
+        Rule::trim | Rule::cut | Rule::solid => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::bound | Rule::keep | Rule::sampled | Rule::change => Kind::Element,
@@ -186,6 +187,21 @@ fn function(pair: Pair<'_, Rule>) -> Part<'_> {
     let statement = Part::node(Kind::Statement, vec![parts.remove(value)]);
     parts.insert(value, statement);
     Part::node(Kind::Block, parts)
+}
+
+/// What stands behind the sign of a contact is one row: both flanks, then the arguments, each with the comma behind it.
+fn contact(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let equals = parts.iter().position(|part| part.is("=")).map_or(parts.len(), |equals| equals + 1);
+    let mut row: Vec<Part> = Vec::new();
+    for part in parts.split_off(equals) {
+        match row.pop() {
+            Some(before) if part.is(",") => row.push(Part::node(Kind::Element, vec![before, part])),
+            before => row.extend(before.into_iter().chain([part])),
+        }
+    }
+    parts.push(Part::node(Kind::Steps, row));
+    Part::node(Kind::Statement, parts)
 }
 
 /// A motion's parameter is laid out like any other statement, unlike those between brackets.

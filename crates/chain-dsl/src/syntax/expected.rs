@@ -82,12 +82,14 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
             "`in` and the frame in which the surface is given".to_owned()
         }
-        Rule::kw_in if matches!(before.statement, "motion" | "surface") && !before.name => {
+        Rule::kw_in if before.statement == "solid" => "`in` and the frame of the body".to_owned(),
+        Rule::kw_in if matches!(before.statement, "motion" | "unknown" | "surface") && !before.name => {
             "`in` and a range".to_owned()
         }
         Rule::kw_by if before.statement == "nc" => "`by` and the increment".to_owned(),
         Rule::kw_by if before.statement == "trim" => "`by` and the surface that cuts".to_owned(),
         Rule::kw_by if before.statement == "cut" => "`by` and the sweep of the edges that cut".to_owned(),
+        Rule::kw_with => "`with` and the flank that it touches".to_owned(),
         Rule::kw_by => "`by` and a number of points".to_owned(),
         Rule::dots => "`..` between the ends of the range".to_owned(),
         Rule::axis_kind => "`linear` or `rotary`".to_owned(),
@@ -130,6 +132,8 @@ fn name(before: &Before<'_>) -> String {
         ("job", "=") => "the name of a job".to_owned(),
         ("machine" | "tool" | "job", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("trim", "by") => "the name of the surface that cuts".to_owned(),
+        ("contact", "=") | ("contact", "with") => "the name of a flank".to_owned(),
+        ("contact", _) => "an argument such as `over: turn` or `for: lag`".to_owned(),
         ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
         ("surface", "along") => "the name of a profile".to_owned(),
         ("profile", _) => SEGMENT.to_owned(),
@@ -145,6 +149,7 @@ fn path(before: &Before<'_>) -> &'static str {
         "drive" => "an axis such as `m.X`",
         "job" => "a setting such as `radial: 70 mm`",
         "sample" | "trim" | "cut" => "the name of the surface",
+        "contact" => "the name of a flank",
         _ => "a frame such as `m.work`",
     }
 }
@@ -161,7 +166,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
 
 fn assigned(before: &Before<'_>) -> String {
     match before.statement {
-        "frame" | "surface" => "the name of the frame".to_owned(),
+        "frame" | "surface" | "solid" => "the name of the frame".to_owned(),
         statement => format!("the name of the {}", noun(statement)),
     }
 }
@@ -209,6 +214,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_in | Rule::kw_runs => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
+        Rule::kw_with => "with",
         Rule::kw_require => "require",
         Rule::kw_if => "if",
         Rule::kw_then => "then",

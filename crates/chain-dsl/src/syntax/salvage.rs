@@ -50,6 +50,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "tool" => JobStatement::Tool(piece.instance(name)),
         "mount" => JobStatement::Mount { tool: name, frame: piece.path_after("on") },
         "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
+        "unknown" => JobStatement::Unknown(piece.parameter(piece.range.start + 1, name)),
         "drive" => JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }),
         "surface" => JobStatement::Surface(GeneratedSurface {
             doc: piece.doc(),
@@ -60,7 +61,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
-        "require" => return None,
+        "require" | "solid" | "contact" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }

@@ -24,15 +24,19 @@ pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "req
 pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 
 /// Words that begin a statement in a job.
-pub(super) const IN_JOB: &[&str] =
-    &["param", "let", "machine", "tool", "mount", "motion", "drive", "surface", "trim", "cut", "sample", "require"];
+pub(super) const IN_JOB: &[&str] = &[
+    "param", "let", "machine", "tool", "mount", "motion", "unknown", "drive", "surface", "trim", "cut", "profile",
+    "solid", "contact", "sample", "require",
+];
 
 /// Those of all these that are followed by a new name.
-const DEFINING: &[&str] =
-    &["fn", "machine", "tool", "job", "param", "let", "axis", "frame", "profile", "surface", "motion"];
+const DEFINING: &[&str] = &[
+    "fn", "machine", "tool", "job", "param", "let", "axis", "frame", "profile", "surface", "motion", "unknown",
+    "solid", "contact",
+];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut", "nc"];
+const FREE: &[&str] = &["profile", "cut", "nc", "unknown", "solid", "contact"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod choice;
+mod contact;
 mod convert;
 mod measuring;
 mod plot;
@@ -16,6 +17,7 @@ use flank::{Code, Coefficients, EvaluatorOptions, PointFormat, Signs};
 
 use choice::{described, names};
 
+pub(crate) use contact::Contact;
 pub(crate) use convert::{Convert, Onto};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use plot::Plot;
@@ -62,6 +64,8 @@ pub(crate) enum Command {
     Report(Report),
     /// How far one surface lies off another one of the same body (ease-off, tooth-space width), or measured points off a surface
     Deviation(Deviation),
+    /// Where two flanks touch while a pair rolls, how evenly they turn each other, what the marking compound shows
+    Contact(Contact),
     /// Write nominal points and normals for a gear measuring machine
     Measure(Measure),
     /// What an error means, with an example and how to mend it
@@ -94,6 +98,7 @@ impl Command {
             Command::Plot(arguments) => arguments.json,
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
+            Command::Contact(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
             Command::Import(arguments) => arguments.json,
             Command::Fmt(arguments) => arguments.json,
@@ -116,6 +121,7 @@ impl Command {
             Command::Plot(arguments) => Some(arguments.evaluator),
             Command::Report(arguments) => Some(arguments.evaluator),
             Command::Deviation(arguments) => Some(arguments.evaluator),
+            Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),
             Command::Check(_)

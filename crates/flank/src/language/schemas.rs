@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::measure_result::MeasureResult;
+use crate::contact::result::ContactResult;
 use crate::convert::result::{AxisMotion, FoundSettings};
 use crate::derive::result::{CostTable, Derivation};
 use crate::draw::result::PlotResult;
@@ -39,6 +40,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<Explanation>(),
         schema_of::<SolveResult>(),
         schema_of::<DeviationResult>(),
+        schema_of::<ContactResult>(),
         schema_of::<MeasureResult>(),
         schema_of::<AxisMotion>(),
         schema_of::<FoundSettings>(),

@@ -57,6 +57,10 @@ pub enum NotDoneKind {
     NoClosedForm,
     /// A page has nothing to show.
     NoPage,
+    /// Two flanks do not touch.
+    NoContact,
+    /// Two flanks reach into each other.
+    Penetration,
 }
 
 /// Kinds of remarks.
@@ -93,6 +97,12 @@ pub enum RemarkKind {
     SeveralJobs,
     /// A mesh has no triangle.
     NoTriangles,
+    /// Nothing says where the teeth of a contact's flank end.
+    NoEdges,
+    /// Nothing says when the next pair of teeth follows.
+    OnePair,
+    /// A pair of teeth still touches where the range of the roll ends.
+    RollTooShort,
 }
 
 impl<Kind> Message<Kind> {

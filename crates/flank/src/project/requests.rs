@@ -262,6 +262,42 @@ impl DeviationRequest {
     }
 }
 
+/// How far a member is mounted from where it should be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MountingError {
+    /// mm
+    Length(f64),
+    /// Radians.
+    Angle(f64),
+}
+
+/// Contact of flanks that roll on each other.
+#[derive(Clone, Debug)]
+pub struct ContactRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// The contact; all if none is named.
+    pub contact: Option<String>,
+    /// How the members are mounted wrong: axes of the pair's machine, `m.E`, with what is added to them.
+    pub errors: Vec<(String, MountingError)>,
+    /// Positions over a pitch.
+    pub positions: u32,
+    /// Thickness of the marking compound, mm.
+    pub compound: f64,
+    /// Also what each axis of the pair's machine does to the contact.
+    pub sensitivity: bool,
+    /// Also mountings that bring the contact to toe, middle and heel.
+    pub vhj: bool,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with gaps and paths.
+    pub format: Vec<PointFormat>,
+    /// No picture.
+    pub no_picture: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
 /// Nominal points for measuring machines.
 #[derive(Clone, Debug)]
 pub struct MeasureRequest {

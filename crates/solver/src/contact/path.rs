@@ -83,6 +83,11 @@ impl ContactProblem {
         (astray <= ASTRAY * way.max(1e-6)).then_some(found)
     }
 
+    /// The contact at a roll position near one that is known of the same pair with other values of its parameters.
+    pub fn again(&self, near: &ContactPoint, roll: f64) -> Option<ContactPoint> {
+        self.touching_near(roll, &near.all_unknowns(), &near.edges)
+    }
+
     /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has no such
     /// place between two roll positions.
     pub fn vertex(&self, near: &ContactPoint, between: [f64; 2]) -> Option<ContactPoint> {

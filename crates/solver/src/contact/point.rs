@@ -49,6 +49,8 @@ pub struct ContactPoint {
     pub normal: [f64; 3],
     /// The point in the frame of each member.
     pub in_members: [[f64; 3]; 2],
+    /// Unit vectors out of each member, in its frame.
+    pub normals: [[f64; 3]; 2],
     /// How it moves over each flank as the roll goes on, in the frame of the member, mm per radian of roll.
     pub path: [[f64; 3]; 2],
     /// How the flanks part, 1/mm: half of it times the square of the way from the point. `None` where a flank has no curvature, and where an
@@ -77,7 +79,7 @@ pub(super) fn outputs<'g>(
         let (own, p) = (flank.own, &placed.unknowns);
         let axis = flank.placement.direction(Vector::constant(graph, [0.0, 0.0, 1.0]));
         outputs.extend(axis.0.into_iter().chain(flank.placement.point(Vector::zero(graph)).0));
-        outputs.extend(placed.position.0.into_iter().chain(placed.normal.0).chain(own.position.0));
+        outputs.extend(placed.position.0.into_iter().chain(placed.normal.0).chain(own.position.0).chain(own.normal.0));
         outputs.extend([roll, lag].iter().flat_map(|x| placed.position.derivative(*x).0));
         // column by column, as matrices are stored
         outputs.extend(p.iter().flat_map(|p| own.position.derivative(*p).0));
@@ -96,6 +98,7 @@ pub(super) struct Member {
     pub(super) position: Vector3<f64>,
     pub(super) normal: Vector3<f64>,
     pub(super) own: Vector3<f64>,
+    own_normal: Vector3<f64>,
     /// Derivatives of the position by the roll and by the lag.
     pub(super) moved: [Vector3<f64>; 2],
     own_slopes: DMatrix<f64>,
@@ -148,6 +151,7 @@ impl ContactProblem {
                 position: vector(&mut rest),
                 normal: vector(&mut rest),
                 own: vector(&mut rest),
+                own_normal: vector(&mut rest),
                 moved: [vector(&mut rest), vector(&mut rest)],
                 own_slopes: matrix(&mut rest, 3),
                 slopes: matrix(&mut rest, 3),
@@ -189,6 +193,7 @@ impl ContactProblem {
             position: first.position.into(),
             normal: normal.into(),
             in_members: [first.own.into(), second.own.into()],
+            normals: [first.own_normal.into(), second.own_normal.into()],
             path: over.map(<[f64; 3]>::from),
             gap: gap.map(|gap| gap.principal()),
             state,

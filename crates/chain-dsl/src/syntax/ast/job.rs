@@ -1,6 +1,6 @@
 //! What a job says, and its variants.
 
-use super::{Argument, Expression, Let, Param, Parameter, Path, Range, Requirement};
+use super::{Argument, Expression, Let, Param, Parameter, Path, Profile, Range, Requirement};
 use crate::diagnostics::source::{Name, Span};
 
 /// A job: machine, tool, motions, the surfaces asked for.
@@ -58,6 +58,8 @@ pub enum JobStatement {
     },
     /// `motion roll : angle in a .. b`
     Motion(Parameter),
+    /// `unknown lag : angle in a .. b`
+    Unknown(Parameter),
     /// `drive m.X, m.Z = …, …`
     Drive(Drive),
     /// `surface name, other in m.work = …`
@@ -76,6 +78,12 @@ pub enum JobStatement {
         /// The sweep of the edges that cut it.
         by: Path,
     },
+    /// `profile blank { … }`
+    Profile(Profile),
+    /// `solid pinion in m.work = turned(blank, spaces: 19, of: [left, right])`
+    Solid(Solid),
+    /// `contact drive_side = left with right, over: turn, for: lag`
+    Contact(Contact),
     /// `sample name, other { … }`
     Sample(Sample),
     /// `require a < b, "…"`
@@ -103,6 +111,32 @@ impl JobStatement {
             _ => 1,
         }
     }
+}
+
+/// `solid name in frame = turned(…)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The frame that it stands in.
+    pub frame: Path,
+    /// `turned(blank, spaces: 19, of: [left, right])`
+    pub value: Expression,
+}
+
+/// `contact name = first with second, over: turn, for: lag`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The two flanks.
+    pub surfaces: [Path; 2],
+    /// `over`, `for`, `every`.
+    pub arguments: Vec<Argument>,
 }
 
 /// `drive target, target = value, value`

@@ -169,6 +169,10 @@ fn is_mark(rule: Rule) -> bool {
             | kw_mount
             | kw_on
             | kw_motion
+            | kw_unknown
+            | kw_solid
+            | kw_contact
+            | kw_with
             | kw_drive
             | kw_trim
             | kw_cut

@@ -7,9 +7,9 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
-    Argument, Assignment, Axis, AxisKind, Drive, Expression, Frame, GeneratedSurface, Instance, JobStatement, Keep,
-    Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample, SampleEntry,
-    SampleValues, Sampled, ToolStatement,
+    Argument, Assignment, Axis, AxisKind, Contact, Drive, Expression, Frame, GeneratedSurface, Instance, JobStatement,
+    Keep, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample,
+    SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -51,7 +51,11 @@ impl Build<'_> {
             Rule::tool_instance => JobStatement::Tool(self.instance(pair)),
             Rule::mount => self.mount(pair),
             Rule::motion => JobStatement::Motion(self.motion(pair)),
+            Rule::unknown => JobStatement::Unknown(self.motion(pair)),
             Rule::drive => JobStatement::Drive(self.drive(pair)),
+            Rule::profile => JobStatement::Profile(self.profile(pair)),
+            Rule::solid => JobStatement::Solid(self.solid(pair)),
+            Rule::contact => JobStatement::Contact(self.contact(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => {
                 let [surface, by] = self.two_surfaces(pair);
@@ -126,6 +130,28 @@ impl Build<'_> {
         let name = self.name(parts.required(Rule::name));
         let target = Path { span: name.span, segments: vec![name] };
         Assignment { target, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn solid(&mut self, pair: Pair<'_, Rule>) -> Solid {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Solid {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            frame: self.path(parts.required(Rule::path)),
+            value: self.expression(parts.required(Rule::expression)),
+        }
+    }
+
+    fn contact(&mut self, pair: Pair<'_, Rule>) -> Contact {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Contact {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            surfaces: [self.path(parts.required(Rule::path)), self.path(parts.required(Rule::path))],
+            arguments: parts.all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect(),
+        }
     }
 
     fn drive(&mut self, pair: Pair<'_, Rule>) -> Drive {

@@ -6,7 +6,7 @@ use crate::diagnostics::Note;
 use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
 
-use super::super::ast::{Item, Job, Machine, Profile, Segment, Tool, ToolStatement};
+use super::super::ast::{Item, Job, JobStatement, Machine, Profile, Segment, Tool, ToolStatement};
 use super::super::build::Head;
 use super::super::expected::SEGMENT;
 use super::super::grammar::Rule;
@@ -157,6 +157,9 @@ impl<'s> Recover<'s> {
         if let (Block::Tool(statements), "profile") = (&mut *block, word) {
             return statements.push(ToolStatement::Profile(self.profile(true)));
         }
+        if let (Block::Job(statements), "profile") = (&mut *block, word) {
+            return statements.push(JobStatement::Profile(self.profile(true)));
+        }
         let range = first..pieces::statement_end(scan, first);
         match self.piece(block.rule(), range.clone()) {
             Some(pair) => block.add(&mut self.build, pair),
@@ -220,7 +223,7 @@ impl<'s> Recover<'s> {
         block.add_broken(scan, meant.unwrap_or("let"), first..self.at);
     }
 
-    /// A profile of a tool, segment by segment.
+    /// A profile, segment by segment.
     fn profile(&mut self, strict: bool) -> Profile {
         let (scan, first) = (self.scan, self.at);
         let mistakes = self.build.diagnostics.len();

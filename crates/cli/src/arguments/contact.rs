@@ -1,0 +1,85 @@
+//! The arguments of `flank contact`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use flank::{MountingError, PointFormat};
+
+use super::choice::described;
+use super::{EvaluatorArguments, JobArguments, count, folder, length};
+
+/// Units of mounting errors, the longer names first where one ends with another; each in mm or radians.
+const UNITS: [(&str, MountingError); 8] = [
+    ("arcmin", MountingError::Angle(std::f64::consts::PI / 180.0 / 60.0)),
+    ("arcsec", MountingError::Angle(std::f64::consts::PI / 180.0 / 3600.0)),
+    ("deg", MountingError::Angle(std::f64::consts::PI / 180.0)),
+    ("mrad", MountingError::Angle(1e-3)),
+    ("rad", MountingError::Angle(1.0)),
+    ("um", MountingError::Length(1e-3)),
+    ("mm", MountingError::Length(1.0)),
+    ("in", MountingError::Length(25.4)),
+];
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+A contact is said in the spec: two flanks on a pair of shafts, the motion that the pair rolls by, and the unknown that the contact
+determines: `contact drive_side = pinion_concave with gear_convex, over: turn, for: lag`. Where the teeth end, and how many there are,
+is said by a `solid` of each member.
+
+Examples:
+  flank contact specs/pairs/bevel_19x62.chain
+  flank contact specs/pairs/bevel_19x62.chain --error m.E=0.1mm --error m.S=2arcmin
+  flank contact specs/pairs/bevel_19x62.chain --sensitivity --vhj
+  flank contact specs/pairs/spur_pair.chain drive_side --format csv,json --out mesh")]
+pub(crate) struct Contact {
+    #[command(flatten)]
+    pub(crate) which: JobArguments,
+    /// The contact, where a job has several; all of them otherwise
+    pub(crate) contact: Option<String>,
+    /// An axis of the pair's machine that is mounted wrong, with its unit: m.E=0.1mm, m.S=2arcmin
+    #[arg(long = "error", value_name = "AXIS=VALUE", value_parser = error)]
+    pub(crate) errors: Vec<(String, MountingError)>,
+    /// Roll positions over a pitch
+    #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = count(4..=10_000), allow_hyphen_values = true)]
+    pub(crate) positions: u32,
+    /// Thickness of the marking compound
+    #[arg(long, value_name = "LENGTH", default_value = "6.35um", value_parser = length)]
+    pub(crate) compound: f64,
+    /// Also what each axis of the pair's machine does to the contact: an error of 0.01 mm or 1 arcmin
+    #[arg(long)]
+    pub(crate) sensitivity: bool,
+    /// Also how far the pinion is to be offset (E) and moved along its axis (P) to bring the contact to toe, middle and heel
+    #[arg(long)]
+    pub(crate) vhj: bool,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
+    pub(crate) out: PathBuf,
+    /// Files with gaps and paths, several with commas
+    #[arg(long, value_parser = described::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<PointFormat>,
+    /// Write no picture (otherwise a PNG and an SVG)
+    #[arg(long)]
+    pub(crate) no_picture: bool,
+    /// Print the numbers as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) evaluator: EvaluatorArguments,
+}
+
+fn error(text: &str) -> Result<(String, MountingError), String> {
+    let wanted = || "write AXIS=VALUE with a unit, for example m.E=0.1mm or m.S=2arcmin".to_string();
+    let (axis, value) = text.split_once('=').ok_or_else(wanted)?;
+    let (axis, value) = (axis.trim(), value.trim());
+    let found = UNITS.into_iter().find_map(|(unit, size)| Some((value.strip_suffix(unit)?, size)));
+    let (digits, size) = found.filter(|_| !axis.is_empty()).ok_or_else(wanted)?;
+    let number: f64 = digits.trim().parse().map_err(|_| wanted())?;
+    if !number.is_finite() {
+        return Err(wanted());
+    }
+    let error = match size {
+        MountingError::Length(mm) => MountingError::Length(number * mm),
+        MountingError::Angle(radians) => MountingError::Angle(number * radians),
+    };
+    Ok((axis.to_string(), error))
+}

@@ -1,0 +1,146 @@
+//! `flank contact`
+
+pub(crate) mod files;
+pub(crate) mod influence;
+pub(crate) mod pair;
+pub(crate) mod pattern;
+pub(crate) mod result;
+pub(crate) mod rolling;
+pub(crate) mod summary;
+
+use std::time::Instant;
+
+use flank_chain_dsl::{Contact, Job};
+use flank_expr::Graph;
+use flank_solver::NoContact;
+
+use self::pair::Members;
+use self::result::ContactResult;
+use self::rolling::Rolling;
+use self::summary::Summary;
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::{ContactRequest, Session};
+use crate::project::spec;
+use crate::project::spec::Origin;
+
+/// Solves the contacts of jobs: where their flanks touch while they roll, how evenly they turn each other, and what the marking compound
+/// shows. `each` is given the result of each contact.
+///
+/// # Errors
+/// What is wrong with the spec, that it has no such contact, that an error names no axis of the pair, or that a file cannot be written.
+pub fn contact(
+    request: &ContactRequest,
+    monitor: &dyn Monitor,
+    each: &mut dyn FnMut(ContactResult),
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of_compilation(&compilation);
+    let session = Session::new(request.evaluator, monitor);
+    for (job, contact) in asked(&jobs, request)? {
+        let result = of_contact(job, contact, request, &origin, session)?;
+        each(ContactResult { timing: Timing { points: result.timing.points, elapsed: start.elapsed() }, ..result });
+    }
+    Ok(())
+}
+
+/// The contacts that are asked for, each with its job.
+///
+/// # Errors
+/// If there is none, or none of that name.
+fn asked<'j, 'g>(
+    jobs: &'j [Job<'g>],
+    request: &ContactRequest,
+) -> Result<Vec<(&'j Job<'g>, &'j Contact<'g>)>, Failure> {
+    let all: Vec<(&Job<'g>, &Contact<'g>)> =
+        jobs.iter().flat_map(|job| job.contacts.iter().map(move |contact| (job, contact))).collect();
+    if all.is_empty() {
+        let message = "no job says which flanks touch: add `contact drive_side = A with B, over: MOTION, for: UNKNOWN` to one that mounts \
+                       both on a pair of shafts";
+        return Err(Failure::Request(message.to_string()));
+    }
+    let Some(name) = &request.contact else { return Ok(all) };
+    let known: Vec<String> = all.iter().map(|(_, contact)| format!("`{}`", contact.name)).collect();
+    let found: Vec<_> = all.into_iter().filter(|(_, contact)| contact.name == *name).collect();
+    if found.is_empty() {
+        return Err(Failure::Request(format!("there is no contact `{name}`; there is: {}", known.join(", "))));
+    }
+    Ok(found)
+}
+
+fn of_contact(
+    job: &Job<'_>,
+    contact: &Contact<'_>,
+    request: &ContactRequest,
+    origin: &Origin,
+    session: Session,
+) -> Result<ContactResult, Failure> {
+    let errors = influence::mounting(job, contact, &request.errors)?;
+    let members = Members::solved(job, contact, session)?;
+    let _working = session.begin(format!("rolling {}", contact.name))?;
+    let pair = members.pair(job, &errors, &[]);
+    let steps = request.positions as usize;
+    let rolling = match Rolling::of_pair(&members, &pair, (steps, members.pitch(job))) {
+        Ok(rolling) => rolling,
+        Err(why) => {
+            let summary = Summary::new(job, &members, request, &errors);
+            let refused = origin.located(&[job], vec![refused(&members, why)]);
+            return Ok(ContactResult { not_done: refused, ..summary.of_nothing() });
+        }
+    };
+    session.check()?;
+    let summary = Summary::new(job, &members, request, &errors);
+    let patterns = pattern::on_both(&members, &pair, &rolling, request.compound);
+    session.check()?;
+    let influences = if request.sensitivity {
+        influence::of_all(job, &members, &errors, &rolling, request.compound)
+    } else {
+        Vec::new()
+    };
+    let vhj = if request.vhj { influence::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
+    let backlash = summary::backlash(job, &members, request, &errors, &rolling, session)?;
+    let files = files::write(job, &members, &rolling, &patterns, (request, origin, session))?;
+    let result = summary.of_rolling(&rolling, &patterns);
+    Ok(ContactResult {
+        influences,
+        vhj,
+        backlash,
+        files,
+        not_done: origin.located(&[job], result.not_done.clone()),
+        remarks: origin.located(&[job], result.remarks.clone()),
+        ..result
+    })
+}
+
+/// Why two flanks do not touch, with a way out.
+fn refused(members: &Members<'_, '_>, why: NoContact) -> NotDone {
+    let [first, second] = members.surfaces.map(|surface| &surface.name);
+    let Contact { name, roll, lag, .. } = members.contact;
+    let (message, ways) = match why {
+        NoContact::Apart => (
+            format!("{first} and {second} do not reach each other within the range of `{}`", lag.name),
+            vec![format!(
+                "the sampled points of {first} are met by {second} at no value of `{}` between its ends, at no position of `{}`; mount them \
+                 nearer, widen the range, or sample the flanks where they face each other",
+                lag.name, roll.name
+            )],
+        ),
+        NoContact::SameSide => (
+            format!("{first} and {second} face the same way where they meet"),
+            vec!["one member lies inside the other, or it is the wrong flank of a tooth: its opposite flank faces the mate".to_string()],
+        ),
+        NoContact::Locked => (
+            format!("`{}` moves nothing along the normal: the pair is self-locking there", lag.name),
+            vec!["the unknown has to turn or shift a member towards its mate".to_string()],
+        ),
+        NoContact::NotFound => (
+            format!("{first} and {second} meet, but no place was found at which they touch"),
+            vec!["sample both flanks more densely, or roll the pair to where they face each other".to_string()],
+        ),
+    };
+    NotDone::new(NotDoneKind::NoContact, first, format!("contact {name}: {message}")).with(ways)
+}

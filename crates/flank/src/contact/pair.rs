@@ -1,0 +1,114 @@
+//! The pair of a `contact` statement as a problem for the solver.
+
+use std::f64::consts::TAU;
+
+use flank_chain_dsl::{Contact, GeneratedSurface, Job, OutlineCurve, Solid};
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{BoundSurface, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
+
+use crate::project::failure::Failure;
+use crate::project::requests::Session;
+use crate::solve::{self, SolveOptions, bound};
+
+/// A pair turns evenly, and as its numbers of teeth say, if pitches differ by less than this share.
+const EVEN: f64 = 1e-12;
+
+/// Both flanks of a contact, with solved points of each and the solids that they belong to.
+pub(crate) struct Members<'j, 'g> {
+    pub(crate) contact: &'j Contact<'g>,
+    pub(crate) surfaces: [&'j GeneratedSurface<'g>; 2],
+    pub(crate) solids: [Option<&'j Solid>; 2],
+    pub(crate) bound: [BoundSurface<'g>; 2],
+    /// The points that the samples of both ask for.
+    pub(crate) points: [Vec<SurfacePoint>; 2],
+}
+
+impl<'j, 'g> Members<'j, 'g> {
+    /// # Errors
+    /// If a flank is not sampled, or the work is cancelled.
+    pub(crate) fn solved(
+        job: &'j Job<'g>,
+        contact: &'j Contact<'g>,
+        session: Session,
+    ) -> Result<Members<'j, 'g>, Failure> {
+        let surfaces = contact.surfaces.map(|at| &job.surfaces[at]);
+        let points = |surface: &'j GeneratedSurface<'g>| -> Result<Vec<SurfacePoint>, Failure> {
+            let name = &surface.name;
+            let sample = surface.sample.as_ref().ok_or(format!(
+                "contact `{}`: `{name}` is not sampled: the contact is looked for from its points; add `sample {name} {{ … }}`",
+                contact.name
+            ))?;
+            let _working = session.begin(format!("solving {name}"))?;
+            let wanted = SolveOptions {
+                geometry: false,
+                sensitivity: false,
+                certificates: false,
+                together: None,
+                of_shown: false,
+                session,
+            };
+            Ok(solve::points(job, surface, sample, wanted).points)
+        };
+        let solid_of = |at: usize| job.solids.iter().find(|solid| solid.space.contains(&at));
+        Ok(Members {
+            contact,
+            surfaces,
+            solids: contact.surfaces.map(solid_of),
+            bound: surfaces.map(|surface| bound(job, surface)),
+            points: [points(surfaces[0])?, points(surfaces[1])?],
+        })
+    }
+
+    /// The pair mounted with errors, one for each axis of the pair's machine; those in `open` stay symbols by which the contact is
+    /// differentiated.
+    pub(crate) fn pair(&self, job: &Job<'g>, errors: &[f64], open: &[usize]) -> RollingPair<'_, 'g> {
+        let Contact { placements, roll, lag, errors: axes, .. } = self.contact;
+        let graph = roll.variable.graph();
+        let closed = axes.iter().zip(errors).enumerate().filter(|(at, _)| !open.contains(at));
+        let given: Vec<(Expr<'g>, Expr<'g>)> =
+            closed.map(|(_, (axis, error))| (axis.variable, graph.constant(*error))).chain(job.bindings()).collect();
+        RollingPair {
+            surfaces: self.bound.each_ref(),
+            placements: placements.each_ref().map(|placement| placement.substituted(&given)),
+            roll: roll.variable,
+            lag: (lag.variable, Range { low: lag.low, high: lag.high }),
+            outlines: self.solids.map(|solid| solid.map(outline)),
+            parameters: open.iter().map(|at| (axes[*at].variable, errors[*at])).collect(),
+        }
+    }
+
+    /// How far the members roll from one pair of teeth to the next: as the spec says, or by the teeth of both solids, which turn evenly.
+    pub(crate) fn pitch(&self, job: &Job<'g>) -> Option<f64> {
+        if self.contact.every.is_some() {
+            return self.contact.every;
+        }
+        let [Some(first), Some(second)] = self.solids else { return None };
+        let Contact { roll, lag, errors, .. } = self.contact;
+        let pair = self.pair(job, &vec![0.0; errors.len()], &[]);
+        let turns = pair.placements.each_ref().map(|placement| placement.twist(roll.variable).angular.0[2]);
+        let turns =
+            Tape::new(&turns, &[roll.variable, lag.variable]).expect("a job without errors leaves nothing unbound");
+        let pitches = |share: f64| {
+            let mut out = [0.0; 2];
+            let at = [roll.low + share * (roll.high - roll.low), 0.5 * (lag.low + lag.high)];
+            ScalarEvaluator::new(&turns).run(&at, &mut out);
+            [first, second].into_iter().zip(out).map(|(solid, turn)| TAU / f64::from(solid.teeth) / turn.abs())
+        };
+        let all: Vec<f64> = [0.0, 0.3, 0.6, 1.0].into_iter().flat_map(pitches).collect();
+        let is_even = all.iter().all(|pitch| (pitch / all[0] - 1.0).abs() < EVEN);
+        is_even.then_some(all[0])
+    }
+}
+
+fn outline(solid: &Solid) -> Outline {
+    let segment = |segment: &flank_chain_dsl::OutlineSegment| OutlineSegment {
+        name: segment.name.clone(),
+        from: segment.from,
+        to: segment.to,
+        center: match segment.curve {
+            OutlineCurve::Line => None,
+            OutlineCurve::Arc { center } => Some(center),
+        },
+    };
+    Outline::new(solid.outline.iter().map(segment).collect())
+}

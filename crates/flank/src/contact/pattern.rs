@@ -1,0 +1,75 @@
+//! What the marking compound shows on the flanks of a pair.
+
+use flank_solver::{Gap, GapProblem, Outcome, RollingPair};
+
+use crate::contact::pair::Members;
+use crate::contact::result::ContactPattern;
+use crate::contact::rolling::Rolling;
+
+/// How near the mate comes to the points of a flank's sample.
+pub(crate) struct GapMap {
+    /// In the order of the sample.
+    pub(crate) gaps: Vec<Option<Gap>>,
+    /// Roll positions and lags that the numbers in it count.
+    pub(crate) positions: Vec<[f64; 2]>,
+    pub(crate) pattern: ContactPattern,
+}
+
+/// On both flanks, over all positions at which one pair of teeth touches.
+pub(crate) fn on_both(
+    members: &Members<'_, '_>,
+    pair: &RollingPair<'_, '_>,
+    rolling: &Rolling,
+    compound: f64,
+) -> Vec<GapMap> {
+    let engagement = &rolling.engagement;
+    let steps = engagement.first..engagement.first + engagement.points.len() as isize;
+    let lag = |step: isize| match rolling.has_pitch {
+        true => engagement.carried(step).map(|carried| carried.lag),
+        false => engagement.point(0, step).map(|point| point.lag),
+    };
+    let positions: Vec<[f64; 2]> = steps.filter_map(|step| Some([rolling.roll(step), lag(step)?])).collect();
+    let of_member = |member: usize| {
+        let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
+        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member]);
+        let pattern = pattern(members, member, &gaps, compound);
+        GapMap { gaps, positions: positions.clone(), pattern }
+    };
+    vec![of_member(0), of_member(1)]
+}
+
+fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compound: f64) -> ContactPattern {
+    let surface = members.surfaces[member];
+    let [rows, columns] = surface.sample.as_ref().map_or([1, 1], |sample| sample.counts);
+    let is_within = |at: &usize| gaps[*at].is_some_and(|gap| gap.distance <= compound);
+    let touched: Vec<usize> = (0..gaps.len()).filter(is_within).collect();
+    let extent = |place: &dyn Fn(usize) -> usize, count: usize| {
+        let ends = touched.iter().map(|at| place(*at)).map(|at| (at, at)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)));
+        ends.map(|(low, high)| [low, high].map(|at| at as f64 / (count.max(2) - 1) as f64))
+    };
+    let (rows, columns) = (extent(&|at| at / columns, rows), extent(&|at| at % columns, columns));
+    let labels = surface.sample.as_ref().map_or(["", ""], |sample| sample.labels.each_ref().map(String::as_str));
+    let touches = [(rows, labels[0]), (columns, labels[1])].into_iter().flat_map(|(extent, label)| {
+        let sides = sides(label);
+        let reached = extent.map_or([false; 2], |[low, high]| [low == 0.0, high == 1.0]);
+        sides.into_iter().zip(reached).filter_map(|(side, reached)| reached.then_some(side))
+    });
+    ContactPattern {
+        surface: surface.name.clone(),
+        film_um: compound * 1e3,
+        within: touched.len(),
+        points: members.points[member].iter().filter(|point| point.outcome == Outcome::Solved).count(),
+        rows,
+        columns,
+        least_um: gaps.iter().flatten().map(|gap| 1e3 * gap.distance).reduce(f64::min),
+        touches: touches.collect(),
+    }
+}
+
+/// The two sides between which the rows or the columns of a sample run: `root -> tip`, or the least and the greatest `z`.
+fn sides(label: &str) -> [String; 2] {
+    match label.split_once(" -> ") {
+        Some((from, to)) => [from.to_string(), to.to_string()],
+        None => [format!("its first {label}"), format!("its last {label}")],
+    }
+}

@@ -1,0 +1,118 @@
+//! The contact of a pair over its roll: found, followed through the mesh, and all pairs of teeth together.
+
+use flank_solver::{
+    ContactPoint, ContactProblem, ContactState, Engagement, NoContact, Outcome, RollingPair, SurfacePoint,
+};
+
+use crate::contact::pair::Members;
+
+/// Roll positions at which the contact is looked for, from the middle of the roll outwards.
+const TRIED: usize = 13;
+/// An error of the ratio below this at all positions is none: rounding.
+const STRAIGHT: f64 = 1e-12;
+
+/// A pair of flanks over its roll.
+pub(crate) struct Rolling {
+    pub(crate) problem: ContactProblem,
+    /// One pair of teeth through the mesh; its step 0 is the middle.
+    pub(crate) engagement: Engagement,
+    /// Where the lag is extreme, if it is somewhere.
+    pub(crate) vertex: Option<ContactPoint>,
+    /// Whether the pitch from tooth to tooth is known.
+    pub(crate) has_pitch: bool,
+}
+
+impl Rolling {
+    /// # Errors
+    /// Why there is no contact.
+    pub(crate) fn of_pair(
+        members: &Members<'_, '_>,
+        pair: &RollingPair<'_, '_>,
+        (steps, every): (usize, Option<f64>),
+    ) -> Result<Rolling, NoContact> {
+        let problem = ContactProblem::new(pair).expect("a job without errors leaves nothing unbound");
+        let roll = &members.contact.roll;
+        let limits = [roll.low, roll.high];
+        let first = found(&problem, limits, members.points.each_ref().map(Vec::as_slice))?;
+        let has_pitch = every.is_some();
+        // of one pair alone all of the roll is looked at
+        let pitch = every.unwrap_or(0.5 * (limits[1] - limits[0]));
+        let coarse = problem.engagement(&first, pitch, steps, limits);
+        let vertex = vertex(&problem, &coarse);
+        let middle = vertex.clone().or_else(|| middle(&coarse)).unwrap_or(first);
+        let engagement = problem.engagement(&middle, pitch, steps, limits);
+        Ok(Rolling { problem, engagement, vertex, has_pitch })
+    }
+
+    /// The point of the middle: where the error is extreme, or in the middle of contact of the flanks.
+    pub(crate) fn middle(&self) -> Option<&ContactPoint> {
+        self.engagement.point(0, 0)
+    }
+
+    /// Steps of one pitch about the middle, or all where there is one pair alone.
+    pub(crate) fn steps(&self) -> std::ops::Range<isize> {
+        let Engagement { steps, first, points, .. } = &self.engagement;
+        match self.has_pitch {
+            true => -(*steps as isize / 2)..*steps as isize - *steps as isize / 2,
+            false => *first..*first + points.len() as isize,
+        }
+    }
+
+    /// Roll position of a step.
+    pub(crate) fn roll(&self, step: isize) -> f64 {
+        let Engagement { steps, pitch, .. } = self.engagement;
+        let middle = self.middle().map_or(f64::NAN, |point| point.roll);
+        middle + step as f64 * pitch / steps as f64
+    }
+
+    /// The composite lag at any roll position.
+    pub(crate) fn lag_at(&self, roll: f64) -> Option<f64> {
+        let Engagement { steps, pitch, .. } = self.engagement;
+        let middle = self.middle()?.roll;
+        let near = ((roll - middle) / pitch * steps as f64).round() as isize;
+        let pairs = self.engagement.pairs(near).into_iter();
+        let points = pairs.filter_map(|pair| self.problem.pair_at(&self.engagement, pair, roll));
+        points
+            .max_by(|a, b| (a.lag * a.opening.signum()).total_cmp(&(b.lag * b.opening.signum())))
+            .map(|point| point.lag)
+    }
+
+    /// What the flanks are to each other where they touch.
+    pub(crate) fn state(&self) -> Option<ContactState> {
+        self.middle().and_then(|point| point.state)
+    }
+}
+
+/// The contact nearest to the middle of the roll.
+fn found(problem: &ContactProblem, limits: [f64; 2], points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
+    let at = |k: usize| limits[0] + (limits[1] - limits[0]) * (k as f64 + 0.5) / TRIED as f64;
+    let mut order: Vec<usize> = (0..TRIED).collect();
+    order.sort_by_key(|k| k.abs_diff(TRIED / 2));
+    let mut reason = None;
+    let mut second: Option<ContactPoint> = None;
+    for k in order {
+        match problem.find(at(k), points) {
+            Ok(point) if point.outcome == Outcome::Solved && point.state != Some(ContactState::Crossing) => {
+                return Ok(point);
+            }
+            Ok(point) => second = second.or(Some(point)),
+            Err(why) => reason = reason.or(Some(why)),
+        }
+    }
+    second.ok_or(reason.unwrap_or(NoContact::NotFound))
+}
+
+/// Where the lag of contact of the flanks is extreme.
+fn vertex(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
+    let slope = |point: &ContactPoint| point.lag_slopes[0];
+    let is_clear = |point: &ContactPoint| point.edges.is_empty() && slope(point).abs() > STRAIGHT;
+    let pairs = of.points.windows(2).filter(|pair| pair.iter().all(is_clear));
+    let turns = pairs.filter(|pair| slope(&pair[0]).signum() != slope(&pair[1]).signum());
+    turns.filter_map(|pair| problem.vertex(&pair[0], [pair[0].roll, pair[1].roll])).next()
+}
+
+/// The middle of contact of the flanks.
+fn middle(of: &Engagement) -> Option<ContactPoint> {
+    let flank: Vec<&ContactPoint> = of.points.iter().filter(|point| point.edges.is_empty()).collect();
+    flank.get(flank.len() / 2).map(|point| (*point).clone())
+}

@@ -1,0 +1,401 @@
+//! The numbers of a contact, in the units that people read.
+
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, SampleGrid};
+use flank_solver::{ContactPoint, ContactState, Engagement, FlankEdge, Outcome};
+
+use crate::contact::influence;
+use crate::contact::pair::Members;
+use crate::contact::pattern::GapMap;
+use crate::contact::result::{
+    Backlash, ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError,
+    PlaceOnFlank, TransmissionError,
+};
+use crate::contact::rolling::Rolling;
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::project::requests::{ContactRequest, Session};
+use crate::project::units;
+
+/// A gap below this is no rounding: the mate reaches in, mm.
+const REACHES_IN: f64 = -1e-7;
+
+/// What numbers of a contact are told of.
+pub(crate) struct Summary<'s, 'j, 'g> {
+    job: &'s Job<'g>,
+    members: &'s Members<'j, 'g>,
+    request: &'s ContactRequest,
+    errors: &'s [f64],
+}
+
+impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
+    pub(crate) fn new(
+        job: &'s Job<'g>,
+        members: &'s Members<'j, 'g>,
+        request: &'s ContactRequest,
+        errors: &'s [f64],
+    ) -> Summary<'s, 'j, 'g> {
+        Summary { job, members, request, errors }
+    }
+
+    fn over(&self) -> Dimension {
+        self.members.contact.roll.dimension
+    }
+
+    fn unknown(&self) -> Dimension {
+        self.members.contact.lag.dimension
+    }
+
+    /// A difference of the error in the unit that errors are told in.
+    fn fine(&self, difference: f64) -> f64 {
+        fine(self.unknown(), difference)
+    }
+
+    fn turn(&self, roll: f64) -> f64 {
+        units::shown(self.over(), roll)
+    }
+
+    /// Of a pair that does not touch.
+    pub(crate) fn of_nothing(&self) -> ContactResult {
+        let member = |k: usize| ContactMember {
+            surface: self.members.surfaces[k].name.clone(),
+            frame: self.members.surfaces[k].frame.clone(),
+            solid: self.members.solids[k].map(|solid| solid.name.clone()),
+        };
+        let axes = &self.members.contact.errors;
+        let mounted =
+            axes.iter().zip(self.errors).filter(|(_, error)| **error != 0.0).map(|(axis, error)| MountedError {
+                axis: axis.name.clone(),
+                value: units::shown(axis.dimension, *error),
+                unit: units::symbol(axis.dimension).to_string(),
+            });
+        ContactResult {
+            job: self.job.name.clone(),
+            contact: self.members.contact.name.clone(),
+            members: [member(0), member(1)],
+            over: self.members.contact.roll.name.clone(),
+            over_unit: units::symbol(self.over()).to_string(),
+            unknown: self.members.contact.lag.name.clone(),
+            unknown_unit: units::symbol(self.unknown()).to_string(),
+            mounted: mounted.collect(),
+            kind: None,
+            middle: None,
+            error: None,
+            ratio: None,
+            ends: Vec::new(),
+            edges: Vec::new(),
+            pattern: Vec::new(),
+            backlash: None,
+            influences: Vec::new(),
+            vhj: Vec::new(),
+            files: Vec::new(),
+            not_done: Vec::new(),
+            remarks: Vec::new(),
+            timing: Timing::default(),
+        }
+    }
+
+    pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
+        let ends = self.ends(rolling);
+        let pitch = rolling.has_pitch.then_some(rolling.engagement.pitch);
+        let ratio = match (pitch, &ends[..]) {
+            (Some(pitch), [(begin, _), (end, _)]) => Some((end - begin) / pitch),
+            _ => None,
+        };
+        let kind = rolling.state().map(|state| match state {
+            ContactState::Touching => ContactKind::Point,
+            ContactState::Line => ContactKind::Line,
+            ContactState::Crossing => ContactKind::Crossing,
+        });
+        ContactResult {
+            kind,
+            middle: rolling.middle().map(|point| self.middle(rolling, point)),
+            error: self.error(rolling),
+            ratio,
+            ends: ends.into_iter().map(|(_, end)| end).collect(),
+            edges: if rolling.has_pitch { self.edges(rolling) } else { Vec::new() },
+            pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
+            not_done: self.not_done(rolling, patterns),
+            remarks: self.remarks(rolling),
+            timing: Timing { points: rolling.engagement.points.len(), ..Timing::default() },
+            ..self.of_nothing()
+        }
+    }
+
+    fn middle(&self, rolling: &Rolling, point: &ContactPoint) -> ContactMiddle {
+        let speed = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let per_roll = units::shown(self.over(), 1.0);
+        ContactMiddle {
+            is_vertex: rolling.vertex.is_some(),
+            turn: self.turn(point.roll),
+            error: units::shown(self.unknown(), point.lag),
+            parabola: self.fine(point.lag_slopes[1]) / (per_roll * per_roll),
+            on: [0, 1].map(|member| self.place(member, point)),
+            gap: point.gap.as_ref().map(|gap| [gap.k1, gap.k2]),
+            ellipse: point.ellipse(self.request.compound).map(|[short, long]| [long, short]),
+            sliding: speed(&point.sliding),
+            entraining: speed(&point.entraining),
+        }
+    }
+
+    fn place(&self, member: usize, point: &ContactPoint) -> PlaceOnFlank {
+        let [x, y, z] = point.in_members[member];
+        let rho = x.hypot(y);
+        let along = influence::rows_at(self.members, member, point);
+        let path_angle = along.map(|along| {
+            let path = point.path[member];
+            let [dot, length] = [dot(&path, &along.lengthwise), dot(&path, &path).sqrt()];
+            (dot.abs() / length).min(1.0).acos().to_degrees()
+        });
+        PlaceOnFlank {
+            z,
+            rho,
+            shares: shares(self.members.surfaces[member], [z, rho]).map(|[v, u]| [u, v]),
+            path_angle: path_angle.filter(|angle| angle.is_finite()),
+        }
+    }
+
+    fn error(&self, rolling: &Rolling) -> Option<TransmissionError> {
+        let engagement = &rolling.engagement;
+        let lag = |step: isize| match rolling.has_pitch {
+            true => engagement.carried(step).map(|carried| carried.lag),
+            false => engagement.point(0, step).map(|point| point.lag),
+        };
+        let lags: Vec<f64> = rolling.steps().filter_map(lag).collect();
+        let ends = lags.iter().map(|lag| (*lag, *lag)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)))?;
+        let pairs = rolling.steps().map(|step| engagement.pairs(step).len()).max();
+        Some(TransmissionError {
+            unit: fine_unit(self.unknown()).to_string(),
+            peak_to_peak: self.fine(ends.1 - ends.0),
+            transfers: if rolling.has_pitch { self.transfers(rolling) } else { Vec::new() },
+            pairs: pairs.filter(|_| rolling.has_pitch).unwrap_or(1),
+        })
+    }
+
+    fn transfers(&self, rolling: &Rolling) -> Vec<f64> {
+        let engagement = &rolling.engagement;
+        let steps = rolling.steps();
+        let handed = (steps.start..steps.end).filter_map(|step| {
+            let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
+            let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
+            let between = [rolling.roll(step), rolling.roll(step + 1)];
+            rolling.problem.transfer(engagement, [before, after], between)
+        });
+        handed.map(|roll| self.turn(roll)).collect()
+    }
+
+    /// Where contact of the flanks begins and ends, with the roll positions.
+    fn ends(&self, rolling: &Rolling) -> Vec<(f64, FlankEnd)> {
+        let engagement = &rolling.engagement;
+        let is_flank = |point: &&ContactPoint| point.edges.is_empty();
+        let end = |way: isize| {
+            let is_open = match way {
+                -1 => engagement.points.first().filter(is_flank).is_some() && !engagement.is_whole[0],
+                _ => engagement.points.last().filter(is_flank).is_some() && !engagement.is_whole[1],
+            };
+            if is_open {
+                return None;
+            }
+            let point = rolling.problem.flank_end(engagement, way)?;
+            let edge = self.edge_beside(engagement, way);
+            let of = edge.as_ref().map_or(self.outside(&point), |edge| edge.member);
+            let at = edge.map(|edge| self.edge_name(edge));
+            let end = FlankEnd {
+                turn: self.turn(point.roll),
+                of: self.members.surfaces[of].name.clone(),
+                at,
+                is_begin: way < 0,
+            };
+            Some((point.roll, end))
+        };
+        [-1, 1].into_iter().filter_map(end).collect()
+    }
+
+    /// The edge that touches next beyond contact of the flanks.
+    fn edge_beside(&self, engagement: &Engagement, way: isize) -> Option<FlankEdge> {
+        let points = &engagement.points;
+        let is_flank = |point: &ContactPoint| point.edges.is_empty();
+        let next = match way {
+            -1 => points.iter().position(is_flank)?.checked_sub(1),
+            _ => points.iter().rposition(is_flank).map(|at| at + 1).filter(|at| *at < points.len()),
+        };
+        points[next?].edges.first().copied()
+    }
+
+    /// The member whose tool makes no more of the flank there: the one that is nearer to an end of its unknowns.
+    fn outside(&self, point: &ContactPoint) -> usize {
+        let room = |member: usize| {
+            let ranges = self.members.bound[member].ranges();
+            let shares = ranges.iter().zip(&point.unknowns[member]);
+            shares
+                .map(|(range, x)| (x - range.low).min(range.high - x) / (range.high - range.low))
+                .fold(f64::MAX, f64::min)
+        };
+        usize::from(room(1) < room(0))
+    }
+
+    fn edge_name(&self, edge: FlankEdge) -> String {
+        self.members.solids[edge.member].map_or(String::new(), |solid| solid.outline[edge.segment].name.clone())
+    }
+
+    fn whole_edge_name(&self, edges: &[FlankEdge]) -> String {
+        let name =
+            |edge: &FlankEdge| format!("{} of {}", self.edge_name(*edge), self.members.surfaces[edge.member].name);
+        edges.iter().map(name).collect::<Vec<String>>().join(" x ")
+    }
+
+    /// Where edges carry over a pitch.
+    fn edges(&self, rolling: &Rolling) -> Vec<LeadingEdge> {
+        let mut found: Vec<LeadingEdge> = Vec::new();
+        let mut last = None;
+        for step in rolling.steps() {
+            let carried = rolling.engagement.carried(step);
+            let point = carried.and_then(|carried| rolling.engagement.point(carried.pair, step));
+            let Some(point) = point.filter(|point| !point.edges.is_empty()) else { continue };
+            let (edge, turn) = (self.whole_edge_name(&point.edges), self.turn(rolling.roll(step)));
+            match found.last_mut().filter(|leading| leading.edge == edge && last == Some(step - 1)) {
+                Some(leading) => leading.to = turn,
+                None => found.push(LeadingEdge { edge, from: turn, to: turn }),
+            }
+            last = Some(step);
+        }
+        found
+    }
+
+    fn not_done(&self, rolling: &Rolling, patterns: &[GapMap]) -> Vec<NotDone> {
+        let [first, second] = self.members.surfaces.map(|surface| &surface.name);
+        let name = &self.members.contact.name;
+        let mut told = Vec::new();
+        let outside =
+            rolling.engagement.points.iter().filter(|point| point.edges.is_empty() && point.outcome != Outcome::Solved);
+        let outside = outside.count();
+        if outside > 0 {
+            let message = format!(
+                "contact {name}: at {} the flanks would have to touch beyond the ranges of their tools",
+                units::counted(outside, "position")
+            );
+            let way =
+                "the piece of the tool that follows makes what touches there: a contact of its own, or a longer blade"
+                    .to_string();
+            told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
+        }
+        let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
+        if let Some(least) = least.filter(|least| *least < 1e3 * REACHES_IN) {
+            let message = format!(
+                "contact {name}: {first} and {second} reach into each other by {} um where they should touch",
+                units::scientific(-least, 2)
+            );
+            told.push(NotDone::new(NotDoneKind::Penetration, first, message));
+        }
+        told
+    }
+
+    fn remarks(&self, rolling: &Rolling) -> Vec<Remark> {
+        let name = &self.members.contact.name;
+        let remark =
+            |kind: RemarkKind, of: &str, message: String| Remark::new(kind, of, format!("contact {name}: {message}"));
+        let mut told = Vec::new();
+        for (surface, _) in self.members.surfaces.iter().zip(self.members.solids).filter(|(_, solid)| solid.is_none()) {
+            let message =
+                format!("no `solid` says where the teeth of {} end: its edges are not looked at", surface.name);
+            told.push(remark(RemarkKind::NoEdges, &surface.name, message));
+        }
+        if !rolling.has_pitch {
+            let message =
+                "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
+                    .to_string();
+            told.push(remark(RemarkKind::OnePair, name, message));
+        } else if rolling.engagement.is_whole != [true; 2] {
+            let message = format!(
+                "the range of `{}` ends while the pair still touches: a wider range shows it from its first touch to its last",
+                self.members.contact.roll.name
+            );
+            told.push(remark(RemarkKind::RollTooShort, name, message));
+        }
+        told
+    }
+}
+
+pub(crate) fn fine(dimension: Dimension, difference: f64) -> f64 {
+    difference * if units::is_angle(dimension) { 1e6 } else { 1e3 }
+}
+
+pub(crate) fn fine_unit(dimension: Dimension) -> &'static str {
+    if units::is_angle(dimension) { "urad" } else { "um" }
+}
+
+pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Steps until the shares of a point between the corners of a blank are settled.
+const MOST_STEPS: usize = 30;
+
+/// Shares from root to tip and from toe to heel at a point `[z, rho]`, where the sample of a surface is one of shares.
+pub(crate) fn shares(surface: &GeneratedSurface<'_>, point: [f64; 2]) -> Option<[f64; 2]> {
+    let SampleGrid::Shares { corners, .. } = surface.sample.as_ref()?.grid else { return None };
+    let at = |shares: [f64; 2]| SampleGrid::Shares { shares: shares.map(|share| vec![share]), corners }.at(0, 0);
+    let mut shares = [0.5, 0.5];
+    for _ in 0..MOST_STEPS {
+        let here = at(shares);
+        let off = [0, 1].map(|k| point[k] - here[k]);
+        // bilinear: differences over a whole unit are its derivatives
+        let by = [[1.0, 0.0], [0.0, 1.0]].map(|step: [f64; 2]| {
+            let there = at([0, 1].map(|k| shares[k] + step[k]));
+            [0, 1].map(|k| there[k] - here[k])
+        });
+        let determinant = by[0][0] * by[1][1] - by[0][1] * by[1][0];
+        let step = [
+            (off[0] * by[1][1] - off[1] * by[1][0]) / determinant,
+            (off[1] * by[0][0] - off[0] * by[0][1]) / determinant,
+        ];
+        shares = [0, 1].map(|k| shares[k] + step[k]);
+        if step.iter().all(|step| step.abs() < 1e-14) {
+            break;
+        }
+    }
+    shares.iter().all(|share| share.is_finite()).then_some(shares)
+}
+
+/// How much the pair can move between this contact and one of the opposite flanks, which moves the same unknown the other way.
+///
+/// # Errors
+/// If a flank is not sampled, or the work is cancelled.
+pub(crate) fn backlash(
+    job: &Job<'_>,
+    members: &Members<'_, '_>,
+    request: &ContactRequest,
+    errors: &[f64],
+    rolling: &Rolling,
+    session: Session,
+) -> Result<Option<Backlash>, Failure> {
+    let own = members.contact;
+    let Some(middle) = rolling.middle().filter(|_| rolling.has_pitch) else { return Ok(None) };
+    let others = job.contacts.iter().filter(|other| {
+        other.name != own.name && other.roll.variable == own.roll.variable && other.lag.variable == own.lag.variable
+    });
+    for other in others {
+        let of_other = Members::solved(job, other, session)?;
+        let pair = of_other.pair(job, errors, &[]);
+        let Ok(opposite) = Rolling::of_pair(&of_other, &pair, (request.positions as usize, of_other.pitch(job))) else {
+            continue;
+        };
+        let is_opposite = opposite.middle().is_some_and(|point| point.opening * middle.opening < 0.0);
+        if !is_opposite || !opposite.has_pitch {
+            continue;
+        }
+        let room = |step: isize| {
+            let roll = rolling.roll(step);
+            let [here, there] = [rolling.lag_at(roll)?, opposite.lag_at(roll)?];
+            Some(((there - here) * middle.opening.signum(), roll))
+        };
+        let least = rolling.steps().filter_map(room).min_by(|a, b| a.0.total_cmp(&b.0));
+        return Ok(least.map(|(room, roll)| Backlash {
+            other: other.name.clone(),
+            least: units::shown(own.lag.dimension, room),
+            turn: units::shown(own.roll.dimension, roll),
+            normal: room * middle.opening.abs(),
+        }));
+    }
+    Ok(None)
+}
