@@ -61,6 +61,35 @@ impl Subject for Points {
 
 evaluator_suite!(intervals, Points);
 
+/// The same where the later half of the inputs stays as it is: the same bits.
+struct HalfKnown;
+
+impl Subject for HalfKnown {
+    type Value = Interval;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<Interval>> {
+        let plain = Points::evaluate(tape, points);
+        for (point, expected) in points.iter().zip(&plain) {
+            let inputs: Vec<Interval> = point.iter().copied().map(Interval::point).collect();
+            let (given, last) = inputs.split_at(inputs.len() / 2);
+            let mut evaluator = IntervalEvaluator::with_last_inputs(tape, last);
+            let mut outputs = vec![Interval::EMPTY; tape.output_count()];
+            // whatever was computed before
+            let elsewhere: Vec<Interval> = given.iter().map(|x| Interval::point(x.lo + 1.0)).collect();
+            evaluator.run(&elsewhere, &mut outputs);
+            evaluator.run(given, &mut outputs);
+            assert_eq!(&outputs, expected, "{point:?}");
+        }
+        plain
+    }
+
+    fn agrees(expected: f64, found: &Interval) -> bool {
+        Points::agrees(expected, found)
+    }
+}
+
+evaluator_suite!(half_known_intervals, HalfKnown);
+
 /// Power series, of which the suite sees the constant terms.
 struct Series;
 

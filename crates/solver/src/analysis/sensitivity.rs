@@ -105,12 +105,15 @@ impl NormalSensitivity {
     /// How points of the surface move with each of `parameters`, by their places among all; and at how many points that is known: those
     /// that are solved and where all of [`NormalSensitivity::at`] is finite. On as many threads as there are.
     pub fn over(&self, points: &[SurfacePoint], parameters: &[usize]) -> (Vec<Displacement>, usize) {
-        let at = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.at(&point.unknowns)).flatten();
+        let at = |evaluator: &mut Evaluator<'_>, point: &SurfacePoint| {
+            (point.outcome == Outcome::Solved).then(|| self.by(evaluator, &point.unknowns)).flatten()
+        };
+        let evaluator = self.evaluator();
         // one number of each parameter and point is all that is kept of a point
         let mut moved: Vec<Vec<f64>> = parameters.iter().map(|_| Vec::with_capacity(points.len())).collect();
         let mut known = 0;
         for points in points.chunks(TOGETHER) {
-            let found: Vec<Option<Vec<f64>>> = points.par_iter().map(at).collect();
+            let found: Vec<Option<Vec<f64>>> = points.par_iter().map_init(|| evaluator.clone(), at).collect();
             for of_all in found {
                 known += usize::from(of_all.is_some());
                 for (k, values) in parameters.iter().zip(&mut moved) {
@@ -148,12 +151,20 @@ impl NormalSensitivity {
     /// # Panics
     /// If there is not one number for each unknown.
     pub fn at(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
-        assert_eq!(unknowns.len() + self.parameters.len(), self.tape.input_count(), "one number for each unknown");
-        let inputs: Vec<Interval> =
-            unknowns.iter().copied().map(Interval::point).chain(self.parameters.iter().copied()).collect();
-        let mut out = vec![Interval::WHOLE; self.tape.output_count()];
-        IntervalEvaluator::new(&self.tape).run(&inputs, &mut out);
-        let (normal, slopes) = out.split_at(3);
+        self.by(&mut self.evaluator(), unknowns)
+    }
+
+    fn evaluator(&self) -> Evaluator<'_> {
+        Evaluator {
+            tape: IntervalEvaluator::with_last_inputs(&self.tape, &self.parameters),
+            out: vec![Interval::WHOLE; self.tape.output_count()],
+        }
+    }
+
+    fn by(&self, evaluator: &mut Evaluator<'_>, unknowns: &[f64]) -> Option<Vec<f64>> {
+        let inputs: Vec<Interval> = unknowns.iter().copied().map(Interval::point).collect();
+        evaluator.tape.run(&inputs, &mut evaluator.out);
+        let (normal, slopes) = evaluator.out.split_at(3);
         let moved = (0..self.parameters.len()).map(|k| self.displacement(slopes, k));
         let all: Vec<f64> = moved.map(|moved| along_normal(normal, &moved)).collect();
         all.iter().all(|moved| moved.is_finite()).then_some(all)
@@ -166,6 +177,13 @@ impl NormalSensitivity {
             moved.fold(Interval::point(0.0), |sum, moved| sum + moved)
         })
     }
+}
+
+/// What evaluates normal and slopes, with what follows from the parameters alone.
+#[derive(Clone)]
+struct Evaluator<'s> {
+    tape: IntervalEvaluator<'s>,
+    out: Vec<Interval>,
 }
 
 /// The share of a displacement that the normal takes, if it is one.

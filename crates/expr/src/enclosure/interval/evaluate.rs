@@ -1,5 +1,7 @@
 //! Runs a tape on intervals.
 
+use std::borrow::Cow;
+
 use super::Interval;
 use crate::symbolic::op::{Binary, Unary};
 use crate::tape::{Instruction, Operation, Tape};
@@ -19,6 +21,11 @@ use crate::tape::{Instruction, Operation, Tape};
 #[derive(Clone, Debug)]
 pub struct IntervalEvaluator<'t> {
     tape: &'t Tape,
+    /// What a run does, and where it leaves the outputs.
+    instructions: Cow<'t, [Instruction]>,
+    outputs: Cow<'t, [u32]>,
+    /// Inputs that a run is given.
+    given: usize,
     registers: Vec<Interval>,
 }
 
@@ -29,7 +36,47 @@ impl<'t> IntervalEvaluator<'t> {
         for (register, constant) in registers[tape.input_count()..].iter_mut().zip(tape.constants()) {
             *register = Interval::point(*constant);
         }
-        IntervalEvaluator { tape, registers }
+        let (instructions, outputs) = (tape.instructions().into(), tape.outputs().into());
+        IntervalEvaluator { tape, instructions, outputs, given: tape.input_count(), registers }
+    }
+
+    /// The same where the last inputs are always these: what follows from them alone is computed here, once. A run takes the other inputs, and
+    /// gives the same bits.
+    ///
+    /// # Panics
+    /// If these are more than the tape's inputs.
+    pub fn with_last_inputs(tape: &'t Tape, last: &[Interval]) -> IntervalEvaluator<'t> {
+        let mut evaluator = IntervalEvaluator::new(tape);
+        evaluator.given = tape.input_count() - last.len();
+        evaluator.registers[evaluator.given..tape.input_count()].copy_from_slice(last);
+        let fixed = evaluator.given..tape.input_count() + tape.constants().len();
+        // a value that is known goes to a register that nothing else is written to, behind all others
+        let is_known =
+            |register: u32| fixed.contains(&(register as usize)) || register as usize >= tape.register_count();
+        let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
+        let mut left = Vec::new();
+        for step in tape.instructions() {
+            let is_binary = matches!(step.operation, Operation::Binary(_));
+            let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
+            if is_binary {
+                moved.b = register_of[step.b as usize];
+            }
+            let is_done = is_known(moved.a) && (!is_binary || is_known(moved.b));
+            let mut written = |register: u32| {
+                let to = if is_done { evaluator.registers.len() as u32 } else { register };
+                evaluator.registers.extend(is_done.then_some(Interval::WHOLE));
+                register_of[register as usize] = to;
+                to
+            };
+            moved.out = written(step.out);
+            if step.operation == Operation::SinCos {
+                moved.b = written(step.b);
+            }
+            if is_done { take(tape, &moved, &mut evaluator.registers) } else { left.push(moved) }
+        }
+        evaluator.outputs = tape.outputs().iter().map(|register| register_of[*register as usize]).collect();
+        evaluator.instructions = left.into();
+        evaluator
     }
 
     /// Encloses the outputs over the box of the inputs.
@@ -38,23 +85,26 @@ impl<'t> IntervalEvaluator<'t> {
     /// If the slices do not have the lengths that the tape states.
     pub fn run(&mut self, inputs: &[Interval], outputs: &mut [Interval]) {
         assert_eq!(outputs.len(), self.tape.output_count(), "number of outputs");
-        self.registers[..self.tape.input_count()].copy_from_slice(inputs);
-        for step in self.tape.instructions() {
-            let a = self.registers[step.a as usize];
-            self.registers[step.out as usize] = match step.operation {
-                Operation::Unary(op) => op.apply_interval(a),
-                Operation::Curve(order) => self.tape.curves()[step.b as usize].enclosure(order, a),
-                Operation::Binary(op) => binary(op, step, a, self.registers[step.b as usize]),
-                Operation::SinCos => {
-                    self.registers[step.b as usize] = a.cos();
-                    a.sin()
-                }
-            };
-        }
-        for (output, &register) in outputs.iter_mut().zip(self.tape.outputs()) {
+        self.registers[..self.given].copy_from_slice(inputs);
+        self.instructions.iter().for_each(|step| take(self.tape, step, &mut self.registers));
+        for (output, &register) in outputs.iter_mut().zip(self.outputs.iter()) {
             *output = self.registers[register as usize];
         }
     }
+}
+
+#[inline(always)]
+fn take(tape: &Tape, step: &Instruction, registers: &mut [Interval]) {
+    let a = registers[step.a as usize];
+    registers[step.out as usize] = match step.operation {
+        Operation::Unary(op) => op.apply_interval(a),
+        Operation::Curve(order) => tape.curves()[step.b as usize].enclosure(order, a),
+        Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
+        Operation::SinCos => {
+            registers[step.b as usize] = a.cos();
+            a.sin()
+        }
+    };
 }
 
 /// One register twice is one number twice.
