@@ -22,6 +22,8 @@ const FINE: usize = 32;
 const MOST_REFINED: usize = 1024;
 /// Shares of the way across a grid at which branches are looked for beside the middle.
 const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
+/// Places between these, of a grid that is complete: another branch may be valid on a part of it alone.
+const BETWEEN: usize = 16;
 /// The same where points are missing.
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// How often starts are drawn for points all over a grid whose branch has an end or leaves the ranges: another branch may have so few
@@ -232,12 +234,19 @@ fn qualifies(root: &Solution, choice: &Choice<'_>) -> bool {
     root.is_solved() && choice.keeps(&root.unknowns) && choice.has_tangent_plane(&root.unknowns)
 }
 
-/// Places spread over a grid; in the middle all roots are known.
+/// Places spread over a grid, those at its ends first; in the middle all roots are known.
 fn places(grid: &Grid<'_>) -> Vec<usize> {
-    let shares = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
-    let mut points: Vec<usize> =
-        shares.filter(|shares| *shares != [0.5; 2]).map(|shares| grid.nearest(shares)).collect();
-    points.dedup();
+    let ends = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
+    // no two in a line along either coordinate
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let between = (0..BETWEEN).map(|k| [(k as f64 + 0.5) / BETWEEN as f64, (k as f64 * golden).fract()]);
+    let mut points: Vec<usize> = Vec::new();
+    for shares in ends.filter(|shares| *shares != [0.5; 2]).chain(between) {
+        let point = grid.nearest(shares);
+        if !points.contains(&point) {
+            points.push(point);
+        }
+    }
     points
 }
 
