@@ -81,12 +81,12 @@ impl<'c> Poses<'c> {
 
     /// The motion's values that are looked at first: the way of a point bends little from one to the next.
     pub(super) fn values(&mut self, motions: &[f64], running: usize, point: &Vector3<f64>) -> Vec<f64> {
-        let fewest: usize = std::env::var("FEWEST").ok().and_then(|x| x.parse().ok()).unwrap_or(16);
+        const FEWEST: usize = 8;
         const MOST: usize = 1024;
         const BEND: f64 = 0.3;
         let range = self.cutting.ranges[running];
         let mut at = motions.to_vec();
-        let mut count = fewest;
+        let mut count = FEWEST;
         loop {
             let values: Vec<f64> = (0..=count).map(|k| range.at(k as f64 / count as f64)).collect();
             let velocities: Vec<Vector3<f64>> = values
