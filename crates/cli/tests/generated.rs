@@ -15,9 +15,12 @@ use tempfile::TempDir;
 const KNOWN: [(&str, usize); 0] = [];
 
 /// Numbers in which something was wrong once.
-const MENDED: [u64; 3] = [
-    // branches that are valid between the places at which others were looked for
-    4_879, 5_644, 12_396,
+const MENDED: &[u64] = &[
+    3_330,  // a branch in ranges that the branch in the middle leaves for the most part
+    4_879,  // a branch that is valid between the places at which others were looked for
+    5_644,  // the same
+    6_712,  // the same
+    12_396, // the same
 ];
 
 /// A folder for specs and what is written, with the table that some of them read.
@@ -88,6 +91,6 @@ fn what_is_said_of_points_is_so() {
 
 #[test]
 fn what_was_wrong_once_is_not() {
-    let wrong = wrong(&MENDED);
+    let wrong = wrong(MENDED);
     assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -23,7 +23,7 @@ const MOST_REFINED: usize = 1024;
 /// Shares of the way across a grid at which branches are looked for beside the middle.
 const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
 /// Places between these, of a grid that is complete: another branch may be valid on a part of it alone.
-const BETWEEN: usize = 16;
+const BETWEEN: usize = 12;
 /// The same where points are missing.
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// How often starts are drawn for points all over a grid whose branch has an end or leaves the ranges: another branch may have so few
@@ -56,7 +56,9 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
     if followed.field.is_complete() {
         let field = &followed.field;
         let all: Vec<usize> = (0..field.len()).collect();
-        let points = if field.solved() < field.len() { all_over(&all) } else { places(grid) };
+        // beyond its ranges, too, this branch may be complete
+        let is_partial = field.solved() < field.len() || followed.is_beyond;
+        let points = if is_partial { all_over(&all) } else { places(grid) };
         grid.effort.elsewhere = beside_complete(grid, &mut solvers.careful, (field, points), choice);
         return followed;
     }

@@ -54,7 +54,7 @@ impl<'t> IntervalEvaluator<'t> {
         let is_known =
             |register: u32| fixed.contains(&(register as usize)) || register as usize >= tape.register_count();
         let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
-        let mut left = Vec::new();
+        let (mut done, mut left) = (Vec::new(), Vec::new());
         for step in tape.instructions() {
             let is_binary = matches!(step.operation, Operation::Binary(_));
             let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
@@ -72,8 +72,9 @@ impl<'t> IntervalEvaluator<'t> {
             if step.operation == Operation::SinCos {
                 moved.b = written(step.b);
             }
-            if is_done { take(tape, &moved, &mut evaluator.registers) } else { left.push(moved) }
+            if is_done { done.push(moved) } else { left.push(moved) }
         }
+        execute(tape, &done, &mut evaluator.registers);
         evaluator.outputs = tape.outputs().iter().map(|register| register_of[*register as usize]).collect();
         evaluator.instructions = left.into();
         evaluator
@@ -86,25 +87,26 @@ impl<'t> IntervalEvaluator<'t> {
     pub fn run(&mut self, inputs: &[Interval], outputs: &mut [Interval]) {
         assert_eq!(outputs.len(), self.tape.output_count(), "number of outputs");
         self.registers[..self.given].copy_from_slice(inputs);
-        self.instructions.iter().for_each(|step| take(self.tape, step, &mut self.registers));
+        execute(self.tape, &self.instructions, &mut self.registers);
         for (output, &register) in outputs.iter_mut().zip(self.outputs.iter()) {
             *output = self.registers[register as usize];
         }
     }
 }
 
-#[inline(always)]
-fn take(tape: &Tape, step: &Instruction, registers: &mut [Interval]) {
-    let a = registers[step.a as usize];
-    registers[step.out as usize] = match step.operation {
-        Operation::Unary(op) => op.apply_interval(a),
-        Operation::Curve(order) => tape.curves()[step.b as usize].enclosure(order, a),
-        Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
-        Operation::SinCos => {
-            registers[step.b as usize] = a.cos();
-            a.sin()
-        }
-    };
+fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]) {
+    for step in instructions {
+        let a = registers[step.a as usize];
+        registers[step.out as usize] = match step.operation {
+            Operation::Unary(op) => op.apply_interval(a),
+            Operation::Curve(order) => tape.curves()[step.b as usize].enclosure(order, a),
+            Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
+            Operation::SinCos => {
+                registers[step.b as usize] = a.cos();
+                a.sin()
+            }
+        };
+    }
 }
 
 /// One register twice is one number twice.

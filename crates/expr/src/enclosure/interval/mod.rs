@@ -36,15 +36,18 @@ pub struct Interval {
 }
 
 /// The nearest float below what was rounded to nearest.
+#[inline]
 fn down(x: f64) -> f64 {
     x.next_down()
 }
 
+#[inline]
 fn up(x: f64) -> f64 {
     x.next_up()
 }
 
 /// Lower and upper bound of a sum; the float itself where it is the sum (Knuth's two-sum gives the rounding error exactly).
+#[inline]
 fn sum_bounds(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
@@ -54,6 +57,7 @@ fn sum_bounds(a: f64, b: f64) -> (f64, f64) {
 }
 
 /// Lower and upper bound of a product of ends. Zero times an infinite end is zero: the end stands for numbers.
+#[inline]
 fn product_bounds(a: f64, b: f64) -> (f64, f64) {
     if a == 0.0 || b == 0.0 {
         return (0.0, 0.0);
@@ -90,6 +94,7 @@ impl Interval {
         Interval { lo: self.lo.min(f64::MAX), hi: self.hi.max(f64::MIN), continuous: false }
     }
 
+    #[inline]
     fn with(lo: f64, hi: f64, continuous: bool) -> Interval {
         Interval { lo, hi, continuous }.bounded()
     }
