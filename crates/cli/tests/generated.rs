@@ -20,6 +20,7 @@ const MENDED: &[u64] = &[
     4_879,  // a branch that is valid between the places at which others were looked for
     5_644,  // the same
     6_712,  // the same
+    6_970,  // the same
     12_396, // the same
 ];
 
