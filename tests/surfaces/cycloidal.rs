@@ -1,0 +1,90 @@
+//! Discs that roll within a ring of pins, against the published closed form of cycloidal drives.
+
+use std::f64::consts::{PI, TAU};
+
+use flank_expr::Graph;
+use flank_solver::Outcome;
+use flank_tests::{assert_point, job, points, sampled};
+
+const DISC: &str = "specs/cycloidal/cycloidal_disc.chain";
+const GEROTOR: &str = "specs/cycloidal/gerotor.chain";
+
+/// Pins, eccentricity, radius of the ring and of a pin, mm.
+#[derive(Clone, Copy)]
+struct Drive(f64, f64, f64, f64);
+
+impl Drive {
+    /// Position and outward normal of the disc at an angle of the ring, as textbooks on cycloidal drives have them (y upwards here).
+    fn published(self, angle: f64) -> ([f64; 3], [f64; 3]) {
+        let Drive(n, e, ring, pin) = self;
+        let lean = ((1.0 - n) * angle).sin().atan2(ring / (e * n) - ((1.0 - n) * angle).cos());
+        let x = ring * angle.cos() - pin * (angle + lean).cos() - e * (n * angle).cos();
+        let y = ring * angle.sin() - pin * (angle + lean).sin() - e * (n * angle).sin();
+        ([x, y, 0.0], [(angle + lean).cos(), (angle + lean).sin(), 0.0])
+    }
+
+    /// The largest pin whose disc is not cut under: the least radius of curvature of the pin's way, R e^(iα) − e e^(inα), on the side
+    /// of the disc.
+    fn largest_pin(self) -> f64 {
+        let Drive(n, e, ring, _) = self;
+        let bend = |k: u32| {
+            // with θ = (n − 1) α; r' r'' is the same at all α but for it
+            let theta = TAU * f64::from(k) / 100_000.0;
+            let speed = (ring * ring + n * n * e * e - 2.0 * ring * n * e * theta.cos()).sqrt();
+            (ring * ring + n.powi(3) * e * e - ring * n * (n + 1.0) * e * theta.cos()) / speed.powi(3)
+        };
+        1.0 / (0..100_000).map(bend).fold(0.0, f64::max)
+    }
+
+    fn set(self) -> Vec<(&'static str, String)> {
+        let Drive(n, e, ring, pin) = self;
+        vec![
+            ("pins", format!("{n}")),
+            ("eccentricity", format!("{e} mm")),
+            ("ring_radius", format!("{ring} mm")),
+            ("pin_radius", format!("{pin} mm")),
+        ]
+    }
+}
+
+#[test]
+fn discs_meet_the_published_closed_form() {
+    let drives = [
+        (DISC, Drive(12.0, 2.5, 60.0, 6.0)),
+        (DISC, Drive(10.0, 0.75, 25.0, 2.5)),
+        (DISC, Drive(4.0, 3.1, 21.0, 4.0)),
+        (GEROTOR, Drive(7.0, 2.85, 27.0, 8.0)),
+        (GEROTOR, Drive(5.0, 3.9, 28.0, 7.5)),
+    ];
+    for (spec, drive) in drives {
+        let set = drive.set();
+        let set: Vec<(&str, &str)> = set.iter().map(|(name, value)| (*name, value.as_str())).collect();
+        let graph = Graph::new();
+        let job = job(&graph, spec, &set);
+        // all around, at places that no lobe repeats
+        let angles: Vec<f64> = (0..97).map(|k| -PI + TAU * (f64::from(k) + 0.5) / 97.0).collect();
+        let targets: Vec<[f64; 2]> = angles.iter().map(|angle| [angle * (drive.0 - 1.0), 0.0]).collect();
+        for (angle, point) in angles.iter().zip(points(&job, "side", ["crank", "z"], &targets)) {
+            let (position, normal) = drive.published(*angle);
+            assert_point(&point, position, normal, &format!("{} pins, {angle} rad", drive.0));
+        }
+    }
+}
+
+#[test]
+fn pins_as_large_as_the_way_of_their_axis_bends_cut_under() {
+    for (spec, drive) in [(DISC, Drive(12.0, 2.5, 60.0, 6.0)), (GEROTOR, Drive(7.0, 2.85, 27.0, 8.0))] {
+        let largest = drive.largest_pin();
+        // a little larger, the piece that is cut away lies between points that are 15 deg of the crank apart
+        for (share, is_whole) in [(0.999, true), (1.02, false)] {
+            let set = Drive(drive.0, drive.1, drive.2, share * largest).set();
+            let set: Vec<(&str, &str)> = set.iter().map(|(name, value)| (*name, value.as_str())).collect();
+            let graph = Graph::new();
+            let told = sampled(&job(&graph, spec, &set), "side");
+            let cut = told.iter().filter(|point| matches!(point.outcome, Outcome::CutAway(_))).count();
+            let solved = told.iter().filter(|point| point.outcome == Outcome::Solved).count();
+            assert_eq!(cut + solved, told.len(), "{spec}: each point is found");
+            assert_eq!(cut == 0, is_whole, "{spec}: {cut} of {} with {share} of {largest} mm", told.len());
+        }
+    }
+}
