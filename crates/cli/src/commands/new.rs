@@ -36,7 +36,7 @@ fn list(TemplateList { templates, together }: &TemplateList) -> String {
     let width = templates.iter().map(|template| template.name.len()).max().unwrap_or(0);
     let mut out = "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string();
     templates.iter().for_each(|template| out += &format!("  {:width$}  {}\n", template.name, template.about));
-    out += "\nJobs that belong together in one file are not made into files of their own; to start from them copy theirs:\n";
+    out += "\nJobs that belong together in one file, or vary another, are not made into files of their own; to start from them copy theirs:\n";
     together.iter().for_each(|of| out += &format!("  {}: {}\n", of.file, of.jobs.join(", ")));
     out
 }

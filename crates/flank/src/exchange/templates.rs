@@ -26,7 +26,7 @@ static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 pub struct TemplateList {
     /// The jobs that stand alone in their file, by name.
     pub templates: Vec<Template>,
-    /// Files whose jobs belong together: none of them is made into a file of its own.
+    /// Files whose jobs belong together, or vary others: none of them is made into a file of its own.
     pub together: Vec<Together>,
 }
 
@@ -39,7 +39,7 @@ pub struct Template {
     pub about: String,
 }
 
-/// A file of the library with several jobs.
+/// A file of the library with several jobs, or with variants of others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Together {
     /// Its path in the repository.
@@ -133,7 +133,7 @@ struct Source {
 struct Offer {
     /// The jobs that stand alone in their file, by name.
     templates: BTreeMap<String, Source>,
-    /// Files whose jobs belong together, with their names: none of them is made into a file of its own.
+    /// Files whose jobs belong together, or vary others, with their names: none of them is made into a file of its own.
     together: BTreeMap<&'static Path, Vec<String>>,
 }
 
@@ -141,17 +141,23 @@ fn offer() -> Offer {
     let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
     for (path, text) in files(&LIBRARY) {
         let (file, _) = parse(text, FileId(0));
-        let jobs = file.items.into_iter().filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
-        let mut jobs: Vec<Job> = jobs.collect();
-        match jobs.len() {
-            0 => {}
-            1 => {
-                let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
-                offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job });
+        let (mut jobs, mut variants) = (Vec::new(), Vec::new());
+        for item in file.items {
+            match item {
+                Item::Job(job) => jobs.push(job),
+                Item::Variant(variant) => variants.push(variant.name.node),
+                _ => {}
             }
-            _ => {
-                offer.together.insert(path, jobs.into_iter().map(|job| job.name.node).collect());
-            }
+        }
+        if jobs.len() + variants.len() == 0 {
+            continue;
+        }
+        if jobs.len() == 1 && variants.is_empty() {
+            let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
+            offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job });
+        } else {
+            let names = jobs.into_iter().map(|job| job.name.node).chain(variants);
+            offer.together.insert(path, names.collect());
         }
     }
     offer
