@@ -71,6 +71,8 @@ pub struct MountingAxis<'g> {
     pub variable: Expr<'g>,
     /// A length or an angle.
     pub dimension: Dimension,
+    /// Whether a motion or an unknown drives it: the pair turns by it.
+    pub is_driven: bool,
 }
 
 /// A body of revolution with tooth spaces.

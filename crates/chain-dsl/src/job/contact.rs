@@ -135,8 +135,9 @@ impl<'g> Builder<'_, 'g> {
             };
             let whole = format!("{}.{}", name.node, axis.name.node);
             let variable = context.variable(format!("error of {whole}"), Role::Motion, f64::NAN);
+            let is_driven = !matches!(context.constant(law.1), Constant::Known(_) | Constant::Unknown);
             law.1 = law.1 + variable;
-            errors.push(MountingAxis { name: whole, variable, dimension });
+            errors.push(MountingAxis { name: whole, variable, dimension, is_driven });
         }
         (chains.map(|chain| chain.substituted(&laws)), errors)
     }

@@ -337,7 +337,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(11) {
+        match self.random.below(14) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -347,7 +347,8 @@ impl Writer {
                 self.all(&["on", "m.work"]);
             }
             5 => {
-                self.put("motion");
+                let keyword = self.random.of(&["motion", "unknown"]);
+                self.put(keyword);
                 self.parameter();
             }
             6 => {
@@ -374,6 +375,27 @@ impl Writer {
                 self.name();
             }
             9 => self.requirement(),
+            10 => {
+                self.put("solid");
+                self.name();
+                self.all(&["in", "m.work", "="]);
+                self.call(2);
+            }
+            11 => {
+                self.put("contact");
+                self.name();
+                self.put("=");
+                self.name();
+                self.put("with");
+                self.name();
+                for _ in 0..self.random.below(4) {
+                    self.put(",");
+                    self.name();
+                    self.put(":");
+                    self.value();
+                }
+            }
+            12 => self.profile(),
             _ => self.sample(),
         }
     }

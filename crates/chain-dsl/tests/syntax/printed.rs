@@ -102,6 +102,23 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Tool(it) => instance("tool", it),
         JobStatement::Mount { tool, frame } => format!("mount {} {}", tool.node, path(frame)),
         JobStatement::Motion(it) => format!("motion {}", parameter(it)),
+        JobStatement::Unknown(it) => format!("unknown {}", parameter(it)),
+        JobStatement::Profile(it) => {
+            let segment = |it: &Segment| format!("{}{} {}", doc(&it.doc), it.name.node, expression(&it.value));
+            format!("{}profile {} {}", doc(&it.doc), it.name.node, listed(&it.segments, segment))
+        }
+        JobStatement::Solid(it) => {
+            format!("{}solid {} in {} {}", doc(&it.doc), it.name.node, path(&it.frame), expression(&it.value))
+        }
+        JobStatement::Contact(it) => {
+            let [first, second] = it.surfaces.each_ref().map(path);
+            format!(
+                "{}contact {} {first} with {second} {}",
+                doc(&it.doc),
+                it.name.node,
+                listed(&it.arguments, argument)
+            )
+        }
         JobStatement::Drive(it) => {
             format!("drive {} {}", listed(&it.targets, path), listed(&it.values, expression))
         }

@@ -89,7 +89,7 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     (length > 0.0).then(|| v.map(|x| x / length))
 }
 
-/// What each axis of the pair's machine does to the middle, but for those that only turn the pair on.
+/// What each axis of the pair's machine does to the middle, but for those that turn it.
 pub(crate) fn of_all<'g>(
     job: &Job<'g>,
     members: &Members<'_, 'g>,
@@ -124,7 +124,7 @@ pub(crate) fn of_all<'g>(
             turn: units::shown(members.contact.roll.dimension, unit * change.roll),
         })
     };
-    axes.iter().enumerate().filter_map(influence).collect()
+    axes.iter().enumerate().filter(|(_, axis)| !axis.is_driven).filter_map(influence).collect()
 }
 
 /// Where the contact is brought to, as a share of the flank from toe to heel.
@@ -148,19 +148,22 @@ pub(crate) fn vhj<'g>(job: &Job<'g>, members: &Members<'_, 'g>, errors: &[f64], 
     let pair = members.pair(job, errors, &open);
     let problem = ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound");
     let Some([profilewise, lengthwise]) = share_of(members, &vertex) else { return Vec::new() };
-    let row = |(name, share): (&str, f64)| {
+    let mounting = |share: f64| {
         let (mut at, mut values) = (vertex.clone(), [errors[offset], errors[pinion]]);
         for step in 1..=STEPS {
             let target = [profilewise, lengthwise + (share - lengthwise) * f64::from(step) / f64::from(STEPS)];
             (at, values) = brought(members, &problem, (at, values), target)?;
         }
-        Some(VhjRow {
-            to: name.to_string(),
-            errors: values.to_vec(),
-            axes: open.map(|at| axes[at].name.clone()).to_vec(),
-        })
+        Some(values)
     };
-    PLACES.into_iter().filter_map(row).collect()
+    let row = |(name, share): (&str, f64)| VhjRow {
+        to: name.to_string(),
+        lengthwise: share,
+        profilewise,
+        axes: open.map(|at| axes[at].name.clone()).to_vec(),
+        errors: mounting(share).map(|values| values.to_vec()),
+    };
+    PLACES.into_iter().map(row).collect()
 }
 
 fn share_of(members: &Members<'_, '_>, point: &ContactPoint) -> Option<[f64; 2]> {
@@ -199,7 +202,7 @@ fn brought(
         ];
         let mounted = problem.with_values(&values);
         let near = mounted.again(&at, at.roll)?;
-        at = mounted.vertex(&near, [near.roll - 1.0, near.roll + 1.0])?;
+        at = mounted.vertex_near(&near)?;
     }
     None
 }

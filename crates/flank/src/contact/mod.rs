@@ -81,6 +81,7 @@ fn of_contact(
 ) -> Result<ContactResult, Failure> {
     let errors = influence::mounting(job, contact, &request.errors)?;
     let members = Members::solved(job, contact, session)?;
+    members.check_range(job)?;
     let _working = session.begin(format!("rolling {}", contact.name))?;
     let pair = members.pair(job, &errors, &[]);
     let steps = request.positions as usize;

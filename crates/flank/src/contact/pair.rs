@@ -8,6 +8,7 @@ use flank_solver::{BoundSurface, Outline, OutlineSegment, Range, RollingPair, Su
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
+use crate::project::units;
 use crate::solve::{self, SolveOptions, bound};
 
 /// A pair turns evenly, and as its numbers of teeth say, if pitches differ by less than this share.
@@ -97,6 +98,37 @@ impl<'j, 'g> Members<'j, 'g> {
         let all: Vec<f64> = [0.0, 0.3, 0.6, 1.0].into_iter().flat_map(pitches).collect();
         let is_even = all.iter().all(|pitch| (pitch / all[0] - 1.0).abs() < EVEN);
         is_even.then_some(all[0])
+    }
+}
+
+impl<'g> Members<'_, 'g> {
+    /// # Errors
+    /// If the range of the unknown holds two teeth.
+    pub(crate) fn check_range(&self, job: &Job<'g>) -> Result<(), Failure> {
+        let Contact { name, lag, roll, errors, .. } = self.contact;
+        let pair = self.pair(job, &vec![0.0; errors.len()], &[]);
+        for (solid, placement) in self.solids.iter().zip(&pair.placements) {
+            let turn = placement.twist(lag.variable).angular.0[2];
+            let tape = Tape::new(&[turn], &[roll.variable, lag.variable])
+                .expect("a job without errors leaves nothing unbound");
+            let mut turn = [0.0];
+            ScalarEvaluator::new(&tape).run(&[0.5 * (roll.low + roll.high), 0.5 * (lag.low + lag.high)], &mut turn);
+            let Some(solid) = solid.filter(|_| turn[0] != 0.0) else { continue };
+            let (apart, width) = (TAU / f64::from(solid.teeth) / turn[0].abs(), lag.high - lag.low);
+            if width > 0.5 * apart {
+                let text = |value: f64| units::text(lag.dimension, value, 3);
+                return Err(Failure::Request(format!(
+                    "contact {name}: the range of `{}` is {} wide and may hold two teeth: those of {} are {} apart; a range of at most \
+                     {} holds one",
+                    lag.name,
+                    text(width),
+                    solid.name,
+                    text(apart),
+                    text(0.5 * apart)
+                )));
+            }
+        }
+        Ok(())
     }
 }
 

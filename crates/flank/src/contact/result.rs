@@ -229,10 +229,14 @@ pub struct MountingInfluence {
 pub struct VhjRow {
     /// `toe`, `middle`, `heel`.
     pub to: String,
-    /// The errors of the axes, mm, in the order of `axes`.
-    pub errors: Vec<f64>,
+    /// Where that is on the second flank, as a share of the way from toe to heel.
+    pub lengthwise: f64,
+    /// The same from root to tip: as it is without them.
+    pub profilewise: f64,
     /// The axes.
     pub axes: Vec<String>,
+    /// Their errors, mm, in the order of `axes`; null where no mounting along them brings it there.
+    pub errors: Option<Vec<f64>>,
 }
 
 impl Answer for ContactResult {
@@ -319,14 +323,17 @@ impl fmt::Display for ContactResult {
             )?;
         }
         self.write_influences(f)?;
+        if !self.vhj.is_empty() {
+            writeln!(f)?;
+        }
         for row in &self.vhj {
-            let errors: Vec<String> = row
-                .axes
-                .iter()
-                .zip(&row.errors)
-                .map(|(axis, error)| format!("{axis} {} mm", fixed(*error, 4)))
-                .collect();
-            writeln!(f, "  to {:9} {}", row.to, errors.join(", "))?;
+            let (to, lengthwise) = (&row.to, fixed(row.lengthwise, 1));
+            let nothing = || format!("no {} bring the contact there", row.axes.join(" and "));
+            let mounted = row.errors.as_ref().map_or_else(nothing, |errors| {
+                let each = row.axes.iter().zip(errors).map(|(axis, error)| format!("{axis} {} mm", fixed(*error, 4)));
+                each.collect::<Vec<String>>().join(", ")
+            });
+            writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounted}")?;
         }
         if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
     }

@@ -161,17 +161,21 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             true => engagement.carried(step).map(|carried| carried.lag),
             false => engagement.point(0, step).map(|point| point.lag),
         };
-        let lags: Vec<f64> = rolling.steps().filter_map(lag).collect();
+        // between two positions the composite is extreme where a pair hands over; the vertex is one of them
+        let handed = if rolling.has_pitch { self.transfers(rolling) } else { Vec::new() };
+        let at_transfers = handed.iter().filter_map(|roll| rolling.lag_at(*roll));
+        let lags: Vec<f64> = rolling.steps().filter_map(lag).chain(at_transfers).collect();
         let ends = lags.iter().map(|lag| (*lag, *lag)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)))?;
         let pairs = rolling.steps().map(|step| engagement.pairs(step).len()).max();
         Some(TransmissionError {
             unit: fine_unit(self.unknown()).to_string(),
             peak_to_peak: self.fine(ends.1 - ends.0),
-            transfers: if rolling.has_pitch { self.transfers(rolling) } else { Vec::new() },
+            transfers: handed.iter().map(|roll| self.turn(*roll)).collect(),
             pairs: pairs.filter(|_| rolling.has_pitch).unwrap_or(1),
         })
     }
 
+    /// Roll positions at which one pair of teeth hands over to the next.
     fn transfers(&self, rolling: &Rolling) -> Vec<f64> {
         let engagement = &rolling.engagement;
         let steps = rolling.steps();
@@ -181,7 +185,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             let between = [rolling.roll(step), rolling.roll(step + 1)];
             rolling.problem.transfer(engagement, [before, after], between)
         });
-        handed.map(|roll| self.turn(roll)).collect()
+        handed.collect()
     }
 
     /// Where contact of the flanks begins and ends, with the roll positions.

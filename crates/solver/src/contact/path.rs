@@ -11,7 +11,7 @@ const HALVINGS: u32 = 12;
 /// A point this much farther from where it was expected than the way to it, as a share of that, is of another contact.
 const ASTRAY: f64 = 0.3;
 /// Steps until a vertex is settled, and the change of the roll, as a share of what is followed, at which it is.
-const VERTEX_STEPS: usize = 20;
+const VERTEX_STEPS: usize = 60;
 const SETTLED: f64 = 1e-13;
 
 /// A contact at many roll positions.
@@ -88,21 +88,44 @@ impl ContactProblem {
         self.touching_near(roll, &near.all_unknowns(), &near.edges)
     }
 
-    /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has no such
-    /// place between two roll positions.
+    /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has not
+    /// different signs at two roll positions.
     pub fn vertex(&self, near: &ContactPoint, between: [f64; 2]) -> Option<ContactPoint> {
+        let [mut low, mut high] = between;
+        let width = high - low;
+        let [begin, end] = between.map(|roll| self.followed(near, roll));
+        let (begin, end) = (begin?, end?);
+        let sign = begin.lag_slopes[0].signum();
+        if sign == end.lag_slopes[0].signum() {
+            return None;
+        }
         let mut at = near.clone();
-        let width = between[1] - between[0];
         for _ in 0..VERTEX_STEPS {
             let step = -at.lag_slopes[0] / at.lag_slopes[1];
-            let next = at.roll + step.clamp(-0.5 * width, 0.5 * width);
-            if !(between[0]..=between[1]).contains(&next) {
-                return None;
+            if step.abs() <= SETTLED * width || high - low <= SETTLED * width {
+                return (at.outcome == Outcome::Solved).then_some(at);
             }
-            if step.abs() <= SETTLED * width {
-                return Some(at);
+            if at.lag_slopes[0].signum() == sign {
+                low = at.roll
+            } else {
+                high = at.roll
             }
-            at = self.followed(&at, next).filter(|at| at.outcome == Outcome::Solved)?;
+            let next = at.roll + step;
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            at = self.followed(&at, next)?;
+        }
+        None
+    }
+
+    /// The same from a contact near it, by Newton's steps alone.
+    pub fn vertex_near(&self, near: &ContactPoint) -> Option<ContactPoint> {
+        let mut at = near.clone();
+        for _ in 0..VERTEX_STEPS {
+            let step = -at.lag_slopes[0] / at.lag_slopes[1];
+            if step.abs() <= SETTLED {
+                return (at.outcome == Outcome::Solved).then_some(at);
+            }
+            at = self.followed(&at, at.roll + step)?;
         }
         None
     }
