@@ -12,8 +12,9 @@ pub use page::{
     ToolForm, write_page,
 };
 pub use picture::{
-    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureError, PictureOptions, Section, SectionLine,
-    ToolPosition, axis_positions, field_lines, field_maps, machine, picture, section, topography,
+    ContactDrawing, DrawnFrame, ErrorCurves, LinkKind, MachineDrawing, MachineLink, Picture, PictureError,
+    PictureOptions, Section, SectionLine, ToolPosition, axis_positions, contact, field_lines, field_maps, machine,
+    picture, section, topography,
 };
 pub use report::{
     Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,

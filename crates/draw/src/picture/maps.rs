@@ -76,7 +76,7 @@ pub(super) fn compose(
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw");
     }
     for (panel, rect) in panels.iter().zip(figure::places(panels.len(), area, GAP)) {
-        panel.draw(rect, style, &mut sheet);
+        let _ = panel.draw(rect, style, &mut sheet);
     }
     let caption = with_minus(&caption(note, &panels));
     figure::write_caption(&caption, [width, height], &mut sheet);
@@ -89,7 +89,7 @@ fn caption(note: &str, panels: &[Panel<'_>]) -> String {
 }
 
 impl<'a> Panel<'a> {
-    fn of_field(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
+    pub(super) fn of_field(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
         let patch = dataset.patches.get(patch)?;
         let field = patch.fields.get(field)?;
         let Values::Scalars(values) = &field.values else { return None };
@@ -117,18 +117,19 @@ impl<'a> Panel<'a> {
         })
     }
 
-    fn draw(&self, rect: Rect, style: Style, sheet: &mut Sheet) {
+    /// Draws it, and gives the axes that it stands on.
+    pub(super) fn draw(&self, rect: Rect, style: Style, sheet: &mut Sheet) -> Option<Chart> {
         let (room, left) = (rect.width(), rect.left);
         let name = one_line(&self.field.name);
         let size = (17.0 * room / font::width(&name, 17.0)).clamp(12.0, 17.0);
         sheet.text([left, rect.top + 15.0], Anchor::Start, size, INK, &font::fitted(&name, size, room));
         let map = Rect { top: rect.top + HEAD, ..rect };
         let key = Rect { top: rect.bottom - FOOT + 6.0, bottom: rect.bottom - FOOT + 6.0 + KEY, ..rect };
-        let about = match (&self.levels, style) {
+        let (about, chart) = match (&self.levels, style) {
             (Some(levels), Style::Relief) => {
                 relief::draw(self, levels, Rect { bottom: rect.bottom - FOOT, ..map }, sheet);
                 draw_key(levels, &shown_unit(&self.field.unit), key, sheet);
-                "heights above the grid".to_owned()
+                ("heights above the grid".to_owned(), None)
             }
             _ => {
                 let below = if style == Style::Lines { 0.0 } else { FOOT };
@@ -141,11 +142,12 @@ impl<'a> Panel<'a> {
                     let key = Rect { left: chart.rect.left, top, right: key.right, bottom: top + KEY };
                     draw_key(levels, &shown_unit(&self.field.unit), key, sheet);
                 }
-                self.about(&chart)
+                (self.about(&chart), Some(chart))
             }
         };
         let about = format!("{}, {}; {about}", one_line(&self.patch.name), shown_unit(&self.field.unit));
         sheet.text([left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &font::fitted(&about, 13.0, room));
+        chart
     }
 
     fn draw_on(&self, chart: &Chart, style: Style, sheet: &mut Sheet) {
@@ -214,7 +216,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    fn grid(&self, chart: &Chart) -> ValueGrid {
+    pub(super) fn grid(&self, chart: &Chart) -> ValueGrid {
         let parts = [(self.mesh.rows, CELLS[0]), (self.mesh.columns, CELLS[1])]
             .map(|(count, least)| least.div_ceil(count.saturating_sub(1).max(1)).max(1));
         let node = |i: usize, j: usize| {

@@ -4,13 +4,14 @@
 //! A dataset becomes a display list once; SVG and PNG are two ways to write that list, so they show the same. Order of
 //! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines, `projection`
 //! lays them flat, `contours` turns values into bands and lines. `figure` arranges surfaces with labels, legend and inset, `maps`
-//! arranges fields (`relief` those that are heights), `section`, `machine` and `positions` the rest, on the axes of `chart` where
+//! arranges fields (`relief` those that are heights), `contact` those of a pair with its error, `section`, `machine` and `positions` the rest, on the axes of `chart` where
 //! there are some. `svg` and `png` write.
 
 mod axis;
 mod calls;
 mod camera;
 mod chart;
+mod contact;
 mod contours;
 mod error;
 mod figure;
@@ -36,6 +37,7 @@ mod svg;
 
 pub(crate) use palette::{patch_colours, scale_colours};
 
+pub use contact::{ContactDrawing, ErrorCurves};
 pub use error::PictureError;
 use flank_export::Dataset;
 use flank_export::MotionTable;
@@ -242,6 +244,13 @@ pub fn machine(machine: &MachineDrawing, options: &PictureOptions) -> Picture {
 #[must_use]
 pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Picture {
     on_sheet(options, |size| positions::compose(tables, size))
+}
+
+/// Draws a contact of two flanks: both flanks laid flat with the gap to the mate, the edge of the marking compound thick, the path of
+/// contact on them, and the error of the pairs of teeth over the roll.
+#[must_use]
+pub fn contact(drawing: &ContactDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| contact::compose(drawing, size))
 }
 
 /// The letters of pictures that are elements of one page, once for all of them.

@@ -1,7 +1,7 @@
 //! Files of a contact: how near the mate comes to the points of both flanks, the path on both, and pictures.
 
 use flank_chain_dsl::Job;
-use flank_draw::{PictureOptions, field_maps};
+use flank_draw::{ContactDrawing, ErrorCurves, PictureOptions, contact as picture};
 use flank_export::{Axis, Dataset, Field, Patch, Values};
 use flank_solver::{ContactPoint, Outcome, SurfacePoint};
 
@@ -16,7 +16,7 @@ use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::{header, patch};
 
-/// Gaps wider than so many films are left out of pictures: the pattern is to be seen.
+/// Pictures show no gap as wider than so many films: the pattern is to be seen.
 const FILMS: f64 = 5.0;
 
 /// Writes them and names them.
@@ -47,9 +47,17 @@ pub(crate) fn write(
          thinner than one.",
         request.compound * 1e3
     );
-    let of_shown = Dataset { header, patches: shown };
-    let drawn = || field_maps(&of_shown, &title, &[(0, 0), (1, 0)], &note, &PictureOptions::default());
-    let drawn = (!request.no_picture).then(drawn);
+    let drawing = || ContactDrawing {
+        dataset: Dataset { header, patches: shown },
+        title,
+        note,
+        film: request.compound * 1e3,
+        paths: [0, 1]
+            .map(|member| rolling.engagement.points.iter().map(|point| point.in_members[member]).collect())
+            .to_vec(),
+        error: curves(members, rolling),
+    };
+    let drawn = (!request.no_picture).then(|| picture(&drawing(), &PictureOptions::default()));
     folder.picture_after(&name, drawn.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
     folder.finish()
 }
@@ -98,13 +106,53 @@ fn unit_name(dimension: flank_chain_dsl::Dimension) -> &'static str {
     }
 }
 
-/// The same where the mate comes near.
+/// The same, no gap wider than so many films.
 fn near(patch: &Patch, compound: f64) -> Patch {
     let Values::Scalars(gaps) = &patch.fields[0].values else { return patch.clone() };
-    let near = gaps.iter().map(|gap| gap.filter(|gap| *gap <= FILMS * 1e3 * compound));
+    let near = gaps.iter().map(|gap| gap.map(|gap| gap.min(FILMS * 1e3 * compound)));
     Patch {
         fields: vec![Field { values: Values::Scalars(near.collect()), ..patch.fields[0].clone() }],
         ..patch.clone()
+    }
+}
+
+/// The error of each pair of teeth that touches over the pitch about the middle, and of the one that carries.
+fn curves(members: &Members<'_, '_>, rolling: &Rolling) -> ErrorCurves {
+    let (roll, lag) = (&members.contact.roll, &members.contact.lag);
+    let reference = rolling.middle().map_or(0.0, |middle| middle.lag);
+    let engagement = &rolling.engagement;
+    let place =
+        |step: isize, at: f64| [units::shown(roll.dimension, rolling.roll(step)), fine(lag.dimension, at - reference)];
+    let steps = || rolling.steps();
+    let mut numbers: Vec<isize> = steps().flat_map(|step| engagement.pairs(step)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    if !rolling.has_pitch {
+        numbers = vec![0];
+    }
+    let pair = |number: isize| {
+        let mut pieces: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
+        for step in steps() {
+            let Some(point) = engagement.point(number, step) else { continue };
+            let (is_edge, at) = (!point.edges.is_empty(), place(step, point.lag));
+            match pieces.last_mut() {
+                Some((kind, points)) if *kind == is_edge => points.push(at),
+                // pieces share the point between them
+                last => {
+                    let before = last.and_then(|(_, points)| points.last().copied());
+                    pieces.push((is_edge, before.into_iter().chain([at]).collect()));
+                }
+            }
+        }
+        pieces
+    };
+    let carried = |step: isize| Some(place(step, engagement.carried(step)?.lag));
+    let unit = units::symbol(roll.dimension);
+    ErrorCurves {
+        over: format!("{}, {unit}", roll.name),
+        unit: fine_unit(lag.dimension).to_string(),
+        pairs: numbers.into_iter().map(pair).collect(),
+        composite: if rolling.has_pitch { steps().filter_map(carried).collect() } else { Vec::new() },
     }
 }
 
