@@ -5,7 +5,7 @@ use super::chart::{self, Chart, Title};
 use super::figure::{self, Figure, MARGIN};
 use super::font;
 use super::maps::{GAP, Panel, Style};
-use super::paint::{Anchor, Place, Rect, Sheet};
+use super::paint::{Anchor, Colour, Place, Rect, Sheet};
 use super::palette::{self, GREY, INK};
 use flank_export::Dataset;
 use flank_export::text::one_line;
@@ -48,7 +48,7 @@ pub(super) fn compose(of: &ContactDrawing, [width, height]: [f64; 2]) -> Figure 
     let panels: Vec<Panel<'_>> =
         (0..of.dataset.patches.len()).filter_map(|at| Panel::of_field(&of.dataset, (at, 0), Style::Bands)).collect();
     let area = Rect { left: MARGIN, top: 118.0, right: width - MARGIN, bottom: height - 92.0 };
-    let rects = figure::places(panels.len() + 1, area, GAP);
+    let rects: Vec<Rect> = figure::places(panels.len() + 1, area, GAP).collect();
     for (at, (panel, rect)) in panels.iter().zip(&rects).enumerate() {
         if let Some(chart) = panel.draw(*rect, Style::Bands, &mut sheet) {
             for line in panel.grid(&chart).lines(of.film) {
@@ -68,7 +68,7 @@ pub(super) fn compose(of: &ContactDrawing, [width, height]: [f64; 2]) -> Figure 
 }
 
 /// The path of contact: seen on each colour of the maps.
-const PATH: palette::Colour = palette::RED;
+const PATH: Colour = palette::RED;
 
 impl ErrorCurves {
     fn draw(&self, rect: Rect, sheet: &mut Sheet) {
