@@ -106,13 +106,19 @@ fn crossed_shafts_are_placed_as_the_table_of_screw_gears_has_them() {
 #[test]
 fn bevel_gears_are_placed_as_the_published_pair() {
     let axes = ["m.E", "m.P", "m.G", "m.S", "m.pinion", "m.gear"];
-    let place = |angle: f64, e: &[f64], [pinion, gear]: [f64; 2]| {
-        let shaft = along(0.0, e[0], 0.0) * about_y(angle + e[3]) * about_z(0.5 * TAU) * along(0.0, 0.0, e[2]);
+    let place = |[angle, offset]: [f64; 2], e: &[f64], [pinion, gear]: [f64; 2]| {
+        let shaft = along(0.0, offset + e[0], 0.0) * about_y(angle + e[3]) * about_z(0.5 * TAU) * along(0.0, 0.0, e[2]);
         [along(0.0, 0.0, e[1]) * about_z(pinion + e[4]), shaft * about_z(-(gear + e[5]))]
     };
-    assert_placed("bevel_19x62", &axes, |roll, lag, e| place(95_f64.to_radians(), e, [roll, 19.0 / 62.0 * roll + lag]));
+    assert_placed("bevel_19x62", &axes, |roll, lag, e| {
+        place([95_f64.to_radians(), 0.0], e, [roll, 19.0 / 62.0 * roll + lag])
+    });
     assert_placed("face_gear_pair", &axes, |roll, lag, e| {
-        place(0.25 * TAU, e, [0.5 * TAU / 23.0 + roll, 23.0 / 108.0 * roll + lag])
+        place([0.25 * TAU, 0.0], e, [0.5 * TAU / 23.0 + roll, 23.0 / 108.0 * roll + lag])
+    });
+    assert_placed("hypoid_pair", &axes, |roll, lag, e| {
+        let mean = -13_f64.to_radians();
+        place([0.25 * TAU, 25.0], e, [41.0 / 13.0 * mean + roll, mean + 13.0 / 41.0 * roll + lag])
     });
 }
 
