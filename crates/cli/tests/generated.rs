@@ -21,9 +21,12 @@ const MENDED: &[u64] = &[
     5_644,  // the same
     6_712,  // the same
     6_970,  // the same
+    8_500,  // the same
+    8_606,  // the same
     12_396, // the same
     14_653, // as the first
     15_374, // as the second
+    15_702, // a branch with few points in a small grid
 ];
 
 /// A folder for specs and what is written, with the table that some of them read.

@@ -135,21 +135,27 @@ impl<'a> Oracle<'a> {
         Some(square.max(0.0).sqrt())
     }
 
-    /// How the point moves while one parameter of the tool runs through its range, mm.
+    /// How the point moves while one parameter of the tool runs through its range, mm. A tenth of the step must stay on one branch, too: how
+    /// far another branch is off does not shrink with the step.
     fn tangent(&self, parameter: usize, unknowns: &[f64]) -> Option<Vector> {
         SHARES.into_iter().find_map(|share| {
-            let to = |share: f64| {
-                let mut fixed = vec![(0, unknowns[0]), (1, unknowns[1])];
-                fixed[parameter].1 += share * self.ranges[parameter].width();
-                self.beside(&fixed, unknowns)
-            };
-            let [ahead, behind] = [to(share)?, to(-share)?];
-            // from another branch, the place between the two is off the point
-            let all = ahead.unknowns.iter().zip(&behind.unknowns).zip(unknowns).zip(&self.ranges);
-            let bent = all.map(|(((a, b), at), range)| (0.5 * (a + b) - at).abs() / range.width());
-            let is_one_branch = bent.fold(0.0, f64::max) < BENT * share;
-            is_one_branch.then(|| minus(ahead.position, behind.position).map(|x| x / (2.0 * share)))
+            self.tangent_by(0.1 * share, parameter, unknowns)?;
+            self.tangent_by(share, parameter, unknowns)
         })
+    }
+
+    fn tangent_by(&self, share: f64, parameter: usize, unknowns: &[f64]) -> Option<Vector> {
+        let to = |share: f64| {
+            let mut fixed = vec![(0, unknowns[0]), (1, unknowns[1])];
+            fixed[parameter].1 += share * self.ranges[parameter].width();
+            self.beside(&fixed, unknowns)
+        };
+        let [ahead, behind] = [to(share)?, to(-share)?];
+        // from another branch, the place between the two is off the point
+        let all = ahead.unknowns.iter().zip(&behind.unknowns).zip(unknowns).zip(&self.ranges);
+        let bent = all.map(|(((a, b), at), range)| (0.5 * (a + b) - at).abs() / range.width());
+        let is_one_branch = bent.fold(0.0, f64::max) < BENT * share;
+        is_one_branch.then(|| minus(ahead.position, behind.position).map(|x| x / (2.0 * share)))
     }
 
     pub fn position(&self, unknowns: &[f64]) -> Vector {

@@ -10,7 +10,7 @@ use crate::continuation::choice::{Choice, is_same_root};
 use crate::continuation::field::Field;
 use crate::continuation::grid::{Elsewhere, Followed, Grid, GridReport, extrapolated};
 use crate::continuation::reach::{back_into, is_within};
-use crate::equations::solution::{Outcome, Range, Solution};
+use crate::equations::solution::{Outcome, ROUNDING, Range, Solution};
 use crate::newton::batch::LaneNewton;
 use crate::newton::multistart::probe;
 use crate::newton::scalar::solve_with;
@@ -20,9 +20,8 @@ use crate::newton::solvers::Solvers;
 const FINE: usize = 32;
 /// Points of the largest grid that is looked at as a part of a finer one.
 const MOST_REFINED: usize = 1024;
-/// Shares of the way across a grid at which branches are looked for beside the middle.
-const PLACES: [f64; 3] = [0.0, 0.5, 1.0];
-/// Places between these, of a grid that is complete: another branch may be valid on a part of it alone.
+/// Places between its corners at which branches are looked for in a grid that is complete: another branch may be valid on a part of it
+/// alone.
 const BETWEEN: usize = 12;
 /// The same where points are missing.
 const MORE_PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -149,11 +148,12 @@ fn with_others(
             others.learn(grid, choice, point, root);
         }
     }
+    let coordinates = coordinates(grid, &followed.field);
     for (number, point) in all_over(asked).into_iter().enumerate() {
         if !others.found.is_empty() {
             break;
         }
-        for root in drawn(grid, newton, &kept, (point, number)) {
+        for root in drawn(grid, newton, (&kept, &coordinates), (point, number)) {
             others.learn(grid, choice, point, root);
         }
     }
@@ -236,14 +236,14 @@ fn qualifies(root: &Solution, choice: &Choice<'_>) -> bool {
     root.is_solved() && choice.keeps(&root.unknowns) && choice.has_tangent_plane(&root.unknowns)
 }
 
-/// Places spread over a grid, those at its ends first; in the middle all roots are known.
+/// The corners of a grid, and places spread over it; in the middle all roots are known.
 fn places(grid: &Grid<'_>) -> Vec<usize> {
-    let ends = PLACES.into_iter().flat_map(|v| PLACES.map(|u| [v, u]));
+    let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
     // no two in a line along either coordinate
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let between = (0..BETWEEN).map(|k| [(k as f64 + 0.5) / BETWEEN as f64, (k as f64 * golden).fract()]);
     let mut points: Vec<usize> = Vec::new();
-    for shares in ends.filter(|shares| *shares != [0.5; 2]).chain(between) {
+    for shares in corners.into_iter().chain(between) {
         let point = grid.nearest(shares);
         if !points.contains(&point) {
             points.push(point);
@@ -258,15 +258,34 @@ fn all_over(points: &[usize]) -> Vec<usize> {
     spread.repeat((DRAWN / spread.len()).clamp(1, OFTEN))
 }
 
-/// The points in some ranges that starts spread over them lead to, many at once; each number has starts of its own.
+/// For each unknown the coordinate that it is, if it is one: at the first, the middle and the last of the roots.
+fn coordinates(grid: &Grid<'_>, field: &Field) -> Vec<Option<usize>> {
+    let roots: Vec<usize> = (0..field.len()).filter(|point| field.is_root(*point)).collect();
+    let some: Vec<usize> = [0, roots.len() / 2, roots.len().saturating_sub(1)]
+        .into_iter()
+        .filter_map(|number| roots.get(number).copied())
+        .collect();
+    let known: Vec<Vec<f64>> = some.iter().map(|point| field.unknowns(*point).collect()).collect();
+    let is = |unknown: usize, coordinate: usize| {
+        let mut pairs = some.iter().zip(&known).map(|(point, own)| (grid.targets[*point][coordinate], own[unknown]));
+        !some.is_empty() && pairs.all(|(target, own)| (own - target).abs() <= ROUNDING * target.abs().max(1.0))
+    };
+    (0..grid.ranges.len()).map(|unknown| (0..2).find(|coordinate| is(unknown, *coordinate))).collect()
+}
+
+/// The points in some ranges that starts spread over them lead to, many at once; each number has starts of its own. An unknown that is one of
+/// the `coordinates` starts from its value.
 fn drawn(
     grid: &Grid<'_>,
     newton: &mut LaneNewton<'_>,
-    kept: &[Range],
+    (kept, coordinates): (&[Range], &[Option<usize>]),
     (point, number): (usize, usize),
 ) -> Vec<Solution> {
+    let target = &grid.targets[point];
     for lane in 0..LANES {
-        newton.put(lane, probe(kept, (number * LANES + lane + 1) as u32).into_iter(), &grid.targets[point]);
+        let start = probe(kept, (number * LANES + lane + 1) as u32).into_iter().zip(coordinates);
+        let start = start.map(|(probe, coordinate)| coordinate.map_or(probe, |coordinate| target[coordinate]));
+        newton.put(lane, start, target);
         newton.determinant()[lane] = f64::NAN;
     }
     newton.run(&[true; LANES], true);
@@ -290,10 +309,11 @@ fn beside_complete(
 ) -> Vec<Elsewhere> {
     let mut others: Vec<Elsewhere> = Vec::new();
     let kept = choice.kept(grid.ranges);
+    let coordinates = coordinates(grid, field);
     for (number, point) in points.into_iter().enumerate() {
         let own: Vec<f64> = field.unknowns(point).collect();
         let target = grid.targets[point];
-        for root in drawn(grid, newton, &kept, (point, number)) {
+        for root in drawn(grid, newton, (&kept, &coordinates), (point, number)) {
             let is_own = is_same_root(&root.unknowns, &own, grid.ranges, choice.periodic);
             if !is_own && qualifies(&root, choice) {
                 let beside = field
