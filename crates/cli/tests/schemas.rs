@@ -128,6 +128,9 @@ fn comparisons_and_pictures() {
     judge.run(&[&ease_off[..], &at, &["--no-picture"]].concat(), 0);
     judge.run(&[&ease_off[..], &at, &["--no-picture", "--no-align"]].concat(), 3);
     judge.run(&[&["deviation", PINION, "concave", "--reference", "flank", "--no-picture"][..], &at].concat(), 1);
+    let pair = ["contact", "specs/pairs/bevel_19x62.chain", "--no-picture", "--positions", "12"];
+    judge.run(&[&pair[..], &["--sensitivity", "--vhj"], &at].concat(), 0);
+    judge.run(&[&pair[..], &["--error", "m.X=1mm"], &at].concat(), 1);
     judge.run(&[&["plot", SPUR, "--what", "surface,machine", "--format", "svg"][..], &at].concat(), 0);
     judge.run(&[&["plot", SPUR, "--what", "left"][..], &at].concat(), 1);
     judge.run(&[&["view", SPUR][..], &at].concat(), 0);
@@ -143,6 +146,7 @@ fn comparisons_and_pictures() {
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
     judge.has_met(&[
+        "flank.contact/1",
         "flank.deviation/1",
         "flank.plot/2",
         "flank.view/2",

@@ -52,9 +52,7 @@ pub(crate) fn write(
         title,
         note,
         film: request.compound * 1e3,
-        paths: [0, 1]
-            .map(|member| rolling.engagement.points.iter().map(|point| point.in_members[member]).collect())
-            .to_vec(),
+        paths: [0, 1].map(|member| flank_path(rolling, member)).to_vec(),
         error: curves(members, rolling),
     };
     let drawn = (!request.no_picture).then(|| picture(&drawing(), &PictureOptions::default()));
@@ -116,6 +114,15 @@ fn near(patch: &Patch, compound: f64) -> Patch {
     }
 }
 
+/// Where the flanks touch on one of them.
+fn flank_path(rolling: &Rolling, member: usize) -> Vec<[f64; 3]> {
+    let flank = rolling.engagement.points.iter().filter(|point| point.edges.is_empty());
+    flank.map(|point| point.in_members[member]).collect()
+}
+
+/// Pairs of teeth are drawn as far as they stay behind the one that carries by no more than so many times its own error.
+const BEHIND: f64 = 4.0;
+
 /// The error of each pair of teeth that touches over the pitch about the middle, and of the one that carries.
 fn curves(members: &Members<'_, '_>, rolling: &Rolling) -> ErrorCurves {
     let (roll, lag) = (&members.contact.roll, &members.contact.lag);
@@ -130,10 +137,16 @@ fn curves(members: &Members<'_, '_>, rolling: &Rolling) -> ErrorCurves {
     if !rolling.has_pitch {
         numbers = vec![0];
     }
+    let lags: Vec<f64> = steps().filter_map(|step| Some(engagement.carried(step)?.lag)).collect();
+    let ends = lags.iter().fold([f64::MAX, f64::MIN], |[low, high], lag| [low.min(*lag), high.max(*lag)]);
+    let is_shown = |point: &ContactPoint, step: isize| {
+        let carried = engagement.carried(step).filter(|_| rolling.has_pitch);
+        carried.is_none_or(|carried| (point.lag - carried.lag).abs() <= BEHIND * (ends[1] - ends[0]))
+    };
     let pair = |number: isize| {
         let mut pieces: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
         for step in steps() {
-            let Some(point) = engagement.point(number, step) else { continue };
+            let Some(point) = engagement.point(number, step).filter(|point| is_shown(point, step)) else { continue };
             let (is_edge, at) = (!point.edges.is_empty(), place(step, point.lag));
             match pieces.last_mut() {
                 Some((kind, points)) if *kind == is_edge => points.push(at),

@@ -6,6 +6,10 @@ use crate::contact::pair::Members;
 use crate::contact::result::ContactPattern;
 use crate::contact::rolling::Rolling;
 
+/// The flanks of a pair of teeth are compared while they are nearer than this, or so many films, mm.
+const NEAR: f64 = 0.2;
+const FILMS: f64 = 10.0;
+
 /// How near the mate comes to the points of a flank's sample.
 pub(crate) struct GapMap {
     /// In the order of the sample.
@@ -15,7 +19,7 @@ pub(crate) struct GapMap {
     pub(crate) pattern: ContactPattern,
 }
 
-/// On both flanks, over all positions at which one pair of teeth touches.
+/// On both flanks, over all positions at which one pair of teeth is near.
 pub(crate) fn on_both(
     members: &Members<'_, '_>,
     pair: &RollingPair<'_, '_>,
@@ -28,7 +32,13 @@ pub(crate) fn on_both(
         true => engagement.carried(step).map(|carried| carried.lag),
         false => engagement.point(0, step).map(|point| point.lag),
     };
-    let positions: Vec<[f64; 2]> = steps.filter_map(|step| Some([rolling.roll(step), lag(step)?])).collect();
+    let reach = NEAR.max(FILMS * compound);
+    let position = |step: isize| {
+        let (lag, point) = (lag(step)?, engagement.point(0, step)?);
+        let apart = ((lag - point.lag) * point.opening).abs();
+        (apart <= reach).then(|| [rolling.roll(step), lag])
+    };
+    let positions: Vec<[f64; 2]> = steps.filter_map(position).collect();
     let of_member = |member: usize| {
         let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
         let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member]);

@@ -141,7 +141,7 @@ pub struct TransmissionError {
     pub peak_to_peak: f64,
     /// Roll positions at which one pair of teeth hands over to the next.
     pub transfers: Vec<f64>,
-    /// How many pairs touch, or nearly do, at most.
+    /// How many pairs are at most within the film of the marking compound at a time, along the normal at their own contact.
     pub pairs: usize,
 }
 
@@ -287,10 +287,9 @@ impl fmt::Display for ContactResult {
             )?;
         }
         if let Some(ratio) = self.ratio {
-            let pairs = self
-                .error
-                .as_ref()
-                .map_or(String::new(), |error| format!("; {} pairs touch, or nearly do", error.pairs));
+            let pairs = self.error.as_ref().map_or(String::new(), |error| {
+                format!("; up to {} within the film at a time", units::counted(error.pairs, "pair"))
+            });
             writeln!(f, "  ratio        {} on the flanks{pairs}", fixed(ratio, 3))?;
         }
         for end in &self.ends {

@@ -166,13 +166,21 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let at_transfers = handed.iter().filter_map(|roll| rolling.lag_at(*roll));
         let lags: Vec<f64> = rolling.steps().filter_map(lag).chain(at_transfers).collect();
         let ends = lags.iter().map(|lag| (*lag, *lag)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)))?;
-        let pairs = rolling.steps().map(|step| engagement.pairs(step).len()).max();
+        let pairs = rolling.steps().map(|step| self.within_film(rolling, step)).max();
         Some(TransmissionError {
             unit: fine_unit(self.unknown()).to_string(),
             peak_to_peak: self.fine(ends.1 - ends.0),
             transfers: handed.iter().map(|roll| self.turn(*roll)).collect(),
             pairs: pairs.filter(|_| rolling.has_pitch).unwrap_or(1),
         })
+    }
+
+    /// How many pairs of teeth are within the film of the one that carries.
+    fn within_film(&self, rolling: &Rolling, step: isize) -> usize {
+        let engagement = &rolling.engagement;
+        let Some(carried) = engagement.carried(step) else { return 0 };
+        let points = engagement.pairs(step).into_iter().filter_map(|pair| engagement.point(pair, step));
+        points.filter(|point| ((point.lag - carried.lag) * point.opening).abs() <= self.request.compound).count()
     }
 
     /// Roll positions at which one pair of teeth hands over to the next.

@@ -13,6 +13,8 @@ use crate::newton::batch::LaneNewton;
 use crate::newton::scalar::{LONGEST_STEP, solve};
 use crate::surface::points::SurfacePoint;
 
+/// A normal that passes the mate's points by more than this share of the way across them all does not meet the mate: its ranges end.
+const ASIDE: f64 = 0.25;
 /// Nodes that a thread takes at a time.
 const TILE: usize = 2 * LANES;
 
@@ -70,10 +72,11 @@ impl GapProblem {
     /// normal meets the mate at none of them. `mate` are solved points of the mate, from which its nearest is looked for.
     pub fn least(&self, nodes: &[SurfacePoint], positions: &[[f64; 2]], mate: &[SurfacePoint]) -> Vec<Option<Gap>> {
         let poses: Vec<[f64; 12]> = positions.iter().map(|at| self.pose_at(*at)).collect();
-        let mate: Vec<&SurfacePoint> = mate.iter().filter(|point| point.outcome == Outcome::Solved).collect();
-        if mate.is_empty() {
+        let points: Vec<&SurfacePoint> = mate.iter().filter(|point| point.outcome == Outcome::Solved).collect();
+        if points.is_empty() {
             return vec![None; nodes.len()];
         }
+        let mate = Mate { size: size(&points), points };
         nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
     }
 
@@ -83,7 +86,7 @@ impl GapProblem {
         pose
     }
 
-    fn least_of(&self, nodes: &[SurfacePoint], poses: &[[f64; 12]], mate: &[&SurfacePoint]) -> Vec<Option<Gap>> {
+    fn least_of(&self, nodes: &[SurfacePoint], poses: &[[f64; 12]], mate: &Mate<'_>) -> Vec<Option<Gap>> {
         let mut newton = LaneNewton::new(&self.along_normal, &self.ranges);
         nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, poses, mate)).collect()
     }
@@ -93,15 +96,23 @@ impl GapProblem {
         newton: &mut LaneNewton<'_>,
         nodes: &[SurfacePoint],
         poses: &[[f64; 12]],
-        mate: &[&SurfacePoint],
+        mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
-        let active: Vec<bool> = nodes.iter().map(|node| node.outcome == Outcome::Solved).collect();
+        let is_solved: Vec<bool> = nodes.iter().map(|node| node.outcome == Outcome::Solved).collect();
         let mut feet: Vec<Vec<Option<Vec<f64>>>> = Vec::with_capacity(poses.len());
         for pose in poses {
             let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
             let before = |lane: usize| feet.last().and_then(|feet: &Vec<Option<Vec<f64>>>| feet[lane].clone());
-            for lane in (0..nodes.len()).filter(|lane| active[*lane]) {
-                let start = before(lane).unwrap_or_else(|| nearest(&asked[lane], mate));
+            let starts: Vec<Option<Vec<f64>>> = (0..nodes.len())
+                .map(|lane| is_solved[lane].then(|| before(lane).or_else(|| mate.nearest(&asked[lane]))).flatten())
+                .collect();
+            let active: Vec<bool> = starts.iter().map(Option::is_some).collect();
+            if !active.contains(&true) {
+                feet.push(vec![None; nodes.len()]);
+                continue;
+            }
+            for (lane, start) in starts.into_iter().enumerate() {
+                let Some(start) = start else { continue };
                 newton.put(lane, start.into_iter(), &self.parameters(&asked[lane]));
             }
             newton.run(&active, true);
@@ -110,7 +121,7 @@ impl GapProblem {
                 if is_near && newton.outcome(lane) == Outcome::Solved {
                     Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect())
                 } else {
-                    self.alone(&asked[lane], &nearest(&asked[lane], mate))
+                    self.alone(&asked[lane], &mate.nearest(&asked[lane])?)
                 }
             };
             let found = (0..nodes.len()).map(|lane| active[lane].then(|| foot(lane)).flatten()).collect();
@@ -170,11 +181,34 @@ fn placed(pose: &[f64; 12], node: &SurfacePoint) -> [f64; 6] {
     [pose[0] + row(0, p), pose[1] + row(1, p), pose[2] + row(2, p), row(0, n), row(1, n), row(2, n)]
 }
 
-/// The unknowns of the mate's point that is nearest to a point, and how far away it is along the normal.
-fn nearest([x, y, z, nx, ny, nz]: &[f64; 6], mate: &[&SurfacePoint]) -> Vec<f64> {
-    let apart = |point: &SurfacePoint| [point.position[0] - x, point.position[1] - y, point.position[2] - z];
-    let off = |point: &SurfacePoint| apart(point).iter().map(|x| x * x).sum::<f64>();
-    let Some(near) = mate.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else { return Vec::new() };
-    let [dx, dy, dz] = apart(near);
-    near.unknowns.iter().copied().chain([dx * nx + dy * ny + dz * nz]).collect()
+/// Solved points of the mate, from which feet are looked for.
+struct Mate<'p> {
+    points: Vec<&'p SurfacePoint>,
+    /// How far it is across them.
+    size: f64,
+}
+
+impl Mate<'_> {
+    /// The unknowns of the point that is nearest, and how far away it is along the normal; `None` where the normal passes all of them by far.
+    fn nearest(&self, [x, y, z, nx, ny, nz]: &[f64; 6]) -> Option<Vec<f64>> {
+        let apart = |point: &SurfacePoint| [point.position[0] - x, point.position[1] - y, point.position[2] - z];
+        let off = |point: &SurfacePoint| apart(point).iter().map(|x| x * x).sum::<f64>();
+        let near = self.points.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let [dx, dy, dz] = apart(near);
+        let along = dx * nx + dy * ny + dz * nz;
+        let aside = (off(near) - along * along).max(0.0).sqrt();
+        (aside <= ASIDE * self.size).then(|| near.unknowns.iter().copied().chain([along]).collect())
+    }
+}
+
+/// The diagonal of the box about points.
+fn size(points: &[&SurfacePoint]) -> f64 {
+    let width = |k: usize| {
+        let ends = points
+            .iter()
+            .map(|point| point.position[k])
+            .fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x), high.max(x)]);
+        ends[1] - ends[0]
+    };
+    (0..3).map(|k| width(k) * width(k)).sum::<f64>().sqrt()
 }

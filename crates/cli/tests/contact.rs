@@ -1,0 +1,216 @@
+//! `flank contact` as a user runs it.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{flank, folder, text, written};
+
+const PAIR: &str = "specs/pairs/bevel_19x62.chain";
+
+/// What a run prints as JSON.
+fn document(arguments: &[&str], code: i32) -> Value {
+    let run = flank(&[arguments, &["--json"]].concat());
+    assert_eq!(run.status.code(), Some(code), "{}", text(&run.stderr));
+    serde_json::from_slice(&run.stdout).expect("JSON")
+}
+
+fn reference() -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference/contact_edges_a.json");
+    serde_json::from_str(&std::fs::read_to_string(path).expect("the table")).expect("JSON")
+}
+
+fn number(of: &Value, name: &str) -> f64 {
+    of[name].as_f64().unwrap_or_else(|| panic!("{name} of {of}"))
+}
+
+/// The published pair from its spec alone, mounted right and wrong: where contact of the flanks begins and ends, the contact ratio, the
+/// middle with its error and parabola, and the transfer are those of a table that was solved independently.
+#[test]
+fn the_published_pair_is_as_its_table_says() {
+    let out = folder("contact");
+    let table = reference();
+    let wrong = ["--error", "m.P=0.1mm", "--error", "m.S=2mrad"];
+    for (case, errors) in table["cases"].as_array().expect("cases").iter().zip([&[][..], &wrong]) {
+        let arguments = [&["contact", PAIR, "--no-picture", "--out", out.to_str().unwrap()][..], errors].concat();
+        let found = document(&arguments, 0);
+        assert_eq!((&found["schema"], &found["kind"]), (&Value::from("flank.contact/1"), &Value::from("point")));
+        assert_eq!(found["mounted"].as_array().expect("errors").len(), errors.len() / 2);
+        let degrees = |name: &str| number(case, name).to_degrees();
+        assert!((number(&found, "ratio") - number(case, "flank_contact_ratio")).abs() < 1e-9, "{}", found["ratio"]);
+        let ends = found["ends"].as_array().expect("two ends");
+        for (end, (name, edge)) in ends.iter().zip([("flank_contact_from", "toe"), ("flank_contact_to", "tip")]) {
+            assert!((number(end, "turn") - degrees(name)).abs() < 1e-8, "{end}");
+            assert_eq!(end["at"], edge, "{end}");
+        }
+        let (middle, vertex) = (&found["middle"], &case["vertex"]);
+        // the table has its vertex by differences
+        assert!((number(middle, "turn") - number(vertex, "thetaP").to_degrees()).abs() < 1e-7, "{middle}");
+        assert!((number(middle, "error") - number(vertex, "TE").to_degrees()).abs() < 1e-11, "{middle}");
+        let parabola = number(vertex, "d2TE") * 1e6 * (1f64).to_radians().powi(2);
+        assert!((number(middle, "parabola") / parabola - 1.0).abs() < 1e-6, "{middle} {parabola}");
+        for (member, name) in ["pinion_share", "gear_share"].iter().enumerate() {
+            for k in 0..2 {
+                let share = middle["on"][member]["shares"][k].as_f64().expect("a share");
+                assert!((share - vertex[name][k].as_f64().expect("a share")).abs() < 1e-7, "{middle} {vertex}");
+            }
+        }
+        // either end of a pitch
+        let transfer = found["error"]["transfers"][0].as_f64().expect("a transfer");
+        let pitches = (transfer - degrees("transfer_thetaP")) * 19.0 / 360.0;
+        assert!((pitches - pitches.round()).abs() < 1e-9, "{transfer}");
+        // between the rows of the table it is a little more
+        let least = number(case, "peak_to_peak_TE_of_rows") * 1e6;
+        assert!((least..1.2 * least).contains(&number(&found["error"], "peak_to_peak")), "{}", found["error"]);
+        let is_led_by_an_edge = case["rows"].as_array().expect("rows").iter().any(|row| row["kind"] != "flank");
+        assert_eq!(!found["edges"].as_array().expect("edges").is_empty(), is_led_by_an_edge);
+    }
+}
+
+/// What an error of an axis does is what mounting the pair so gives, and the mountings that are told bring the contact where they say.
+#[test]
+fn mounting_errors_do_what_is_told_of_them() {
+    let out = folder("contact_mounting");
+    let spec = ["contact", PAIR, "--no-picture", "--positions", "20", "--out", out.to_str().unwrap()];
+    let told = document(&[&spec[..], &["--sensitivity", "--vhj"]].concat(), 0);
+    let middle = |found: &Value, name: &str| number(&found["middle"], name);
+    for influence in told["influences"].as_array().expect("influences") {
+        let (axis, per) = (influence["axis"].as_str().expect("a name"), influence["per"].as_str().expect("an error"));
+        let [plus, minus] = ["", "-"].map(|sign| {
+            let error = format!("{axis}={sign}{}", per.replace(' ', ""));
+            document(&[&spec[..], &["--error", &error]].concat(), 0)
+        });
+        // half the difference of both sides: what is left is of third order in an error that moves the middle by a tenth of a millimetre
+        let turn = 0.5 * (middle(&plus, "turn") - middle(&minus, "turn"));
+        assert!((turn - number(influence, "turn")).abs() < 1e-3 * turn.abs().max(1e-2), "{influence} {turn}");
+        let error = 0.5 * (middle(&plus, "error") - middle(&minus, "error")).to_radians() * 1e6;
+        assert!((error - number(influence, "error")).abs() < 1e-3 * error.abs().max(1.0), "{influence} {error}");
+    }
+    for row in told["vhj"].as_array().expect("rows").iter().filter(|row| !row["errors"].is_null()) {
+        let errors: Vec<String> = (0..2)
+            .map(|k| {
+                format!("{}={:?}mm", row["axes"][k].as_str().expect("a name"), row["errors"][k].as_f64().expect("mm"))
+            })
+            .collect();
+        let found = document(&[&spec[..], &["--error", &errors[0], "--error", &errors[1]]].concat(), 0);
+        let shares = &found["middle"]["on"][1]["shares"];
+        for (k, name) in ["lengthwise", "profilewise"].into_iter().enumerate() {
+            assert!((shares[k].as_f64().expect("a share") - number(row, name)).abs() < 1e-7, "{row} {shares}");
+        }
+    }
+    assert!(told["vhj"].as_array().expect("rows").iter().any(|row| !row["errors"].is_null()));
+}
+
+/// Two crowned paddles, written here; their contact is in the middle of both, by hand.
+const PADDLES: &str = r#"
+machine two_shafts {
+    axis first  : rotary
+    axis second : rotary
+    axis A      : linear
+    frame bed
+    frame first  in bed = rotate_z(first)
+    frame second in bed = translate_x(40 mm + A) rotate_z(second)
+    fix A = 0 mm
+}
+machine bench {
+    axis lift : linear
+    frame table
+    frame part in table = translate_z(lift)
+    fix lift = 0 mm
+}
+tool paddle {
+    surface face(u: length in -4 mm .. 4 mm, v: length in -6 mm .. 6 mm) {
+        at = [20 mm + u, -1 mm - (u^2 + v^2) / 80 mm, v]
+        body towards [0, -1, 0]
+    }
+}
+job paddles {
+    machine b = bench
+    tool p = paddle
+    mount p on b.part
+    surface left, right in b.table = move(p.face, p.face)
+    sample left, right { u: -4 mm .. 4 mm by 9, v: -6 mm .. 6 mm by 9 }
+    machine m = two_shafts
+    mount left  on m.first
+    mount right on m.second
+    motion  turn : angle in -10 deg .. 10 deg
+    unknown lag : angle in LAG
+    drive m.first  = turn
+    drive m.second = 180 deg - turn + lag
+    contact driving = left with right, over: turn, for: lag
+}
+"#;
+
+/// At no turn both faces stand a millimetre below and above the line of the shafts: each turns by half the lag's way to meet.
+#[test]
+fn paddles_touch_in_the_middle() {
+    let out = folder("contact_paddles");
+    let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "-8 deg .. 0 deg"));
+    let found = document(&["contact", spec.to_str().unwrap(), "--out", out.to_str().unwrap()], 0);
+    assert_eq!(found["kind"], "point");
+    // both are spheres of 40 mm to second order, seen from where they touch
+    let gap = found["middle"]["gap"].as_array().expect("two curvatures");
+    assert!(gap.iter().all(|k| (k.as_f64().expect("1/mm") - 0.05).abs() < 1e-3), "{gap:?}");
+    let kinds: Vec<&str> = found["remarks"]
+        .as_array()
+        .expect("remarks")
+        .iter()
+        .map(|remark| remark["kind"].as_str().expect("a kind"))
+        .collect();
+    assert_eq!(kinds, ["no_edges", "no_edges", "one_pair"]);
+    assert!(out.join("paddles.driving.png").exists() && out.join("paddles.driving.csv").exists());
+}
+
+#[test]
+fn what_cannot_touch_is_told() {
+    let out = folder("contact_wrong");
+    let at = out.to_str().unwrap();
+    let run = |text: &str| {
+        let spec = written(&out, "paddles.chain", text);
+        flank(&["contact", spec.to_str().unwrap(), "--out", at, "--no-picture"])
+    };
+    let told = |run: &std::process::Output| (run.status.code(), text(&run.stderr));
+    let (code, message) = told(&run(&PADDLES.replace("LAG", "1 deg .. 5 deg")));
+    assert!(code == Some(3) && message.contains("do not reach each other within the range of `lag`"), "{message}");
+    let facing = PADDLES
+        .replace("LAG", "-8 deg .. 0 deg")
+        .replace("180 deg - turn", "0 deg - turn")
+        .replace("40 mm + A", "0 mm + A");
+    let (code, message) = told(&run(&facing));
+    assert!(code == Some(3) && message.contains("face the same way where they meet"), "{message}");
+    for (arguments, code, words) in [
+        (&["--error", "m.B=1mm"][..], 1, "no such axis; it has m.first, m.second, m.A"),
+        (&["--error", "m.A=1deg"], 1, "this axis takes a length"),
+        (&["--error", "m.A=1"], 2, "write AXIS=VALUE with a unit"),
+        (&["nosuch"], 1, "there is no contact `nosuch`; there is: `driving`"),
+    ] {
+        let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "-8 deg .. 0 deg"));
+        let run = flank(&[&["contact", spec.to_str().unwrap(), "--out", at][..], arguments].concat());
+        assert!(run.status.code() == Some(code) && text(&run.stderr).contains(words), "{}", text(&run.stderr));
+    }
+    let run = flank(&["contact", "specs/hobbing/spur_gear.chain"]);
+    assert!(
+        run.status.code() == Some(1) && text(&run.stderr).contains("no job says which flanks touch"),
+        "{}",
+        text(&run.stderr)
+    );
+    let solids = r#"
+    profile blank {
+        tip   = line(from: [6 mm, 23 mm], to: [-6 mm, 23 mm])
+        lower = line(from: [-6 mm, 23 mm], to: [-6 mm, 10 mm])
+        hub   = line(from: [-6 mm, 10 mm], to: [6 mm, 10 mm])
+        upper = line(from: [6 mm, 10 mm], to: [6 mm, 23 mm])
+    }
+    solid driver in b.table = turned(blank, spaces: 18, of: [left])
+    solid driven in b.table = turned(blank, spaces: 18, of: [right])
+    machine m = two_shafts"#;
+    let with_solids = PADDLES.replace("    machine m = two_shafts", solids);
+    let (code, message) = told(&run(&with_solids.replace("LAG", "-8 deg .. 4 deg")));
+    assert!(
+        code == Some(1) && message.contains("those of driven are 20.000 deg apart; a range of at most 10.000 deg"),
+        "{message}"
+    );
+    let (code, message) = told(&run(&with_solids.replace("LAG", "-8 deg .. 0 deg")));
+    assert!(code == Some(0) && !message.contains("no `solid`"), "{message}");
+}
