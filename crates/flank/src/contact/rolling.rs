@@ -8,6 +8,8 @@ use crate::contact::pair::Members;
 
 /// Roll positions at which the contact is looked for, from the middle of the roll outwards.
 const TRIED: usize = 13;
+/// Positions over a pitch among which the vertex is looked for.
+const COARSE: usize = 12;
 /// An error of the ratio below this at all positions is none: rounding.
 const STRAIGHT: f64 = 1e-12;
 
@@ -37,7 +39,7 @@ impl Rolling {
         let has_pitch = every.is_some();
         // of one pair alone all of the roll is looked at
         let pitch = every.unwrap_or(0.5 * (limits[1] - limits[0]));
-        let coarse = problem.engagement(&first, pitch, steps, limits);
+        let coarse = problem.engagement(&first, pitch, steps.min(COARSE), limits);
         let vertex = vertex(&problem, &coarse);
         let middle = vertex.clone().or_else(|| middle(&coarse)).unwrap_or(first);
         let engagement = problem.engagement(&middle, pitch, steps, limits);

@@ -33,7 +33,7 @@ impl ContactProblem {
     /// contact is singular.
     pub fn change(&self, at: &ContactPoint, parameter: usize, is_vertex: bool) -> Option<ContactChange> {
         let (unknowns, lag) = (at.all_unknowns(), self.lag_at());
-        let (system, parameters) = self.equations(&at.edges, &unknowns, at.roll)?;
+        let (system, parameters) = self.equations(&at.edges, at.roll, &at.first_normal.into())?;
         let along =
             |roll: f64, change: f64| system.series(&unknowns, &parameters, &[(0, roll), (1 + parameter, change)], 3);
         let (rolled, changed) = (along(1.0, 0.0)?, along(0.0, 1.0)?);

@@ -73,8 +73,8 @@ impl ContactProblem {
     }
 
     fn step(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
-        let expected = self.predicted(from, roll - from.roll)?;
-        let found = self.touching_near(roll, &expected, &from.edges)?;
+        let expected = from.predicted(roll - from.roll)?;
+        let found = self.touching_near(roll, &expected, &from.edges, from.first_normal.into())?;
         let share = |a: &[f64], b: &[f64]| {
             let off = a.iter().zip(b).zip(&self.ranges).map(|((a, b), range)| ((a - b) / range.width()).abs());
             off.fold(0.0, f64::max)
@@ -85,7 +85,7 @@ impl ContactProblem {
 
     /// The contact at a roll position near one that is known of the same pair with other values of its parameters.
     pub fn again(&self, near: &ContactPoint, roll: f64) -> Option<ContactPoint> {
-        self.touching_near(roll, &near.all_unknowns(), &near.edges)
+        self.touching_near(roll, &near.all_unknowns(), &near.edges, near.first_normal.into())
     }
 
     /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has not

@@ -118,10 +118,10 @@ impl GapProblem {
             newton.run(&active, true);
             let mut foot = |lane: usize| {
                 let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
-                if is_near && newton.outcome(lane) == Outcome::Solved {
-                    Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect())
-                } else {
-                    self.alone(&asked[lane], &mate.nearest(&asked[lane])?)
+                match newton.outcome(lane) {
+                    Outcome::Solved if is_near => Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect()),
+                    Outcome::Outside { .. } if is_near => None,
+                    _ => self.alone(&asked[lane], &mate.nearest(&asked[lane])?),
                 }
             };
             let found = (0..nodes.len()).map(|lane| active[lane].then(|| foot(lane)).flatten()).collect();

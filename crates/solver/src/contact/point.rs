@@ -8,7 +8,7 @@ use crate::analysis::geometry::{Curvature, Principal, curvature_in, tangents};
 use crate::contact::ContactProblem;
 use crate::contact::edge::{FlankEdge, PlacedFlank};
 use crate::contact::outline::Bound;
-use crate::equations::solution::Outcome;
+use crate::equations::solution::{Outcome, Solution};
 
 /// Normals whose sum is shorter than this are opposite: beyond it they face the same way, the other root of the equations.
 const OPPOSITE: f64 = 1e-3;
@@ -64,6 +64,10 @@ pub struct ContactPoint {
     pub entraining: [f64; 3],
     /// How far the second flank moves out of the first one for a step of the lag, mm per unit; plus opens.
     pub opening: f64,
+    /// Of each unknown, then of the lag, the power series in the roll, to second order; empty where it has none.
+    pub(super) series: Vec<[f64; 3]>,
+    /// Of the first flank, in the frame of the contact.
+    pub(super) first_normal: [f64; 3],
 }
 
 /// All that [`ContactProblem::point`] reads, in the order in which it does.
@@ -162,14 +166,20 @@ impl ContactProblem {
     }
 
     /// What is known of a root of the equations of touching.
-    pub(super) fn point(&self, outcome: Outcome, unknowns: &[f64], roll: f64, edges: Vec<FlankEdge>) -> ContactPoint {
-        let members = self.members(unknowns, roll);
-        let [first, second] = &members;
-        let series = self.series(unknowns, roll, &edges);
-        let normal = self.pressing(&edges, &members);
-        let slope = |k: usize| series.as_ref().map_or(f64::NAN, |series| series[k][1]);
+    pub(super) fn point(
+        &self,
+        root: Solution,
+        roll: f64,
+        edges: Vec<FlankEdge>,
+        members: &[Member; 2],
+    ) -> ContactPoint {
+        let Solution { outcome, unknowns, .. } = root;
+        let [first, second] = members;
+        let series = self.series(&unknowns, roll, &edges, &first.normal).unwrap_or_default();
+        let normal = self.pressing(&edges, members);
+        let slope = |k: usize| series.get(k).map_or(f64::NAN, |series| series[1]);
         let lag = self.lag_at();
-        let lag_slopes = series.as_ref().map_or([f64::NAN; 2], |series| [series[lag][1], 2.0 * series[lag][2]]);
+        let lag_slopes = series.get(lag).map_or([f64::NAN; 2], |series| [series[1], 2.0 * series[2]]);
         // of the unknowns of each flank, by the roll
         let along = |k: usize| {
             let from = k * self.unknowns[0];
@@ -180,7 +190,7 @@ impl ContactProblem {
         let over_in_frame = [0, 1].map(|k| vector(&members[k].slopes * along(k)));
         let velocity = [0, 1].map(|k| members[k].moved[0] + members[k].moved[1] * lag_slopes[0]);
         let in_plane = |v: Vector3<f64>| <[f64; 3]>::from(v - normal * normal.dot(&v));
-        let gap = if edges.is_empty() { self.gap(&members) } else { None };
+        let gap = if edges.is_empty() { self.gap(members) } else { None };
         let state =
             if edges.is_empty() { gap.map(|gap| state(&gap.principal())) } else { Some(ContactState::Touching) };
         ContactPoint {
@@ -200,7 +210,9 @@ impl ContactProblem {
             sliding: in_plane(velocity[0] - velocity[1]),
             // a member moves past the point as the point moves over the member, the other way
             entraining: in_plane(-0.5 * (over_in_frame[0] + over_in_frame[1])),
-            opening: opening(&members, &normal),
+            opening: opening(members, &normal),
+            first_normal: first.normal.into(),
+            series,
         }
     }
 
@@ -224,15 +236,10 @@ impl ContactProblem {
     }
 
     /// Series of the unknowns in the roll, to second order.
-    fn series(&self, unknowns: &[f64], roll: f64, edges: &[FlankEdge]) -> Option<Vec<Vec<f64>>> {
-        let (system, parameters) = self.equations(edges, unknowns, roll)?;
-        system.series(unknowns, &parameters, &[(0, 1.0)], 2)
-    }
-
-    /// Where the contact goes: the unknowns a step of the roll on, to second order.
-    pub(super) fn predicted(&self, from: &ContactPoint, step: f64) -> Option<Vec<f64>> {
-        let series = self.series(&from.all_unknowns(), from.roll, &from.edges)?;
-        Some(series.iter().map(|c| c[0] + step * (c[1] + step * c[2])).collect())
+    fn series(&self, unknowns: &[f64], roll: f64, edges: &[FlankEdge], normal: &Vector3<f64>) -> Option<Vec<[f64; 3]>> {
+        let (system, parameters) = self.equations(edges, roll, normal)?;
+        let series = system.series(unknowns, &parameters, &[(0, 1.0)], 2)?;
+        series.into_iter().map(|series| series.try_into().ok()).collect()
     }
 }
 
@@ -259,6 +266,11 @@ fn state(gap: &Principal) -> ContactState {
 }
 
 impl ContactPoint {
+    /// Where the contact goes: the unknowns a step of the roll on, to second order.
+    pub(super) fn predicted(&self, step: f64) -> Option<Vec<f64>> {
+        (!self.series.is_empty()).then(|| self.series.iter().map(|c| c[0] + step * (c[1] + step * c[2])).collect())
+    }
+
     /// The unknowns of the first flank, of the second, then the lag.
     pub(super) fn all_unknowns(&self) -> Vec<f64> {
         [&self.unknowns[0][..], &self.unknowns[1], &[self.lag]].concat()

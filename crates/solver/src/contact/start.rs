@@ -38,6 +38,7 @@ struct Passing {
     unknowns: Vec<f64>,
     /// What the lag is, with the sign with which more of it opens.
     height: f64,
+    normal: Vector3<f64>,
 }
 
 /// Whether a contact is one, whether it is on the flanks as far as they are looked for, and whether nothing opens the pair more.
@@ -59,7 +60,7 @@ impl ContactProblem {
         let least = passing[0].height - UNEVEN * self.ranges[self.lag_at()].width();
         for start in passing.iter().take(STARTS) {
             for edges in self.ways() {
-                let Some(found) = self.touching_near(roll, &start.unknowns, &edges) else { continue };
+                let Some(found) = self.touching_near(roll, &start.unknowns, &edges, start.normal) else { continue };
                 if best.as_ref().is_none_or(|best| rank(&found, least) > rank(best, least)) {
                     best = Some(found);
                 }
@@ -115,7 +116,7 @@ impl ContactProblem {
                 refused = refused.or(Some(NoContact::Locked));
             } else {
                 let height = unknowns[self.lag_at()] * opening.signum();
-                found.push(Passing { unknowns, height });
+                found.push(Passing { unknowns, height, normal: members[0].normal });
             }
         }
         if found.is_empty() { Err(refused.unwrap_or(NoContact::Apart)) } else { Ok(found) }

@@ -1,5 +1,7 @@
 //! A contact from a start value near it: flank on flank, or the edges that touch instead.
 
+use nalgebra::Vector3;
+
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
 use crate::contact::point::{ContactPoint, Member, directions};
@@ -13,48 +15,65 @@ const MOST_CHANGES: usize = 10;
 const MOST_EDGES: usize = 2;
 /// A multiplier below this, as a share of the slope of the lag, leaves its edge: less is rounding.
 const RELEASED: f64 = -1e-9;
+/// A normal that is off by more than this has turned: its directions are no tangents any more.
+const TURNED: f64 = 0.5;
 /// Times that the directions in which normals are compared are turned with them.
 const MOST_TURNS: usize = 2;
 
 impl ContactProblem {
-    /// The equations with which the members touch so, with the values of their parameters.
-    pub(super) fn equations(&self, edges: &[FlankEdge], unknowns: &[f64], roll: f64) -> Option<(&System, Vec<f64>)> {
+    /// The equations with which the members touch so, with the values of their parameters; normals of flanks are compared square to one.
+    pub(super) fn equations(
+        &self,
+        edges: &[FlankEdge],
+        roll: f64,
+        normal: &Vector3<f64>,
+    ) -> Option<(&System, Vec<f64>)> {
         if edges.is_empty() {
-            let [first, _] = self.members(unknowns, roll);
-            return Some((&self.touching, self.given(roll).chain(directions(&first.normal)).collect()));
+            return Some((&self.touching, self.given(roll).chain(directions(normal)).collect()));
         }
         let bounds: Option<Vec<_>> = edges.iter().map(|edge| Some(self.bound(*edge)?.numbers())).collect();
         Some((self.edges.as_ref()?.system(edges), self.given(roll).chain(bounds?.concat()).collect()))
     }
 
     /// The contact near unknowns of both and a lag: with these edges, or with those that come to touch instead.
-    pub(super) fn touching_near(&self, roll: f64, unknowns: &[f64], edges: &[FlankEdge]) -> Option<ContactPoint> {
-        let (mut edges, mut start) = (edges.to_vec(), unknowns.to_vec());
+    pub(super) fn touching_near(
+        &self,
+        roll: f64,
+        unknowns: &[f64],
+        edges: &[FlankEdge],
+        normal: Vector3<f64>,
+    ) -> Option<ContactPoint> {
+        let (mut edges, mut start, mut normal) = (edges.to_vec(), unknowns.to_vec(), normal);
         for _ in 0..MOST_CHANGES {
-            let (root, members) = self.root(roll, &start, &edges)?;
+            let (root, members) = self.root(roll, &start, &edges, normal)?;
             let Some(changed) = self.changed(&edges, &members) else {
-                return Some(self.point(root.outcome, &root.unknowns, roll, edges));
+                return Some(self.point(root, roll, edges, &members));
             };
-            (edges, start) = (changed, root.unknowns);
+            (edges, start, normal) = (changed, root.unknowns, members[0].normal);
         }
         None
     }
 
     /// The root with these edges and no others, however far beyond other edges it lies.
-    pub(super) fn root(&self, roll: f64, start: &[f64], edges: &[FlankEdge]) -> Option<(Solution, [Member; 2])> {
-        let mut start = start.to_vec();
+    fn root(
+        &self,
+        roll: f64,
+        start: &[f64],
+        edges: &[FlankEdge],
+        normal: Vector3<f64>,
+    ) -> Option<(Solution, [Member; 2])> {
+        let (mut start, mut normal) = (start.to_vec(), normal);
         for _ in 0..MOST_TURNS {
-            let (system, parameters) = self.equations(edges, &start, roll)?;
-            let [before, _] = self.members(&start, roll);
+            let (system, parameters) = self.equations(edges, roll, &normal)?;
             let root = solve_with(&mut system.evaluation(&parameters), &self.ranges, &start);
             if !matches!(root.outcome, Outcome::Solved | Outcome::Outside { .. }) {
                 return None;
             }
             let members = self.members(&root.unknowns, roll);
-            if !edges.is_empty() || (members[0].normal - before.normal).norm() < 0.5 {
+            if !edges.is_empty() || (members[0].normal - normal).norm() < TURNED {
                 return ContactProblem::faces(edges, &members).then_some((root, members));
             }
-            start = root.unknowns;
+            (start, normal) = (root.unknowns, members[0].normal);
         }
         None
     }
