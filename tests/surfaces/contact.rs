@@ -540,7 +540,7 @@ fn the_mate_comes_as_near_as_solved_independently() {
             assert_eq!(shares.each_ref().map(Vec::len), [17, 9]);
             let nodes = nodes(pair.surfaces[1], &inputs["gear_blank"], [&shares[0], &shares[1]]);
             let gaps = GapProblem::new(pair, 1).expect("nothing is unbound");
-            let least = gaps.least(&nodes, &positions, &points[0]);
+            let least = gaps.least(&nodes, &positions, &points[0], 5.0);
             let table =
                 pattern["least_gap"].as_array().expect("rows").iter().flat_map(|row| row.as_array().expect("gaps"));
             for ((gap, expected), node) in least.iter().zip(table).zip(&nodes) {

@@ -53,7 +53,7 @@ pub(crate) fn write(
         note,
         film: request.compound * 1e3,
         paths: [0, 1].map(|member| flank_path(rolling, member)).to_vec(),
-        error: curves(members, rolling),
+        error: curves(members, rolling, request.compound),
     };
     let drawn = (!request.no_picture).then(|| picture(&drawing(), &PictureOptions::default()));
     folder.picture_after(&name, drawn.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
@@ -116,7 +116,7 @@ fn near(patch: &Patch, compound: f64) -> Patch {
 
 /// Where the flanks touch on one of them.
 fn flank_path(rolling: &Rolling, member: usize) -> Vec<[f64; 3]> {
-    let flank = rolling.engagement.points.iter().filter(|point| point.edges.is_empty());
+    let flank = rolling.engagement.points.iter().filter(|point| point.is_of_flanks());
     flank.map(|point| point.in_members[member]).collect()
 }
 
@@ -124,7 +124,7 @@ fn flank_path(rolling: &Rolling, member: usize) -> Vec<[f64; 3]> {
 const BEHIND: f64 = 4.0;
 
 /// The error of each pair of teeth that touches over the pitch about the middle, and of the one that carries.
-fn curves(members: &Members<'_, '_>, rolling: &Rolling) -> ErrorCurves {
+fn curves(members: &Members<'_, '_>, rolling: &Rolling, compound: f64) -> ErrorCurves {
     let (roll, lag) = (&members.contact.roll, &members.contact.lag);
     let reference = rolling.middle().map_or(0.0, |middle| middle.lag);
     let engagement = &rolling.engagement;
@@ -141,13 +141,15 @@ fn curves(members: &Members<'_, '_>, rolling: &Rolling) -> ErrorCurves {
     let ends = lags.iter().fold([f64::MAX, f64::MIN], |[low, high], lag| [low.min(*lag), high.max(*lag)]);
     let is_shown = |point: &ContactPoint, step: isize| {
         let carried = engagement.carried(step).filter(|_| rolling.has_pitch);
-        carried.is_none_or(|carried| (point.lag - carried.lag).abs() <= BEHIND * (ends[1] - ends[0]))
+        carried.is_none_or(|carried| {
+            (point.lag - carried.lag).abs() <= (BEHIND * (ends[1] - ends[0])).max(compound / point.opening.abs())
+        })
     };
     let pair = |number: isize| {
         let mut pieces: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
         for step in steps() {
             let Some(point) = engagement.point(number, step).filter(|point| is_shown(point, step)) else { continue };
-            let (is_edge, at) = (!point.edges.is_empty(), place(step, point.lag));
+            let (is_edge, at) = (!point.is_of_flanks(), place(step, point.lag));
             match pieces.last_mut() {
                 Some((kind, points)) if *kind == is_edge => points.push(at),
                 // pieces share the point between them

@@ -132,7 +132,8 @@ impl<'g> Members<'_, 'g> {
     }
 }
 
-fn outline(solid: &Solid) -> Outline {
+/// The outline of a solid as the solver takes it.
+pub(crate) fn outline(solid: &Solid) -> Outline {
     let segment = |segment: &flank_chain_dsl::OutlineSegment| OutlineSegment {
         name: segment.name.clone(),
         from: segment.from,

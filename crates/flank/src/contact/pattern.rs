@@ -9,6 +9,9 @@ use crate::contact::rolling::Rolling;
 /// The flanks of a pair of teeth are compared while they are nearer than this, or so many films, mm.
 const NEAR: f64 = 0.2;
 const FILMS: f64 = 10.0;
+/// A mate is looked for no farther away than this, mm, and than this share of the way from one tooth to the next.
+const FARTHEST: f64 = 5.0;
+const SHARE: f64 = 0.4;
 
 /// How near the mate comes to the points of a flank's sample.
 pub(crate) struct GapMap {
@@ -41,11 +44,18 @@ pub(crate) fn on_both(
     let positions: Vec<[f64; 2]> = steps.filter_map(position).collect();
     let of_member = |member: usize| {
         let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
-        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member]);
+        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member], reach_of(rolling));
         let pattern = pattern(members, member, &gaps, compound);
         GapMap { gaps, positions: positions.clone(), pattern }
     };
     vec![of_member(0), of_member(1)]
+}
+
+/// How far away a mate is looked for, mm: a part of the way from one tooth to the next along the normal, where the pitch is known.
+fn reach_of(rolling: &Rolling) -> f64 {
+    let middle = rolling.middle().filter(|_| rolling.has_pitch);
+    let way = middle.map(|middle| (middle.advance * rolling.engagement.pitch).abs()).filter(|way| *way > 0.0);
+    way.map_or(FARTHEST, |way| FARTHEST.min(SHARE * way))
 }
 
 fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compound: f64) -> ContactPattern {

@@ -253,9 +253,11 @@ impl Answer for ContactResult {
     }
 }
 
-/// A number with so many digits behind the first one that is not zero, at least `decimals`.
+/// Below this a parabola or a curvature of the gap is zero, in the units in which it is printed: rounding.
+const NOTHING: f64 = 1e-9;
+
 fn small(value: f64) -> String {
-    units::scientific(value, 3)
+    if value.abs() < NOTHING { "0".to_string() } else { units::scientific(value, 3) }
 }
 
 impl fmt::Display for ContactResult {
@@ -268,7 +270,8 @@ impl fmt::Display for ContactResult {
             self.job, first.surface, first.frame, second.surface, second.frame
         )?;
         for error in &self.mounted {
-            writeln!(f, "  mounted      {} {} {} off", error.axis, error.value, error.unit)?;
+            let value = (error.value * 1e9).round() / 1e9;
+            writeln!(f, "  mounted      {} {value} {} off", error.axis, error.unit)?;
         }
         if let Some(middle) = &self.middle {
             self.write_middle(f, middle)?;

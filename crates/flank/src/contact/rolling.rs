@@ -115,6 +115,6 @@ fn vertex(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
 
 /// The middle of contact of the flanks.
 fn middle(of: &Engagement) -> Option<ContactPoint> {
-    let flank: Vec<&ContactPoint> = of.points.iter().filter(|point| point.edges.is_empty()).collect();
+    let flank: Vec<&ContactPoint> = of.points.iter().filter(|point| point.is_of_flanks()).collect();
     flank.get(flank.len() / 2).map(|point| (*point).clone())
 }

@@ -1,10 +1,10 @@
 //! The numbers of a contact, in the units that people read.
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, SampleGrid};
-use flank_solver::{ContactPoint, ContactState, Engagement, FlankEdge, Outcome};
+use flank_solver::{ContactPoint, ContactState, FlankEdge, Outcome};
 
 use crate::contact::influence;
-use crate::contact::pair::Members;
+use crate::contact::pair::{self, Members};
 use crate::contact::pattern::GapMap;
 use crate::contact::result::{
     Backlash, ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError,
@@ -17,6 +17,10 @@ use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{ContactRequest, Session};
 use crate::project::units;
 
+/// Pairs of teeth whose errors change alike to this share of the roll turn alike.
+const ALIKE: f64 = 1e-10;
+/// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
+const ON_EDGE: f64 = 1e-6;
 /// A gap below this is no rounding: the mate reaches in, mm.
 const REACHES_IN: f64 = -1e-7;
 
@@ -190,6 +194,11 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let handed = (steps.start..steps.end).filter_map(|step| {
             let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
             let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
+            // two pairs that turn alike hand nothing over: which one is ahead is rounding
+            let slope = |pair: isize| Some(engagement.point(pair, step)?.lag_slopes[0]);
+            if (slope(before)? - slope(after)?).abs() < ALIKE {
+                return None;
+            }
             let between = [rolling.roll(step), rolling.roll(step + 1)];
             rolling.problem.transfer(engagement, [before, after], between)
         });
@@ -199,7 +208,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     /// Where contact of the flanks begins and ends, with the roll positions.
     fn ends(&self, rolling: &Rolling) -> Vec<(f64, FlankEnd)> {
         let engagement = &rolling.engagement;
-        let is_flank = |point: &&ContactPoint| point.edges.is_empty();
+        let is_flank = |point: &&ContactPoint| point.is_of_flanks();
         let end = |way: isize| {
             let is_open = match way {
                 -1 => engagement.points.first().filter(is_flank).is_some() && !engagement.is_whole[0],
@@ -209,8 +218,8 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                 return None;
             }
             let point = rolling.problem.flank_end(engagement, way)?;
-            let edge = self.edge_beside(engagement, way);
-            let of = edge.as_ref().map_or(self.outside(&point), |edge| edge.member);
+            let edge = self.edge_at(rolling, &point);
+            let of = edge.map_or(self.outside(&point), |edge| edge.member);
             let at = edge.map(|edge| self.edge_name(edge));
             let end = FlankEnd {
                 turn: self.turn(point.roll),
@@ -223,15 +232,16 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         [-1, 1].into_iter().filter_map(end).collect()
     }
 
-    /// The edge that touches next beyond contact of the flanks.
-    fn edge_beside(&self, engagement: &Engagement, way: isize) -> Option<FlankEdge> {
-        let points = &engagement.points;
-        let is_flank = |point: &ContactPoint| point.edges.is_empty();
-        let next = match way {
-            -1 => points.iter().position(is_flank)?.checked_sub(1),
-            _ => points.iter().rposition(is_flank).map(|at| at + 1).filter(|at| *at < points.len()),
+    /// The edge on which a contact of the flanks lies, but for one that a line of contact goes on to all the way.
+    fn edge_at(&self, rolling: &Rolling, point: &ContactPoint) -> Option<FlankEdge> {
+        let inner = rolling.middle().map_or(Vec::new(), |middle| middle.edges.clone());
+        let on = |member: usize| {
+            let [x, y, z] = point.in_members[member];
+            let segments =
+                self.members.solids[member].map(|solid| pair::outline(solid).segments_at([z, x.hypot(y)], ON_EDGE));
+            segments.into_iter().flatten().map(move |segment| FlankEdge { member, segment })
         };
-        points[next?].edges.first().copied()
+        [0, 1].into_iter().flat_map(on).find(|edge| !inner.contains(edge))
     }
 
     /// The member whose tool makes no more of the flank there: the one that is nearer to an end of its unknowns.
@@ -263,7 +273,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         for step in rolling.steps() {
             let carried = rolling.engagement.carried(step);
             let point = carried.and_then(|carried| rolling.engagement.point(carried.pair, step));
-            let Some(point) = point.filter(|point| !point.edges.is_empty()) else { continue };
+            let Some(point) = point.filter(|point| !point.is_of_flanks()) else { continue };
             let (edge, turn) = (self.whole_edge_name(&point.edges), self.turn(rolling.roll(step)));
             match found.last_mut().filter(|leading| leading.edge == edge && last == Some(step - 1)) {
                 Some(leading) => leading.to = turn,
@@ -279,7 +289,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let name = &self.members.contact.name;
         let mut told = Vec::new();
         let outside =
-            rolling.engagement.points.iter().filter(|point| point.edges.is_empty() && point.outcome != Outcome::Solved);
+            rolling.engagement.points.iter().filter(|point| point.is_of_flanks() && point.outcome != Outcome::Solved);
         let outside = outside.count();
         if outside > 0 {
             let message = format!(
@@ -302,6 +312,19 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         told
     }
 
+    /// Whether the roll ends where the pair is still near its mate.
+    fn is_cut_short(&self, rolling: &Rolling) -> bool {
+        let engagement = &rolling.engagement;
+        let last = engagement.first + engagement.points.len() as isize - 1;
+        let ends = [engagement.first, last].into_iter().zip(engagement.is_whole);
+        ends.filter(|(_, is_whole)| !is_whole).any(|(step, _)| {
+            let at = engagement.carried(step).zip(engagement.point(0, step));
+            at.is_some_and(|(carried, point)| {
+                ((carried.lag - point.lag) * point.opening).abs() <= self.request.compound
+            })
+        })
+    }
+
     fn remarks(&self, rolling: &Rolling) -> Vec<Remark> {
         let name = &self.members.contact.name;
         let remark =
@@ -317,7 +340,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                 "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
                     .to_string();
             told.push(remark(RemarkKind::OnePair, name, message));
-        } else if rolling.engagement.is_whole != [true; 2] {
+        } else if self.is_cut_short(rolling) {
             let message = format!(
                 "the range of `{}` ends while the pair still touches: a wider range shows it from its first touch to its last",
                 self.members.contact.roll.name

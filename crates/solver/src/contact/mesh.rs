@@ -10,6 +10,9 @@ use crate::contact::point::ContactPoint;
 const MOST_STEPS: usize = 60;
 const SETTLED: f64 = 1e-14;
 
+/// Lags that differ by less than this share are alike: rounding.
+const ALIKE: f64 = 1e-13;
+
 /// A pair of teeth from where it begins to touch to where it ends, at even steps of the roll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Engagement {
@@ -64,7 +67,7 @@ impl ContactProblem {
     /// Where on the roll a contact of flank on flank begins or ends beside a point of it: where it comes to an edge, or the end of what a
     /// tool's surface makes. `way` is -1 towards smaller rolls.
     pub fn flank_end(&self, of: &Engagement, way: isize) -> Option<ContactPoint> {
-        let is_flank = |point: &&ContactPoint| point.edges.is_empty();
+        let is_flank = |point: &&ContactPoint| point.is_of_flanks();
         let inner = if way < 0 { of.points.iter().find(is_flank) } else { of.points.iter().rev().find(is_flank) }?;
         let step = way as f64 * of.pitch / of.steps as f64;
         let (mut low, mut high) = (0.0, 1.0);
@@ -74,7 +77,7 @@ impl ContactProblem {
             if (high - low) * step.abs() <= SETTLED * of.pitch {
                 break;
             }
-            match self.followed(&best, inner.roll + share * step).filter(|point| point.edges.is_empty()) {
+            match self.followed(&best, inner.roll + share * step).filter(ContactPoint::is_of_flanks) {
                 Some(point) => (best, low) = (point, share),
                 None => high = share,
             }
@@ -138,14 +141,17 @@ impl Engagement {
         (lowest..=highest).filter(|pair| self.point(*pair, step).is_some()).collect()
     }
 
-    /// Which pair carries at a step of the roll; `None` where none touches.
+    /// Which pair carries at a step of the roll; `None` where none touches. Of pairs that are ahead alike, one whose flanks touch.
     pub fn carried(&self, step: isize) -> Option<Carried> {
-        let mut heights: Vec<(isize, &ContactPoint)> =
+        let touching: Vec<(isize, &ContactPoint)> =
             self.pairs(step).into_iter().filter_map(|pair| Some((pair, self.point(pair, step)?))).collect();
         let height = |point: &ContactPoint| point.lag * point.opening.signum();
-        heights.sort_by(|a, b| height(b.1).total_cmp(&height(a.1)));
-        let (pair, point) = *heights.first()?;
-        let behind = heights.get(1).map(|(_, second)| height(point) - height(second));
+        let most = touching.iter().map(|(_, point)| height(point)).reduce(f64::max)?;
+        let is_ahead = |of: &&(isize, &ContactPoint)| most - height(of.1) <= ALIKE * (1.0 + most.abs());
+        let ahead = || touching.iter().filter(is_ahead);
+        let (pair, point) = *ahead().find(|(_, point)| point.is_of_flanks()).or_else(|| ahead().next())?;
+        let others = touching.iter().filter(|(other, _)| *other != pair);
+        let behind = others.map(|(_, second)| height(point) - height(second)).reduce(f64::min);
         Some(Carried { pair, lag: point.lag, behind })
     }
 }

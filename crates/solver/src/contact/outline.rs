@@ -118,6 +118,12 @@ impl Outline {
         (self.segments[nearest].bound().height(point) < 0.0 && distance > ON).then_some((nearest, distance))
     }
 
+    /// The segments on which a point lies, or from which it is no farther away than so much, mm.
+    pub fn segments_at(&self, point: [f64; 2], within: f64) -> Vec<usize> {
+        let is_near = |k: &usize| norm(minus(point, self.segments[*k].nearest(point))) <= within;
+        (0..self.segments.len()).filter(is_near).collect()
+    }
+
     /// Whether a point lies inside or on it.
     pub fn holds(&self, point: [f64; 2]) -> bool {
         self.beyond(point).is_none()

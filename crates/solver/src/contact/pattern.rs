@@ -69,14 +69,21 @@ impl GapProblem {
     }
 
     /// At each point of the flank, in its own frame, the least distance to the mate over positions of roll and lag; `None` where its
-    /// normal meets the mate at none of them. `mate` are solved points of the mate, from which its nearest is looked for.
-    pub fn least(&self, nodes: &[SurfacePoint], positions: &[[f64; 2]], mate: &[SurfacePoint]) -> Vec<Option<Gap>> {
+    /// normal meets the mate at none of them. `mate` are solved points of the mate, from which its nearest is looked for; what lies farther
+    /// away than `reach`, mm, belongs to another tooth.
+    pub fn least(
+        &self,
+        nodes: &[SurfacePoint],
+        positions: &[[f64; 2]],
+        mate: &[SurfacePoint],
+        reach: f64,
+    ) -> Vec<Option<Gap>> {
         let poses: Vec<[f64; 12]> = positions.iter().map(|at| self.pose_at(*at)).collect();
         let points: Vec<&SurfacePoint> = mate.iter().filter(|point| point.outcome == Outcome::Solved).collect();
         if points.is_empty() {
             return vec![None; nodes.len()];
         }
-        let mate = Mate { size: size(&points), points };
+        let mate = Mate { size: size(&points), points, reach };
         nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
     }
 
@@ -129,7 +136,7 @@ impl GapProblem {
         }
         self.found_backwards(&mut feet, nodes, poses);
         (0..nodes.len())
-            .map(|lane| self.least_at(&nodes[lane], poses, feet.iter().map(|feet| feet[lane].as_deref())))
+            .map(|lane| self.least_at(&nodes[lane], poses, feet.iter().map(|feet| feet[lane].as_deref()), mate.reach))
             .collect()
     }
 
@@ -150,10 +157,12 @@ impl GapProblem {
         node: &SurfacePoint,
         poses: &[[f64; 12]],
         feet: impl Iterator<Item = Option<&'f [f64]>>,
+        reach: f64,
     ) -> Option<Gap> {
         let gap = |(position, foot): (usize, Option<&[f64]>)| {
             let distance = *foot?.last()?;
-            self.is_on_mate(&placed(&poses[position], node), distance).then_some(Gap { distance, position })
+            let is_near = distance.abs() <= reach && self.is_on_mate(&placed(&poses[position], node), distance);
+            is_near.then_some(Gap { distance, position })
         };
         feet.enumerate().filter_map(gap).min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
@@ -186,6 +195,8 @@ struct Mate<'p> {
     points: Vec<&'p SurfacePoint>,
     /// How far it is across them.
     size: f64,
+    /// How far away they are looked for, along a normal.
+    reach: f64,
 }
 
 impl Mate<'_> {
@@ -193,9 +204,13 @@ impl Mate<'_> {
     fn nearest(&self, [x, y, z, nx, ny, nz]: &[f64; 6]) -> Option<Vec<f64>> {
         let apart = |point: &SurfacePoint| [point.position[0] - x, point.position[1] - y, point.position[2] - z];
         let off = |point: &SurfacePoint| apart(point).iter().map(|x| x * x).sum::<f64>();
-        let near = self.points.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-        let [dx, dy, dz] = apart(near);
-        let along = dx * nx + dy * ny + dz * nz;
+        let along = |point: &SurfacePoint| {
+            let [dx, dy, dz] = apart(point);
+            dx * nx + dy * ny + dz * nz
+        };
+        let of_tooth = self.points.iter().filter(|point| along(point).abs() <= self.reach);
+        let near = of_tooth.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let along = along(near);
         let aside = (off(near) - along * along).max(0.0).sqrt();
         (aside <= ASIDE * self.size).then(|| near.unknowns.iter().copied().chain([along]).collect())
     }

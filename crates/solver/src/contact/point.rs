@@ -15,6 +15,9 @@ const OPPOSITE: f64 = 1e-3;
 /// Principal curvatures of a gap that are smaller than this share of the larger one are zero: rounding of second derivatives.
 const FLAT: f64 = 1e-9;
 
+/// Normals whose sum is shorter than this are opposite to rounding of what solves for them.
+const ALONG: f64 = 1e-8;
+
 /// How two flanks stand to each other at a point that they share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactState {
@@ -64,6 +67,8 @@ pub struct ContactPoint {
     pub entraining: [f64; 3],
     /// How far the second flank moves out of the first one for a step of the lag, mm per unit; plus opens.
     pub opening: f64,
+    /// How fast both flanks go along the normal, mm per radian of roll, where the lag stays: by how much from one pair of teeth to the next.
+    pub advance: f64,
     /// Of each unknown, then of the lag, the power series in the roll, to second order; empty where it has none.
     pub(super) series: Vec<[f64; 3]>,
     /// Of the first flank, in the frame of the contact.
@@ -190,9 +195,15 @@ impl ContactProblem {
         let over_in_frame = [0, 1].map(|k| vector(&members[k].slopes * along(k)));
         let velocity = [0, 1].map(|k| members[k].moved[0] + members[k].moved[1] * lag_slopes[0]);
         let in_plane = |v: Vector3<f64>| <[f64; 3]>::from(v - normal * normal.dot(&v));
-        let gap = if edges.is_empty() { self.gap(members) } else { None };
-        let state =
-            if edges.is_empty() { gap.map(|gap| state(&gap.principal())) } else { Some(ContactState::Touching) };
+        // the edge of a flank may lie on a line along which both touch
+        let is_of_flanks = edges.is_empty() || (first.normal + second.normal).norm() < ALONG;
+        let gap = if is_of_flanks { self.gap(members) } else { None };
+        let state = match gap.map(|gap| state(&gap.principal())) {
+            Some(ContactState::Line) => Some(ContactState::Line),
+            of_flanks if edges.is_empty() => of_flanks,
+            _ => Some(ContactState::Touching),
+        };
+        let gap = gap.filter(|_| edges.is_empty() || state == Some(ContactState::Line));
         ContactPoint {
             outcome,
             roll,
@@ -211,6 +222,7 @@ impl ContactProblem {
             // a member moves past the point as the point moves over the member, the other way
             entraining: in_plane(-0.5 * (over_in_frame[0] + over_in_frame[1])),
             opening: opening(members, &normal),
+            advance: normal.dot(&first.moved[0]),
             first_normal: first.normal.into(),
             series,
         }
@@ -266,6 +278,11 @@ fn state(gap: &Principal) -> ContactState {
 }
 
 impl ContactPoint {
+    /// Whether flank touches flank there: in a point, or along a line that goes on to an edge.
+    pub fn is_of_flanks(&self) -> bool {
+        self.edges.is_empty() || self.state == Some(ContactState::Line)
+    }
+
     /// Where the contact goes: the unknowns a step of the roll on, to second order.
     pub(super) fn predicted(&self, step: f64) -> Option<Vec<f64>> {
         (!self.series.is_empty()).then(|| self.series.iter().map(|c| c[0] + step * (c[1] + step * c[2])).collect())
