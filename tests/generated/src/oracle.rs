@@ -9,6 +9,8 @@ use crate::tool::Shape;
 
 /// Least heights between neighbours that are looked at closely.
 const MOST_LOW: usize = 8;
+/// Steps of a way along which a point is followed.
+const WAY: usize = 32;
 /// Places from which points are looked for.
 const STARTS: usize = 60;
 /// How far a motion goes to both sides for a rate, as a share of its range.
@@ -93,7 +95,14 @@ impl<'a> Oracle<'a> {
         let or_free = |height: Option<f64>| height.unwrap_or(f64::INFINITY);
         let height = |at: &[f64]| or_free(self.height(point, &self.positions_at(at), slack));
         let lattice = &self.lattice;
-        let near = touch.map_or_else(Vec::new, |touch| around(touch, &lattice.ranges));
+        let mut near = touch.map_or_else(Vec::new, |touch| around(touch, &lattice.ranges));
+        // on the way there the point must see the surface all the time, as between neighbours of the lattice
+        let is_seen = |touch: &[f64], to: &[f64]| {
+            let between =
+                |k: usize| touch.iter().zip(to).map(|(a, b)| a + (b - a) * k as f64 / WAY as f64).collect::<Vec<_>>();
+            (1..WAY).all(|k| height(&between(k)).is_finite())
+        };
+        near.retain(|to| !is_through || touch.is_none_or(|touch| height(to) >= 0.0 || is_seen(touch, to)));
         let tried: Vec<f64> =
             self.positions.iter().map(|positions| or_free(self.height(point, positions, slack))).collect();
         let is_open = if is_through { lattice.beside_the_outside(&tried) } else { vec![true; tried.len()] };
