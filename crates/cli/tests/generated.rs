@@ -19,9 +19,9 @@ const MENDED: &[u64] = &[
     // other branches, valid on a part of a grid or with few points, that no start led to
     4_879, 5_644, 6_712, 6_970, 8_500, 8_606, 9_031, 9_261, 9_549, 12_396, 15_374, 15_702, 16_258, 16_625,
     // the same beside a branch that lies beyond the ranges for the most part
-    3_330, 14_653, 16_849,
-    // a point that comes into the tool beyond an end of its surface: the trying was wrong
-    16_423,
+    3_330, 14_653, 16_849, 17_381,
+    // the trying was wrong: a point that comes into the tool beyond an end of its surface, motions that together only turn a torus in itself
+    8_924, 16_423,
 ];
 
 /// A folder for specs and what is written, with the table that some of them read.

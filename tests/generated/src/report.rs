@@ -10,8 +10,9 @@ use crate::families;
 use crate::judge::{self, Counts, Finding, Judged};
 use crate::told::Outcome;
 
-/// How the program tells that a motion only slides the tool within itself: it leaves no surface.
-const SLIDES: &str = "error[E0509]";
+/// How the program tells that a motion only slides the tool within itself: it leaves no surface. Where two motions do so together, the
+/// coordinates do not tell points apart.
+const SLIDES: [&str; 2] = ["error[E0509]", "error[E0506]"];
 
 /// What came out of one case.
 #[derive(Clone, Debug)]
@@ -76,7 +77,7 @@ impl Report {
         match solve(&self.specs[number], &names) {
             Ok(documents) => Some(documents.iter().map(Outcome::new).collect()),
             // some machines at random move the tool only along itself, and the program does not take them
-            Err(what) if what.contains(SLIDES) => None,
+            Err(what) if SLIDES.iter().any(|code| what.contains(code)) => None,
             Err(what) => {
                 self.findings.push(Finding { kind: "refused", job: String::new(), what });
                 None
