@@ -30,6 +30,7 @@ run() { # job rows columns repetitions
 process() { # name
     case $1 in
         surface) set -- solve benches/spiral_bevel.chain --job flank ;;
+        contact) set -- contact specs/pairs/bevel_19x62.chain ;;
         ease_off) set -- deviation specs/bevel/ease_off_19x62.chain pinion.concave --reference conjugate.concave ;;
         *) echo "no process is called $1" >&2; return 1 ;;
     esac

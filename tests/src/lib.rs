@@ -5,6 +5,7 @@ pub mod conversion;
 mod dice;
 pub mod layout;
 pub mod machines;
+pub mod pairs;
 pub mod targets;
 pub mod variants;
 

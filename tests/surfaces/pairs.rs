@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Contact, Job};
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{ContactPoint, ContactProblem, Range, RollingPair};
-use flank_tests::{bound, difference, job, number, reference_json, sampled};
+use flank_solver::{ContactPoint, ContactProblem};
+use flank_tests::pairs::with_pair;
+use flank_tests::{difference, job, number, reference_json};
 use nalgebra::{Matrix4, Vector3};
 use serde_json::Value;
 
@@ -124,23 +125,9 @@ fn bevel_gears_are_placed_as_the_published_pair() {
 
 /// The contact of a job's flanks, its pair mounted with errors, at rising roll positions.
 fn path(job: &Job<'_>, wrong: &[(&str, f64)], rolls: &[f64]) -> Vec<ContactPoint> {
-    let contact = &job.contacts[0];
-    let graph = contact.roll.variable.graph();
-    let error = |name: &str| wrong.iter().find(|(of, _)| *of == name).map_or(0.0, |(_, error)| *error);
-    let mounted = contact.errors.iter().map(|axis| (axis.variable, graph.constant(error(&axis.name))));
-    let given: Vec<_> = mounted.chain(job.bindings()).collect();
-    let surfaces = contact.surfaces.map(|at| &job.surfaces[at]);
-    let flanks = surfaces.map(|surface| bound(job, surface));
-    let points = surfaces.map(|surface| sampled(job, &surface.name));
-    let pair = RollingPair {
-        surfaces: flanks.each_ref(),
-        placements: contact.placements.each_ref().map(|placement| placement.substituted(&given)),
-        roll: contact.roll.variable,
-        lag: (contact.lag.variable, Range { low: contact.lag.low, high: contact.lag.high }),
-        outlines: [None, None],
-        parameters: Vec::new(),
-    };
-    let path = ContactProblem::new(&pair).expect("nothing is unbound").path(rolls, [&points[0], &points[1]]);
+    let path = with_pair(job, wrong, false, |pair, points| {
+        ContactProblem::new(pair).expect("nothing is unbound").path(rolls, points)
+    });
     assert_eq!(path.refused, None);
     path.points.into_iter().map(|point| point.expect("it touches all over the roll")).collect()
 }

@@ -146,8 +146,8 @@ job paddles {
 #[test]
 fn paddles_touch_in_the_middle() {
     let out = folder("contact_paddles");
-    let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "-8 deg .. 0 deg"));
-    let found = document(&["contact", spec.to_str().unwrap(), "--out", out.to_str().unwrap()], 0);
+    let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "1 deg .. 9 deg"));
+    let found = document(&["contact", &spec, "--out", out.to_str().unwrap()], 0);
     assert_eq!(found["kind"], "point");
     // both are spheres of 40 mm to second order, seen from where they touch
     let gap = found["middle"]["gap"].as_array().expect("two curvatures");
@@ -168,13 +168,13 @@ fn what_cannot_touch_is_told() {
     let at = out.to_str().unwrap();
     let run = |text: &str| {
         let spec = written(&out, "paddles.chain", text);
-        flank(&["contact", spec.to_str().unwrap(), "--out", at, "--no-picture"])
+        flank(&["contact", &spec, "--out", at, "--no-picture"])
     };
     let told = |run: &std::process::Output| (run.status.code(), text(&run.stderr));
-    let (code, message) = told(&run(&PADDLES.replace("LAG", "1 deg .. 5 deg")));
+    let (code, message) = told(&run(&PADDLES.replace("LAG", "-9 deg .. -1 deg")));
     assert!(code == Some(3) && message.contains("do not reach each other within the range of `lag`"), "{message}");
     let facing = PADDLES
-        .replace("LAG", "-8 deg .. 0 deg")
+        .replace("LAG", "1 deg .. 9 deg")
         .replace("180 deg - turn", "0 deg - turn")
         .replace("40 mm + A", "0 mm + A");
     let (code, message) = told(&run(&facing));
@@ -185,16 +185,13 @@ fn what_cannot_touch_is_told() {
         (&["--error", "m.A=1"], 2, "write AXIS=VALUE with a unit"),
         (&["nosuch"], 1, "there is no contact `nosuch`; there is: `driving`"),
     ] {
-        let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "-8 deg .. 0 deg"));
-        let run = flank(&[&["contact", spec.to_str().unwrap(), "--out", at][..], arguments].concat());
+        let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "1 deg .. 9 deg"));
+        let run = flank(&[&["contact", &spec, "--out", at][..], arguments].concat());
         assert!(run.status.code() == Some(code) && text(&run.stderr).contains(words), "{}", text(&run.stderr));
     }
-    let run = flank(&["contact", "specs/hobbing/spur_gear.chain"]);
-    assert!(
-        run.status.code() == Some(1) && text(&run.stderr).contains("no job says which flanks touch"),
-        "{}",
-        text(&run.stderr)
-    );
+    let without = flank(&["contact", "specs/hobbing/spur_gear.chain"]);
+    let words = "no job says which flanks touch";
+    assert!(without.status.code() == Some(1) && text(&without.stderr).contains(words), "{}", text(&without.stderr));
     let solids = r#"
     profile blank {
         tip   = line(from: [6 mm, 23 mm], to: [-6 mm, 23 mm])
@@ -206,11 +203,15 @@ fn what_cannot_touch_is_told() {
     solid driven in b.table = turned(blank, spaces: 18, of: [right])
     machine m = two_shafts"#;
     let with_solids = PADDLES.replace("    machine m = two_shafts", solids);
-    let (code, message) = told(&run(&with_solids.replace("LAG", "-8 deg .. 4 deg")));
+    let (code, message) = told(&run(&with_solids.replace("LAG", "-2 deg .. 10 deg")));
     assert!(
         code == Some(1) && message.contains("those of driven are 20.000 deg apart; a range of at most 10.000 deg"),
         "{message}"
     );
-    let (code, message) = told(&run(&with_solids.replace("LAG", "-8 deg .. 0 deg")));
+    let (code, message) = told(&run(&with_solids.replace("LAG", "1 deg .. 9 deg")));
     assert!(code == Some(0) && !message.contains("no `solid`"), "{message}");
+    // a blank that ends below the flanks
+    let shallow = with_solids.replace("LAG", "1 deg .. 9 deg").replace("23 mm", "15 mm");
+    let (code, message) = told(&run(&shallow));
+    assert!(code == Some(3) && message.contains("the outline of driver leaves no sampled point of left"), "{message}");
 }

@@ -130,6 +130,14 @@ fn refused(members: &Members<'_, '_>, why: NoContact) -> NotDone {
                 lag.name, roll.name
             )],
         ),
+        NoContact::NoFlank(member) => {
+            let solid = members.solids[member].map_or(String::new(), |solid| solid.name.clone());
+            let surface = &members.surfaces[member].name;
+            (
+                format!("the outline of {solid} leaves no sampled point of {surface}"),
+                vec!["the points `[z, rho]` of its profile are those of the frame in which the solid stands".to_string()],
+            )
+        }
         NoContact::SameSide => (
             format!("{first} and {second} face the same way where they meet"),
             vec!["one member lies inside the other, or it is the wrong flank of a tooth: its opposite flank faces the mate".to_string()],

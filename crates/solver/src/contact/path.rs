@@ -8,6 +8,8 @@ use crate::surface::points::SurfacePoint;
 
 /// Halvings of a step of the roll until the contact is lost.
 const HALVINGS: u32 = 12;
+/// Steps from one roll position to another until the contact is lost.
+const MOST_STEPS: usize = 200;
 /// A point this much farther from where it was expected than the way to it, as a share of that, is of another contact.
 const ASTRAY: f64 = 0.3;
 /// Steps until a vertex is settled, and the change of the roll, as a share of what is followed, at which it is.
@@ -57,9 +59,16 @@ impl ContactProblem {
     pub fn followed(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
         let mut at = from.clone();
         let mut halvings = 0;
-        while at.roll != roll {
+        for _ in 0..MOST_STEPS {
+            if at.roll == roll {
+                return Some(at);
+            }
             let step = (roll - at.roll) * 0.5f64.powi(halvings);
             let next = if halvings == 0 { roll } else { at.roll + step };
+            // a step that is rounding of the roll leads nowhere
+            if next == at.roll {
+                return None;
+            }
             match self.step(&at, next) {
                 Some(found) => {
                     at = found;
@@ -69,7 +78,7 @@ impl ContactProblem {
                 None => halvings += 1,
             }
         }
-        Some(at)
+        None
     }
 
     fn step(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {

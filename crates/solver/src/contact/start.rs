@@ -25,6 +25,8 @@ const LOCKED: f64 = 1e-6;
 pub enum NoContact {
     /// The second flank passes through no point of the first one within the range of the lag.
     Apart,
+    /// The outline of a member, 0 or 1, holds no point of its flank.
+    NoFlank(usize),
     /// The flanks face the same way where they meet: a member inside the other, or the wrong flank of a tooth.
     SameSide,
     /// The lag moves nothing along the normal: the pair is self-locking there.
@@ -69,7 +71,13 @@ impl ContactProblem {
                 }
             }
         }
-        best.ok_or(NoContact::NotFound)
+        // where the lag would have to go beyond its range the flanks do not come together within it
+        let is_apart =
+            |best: &ContactPoint| matches!(best.outcome, Outcome::Outside { unknown, .. } if unknown == self.lag_at());
+        match best {
+            Some(best) if is_apart(&best) => Err(NoContact::Apart),
+            best => best.ok_or(NoContact::NotFound),
+        }
     }
 
     /// With which edges a contact is looked for: flank on flank first.
@@ -91,6 +99,16 @@ impl ContactProblem {
         let Some((p, q)) = first.first().zip(second.first()) else { return Err(NoContact::Apart) };
         let places: Vec<Vector3<f64>> = second.iter().map(|q| at(p, q)[1].position).collect();
         let own: Vec<Vector3<f64>> = first.iter().map(|p| at(p, q)[0].position).collect();
+        for (member, outline) in self.outlines.iter().enumerate() {
+            let points = [&first, &second][member];
+            let section = |unknowns: &Vec<f64>| match member {
+                0 => at(unknowns, q)[0].section(),
+                _ => at(p, unknowns)[1].section(),
+            };
+            if outline.as_ref().is_some_and(|outline| !points.iter().any(|point| outline.holds(section(point)))) {
+                return Err(NoContact::NoFlank(member));
+            }
+        }
         let mut found = Vec::new();
         let mut refused = None;
         let mut last: Option<Vec<f64>> = None;

@@ -1,0 +1,50 @@
+//! Pairs of specs as the solver takes them.
+
+use flank_chain_dsl::{Job, OutlineCurve, Solid};
+use flank_solver::{Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
+
+use crate::{bound, sampled};
+
+/// The first contact of a job, its pair mounted with errors, with the points that the samples of both flanks ask for; with the ends of its
+/// teeth, or of flanks without edges.
+///
+/// # Panics
+/// If the job has no contact, or a flank of it no sample.
+pub fn with_pair<'g, R>(
+    job: &Job<'g>,
+    wrong: &[(&str, f64)],
+    has_edges: bool,
+    use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
+) -> R {
+    let contact = &job.contacts[0];
+    let graph = contact.roll.variable.graph();
+    let error = |name: &str| wrong.iter().find(|(of, _)| *of == name).map_or(0.0, |(_, error)| *error);
+    let mounted = contact.errors.iter().map(|axis| (axis.variable, graph.constant(error(&axis.name))));
+    let given: Vec<_> = mounted.chain(job.bindings()).collect();
+    let surfaces = contact.surfaces.map(|at| &job.surfaces[at]);
+    let flanks = surfaces.map(|surface| bound(job, surface));
+    let points = surfaces.map(|surface| sampled(job, &surface.name));
+    let solids = contact.surfaces.map(|at| job.solids.iter().find(|solid| solid.space.contains(&at)));
+    let pair = RollingPair {
+        surfaces: flanks.each_ref(),
+        placements: contact.placements.each_ref().map(|placement| placement.substituted(&given)),
+        roll: contact.roll.variable,
+        lag: (contact.lag.variable, Range { low: contact.lag.low, high: contact.lag.high }),
+        outlines: solids.map(|solid| solid.filter(|_| has_edges).map(outline)),
+        parameters: Vec::new(),
+    };
+    use_pair(&pair, points.each_ref().map(Vec::as_slice))
+}
+
+fn outline(solid: &Solid) -> Outline {
+    let segments = solid.outline.iter().map(|segment| OutlineSegment {
+        name: segment.name.clone(),
+        from: segment.from,
+        to: segment.to,
+        center: match segment.curve {
+            OutlineCurve::Line => None,
+            OutlineCurve::Arc { center } => Some(center),
+        },
+    });
+    Outline::new(segments.collect())
+}
