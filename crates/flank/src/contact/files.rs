@@ -7,8 +7,8 @@ use flank_solver::{ContactPoint, Outcome, SurfacePoint};
 
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
+use crate::contact::place::{fine, fine_unit};
 use crate::contact::rolling::Rolling;
-use crate::contact::summary::{fine, fine_unit};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::requests::{ContactRequest, Session};

@@ -1,12 +1,12 @@
 //! What mounting errors do to a contact, and which of them bring it elsewhere.
 
 use flank_chain_dsl::{Contact, Dimension, Job, closest};
-use flank_solver::{ContactPoint, ContactProblem, Outcome};
+use flank_solver::{ContactPoint, ContactProblem};
 
 use crate::contact::pair::Members;
+use crate::contact::place::{dot, fine, rows_at, shares};
 use crate::contact::result::{MountingInfluence, VhjRow};
 use crate::contact::rolling::Rolling;
-use crate::contact::summary::{dot, fine, shares};
 use crate::project::failure::Failure;
 use crate::project::requests::MountingError;
 use crate::project::units;
@@ -31,7 +31,7 @@ pub(crate) fn mounting(
             let near = closest(name, names()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             let known = names().collect::<Vec<&str>>().join(", ");
             let (job, contact) = (&job.name, &contact.name);
-            return Err(Failure::Request(format!(
+            return Err(Failure::from(format!(
                 "option `error {name}`: the pair of contact `{contact}` of job `{job}` has no such axis; it has {known}{near}"
             )));
         };
@@ -45,48 +45,11 @@ pub(crate) fn mounting(
                 } else {
                     "a length, for example 0.1mm"
                 };
-                return Err(Failure::Request(format!("option `error {name}`: this axis takes {wanted}")));
+                return Err(Failure::from(format!("option `error {name}`: this axis takes {wanted}")));
             }
         };
     }
     Ok(errors)
-}
-
-/// Directions on a flank at a place, in its frame.
-pub(crate) struct OnFlank {
-    /// Along the rows of its sample.
-    pub(crate) lengthwise: [f64; 3],
-    /// In the flank, square to that, towards later rows.
-    pub(crate) profilewise: [f64; 3],
-}
-
-/// Directions of the sample of a member's flank where it touches: those of its points around the nearest one.
-pub(crate) fn rows_at(members: &Members<'_, '_>, member: usize, point: &ContactPoint) -> Option<OnFlank> {
-    let [rows, columns] = members.surfaces[member].sample.as_ref()?.counts;
-    let points = &members.points[member];
-    let apart = |at: usize| {
-        let off: [f64; 3] = std::array::from_fn(|k| points[at].position[k] - point.in_members[member][k]);
-        dot(&off, &off)
-    };
-    let is_solved = |at: &usize| points[*at].outcome == Outcome::Solved;
-    let near = (0..points.len()).filter(is_solved).min_by(|a, b| apart(*a).total_cmp(&apart(*b)))?;
-    let (row, column) = (near / columns, near % columns);
-    let between = |low: usize, high: usize| -> Option<[f64; 3]> {
-        let ends = (is_solved(&low) && is_solved(&high) && low != high).then_some([low, high])?;
-        let [a, b] = ends.map(|at| points[at].position);
-        unit(std::array::from_fn(|k| b[k] - a[k]))
-    };
-    let at = |row: usize, column: usize| row * columns + column;
-    let lengthwise = between(at(row, column.saturating_sub(1)), at(row, (column + 1).min(columns - 1)))?;
-    let up = between(at(row.saturating_sub(1), column), at((row + 1).min(rows - 1), column))?;
-    let along = dot(&up, &lengthwise);
-    let profilewise = unit(std::array::from_fn(|k| up[k] - along * lengthwise[k]))?;
-    Some(OnFlank { lengthwise, profilewise })
-}
-
-fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = dot(&v, &v).sqrt();
-    (length > 0.0).then(|| v.map(|x| x / length))
 }
 
 /// What each axis of the pair's machine does to the middle, but for those that turn it.

@@ -4,6 +4,7 @@ pub(crate) mod files;
 pub(crate) mod influence;
 pub(crate) mod pair;
 pub(crate) mod pattern;
+pub(crate) mod place;
 pub(crate) mod result;
 pub(crate) mod rolling;
 pub(crate) mod summary;
@@ -61,13 +62,13 @@ fn asked<'j, 'g>(
     if all.is_empty() {
         let message = "no job says which flanks touch: add `contact drive_side = A with B, over: MOTION, for: UNKNOWN` to one that mounts \
                        both on a pair of shafts";
-        return Err(Failure::Request(message.to_string()));
+        return Err(Failure::from(message.to_string()));
     }
     let Some(name) = &request.contact else { return Ok(all) };
     let known: Vec<String> = all.iter().map(|(_, contact)| format!("`{}`", contact.name)).collect();
     let found: Vec<_> = all.into_iter().filter(|(_, contact)| contact.name == *name).collect();
     if found.is_empty() {
-        return Err(Failure::Request(format!("there is no contact `{name}`; there is: {}", known.join(", "))));
+        return Err(Failure::from(format!("there is no contact `{name}`; there is: {}", known.join(", "))));
     }
     Ok(found)
 }

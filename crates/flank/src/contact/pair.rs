@@ -117,7 +117,7 @@ impl<'g> Members<'_, 'g> {
             let (apart, width) = (TAU / f64::from(solid.teeth) / turn[0].abs(), lag.high - lag.low);
             if width > 0.5 * apart {
                 let text = |value: f64| units::text(lag.dimension, value, 3);
-                return Err(Failure::Request(format!(
+                return Err(Failure::from(format!(
                     "contact {name}: the range of `{}` is {} wide and may hold two teeth: those of {} are {} apart; a range of at most \
                      {} holds one",
                     lag.name,

@@ -1,11 +1,11 @@
 //! The numbers of a contact, in the units that people read.
 
-use flank_chain_dsl::{Dimension, GeneratedSurface, Job, SampleGrid};
+use flank_chain_dsl::{Dimension, Job};
 use flank_solver::{ContactPoint, ContactState, FlankEdge, Outcome};
 
-use crate::contact::influence;
 use crate::contact::pair::{self, Members};
 use crate::contact::pattern::GapMap;
+use crate::contact::place::{dot, fine, fine_unit, rows_at, shares};
 use crate::contact::result::{
     Backlash, ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError,
     PlaceOnFlank, TransmissionError,
@@ -145,7 +145,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     fn place(&self, member: usize, point: &ContactPoint) -> PlaceOnFlank {
         let [x, y, z] = point.in_members[member];
         let rho = x.hypot(y);
-        let along = influence::rows_at(self.members, member, point);
+        let along = rows_at(self.members, member, point);
         let path_angle = along.map(|along| {
             let path = point.path[member];
             let [dot, length] = [dot(&path, &along.lengthwise), dot(&path, &path).sqrt()];
@@ -349,47 +349,6 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         }
         told
     }
-}
-
-pub(crate) fn fine(dimension: Dimension, difference: f64) -> f64 {
-    difference * if units::is_angle(dimension) { 1e6 } else { 1e3 }
-}
-
-pub(crate) fn fine_unit(dimension: Dimension) -> &'static str {
-    if units::is_angle(dimension) { "urad" } else { "um" }
-}
-
-pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Steps until the shares of a point between the corners of a blank are settled.
-const MOST_STEPS: usize = 30;
-
-/// Shares from root to tip and from toe to heel at a point `[z, rho]`, where the sample of a surface is one of shares.
-pub(crate) fn shares(surface: &GeneratedSurface<'_>, point: [f64; 2]) -> Option<[f64; 2]> {
-    let SampleGrid::Shares { corners, .. } = surface.sample.as_ref()?.grid else { return None };
-    let at = |shares: [f64; 2]| SampleGrid::Shares { shares: shares.map(|share| vec![share]), corners }.at(0, 0);
-    let mut shares = [0.5, 0.5];
-    for _ in 0..MOST_STEPS {
-        let here = at(shares);
-        let off = [0, 1].map(|k| point[k] - here[k]);
-        // bilinear: differences over a whole unit are its derivatives
-        let by = [[1.0, 0.0], [0.0, 1.0]].map(|step: [f64; 2]| {
-            let there = at([0, 1].map(|k| shares[k] + step[k]));
-            [0, 1].map(|k| there[k] - here[k])
-        });
-        let determinant = by[0][0] * by[1][1] - by[0][1] * by[1][0];
-        let step = [
-            (off[0] * by[1][1] - off[1] * by[1][0]) / determinant,
-            (off[1] * by[0][0] - off[0] * by[0][1]) / determinant,
-        ];
-        shares = [0, 1].map(|k| shares[k] + step[k]);
-        if step.iter().all(|step| step.abs() < 1e-14) {
-            break;
-        }
-    }
-    shares.iter().all(|share| share.is_finite()).then_some(shares)
 }
 
 /// How much the pair can move between this contact and one of the opposite flanks, which moves the same unknown the other way.

@@ -24,6 +24,8 @@ pub struct GapProblem {
     /// Unknowns of the mate and a distance; a point and a normal in the mate's frame are parameters, and those of the pair.
     along_normal: System,
     ranges: Vec<Range>,
+    /// Where the teeth of the flank end, and those of the mate.
+    own: Option<Outline>,
     outline: Option<Outline>,
     /// Of the pair's parameters.
     values: Vec<f64>,
@@ -62,6 +64,7 @@ impl GapProblem {
         Ok(GapProblem {
             along_normal: System::new(&residuals, &unknowns, &parameters)?,
             ranges: [pair.surfaces[mate].ranges(), &[FARTHEST]].concat(),
+            own: pair.outlines[member].clone(),
             outline: pair.outlines[mate].clone(),
             values: pair.parameters.iter().map(|(_, value)| *value).collect(),
             pose: Tape::new(&pose, &[&[pair.roll, pair.lag.0][..], &given].concat())?,
@@ -69,7 +72,7 @@ impl GapProblem {
     }
 
     /// At each point of the flank, in its own frame, the least distance to the mate over positions of roll and lag; `None` where its
-    /// normal meets the mate at none of them. `mate` are solved points of the mate, from which its nearest is looked for; what lies farther
+    /// normal meets the mate at none of them, and beyond the ends of its tooth. `mate` are solved points of the mate, from which its nearest is looked for; what lies farther
     /// away than `reach`, mm, belongs to another tooth.
     pub fn least(
         &self,
@@ -105,7 +108,8 @@ impl GapProblem {
         poses: &[[f64; 12]],
         mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
-        let is_solved: Vec<bool> = nodes.iter().map(|node| node.outcome == Outcome::Solved).collect();
+        let is_solved: Vec<bool> =
+            nodes.iter().map(|node| node.outcome == Outcome::Solved && self.is_on_tooth(node)).collect();
         let mut feet: Vec<Vec<Option<Vec<f64>>>> = Vec::with_capacity(poses.len());
         for pose in poses {
             let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
@@ -174,6 +178,12 @@ impl GapProblem {
     fn alone(&self, asked: &[f64; 6], start: &[f64]) -> Option<Vec<f64>> {
         let solution = solve(&self.along_normal, &self.ranges, &self.parameters(asked), start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
+    }
+
+    /// Whether a point of the flank is one of its tooth.
+    fn is_on_tooth(&self, node: &SurfacePoint) -> bool {
+        let [x, y, z] = node.position;
+        self.own.as_ref().is_none_or(|outline| outline.holds([z, x.hypot(y)]))
     }
 
     /// Whether the mate's tooth reaches there.
