@@ -1,8 +1,8 @@
 //! Files of a contact: how near the mate comes to the points of both flanks, the path on both, and pictures.
 
 use flank_chain_dsl::Job;
-use flank_draw::{ContactDrawing, ErrorCurves, PictureOptions, contact as picture};
-use flank_export::{Axis, Dataset, Field, Patch, Values};
+use flank_draw::{ContactDrawing, ErrorCurves, Picture, PictureOptions, contact as picture};
+use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
 use flank_solver::{ContactPoint, Outcome, SurfacePoint};
 
 use crate::contact::pair::Members;
@@ -37,27 +37,47 @@ pub(crate) fn write(
         request.compound * 1e3
     ));
     let flanks: Vec<Patch> = maps.iter().enumerate().map(|(member, map)| flank(job, members, member, map)).collect();
-    let shown: Vec<Patch> = flanks.iter().map(|patch| near(patch, request.compound)).collect();
+    let drawn =
+        (!request.no_picture).then(|| drawn(job, members, rolling, &flanks, (request.compound, header.clone())));
     let paths = (0..2).map(|member| path(job, members, rolling, member));
-    let dataset = Dataset { header: header.clone(), patches: flanks.into_iter().chain(paths).collect() };
+    let dataset = Dataset { header, patches: flanks.into_iter().chain(paths).collect() };
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
-    let title = format!("{}: pattern of {}", job.name, members.contact.name);
-    let note = format!(
-        "Gap to the mate over the whole mesh of a pair of teeth, um, up to {FILMS} films of {} um; the compound is pressed away where it is \
-         thinner than one.",
-        request.compound * 1e3
-    );
-    let drawing = || ContactDrawing {
-        dataset: Dataset { header, patches: shown },
-        title,
-        note,
-        film: request.compound * 1e3,
-        paths: [0, 1].map(|member| flank_path(rolling, member)).to_vec(),
-        error: curves(members, rolling, request.compound),
-    };
-    let drawn = (!request.no_picture).then(|| picture(&drawing(), &PictureOptions::default()));
     folder.picture_after(&name, drawn.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
     folder.finish()
+}
+
+/// The picture of a contact, with the origin that stands on it.
+pub(crate) fn picture_of(
+    job: &Job<'_>,
+    members: &Members<'_, '_>,
+    rolling: &Rolling,
+    maps: &[GapMap],
+    (compound, header): (f64, Header),
+) -> Picture {
+    let flanks: Vec<Patch> = maps.iter().enumerate().map(|(member, map)| flank(job, members, member, map)).collect();
+    drawn(job, members, rolling, &flanks, (compound, header))
+}
+
+fn drawn(
+    job: &Job<'_>,
+    members: &Members<'_, '_>,
+    rolling: &Rolling,
+    flanks: &[Patch],
+    (compound, header): (f64, Header),
+) -> Picture {
+    let film = compound * 1e3;
+    let drawing = ContactDrawing {
+        dataset: Dataset { header, patches: flanks.iter().map(|patch| near(patch, compound)).collect() },
+        title: format!("{}: pattern of {}", job.name, members.contact.name),
+        note: format!(
+            "Gap to the mate over the whole mesh of a pair of teeth, um, up to {FILMS} films of {film} um; the compound is pressed away \
+             where it is thinner than one."
+        ),
+        film,
+        paths: [0, 1].map(|member| flank_path(rolling, member)).to_vec(),
+        error: curves(members, rolling, compound),
+    };
+    picture(&drawing, &PictureOptions::default())
 }
 
 fn field(name: &str, unit: &str, meaning: &str, values: impl Iterator<Item = Option<f64>>) -> Field {

@@ -8,10 +8,13 @@ pub(crate) mod place;
 pub(crate) mod result;
 pub(crate) mod rolling;
 pub(crate) mod summary;
+mod text;
 
 use std::time::Instant;
 
 use flank_chain_dsl::{Contact, Job};
+use flank_draw::Picture;
+use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::NoContact;
 
@@ -23,7 +26,7 @@ use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ContactRequest, Session};
+use crate::project::requests::{ContactRequest, JobSelection, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 
@@ -116,6 +119,34 @@ fn of_contact(
         remarks: origin.located(&[job], result.remarks.clone()),
         ..result
     })
+}
+
+/// A contact for a page that writes no files of its own: what is known of it, and its picture with this origin if the flanks touch.
+///
+/// # Errors
+/// If a flank is not sampled, the range of the unknown holds two teeth, or the work is cancelled.
+pub(crate) fn shown(
+    job: &Job<'_>,
+    contact: &Contact<'_>,
+    jobs: &JobSelection,
+    (header, session): (&Header, Session),
+) -> Result<(ContactResult, Option<Picture>), Failure> {
+    let request = ContactRequest::new(jobs.clone());
+    let errors = influence::mounting(job, contact, &[])?;
+    let members = Members::solved(job, contact, session)?;
+    members.check_range(job)?;
+    let pair = members.pair(job, &errors, &[]);
+    let summary = Summary::new(job, &members, &request, &errors);
+    let rolling = match Rolling::of_pair(&members, &pair, (request.positions as usize, members.pitch(job))) {
+        Ok(rolling) => rolling,
+        Err(why) => {
+            return Ok((ContactResult { not_done: vec![refused(&members, why)], ..summary.of_nothing() }, None));
+        }
+    };
+    let patterns = pattern::on_both(&members, &pair, &rolling, request.compound);
+    let influences = influence::of_all(job, &members, &errors, &rolling, request.compound);
+    let picture = files::picture_of(job, &members, &rolling, &patterns, (request.compound, header.clone()));
+    Ok((ContactResult { influences, ..summary.of_rolling(&rolling, &patterns) }, Some(picture)))
 }
 
 /// Why two flanks do not touch, with a way out.

@@ -298,6 +298,25 @@ pub struct ContactRequest {
     pub evaluator: EvaluatorOptions,
 }
 
+impl ContactRequest {
+    /// All contacts as they are mounted, 60 positions a pitch, 6.35 um (0.00025 inch) of compound, into the folder `build`.
+    pub fn new(jobs: impl Into<JobSelection>) -> ContactRequest {
+        ContactRequest {
+            jobs: jobs.into(),
+            contact: None,
+            errors: Vec::new(),
+            positions: 60,
+            compound: 0.00635,
+            sensitivity: false,
+            vhj: false,
+            out: "build".into(),
+            format: vec![PointFormat::Csv],
+            no_picture: false,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+}
+
 /// Nominal points for measuring machines.
 #[derive(Clone, Debug)]
 pub struct MeasureRequest {

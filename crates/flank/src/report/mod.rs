@@ -1,5 +1,6 @@
 //! `flank report`
 
+mod contacts;
 mod conventions;
 mod ends;
 mod extremes;
@@ -13,11 +14,12 @@ mod target;
 mod unchecked;
 
 use flank_chain_dsl::{Job, Sources};
-use flank_draw::{Block, Figure, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_draw::{Block, Figure, Picture, PictureOptions, Report as Document, ReportSection, Tone};
 use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
 
+use crate::contact::{self, result::ContactResult};
 use crate::draw::{self, Drawing, Subject};
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
@@ -81,7 +83,11 @@ struct Findings<'j, 'g> {
     /// Of a STEP file, if one is asked for.
     faces: Vec<Smooth>,
     is_certified: bool,
+    contacts: Vec<ShownContact>,
 }
+
+/// What is known of a contact, and its picture.
+type ShownContact = (ContactResult, Option<Picture>);
 
 impl<'j, 'g> Findings<'j, 'g> {
     fn of_job(
@@ -114,6 +120,8 @@ impl<'j, 'g> Findings<'j, 'g> {
         let header = solve::header(&[job], &request.jobs, origin);
         // the page says once where all its pictures come from
         let unsigned = Header { spec: String::new(), ..header.clone() };
+        let shown = |contact| contact::shown(job, contact, &request.jobs, (&unsigned, wanted.session));
+        let contacts = job.contacts.iter().map(shown).collect::<Result<_, Failure>>()?;
         let subject = Subject::of_solved(job, solved, &[], unsigned)?;
         let drawings = draw::defaults(&subject, PictureOptions::default());
         Ok(Findings {
@@ -129,6 +137,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             drawings,
             faces,
             is_certified: request.certify,
+            contacts,
         })
     }
 
@@ -148,6 +157,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         all.extend(cut::unknown(solved.iter().map(Solved::left)));
         all.extend(certify::failed(solved));
         all.extend(travel::beyond(self.job, solved));
+        all.extend(self.contacts.iter().flat_map(|(contact, _)| contact.not_done.iter().cloned()));
         all.extend(step::missed(&self.faces, self.request.step.unwrap_or_default()));
         all
     }
@@ -162,6 +172,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         let mut sections = vec![inputs::section(self), machines::section(self), results::section(self)];
         sections.extend([extremes::section(self), ends::section(self)]);
         sections.extend(influences::section(self));
+        sections.extend(contacts::section(self));
         sections.extend(pictures::section(self));
         let unchecked = unchecked::unchecked(self);
         let blocks = vec![

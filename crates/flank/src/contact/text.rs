@@ -1,0 +1,169 @@
+//! What is known of a contact in words.
+
+use std::fmt;
+
+use flank_export::fixed;
+
+use crate::contact::result::{ContactKind, ContactMiddle, ContactPattern, ContactResult};
+use crate::project::units;
+
+/// Below this a parabola or a curvature of the gap is zero, in the units in which it is printed: rounding.
+const NOTHING: f64 = 1e-9;
+
+fn small(value: f64) -> String {
+    if value.abs() < NOTHING { "0".to_string() } else { units::scientific(value, 3) }
+}
+
+impl fmt::Display for ContactResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}\n", self.heading())?;
+        self.facts().iter().try_for_each(|(name, text)| writeln!(f, "  {name:12} {text}"))?;
+        self.write_influences(f)?;
+        if !self.vhj.is_empty() {
+            writeln!(f)?;
+        }
+        for row in &self.vhj {
+            let (to, lengthwise) = (&row.to, fixed(row.lengthwise, 1));
+            let nothing = || format!("no {} bring the contact there", row.axes.join(" and "));
+            let mounted = row.errors.as_ref().map_or_else(nothing, |errors| {
+                let each = row.axes.iter().zip(errors).map(|(axis, error)| format!("{axis} {} mm", fixed(*error, 4)));
+                each.collect::<Vec<String>>().join(", ")
+            });
+            writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounted}")?;
+        }
+        if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
+    }
+}
+
+impl ContactResult {
+    /// What touches what.
+    pub(crate) fn heading(&self) -> String {
+        let [first, second] = &self.members;
+        let ContactResult { job, contact, over, unknown, .. } = self;
+        format!(
+            "contact {contact} of {job}: {} ({}) with {} ({}), over {over}, for {unknown}",
+            first.surface, first.frame, second.surface, second.frame
+        )
+    }
+
+    /// What is known of it: names with what belongs to them, some names several times.
+    pub(crate) fn facts(&self) -> Vec<(String, String)> {
+        let ContactResult { over, over_unit, .. } = self;
+        let mut facts: Vec<(&str, String)> = Vec::new();
+        for error in &self.mounted {
+            let value = (error.value * 1e9).round() / 1e9;
+            facts.push(("mounted", format!("{} {value} {} off", error.axis, error.unit)));
+        }
+        facts.extend(self.middle.iter().flat_map(|middle| self.of_middle(middle)));
+        if let Some(error) = &self.error {
+            let transfers: Vec<String> = error.transfers.iter().map(|turn| fixed(*turn, 3)).collect();
+            let handed = match transfers.len() {
+                0 => String::new(),
+                _ => format!(", transfer at {over} {} {over_unit}", transfers.join(" and ")),
+            };
+            let (size, unit) = (fixed(error.peak_to_peak, 3), &error.unit);
+            facts.push(("error", format!("peak to peak {size} {unit} over a pitch{handed}")));
+        }
+        if let Some(ratio) = self.ratio {
+            let pairs = self.error.as_ref().map_or(String::new(), |error| {
+                format!("; up to {} within the film at a time", units::counted(error.pairs, "pair"))
+            });
+            facts.push(("ratio", format!("{} on the flanks{pairs}", fixed(ratio, 3))));
+        }
+        for end in &self.ends {
+            let what = if end.is_begin { "begins" } else { "ends" };
+            let at = end.at.as_deref().unwrap_or("the end of what its tool makes");
+            let turn = fixed(end.turn, 3);
+            facts.push(("flanks", format!("contact {what} at {over} {turn} {over_unit}: {at} of {}", end.of)));
+        }
+        if self.error.is_some() && self.edges.is_empty() && self.members.iter().any(|member| member.solid.is_some()) {
+            facts.push(("edges", "no edge carries".to_string()));
+        }
+        for edge in &self.edges {
+            let [from, to] = [edge.from, edge.to].map(|turn| fixed(turn, 3));
+            facts.push(("edges", format!("{} carries from {over} {from} to {to} {over_unit}", edge.edge)));
+        }
+        facts.extend(self.pattern.iter().map(|pattern| ("pattern", pattern.text())));
+        if let Some(backlash) = &self.backlash {
+            let (unit, other) = (&self.unknown_unit, &backlash.other);
+            let (least, normal, turn) = (fixed(backlash.least, 5), fixed(backlash.normal, 4), fixed(backlash.turn, 3));
+            facts.push((
+                "backlash",
+                format!("{least} {unit}, {normal} mm along the normal, to {other} at {over} {turn} {over_unit}"),
+            ));
+        }
+        facts.into_iter().map(|(name, text)| (name.to_string(), text)).collect()
+    }
+
+    fn of_middle(&self, middle: &ContactMiddle) -> Vec<(&'static str, String)> {
+        let ContactResult { over, over_unit, unknown_unit, .. } = self;
+        let error_unit = self.error.as_ref().map_or("", |error| error.unit.as_str());
+        let mut facts: Vec<(&str, String)> = Vec::new();
+        for (member, place) in self.members.iter().zip(&middle.on) {
+            let shares = place
+                .shares
+                .map_or(String::new(), |[u, v]| format!("lengthwise {}, profilewise {}; ", fixed(u, 3), fixed(v, 3)));
+            let (z, rho) = (fixed(place.z, 3), fixed(place.rho, 3));
+            let path = place
+                .path_angle
+                .map_or(String::new(), |angle| format!("; the path at {} deg to its rows", fixed(angle, 1)));
+            facts.push(("middle", format!("{shares}z {z} mm, rho {rho} mm on {}{path}", member.surface)));
+        }
+        let vertex =
+            if middle.is_vertex { "where the error is extreme" } else { "in the middle of contact of the flanks" };
+        facts.push(("roll", format!("{over} {} {over_unit}, {vertex}", fixed(middle.turn, 3))));
+        let kind = match self.kind {
+            Some(ContactKind::Line) => "line contact",
+            Some(ContactKind::Crossing) => {
+                "no contact: the flanks run into each other beside the point, so that edges carry"
+            }
+            _ => "contact in a point",
+        };
+        let gap =
+            middle.gap.map_or(String::new(), |[a, b]| format!(", gap curvatures {} and {} 1/mm", small(a), small(b)));
+        let film = self.pattern.first().map_or(String::new(), |pattern| format!(" at {} um", pattern.film_um));
+        let ellipse = middle.ellipse.map_or(String::new(), |[a, b]| {
+            format!(", ellipse {} x {} mm{film}", fixed(2.0 * a, 2), fixed(2.0 * b, 2))
+        });
+        facts.push(("contact", format!("{kind}{gap}{ellipse}")));
+        let (error, parabola) = (fixed(middle.error, 7), small(middle.parabola));
+        facts.push(("error", format!("{error} {unknown_unit} there, parabola {parabola} {error_unit}/{over_unit}^2")));
+        let [sliding, entraining] = [middle.sliding, middle.entraining].map(|speed| fixed(speed, 3));
+        facts.push(("velocities", format!("sliding {sliding}, entraining {entraining} mm/rad of {over}")));
+        facts
+    }
+
+    fn write_influences(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.influences.is_empty() {
+            return Ok(());
+        }
+        let unit = self.error.as_ref().map_or("", |error| error.unit.as_str());
+        let width = self.influences.iter().map(|of| of.axis.len()).max().unwrap_or(0).max(4);
+        writeln!(f, "\n  {:width$}  per       moves on both, mm   {unit:>9}  parabola %  ellipse %", "axis")?;
+        for of in &self.influences {
+            let [a, b] = of.moved_mm.map(|way| fixed(way, 4));
+            let percent = |share: Option<f64>| share.map_or("-".to_string(), |share| fixed(100.0 * share, 2));
+            let (error, parabola, ellipse) = (fixed(of.error, 3), percent(of.parabola), percent(of.ellipse));
+            let (axis, per) = (&of.axis, &of.per);
+            writeln!(f, "  {axis:width$}  {per:8}  {a:>8} {b:>8}   {error:>9}  {parabola:>10}  {ellipse:>9}")?;
+        }
+        Ok(())
+    }
+}
+
+impl ContactPattern {
+    fn text(&self) -> String {
+        let ContactPattern { surface, within, points, film_um, .. } = self;
+        let share = fixed(100.0 * *within as f64 / (*points).max(1) as f64, 1);
+        let extent = self.rows.zip(self.columns).map_or(String::new(), |([a, b], [c, d])| {
+            let [a, b, c, d] = [a, b, c, d].map(|share| fixed(share, 2));
+            format!(", rows {a} to {b}, columns {c} to {d} of its sample")
+        });
+        let least = self.least_um.map_or(String::new(), |least| format!(", least gap {} um", fixed(least, 3)));
+        let touches = match self.touches.len() {
+            0 => String::new(),
+            _ => format!("; touches {}", self.touches.join(", ")),
+        };
+        format!("{share} % of {surface} within {film_um} um{extent}{least}{touches}")
+    }
+}
