@@ -28,6 +28,12 @@ pub struct ContactChange {
     pub gap: Option<[f64; 2]>,
 }
 
+/// How a point of contact moves over both members, and what becomes of the gap.
+struct Moved {
+    over: [[f64; 3]; 2],
+    gap: Option<[f64; 2]>,
+}
+
 impl ContactProblem {
     /// What a parameter changes: at the vertex of the lag, if the point is it and stays it, else at the same roll position. `None` where the
     /// contact is singular.
@@ -43,7 +49,7 @@ impl ContactProblem {
         let roll = if is_vertex { -lag_slope / (2.0 * rolled[lag][2]) } else { 0.0 };
         let rates: Vec<f64> =
             rolled.iter().zip(&changed).map(|(rolled, changed)| changed[1] + roll * rolled[1]).collect();
-        let (moved, gap) = self.moved(at, parameter, roll, &rates)?;
+        let Moved { over: moved, gap } = self.moved(at, parameter, roll, &rates)?;
         Some(ContactChange {
             roll,
             lag: rates[lag],
@@ -55,13 +61,7 @@ impl ContactProblem {
     }
 
     /// How the point moves over both members, and what becomes of the gap, where the unknowns change at these rates.
-    fn moved(
-        &self,
-        at: &ContactPoint,
-        parameter: usize,
-        roll: f64,
-        rates: &[f64],
-    ) -> Option<([[f64; 3]; 2], Option<[f64; 2]>)> {
+    fn moved(&self, at: &ContactPoint, parameter: usize, roll: f64, rates: &[f64]) -> Option<Moved> {
         let values = at.all_unknowns().into_iter().chain(self.given(at.roll));
         let speeds = rates
             .iter()
@@ -87,6 +87,6 @@ impl ContactProblem {
             }
             _ => None,
         };
-        moved.iter().flatten().all(|x| x.is_finite()).then_some((moved, gap))
+        moved.iter().flatten().all(|x| x.is_finite()).then_some(Moved { over: moved, gap })
     }
 }

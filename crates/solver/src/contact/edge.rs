@@ -87,21 +87,21 @@ impl<'g> BoundNames<'g> {
     }
 
     /// The point from the bound's origin, and its distance from the axis.
-    fn from_origin(&self, flank: &Surface<'g>) -> ([Expr<'g>; 2], Expr<'g>) {
+    fn relative(&self, flank: &Surface<'g>) -> ([Expr<'g>; 2], Expr<'g>) {
         let [x, y, z] = flank.position.0;
         let rho = (x * x + y * y).sqrt();
         ([z - self.numbers[0], rho - self.numbers[1]], rho)
     }
 
     fn height(&self, flank: &Surface<'g>) -> Expr<'g> {
-        let ([z, rho], _) = self.from_origin(flank);
+        let ([z, rho], _) = self.relative(flank);
         let [_, _, inward_z, inward_rho, bend] = self.numbers;
         inward_z * z + inward_rho * rho + bend * 0.5 * (z * z + rho * rho)
     }
 
     /// Along the edge, in the flank's frame: square to the flank's normal and to the gradient of the bound.
     fn tangent(&self, flank: &Surface<'g>) -> Vector<'g> {
-        let ([z, out], rho) = self.from_origin(flank);
+        let ([z, out], rho) = self.relative(flank);
         let [_, _, inward_z, inward_rho, bend] = self.numbers;
         let (by_z, by_rho) = (inward_z + bend * z, inward_rho + bend * out);
         let [x, y, _] = flank.position.0;
