@@ -15,6 +15,9 @@ use crate::surface::points::SurfacePoint;
 
 /// A normal that passes the mate's points by more than this share of the way across them all does not meet the mate: its ranges end.
 const ASIDE: f64 = 0.25;
+/// Where no foot was found in lanes, and none at the position before, one is looked for with care at every so many positions: those between
+/// are found from their neighbours.
+const LOOKED_AGAIN: usize = 8;
 /// Nodes that a thread takes at a time.
 const TILE: usize = 2 * LANES;
 
@@ -114,6 +117,7 @@ impl GapProblem {
         for pose in poses {
             let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
             let before = |lane: usize| feet.last().and_then(|feet: &Vec<Option<Vec<f64>>>| feet[lane].clone());
+            let was_met: Vec<bool> = (0..nodes.len()).map(|lane| before(lane).is_some()).collect();
             let starts: Vec<Option<Vec<f64>>> = (0..nodes.len())
                 .map(|lane| is_solved[lane].then(|| before(lane).or_else(|| mate.nearest(&asked[lane]))).flatten())
                 .collect();
@@ -132,7 +136,10 @@ impl GapProblem {
                 match newton.outcome(lane) {
                     Outcome::Solved if is_near => Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect()),
                     Outcome::Outside { .. } if is_near => None,
-                    _ => self.alone(&asked[lane], &mate.nearest(&asked[lane])?),
+                    _ if was_met[lane] || feet.len().is_multiple_of(LOOKED_AGAIN) => {
+                        self.alone(&asked[lane], &mate.nearest(&asked[lane])?)
+                    }
+                    _ => None,
                 }
             };
             let found = (0..nodes.len()).map(|lane| active[lane].then(|| foot(lane)).flatten()).collect();
