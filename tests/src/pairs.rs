@@ -16,7 +16,21 @@ pub fn with_pair<'g, R>(
     has_edges: bool,
     use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
 ) -> R {
-    let contact = &job.contacts[0];
+    with_contact(job, 0, wrong, has_edges, use_pair)
+}
+
+/// The same of one of several contacts.
+///
+/// # Panics
+/// If the job has no such contact, or a flank of it no sample.
+pub fn with_contact<'g, R>(
+    job: &Job<'g>,
+    contact: usize,
+    wrong: &[(&str, f64)],
+    has_edges: bool,
+    use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
+) -> R {
+    let contact = &job.contacts[contact];
     let graph = contact.roll.variable.graph();
     let error = |name: &str| wrong.iter().find(|(of, _)| *of == name).map_or(0.0, |(_, error)| *error);
     let mounted = contact.errors.iter().map(|axis| (axis.variable, graph.constant(error(&axis.name))));
