@@ -146,8 +146,8 @@ fn the_page_solves_what_the_program_solves() {
         ),
         (
             BLANK,
-            &["face_width=37", "outer_transverse_module=4.17"],
-            &["face_width=37 mm", "outer_transverse_module=4.17 mm"],
+            &["addendum_factor=1.01", "p.radial_distance=96.5"],
+            &["addendum_factor=1.01", "p.radial_distance=96.5 mm"],
             1000,
         ),
     ];
