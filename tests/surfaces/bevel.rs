@@ -533,6 +533,8 @@ fn wrong_settings_are_told_in_the_words_of_the_trade() {
         ("pair_from_blank", "face_width", "80 mm", "the teeth vanish at the toe"),
         ("pair_from_blank", "shaft_angle", "120 deg", "the gear would be an internal one"),
         ("pair_from_blank", "dedendum_factor", "2.3", "meet before its tips"),
+        ("pair_from_blank", "pinion_hand", "0", "+1 (right) or -1 (left)"),
+        ("pair_from_blank", "lengthwise_crowning", "3 mm", "no cutter is so flat"),
     ] {
         let set = vec![(name.to_string(), value.to_string())];
         let graph = Graph::new();

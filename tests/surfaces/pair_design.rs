@@ -41,6 +41,15 @@ impl Mean {
         }
     }
 
+    /// Along the flank in the pitch plane, towards the heel, and across it towards the pinion's tip.
+    fn directions(&self, normal: Vector3<f64>) -> [Vector3<f64>; 2] {
+        let up = Vector3::new(self.point.z, 0.0, -self.point.x) / self.cone_distance;
+        let along = normal.cross(&up).normalize();
+        let along = along * along.dot(&self.point).signum();
+        let across = normal.cross(&along);
+        [along, across * across.dot(&up).signum()]
+    }
+
     /// The tensor of the gap of conjugate flanks with this normal: what rolls without sliding at a point parts by the square of the
     /// way across the line of contact.
     fn conjugate_gap(&self, normal: Vector3<f64>) -> Matrix3<f64> {
@@ -50,14 +59,10 @@ impl Mean {
         across * across.transpose() / normal.dot(&spin.cross(&self.axes[0].cross(&self.point)))
     }
 
-    /// By how much the design's crowning parts the flanks beside that: towards heel and tip, the heel being up the cone.
+    /// By how much the design's crowning parts the flanks beside that.
     fn crowning(&self, job: &Job<'_>, normal: Vector3<f64>) -> Matrix3<f64> {
         let of = |name: &str| setting(job, name);
-        let up = Vector3::new(self.point.z, 0.0, -self.point.x) / self.cone_distance;
-        let along = normal.cross(&up).normalize();
-        let along = along * along.dot(&self.point).signum();
-        let across = normal.cross(&along);
-        let across = across * across.dot(&up).signum();
+        let [along, across] = self.directions(normal);
         let half_length = of("face_width") / (2.0 * of("spiral_angle").cos());
         let half_depth = self.normal_module / of("pressure_angle").cos();
         let square = |a: &Vector3<f64>, b: &Vector3<f64>| a * b.transpose();
@@ -98,6 +103,10 @@ fn both_flanks_touch_in_the_mean_point_and_part_by_the_crowning() {
             assert!(difference(&point.sliding, &[0.0; 3]) < 1e-8, "{what}: {:?}", point.sliding);
 
             let normal = Vector3::from(point.normal);
+            // half the width of the gear's cutter and of its blades' taper turn the tooth by as much about the cutter's centre
+            let spiral = mean.directions(normal)[0].angle(&mean.point);
+            let room: f64 = if job.name == "as_printed" { 0.25 } else { 1.25 };
+            assert!((spiral - setting(job, "spiral_angle")).abs() < room.to_radians(), "{what}: {spiral}");
             let expected = mean.conjugate_gap(normal) + mean.crowning(job, normal);
             let gap = point.gap.expect("a regular point");
             let [d1, d2] = gap.directions.expect("two curvatures").map(Vector3::from);
