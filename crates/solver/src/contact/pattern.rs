@@ -9,15 +9,19 @@ use crate::contact::RollingPair;
 use crate::contact::outline::Outline;
 use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
-use crate::newton::batch::LaneNewton;
+use crate::newton::batch::{LaneNewton, Lanes};
 use crate::newton::scalar::{LONGEST_STEP, solve};
 use crate::surface::points::SurfacePoint;
 
 /// A normal that passes the mate's points by more than this share of the way across them all does not meet the mate: its ranges end.
 const ASIDE: f64 = 0.25;
-/// Where no foot was found in lanes, and none at the position before, one is looked for with care at every so many positions: those between
+/// Where no foot was found in lanes, and none at any position before, one is looked for with care at every so many positions: those between
 /// are found from their neighbours.
 const LOOKED_AGAIN: usize = 8;
+/// With care only where the normal passes a point of the mate within so many times the way from one to the next.
+const SPACED: f64 = 1.5;
+/// Points of the mate that are taken together where the nearest is looked for.
+const GROUP: usize = 8;
 /// Nodes that a thread takes at a time.
 const TILE: usize = 2 * LANES;
 
@@ -89,7 +93,7 @@ impl GapProblem {
         if points.is_empty() {
             return vec![None; nodes.len()];
         }
-        let mate = Mate { size: size(&points), points, reach };
+        let mate = Mate::new(points, reach);
         nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
     }
 
@@ -104,6 +108,7 @@ impl GapProblem {
         nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, poses, mate)).collect()
     }
 
+    /// Of no more nodes than there are lanes.
     fn least_in_lanes(
         &self,
         newton: &mut LaneNewton<'_>,
@@ -111,92 +116,103 @@ impl GapProblem {
         poses: &[[f64; 12]],
         mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
-        let is_solved: Vec<bool> =
+        let mut feet = Feet::new(self.ranges.len(), poses.len());
+        let is_on_tooth: Vec<bool> =
             nodes.iter().map(|node| node.outcome == Outcome::Solved && self.is_on_tooth(node)).collect();
-        let mut feet: Vec<Vec<Option<Vec<f64>>>> = Vec::with_capacity(poses.len());
-        for pose in poses {
+        let mut was_met = vec![false; nodes.len()];
+        for (position, pose) in poses.iter().enumerate() {
             let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
-            let before = |lane: usize| feet.last().and_then(|feet: &Vec<Option<Vec<f64>>>| feet[lane].clone());
-            let was_met: Vec<bool> = (0..nodes.len()).map(|lane| before(lane).is_some()).collect();
-            let starts: Vec<Option<Vec<f64>>> = (0..nodes.len())
-                .map(|lane| is_solved[lane].then(|| before(lane).or_else(|| mate.nearest(&asked[lane]))).flatten())
-                .collect();
-            let active: Vec<bool> = starts.iter().map(Option::is_some).collect();
-            if !active.contains(&true) {
-                feet.push(vec![None; nodes.len()]);
-                continue;
+            let mut active = vec![false; nodes.len()];
+            for lane in (0..nodes.len()).filter(|lane| is_on_tooth[*lane]) {
+                active[lane] = feet.start_after(newton, lane, position)
+                    || mate.nearest(&asked[lane]).is_some_and(|start| put(newton, lane, &start.unknowns));
             }
-            for (lane, start) in starts.into_iter().enumerate() {
-                let Some(start) = start else { continue };
-                newton.put(lane, start.into_iter(), &self.parameters(&asked[lane]));
-            }
-            newton.run(&active, true);
-            let mut foot = |lane: usize| {
-                let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
-                match newton.outcome(lane) {
-                    Outcome::Solved if is_near => Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect()),
-                    Outcome::Outside { .. } if is_near => None,
-                    _ if was_met[lane] || feet.len().is_multiple_of(LOOKED_AGAIN) => {
-                        self.alone(&asked[lane], &mate.nearest(&asked[lane])?)
-                    }
-                    _ => None,
-                }
-            };
-            let found = (0..nodes.len()).map(|lane| active[lane].then(|| foot(lane)).flatten()).collect();
-            feet.push(found);
-        }
-        self.found_backwards(&mut feet, nodes, poses);
-        (0..nodes.len())
-            .map(|lane| self.least_at(&nodes[lane], poses, feet.iter().map(|feet| feet[lane].as_deref()), mate.reach))
-            .collect()
-    }
-
-    /// Where no foot was found from the mate's points nearby, which may lie on another branch, it is looked for from the one of the position
-    /// after.
-    fn found_backwards(&self, feet: &mut [Vec<Option<Vec<f64>>>], nodes: &[SurfacePoint], poses: &[[f64; 12]]) {
-        for position in (1..poses.len()).rev() {
-            for (lane, node) in nodes.iter().enumerate() {
-                if let (None, Some(after)) = (&feet[position - 1][lane], &feet[position][lane]) {
-                    feet[position - 1][lane] = self.alone(&placed(&poses[position - 1], node), after);
+            self.follow(newton, &mut feet, position, (&active, &asked));
+            for lane in 0..nodes.len() {
+                was_met[lane] |= feet.has(position, lane);
+                let is_open = active[lane] && !was_met[lane] && position.is_multiple_of(LOOKED_AGAIN);
+                let start = if is_open { mate.nearest(&asked[lane]) } else { None };
+                let start = start.filter(|start| start.aside <= mate.spacing);
+                if let Some(foot) = start.and_then(|start| self.alone(&asked[lane], &start.unknowns)) {
+                    feet.put(position, lane, &foot);
                 }
             }
         }
+        // feet that no point of the mate lies near, perhaps because it is on another branch, are found from those of positions after
+        for (position, pose) in poses.iter().enumerate().rev() {
+            let mut active = vec![false; nodes.len()];
+            for lane in (0..nodes.len()).filter(|lane| is_on_tooth[*lane] && !feet.has(position, *lane)) {
+                active[lane] = feet.start_before(newton, lane, position);
+            }
+            if active.contains(&true) {
+                let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
+                self.follow(newton, &mut feet, position, (&active, &asked));
+            }
+        }
+        (0..nodes.len()).map(|lane| self.least_at(&nodes[lane], poses, feet.distances(lane), mate.reach)).collect()
     }
 
-    fn least_at<'f>(
+    /// Feet from the starts that stand in the lanes.
+    fn follow(
+        &self,
+        newton: &mut LaneNewton<'_>,
+        feet: &mut Feet,
+        position: usize,
+        (active, asked): (&[bool], &[[f64; 6]]),
+    ) {
+        if !active.contains(&true) {
+            return;
+        }
+        let unknowns = self.ranges.len();
+        for (k, value) in self.values.iter().enumerate() {
+            newton.input(unknowns + 6 + k).fill(*value);
+        }
+        for k in 0..6 {
+            let input = newton.input(unknowns + k);
+            asked.iter().zip(input).for_each(|(asked, input)| *input = asked[k]);
+        }
+        newton.run(active, true);
+        for lane in (0..active.len()).filter(|lane| active[*lane]) {
+            let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
+            if is_near && newton.outcome(lane) == Outcome::Solved {
+                feet.take(position, lane, newton);
+            }
+        }
+    }
+
+    /// The least of the distances by position of a node.
+    fn least_at(
         &self,
         node: &SurfacePoint,
         poses: &[[f64; 12]],
-        feet: impl Iterator<Item = Option<&'f [f64]>>,
+        distances: impl Iterator<Item = Option<f64>>,
         reach: f64,
     ) -> Option<Gap> {
-        let gap = |(position, foot): (usize, Option<&[f64]>)| {
-            let distance = *foot?.last()?;
-            let is_near = distance.abs() <= reach && self.is_on_mate(&placed(&poses[position], node), distance);
-            is_near.then_some(Gap { distance, position })
-        };
-        feet.enumerate().filter_map(gap).min_by(|a, b| a.distance.total_cmp(&b.distance))
-    }
-
-    fn parameters(&self, asked: &[f64; 6]) -> Vec<f64> {
-        [&asked[..], &self.values].concat()
+        let mut near: Vec<(usize, f64)> = distances
+            .enumerate()
+            .filter_map(|(position, distance)| Some((position, distance.filter(|distance| distance.abs() <= reach)?)))
+            .collect();
+        near.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let on_mate = near.into_iter().find(|(at, distance)| self.is_on_mate(&placed(&poses[*at], node), *distance));
+        on_mate.map(|(position, distance)| Gap { distance, position })
     }
 
     fn alone(&self, asked: &[f64; 6], start: &[f64]) -> Option<Vec<f64>> {
-        let solution = solve(&self.along_normal, &self.ranges, &self.parameters(asked), start);
+        let parameters = [&asked[..], &self.values].concat();
+        let solution = solve(&self.along_normal, &self.ranges, &parameters, start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }
 
     /// Whether a point of the flank is one of its tooth.
     fn is_on_tooth(&self, node: &SurfacePoint) -> bool {
         let [x, y, z] = node.position;
-        self.own.as_ref().is_none_or(|outline| outline.holds([z, x.hypot(y)]))
+        self.own.as_ref().is_none_or(|outline| outline.holds([z, (x * x + y * y).sqrt()]))
     }
 
     /// Whether the mate's tooth reaches there.
     fn is_on_mate(&self, [x, y, z, nx, ny, nz]: &[f64; 6], distance: f64) -> bool {
         let [x, y, z] = [x + distance * nx, y + distance * ny, z + distance * nz];
-        self.outline.as_ref().is_none_or(|outline| outline.holds([z, x.hypot(y)]))
+        self.outline.as_ref().is_none_or(|outline| outline.holds([z, (x * x + y * y).sqrt()]))
     }
 }
 
@@ -207,30 +223,147 @@ fn placed(pose: &[f64; 12], node: &SurfacePoint) -> [f64; 6] {
     [pose[0] + row(0, p), pose[1] + row(1, p), pose[2] + row(2, p), row(0, n), row(1, n), row(2, n)]
 }
 
+/// Where normals of nodes meet the mate, by position and lane.
+struct Feet {
+    unknowns: usize,
+    /// Of each position the unknowns, one after the other; no number where the normal does not meet the mate.
+    at: Vec<Lanes>,
+}
+
+impl Feet {
+    fn new(unknowns: usize, positions: usize) -> Feet {
+        Feet { unknowns, at: vec![[f64::NAN; LANES]; unknowns * positions] }
+    }
+
+    fn of(&self, position: usize) -> &[Lanes] {
+        &self.at[position * self.unknowns..(position + 1) * self.unknowns]
+    }
+
+    fn has(&self, position: usize, lane: usize) -> bool {
+        !self.of(position)[0][lane].is_nan()
+    }
+
+    fn put(&mut self, position: usize, lane: usize, foot: &[f64]) {
+        let at = &mut self.at[position * self.unknowns..(position + 1) * self.unknowns];
+        at.iter_mut().zip(foot).for_each(|(at, x)| at[lane] = *x);
+    }
+
+    fn take(&mut self, position: usize, lane: usize, newton: &mut LaneNewton<'_>) {
+        for k in 0..self.unknowns {
+            self.at[position * self.unknowns + k][lane] = newton.input(k)[lane];
+        }
+    }
+
+    /// Puts a start for a position into a lane, on the parabola through the feet of positions before: `false` where there is none.
+    fn start_after(&self, newton: &mut LaneNewton<'_>, lane: usize, position: usize) -> bool {
+        let near = |k: usize| position.checked_sub(k);
+        self.start(newton, lane, [near(1), near(2), near(3)])
+    }
+
+    /// The same from positions after.
+    fn start_before(&self, newton: &mut LaneNewton<'_>, lane: usize, position: usize) -> bool {
+        let positions = self.at.len() / self.unknowns;
+        let near = |k: usize| Some(position + k).filter(|at| *at < positions);
+        self.start(newton, lane, [near(1), near(2), near(3)])
+    }
+
+    fn start(&self, newton: &mut LaneNewton<'_>, lane: usize, near: [Option<usize>; 3]) -> bool {
+        let known = near.into_iter().take_while(|at| at.is_some_and(|at| self.has(at, lane))).count();
+        let of = |k: usize| near[k].map_or(&[][..], |at| self.of(at));
+        for k in 0..self.unknowns {
+            let at = |place: usize| of(place)[k][lane];
+            newton.input(k)[lane] = match known {
+                0 => return false,
+                1 => at(0),
+                2 => 2.0 * at(0) - at(1),
+                _ => 3.0 * (at(0) - at(1)) + at(2),
+            };
+        }
+        true
+    }
+
+    /// Of a lane by position.
+    fn distances(&self, lane: usize) -> impl Iterator<Item = Option<f64>> {
+        self.at.chunks(self.unknowns).map(move |at| Some(at[at.len() - 1][lane]).filter(|distance| !distance.is_nan()))
+    }
+}
+
+fn put(newton: &mut LaneNewton<'_>, lane: usize, start: &[f64]) -> bool {
+    newton.put(lane, start.iter().copied(), &[]);
+    true
+}
+
 /// Solved points of the mate, from which feet are looked for.
 struct Mate<'p> {
     points: Vec<&'p SurfacePoint>,
-    /// How far it is across them.
+    /// Neighbours in the order of the points, with a ball around each group.
+    groups: Vec<Group>,
+    /// How far it is across them, and about from one to the next, mm.
     size: f64,
+    spacing: f64,
     /// How far away they are looked for, along a normal.
     reach: f64,
 }
 
-impl Mate<'_> {
-    /// The unknowns of the point that is nearest, and how far away it is along the normal; `None` where the normal passes all of them by far.
-    fn nearest(&self, [x, y, z, nx, ny, nz]: &[f64; 6]) -> Option<Vec<f64>> {
-        let apart = |point: &SurfacePoint| [point.position[0] - x, point.position[1] - y, point.position[2] - z];
-        let off = |point: &SurfacePoint| apart(point).iter().map(|x| x * x).sum::<f64>();
-        let along = |point: &SurfacePoint| {
-            let [dx, dy, dz] = apart(point);
-            dx * nx + dy * ny + dz * nz
+/// The points of a range, and the centre and the radius of a ball around them.
+struct Group {
+    points: std::ops::Range<usize>,
+    center: [f64; 3],
+    radius: f64,
+}
+
+/// Where a foot is looked for.
+struct Start {
+    /// With the distance along the normal last.
+    unknowns: Vec<f64>,
+    /// How far the normal passes the nearest point of the mate.
+    aside: f64,
+}
+
+impl<'p> Mate<'p> {
+    fn new(points: Vec<&'p SurfacePoint>, reach: f64) -> Mate<'p> {
+        let group = |first: usize| {
+            let range = first..(first + GROUP).min(points.len());
+            let of = &points[range.clone()];
+            let center = [0, 1, 2].map(|k| of.iter().map(|point| point.position[k]).sum::<f64>() / of.len() as f64);
+            let radius = of.iter().map(|point| squared(point.position, center)).fold(0.0, f64::max).sqrt();
+            Group { points: range, center, radius }
         };
-        let of_tooth = self.points.iter().filter(|point| along(point).abs() <= self.reach);
-        let near = of_tooth.min_by(|a, b| off(a).total_cmp(&off(b)))?;
-        let along = along(near);
-        let aside = (off(near) - along * along).max(0.0).sqrt();
-        (aside <= ASIDE * self.size).then(|| near.unknowns.iter().copied().chain([along]).collect())
+        let groups = (0..points.len()).step_by(GROUP).map(group).collect();
+        let size = size(&points);
+        Mate { groups, size, spacing: SPACED * size / (points.len() as f64).sqrt(), points, reach }
     }
+
+    /// From the nearest point; `None` where the normal passes all of them by far.
+    fn nearest(&self, [x, y, z, nx, ny, nz]: &[f64; 6]) -> Option<Start> {
+        let along = |point: &SurfacePoint| {
+            let [px, py, pz] = point.position;
+            (px - x) * nx + (py - y) * ny + (pz - z) * nz
+        };
+        let mut near: Option<(f64, &SurfacePoint)> = None;
+        let mut least = f64::INFINITY;
+        for group in &self.groups {
+            let farthest = least + group.radius;
+            if squared(group.center, [*x, *y, *z]) > farthest * farthest {
+                continue;
+            }
+            for &point in &self.points[group.points.clone()] {
+                let off = squared(point.position, [*x, *y, *z]);
+                if near.is_none_or(|(least, _)| off < least) && along(point).abs() <= self.reach {
+                    (near, least) = (Some((off, point)), off.sqrt());
+                }
+            }
+        }
+        let (off, near) = near?;
+        let along = along(near);
+        let aside = (off - along * along).max(0.0).sqrt();
+        let unknowns = || near.unknowns.iter().copied().chain([along]).collect();
+        (aside <= ASIDE * self.size).then(|| Start { unknowns: unknowns(), aside })
+    }
+}
+
+fn squared(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
 
 /// The diagonal of the box about points.
