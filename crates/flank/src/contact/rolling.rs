@@ -39,9 +39,15 @@ impl Rolling {
         let has_pitch = every.is_some();
         // of one pair alone all of the roll is looked at
         let pitch = every.unwrap_or(0.5 * (limits[1] - limits[0]));
-        let coarse = problem.engagement(&first, pitch, steps.min(COARSE), limits);
-        let vertex = vertex(&problem, &coarse);
-        let middle = vertex.clone().or_else(|| middle(&coarse)).unwrap_or(first);
+        let vertex = beside(&problem, &first, pitch, limits);
+        let (vertex, middle) = match vertex {
+            Some(vertex) => (Some(vertex.clone()), vertex),
+            None => {
+                let coarse = problem.engagement(&first, pitch, steps.min(COARSE), limits);
+                let vertex = among(&problem, &coarse);
+                (vertex.clone(), vertex.or_else(|| middle(&coarse)).unwrap_or(first))
+            }
+        };
         let engagement = problem.engagement(&middle, pitch, steps, limits);
         Ok(Rolling { problem, engagement, vertex, has_pitch })
     }
@@ -104,10 +110,22 @@ fn found(problem: &ContactProblem, limits: [f64; 2], points: [&[SurfacePoint]; 2
     second.ok_or(reason.unwrap_or(NoContact::NotFound))
 }
 
-/// Where the lag of contact of the flanks is extreme.
-fn vertex(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
+/// Whether flank touches flank there with an error that changes.
+fn is_clear(point: &ContactPoint) -> bool {
+    point.edges.is_empty() && point.lag_slopes[0].abs() > STRAIGHT
+}
+
+/// Where the lag of contact of the flanks is extreme, within a pitch of a contact.
+fn beside(problem: &ContactProblem, first: &ContactPoint, pitch: f64, limits: [f64; 2]) -> Option<ContactPoint> {
+    let is_near = |roll: f64| (roll - first.roll).abs() <= pitch && (limits[0]..=limits[1]).contains(&roll);
+    let expected = first.roll - first.lag_slopes[0] / first.lag_slopes[1];
+    let vertex = problem.vertex_near(Some(first).filter(|first| is_clear(first) && is_near(expected))?)?;
+    (vertex.edges.is_empty() && is_near(vertex.roll)).then_some(vertex)
+}
+
+/// The same between points of a pair.
+fn among(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
     let slope = |point: &ContactPoint| point.lag_slopes[0];
-    let is_clear = |point: &ContactPoint| point.edges.is_empty() && slope(point).abs() > STRAIGHT;
     let pairs = of.points.windows(2).filter(|pair| pair.iter().all(is_clear));
     let turns = pairs.filter(|pair| slope(&pair[0]).signum() != slope(&pair[1]).signum());
     turns.filter_map(|pair| problem.vertex(&pair[0], [pair[0].roll, pair[1].roll])).next()

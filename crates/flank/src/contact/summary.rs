@@ -17,8 +17,8 @@ use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{ContactRequest, Session};
 use crate::project::units;
 
-/// Pairs of teeth whose errors change alike to this share of the roll turn alike.
-const ALIKE: f64 = 1e-10;
+/// Pairs of teeth whose errors differ by no more than this turn alike: rounding.
+const ALIKE: f64 = 1e-11;
 /// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
 const ON_EDGE: f64 = 1e-6;
 /// A gap below this is no rounding: the mate reaches in, mm.
@@ -195,8 +195,11 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
             let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
             // two pairs that turn alike hand nothing over: which one is ahead is rounding
-            let slope = |pair: isize| Some(engagement.point(pair, step)?.lag_slopes[0]);
-            if (slope(before)? - slope(after)?).abs() < ALIKE {
+            let ahead = |step: isize| {
+                let [before, after] = [before, after].map(|pair| engagement.point(pair, step).map(|point| point.lag));
+                Some((before? - after?).abs())
+            };
+            if [step, step + 1].into_iter().any(|step| ahead(step).is_some_and(|ahead| ahead < ALIKE)) {
                 return None;
             }
             let between = [rolling.roll(step), rolling.roll(step + 1)];

@@ -4,12 +4,16 @@
 //! what all do. At each roll position the pair that opens the members most carries: the composite lag.
 
 use crate::contact::ContactProblem;
-use crate::contact::point::ContactPoint;
+use crate::contact::point::{ContactPoint, Member};
 
 /// Steps of Newton, safeguarded by halving, until a place of the roll is settled, and the share of a pitch at which it is.
 const MOST_STEPS: usize = 60;
 const SETTLED: f64 = 1e-14;
 
+/// Edges that contact of the flanks may come to within one step of the roll.
+const MOST_EDGES: usize = 4;
+/// A point this near to an edge lies on it, mm: rounding of a solved point.
+const ON_EDGE: f64 = 1e-12;
 /// Lags that differ by less than this share are alike: rounding.
 const ALIKE: f64 = 1e-13;
 
@@ -70,11 +74,54 @@ impl ContactProblem {
         let is_flank = |point: &&ContactPoint| point.is_of_flanks();
         let inner = if way < 0 { of.points.iter().find(is_flank) } else { of.points.iter().rev().find(is_flank) }?;
         let step = way as f64 * of.pitch / of.steps as f64;
+        self.end_at_edge(inner, inner.roll + step).or_else(|| self.end_by_halving(inner, step, SETTLED * of.pitch))
+    }
+
+    /// Where contact of the flanks comes to an edge between a point inside and a roll position, at which it would lie beyond one.
+    fn end_at_edge(&self, inner: &ContactPoint, beyond: f64) -> Option<ContactPoint> {
+        let flanks = |roll: f64| {
+            let start = inner.predicted(roll - inner.roll)?;
+            self.root(roll, &start, &[], inner.first_normal.into())
+        };
+        let mut outer = (beyond, flanks(beyond)?);
+        for _ in 0..MOST_EDGES {
+            let edge = self.beyond(&outer.1.1)?;
+            let bound = self.bound(edge)?;
+            let height = |members: &[Member; 2]| bound.height(members[edge.member].section());
+            let inside = height(&self.members(&inner.all_unknowns(), inner.roll));
+            let (mut low, mut high) = ((inner.roll, inside), (outer.0, height(&outer.1.1)));
+            for _ in 0..MOST_STEPS {
+                let roll = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+                if !roll.is_finite() || roll == low.0 || roll == high.0 {
+                    break;
+                }
+                outer = (roll, flanks(roll)?);
+                let found = height(&outer.1.1);
+                if found.abs() <= ON_EDGE {
+                    break;
+                }
+                // the end that stays counts half the next time, so that both come nearer
+                if found.signum() == low.1.signum() {
+                    (low, high.1) = ((roll, found), 0.5 * high.1);
+                } else {
+                    (high, low.1) = ((roll, found), 0.5 * low.1);
+                }
+            }
+            if self.beyond(&outer.1.1).is_none() {
+                let (roll, (root, members)) = outer;
+                return Some(self.point(root, roll, Vec::new(), &members));
+            }
+        }
+        None
+    }
+
+    /// The last point of contact of the flanks within a step of the roll, found by halving.
+    fn end_by_halving(&self, inner: &ContactPoint, step: f64, settled: f64) -> Option<ContactPoint> {
         let (mut low, mut high) = (0.0, 1.0);
         let mut best = inner.clone();
         for _ in 0..MOST_STEPS {
             let share = 0.5 * (low + high);
-            if (high - low) * step.abs() <= SETTLED * of.pitch {
+            if (high - low) * step.abs() <= settled {
                 break;
             }
             match self.followed(&best, inner.roll + share * step).filter(ContactPoint::is_of_flanks) {

@@ -58,6 +58,8 @@ pub struct ContactProblem {
     through: System,
     /// From the unknowns, the lag and the roll: what [`point`] reads.
     state: Tape,
+    /// From the lag, the roll and what the contact is differentiated by: of each member its origin and its axes, row by row.
+    poses: Tape,
     /// Numbers of unknowns and of constraints of each flank.
     unknowns: [usize; 2],
     constraints: [usize; 2],
@@ -96,12 +98,14 @@ impl ContactProblem {
         let of_first = [&first.unknowns[..], &given].concat();
         let inputs = [&unknowns[..], &given].concat();
         let placed = [0, 1].map(|k| edge::PlacedFlank { own: own[k].surface(), placement: &pair.placements[k] });
+        let poses: Vec<Expr<'_>> = pair.placements.iter().flat_map(|placement| point::pose(placement)).collect();
         let has_edges = pair.outlines.iter().any(Option::is_some);
         let edges = has_edges.then(|| EdgeSystems::new(&placed, &unknowns, &given)).transpose()?;
         Ok(ContactProblem {
             touching: System::one_by_one(&residuals, &unknowns, &parameters)?,
             through: System::one_by_one(&through, &followed, &of_first)?,
             state: Tape::new(&point::outputs(&placed, [&first, &second], pair.roll, lag), &inputs)?,
+            poses: Tape::new(&poses, &[&[lag][..], &given].concat())?,
             unknowns: [first.unknowns.len(), second.unknowns.len()],
             constraints: [first.constraints.len(), second.constraints.len()],
             ranges: [pair.surfaces[0].ranges(), pair.surfaces[1].ranges(), &[range]].concat(),

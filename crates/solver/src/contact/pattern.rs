@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::analysis::deviation::FARTHEST;
 use crate::contact::RollingPair;
 use crate::contact::outline::Outline;
+use crate::contact::point::{Pose, placed, pose, turned};
 use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
 use crate::newton::batch::{LaneNewton, Lanes};
@@ -65,9 +66,7 @@ impl GapProblem {
         let unknowns = [&surface.unknowns[..], &[distance]].concat();
         let given: Vec<Expr<'_>> = pair.parameters.iter().map(|(name, _)| *name).collect();
         let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).chain(given.iter().copied()).collect();
-        let t_mate_flank = pair.placements[mate].inverse().then(&pair.placements[member]).pose();
-        let axes = t_mate_flank.rotation.entries();
-        let pose: Vec<Expr<'_>> = t_mate_flank.translation.0.into_iter().chain(axes).collect();
+        let pose = pose(&pair.placements[mate].inverse().then(&pair.placements[member]));
         Ok(GapProblem {
             along_normal: System::new(&residuals, &unknowns, &parameters)?,
             ranges: [pair.surfaces[mate].ranges(), &[FARTHEST]].concat(),
@@ -88,7 +87,7 @@ impl GapProblem {
         mate: &[SurfacePoint],
         reach: f64,
     ) -> Vec<Option<Gap>> {
-        let poses: Vec<[f64; 12]> = positions.iter().map(|at| self.pose_at(*at)).collect();
+        let poses: Vec<Pose> = positions.iter().map(|at| self.pose_at(*at)).collect();
         let points: Vec<&SurfacePoint> = mate.iter().filter(|point| point.outcome == Outcome::Solved).collect();
         if points.is_empty() {
             return vec![None; nodes.len()];
@@ -97,13 +96,13 @@ impl GapProblem {
         nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
     }
 
-    fn pose_at(&self, position: [f64; 2]) -> [f64; 12] {
+    fn pose_at(&self, position: [f64; 2]) -> Pose {
         let mut pose = [0.0; 12];
         ScalarEvaluator::new(&self.pose).run(&[&position[..], &self.values].concat(), &mut pose);
         pose
     }
 
-    fn least_of(&self, nodes: &[SurfacePoint], poses: &[[f64; 12]], mate: &Mate<'_>) -> Vec<Option<Gap>> {
+    fn least_of(&self, nodes: &[SurfacePoint], poses: &[Pose], mate: &Mate<'_>) -> Vec<Option<Gap>> {
         let mut newton = LaneNewton::new(&self.along_normal, &self.ranges);
         nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, poses, mate)).collect()
     }
@@ -113,7 +112,7 @@ impl GapProblem {
         &self,
         newton: &mut LaneNewton<'_>,
         nodes: &[SurfacePoint],
-        poses: &[[f64; 12]],
+        poses: &[Pose],
         mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
         let mut feet = Feet::new(self.ranges.len(), poses.len());
@@ -121,7 +120,7 @@ impl GapProblem {
             nodes.iter().map(|node| node.outcome == Outcome::Solved && self.is_on_tooth(node)).collect();
         let mut was_met = vec![false; nodes.len()];
         for (position, pose) in poses.iter().enumerate() {
-            let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
+            let asked: Vec<[f64; 6]> = nodes.iter().map(|node| seen(pose, node)).collect();
             let mut active = vec![false; nodes.len()];
             for lane in (0..nodes.len()).filter(|lane| is_on_tooth[*lane]) {
                 active[lane] = feet.start_after(newton, lane, position)
@@ -145,7 +144,7 @@ impl GapProblem {
                 active[lane] = feet.start_before(newton, lane, position);
             }
             if active.contains(&true) {
-                let asked: Vec<[f64; 6]> = nodes.iter().map(|node| placed(pose, node)).collect();
+                let asked: Vec<[f64; 6]> = nodes.iter().map(|node| seen(pose, node)).collect();
                 self.follow(newton, &mut feet, position, (&active, &asked));
             }
         }
@@ -184,7 +183,7 @@ impl GapProblem {
     fn least_at(
         &self,
         node: &SurfacePoint,
-        poses: &[[f64; 12]],
+        poses: &[Pose],
         distances: impl Iterator<Item = Option<f64>>,
         reach: f64,
     ) -> Option<Gap> {
@@ -193,7 +192,7 @@ impl GapProblem {
             .filter_map(|(position, distance)| Some((position, distance.filter(|distance| distance.abs() <= reach)?)))
             .collect();
         near.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-        let on_mate = near.into_iter().find(|(at, distance)| self.is_on_mate(&placed(&poses[*at], node), *distance));
+        let on_mate = near.into_iter().find(|(at, distance)| self.is_on_mate(&seen(&poses[*at], node), *distance));
         on_mate.map(|(position, distance)| Gap { distance, position })
     }
 
@@ -217,10 +216,9 @@ impl GapProblem {
 }
 
 /// A point and its normal seen from the mate.
-fn placed(pose: &[f64; 12], node: &SurfacePoint) -> [f64; 6] {
-    let row = |k: usize, v: [f64; 3]| pose[3 + 3 * k] * v[0] + pose[4 + 3 * k] * v[1] + pose[5 + 3 * k] * v[2];
-    let (p, n) = (node.position, node.normal);
-    [pose[0] + row(0, p), pose[1] + row(1, p), pose[2] + row(2, p), row(0, n), row(1, n), row(2, n)]
+fn seen(pose: &Pose, node: &SurfacePoint) -> [f64; 6] {
+    let ([x, y, z], [nx, ny, nz]) = (placed(pose, node.position), turned(pose, node.normal));
+    [x, y, z, nx, ny, nz]
 }
 
 /// Where normals of nodes meet the mate, by position and lane.

@@ -1,6 +1,6 @@
 //! What two flanks are like where they touch.
 
-use flank_expr::geometry::{Surface, Vector3 as Vector};
+use flank_expr::geometry::{Chain, Surface, Vector3 as Vector};
 use flank_expr::{Expr, ScalarEvaluator};
 use nalgebra::{DMatrix, Matrix3x2, Vector3};
 
@@ -97,6 +97,26 @@ pub(super) fn outputs<'g>(
         outputs.extend(p.iter().flat_map(|p| placed.constraints.iter().map(|c| c.derivative(*p))));
     }
     outputs
+}
+
+/// Origin, then axes row by row, of a frame in another one.
+pub(super) type Pose = [f64; 12];
+
+/// As a chain gives it.
+pub(super) fn pose<'g>(placement: &Chain<'g>) -> Vec<Expr<'g>> {
+    let pose = placement.pose();
+    pose.translation.0.into_iter().chain(pose.rotation.entries()).collect()
+}
+
+/// A direction of a frame in the other one.
+pub(super) fn turned(pose: &Pose, v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|row| (0..3).map(|k| pose[3 + 3 * row + k] * v[k]).sum())
+}
+
+/// A point of a frame in the other one.
+pub(super) fn placed(pose: &Pose, point: [f64; 3]) -> [f64; 3] {
+    let turned = turned(pose, point);
+    [0, 1, 2].map(|k| pose[k] + turned[k])
 }
 
 /// A flank at a point, with its derivatives by its unknowns as columns.

@@ -4,11 +4,12 @@
 //! that lag is extreme: before, they are apart everywhere, and beyond, they cut into each other. On a grid of solved points the
 //! extreme is near the contact.
 
+use flank_expr::ScalarEvaluator;
 use nalgebra::Vector3;
 
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
-use crate::contact::point::{ContactPoint, ContactState, opening};
+use crate::contact::point::{ContactPoint, ContactState, Pose, opening, placed};
 use crate::equations::solution::Outcome;
 use crate::newton::scalar::solve_with;
 use crate::surface::points::SurfacePoint;
@@ -19,6 +20,9 @@ const STARTS: usize = 12;
 const UNEVEN: f64 = 1e-12;
 /// A lag that moves the flank along the normal by less than this share of what it moves it at all does not open the pair.
 const LOCKED: f64 = 1e-6;
+
+/// Points of the first flank through which the second is passed at first, if it has more: all where none of them leads to a contact.
+const FEW: usize = 150;
 
 /// Why no contact was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +58,20 @@ impl ContactProblem {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn find(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
+    pub fn find(&self, roll: f64, [first, second]: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
+        let solved = |points: &'_ [SurfacePoint]| -> Vec<SurfacePoint> {
+            points.iter().filter(|point| point.outcome == Outcome::Solved).cloned().collect()
+        };
+        let (first, second) = (solved(first), solved(second));
+        let stride = first.len().div_ceil(FEW);
+        let few: Vec<SurfacePoint> = first.iter().step_by(stride.max(1)).cloned().collect();
+        match self.find_from(roll, [&few, &second]) {
+            Err(_) if stride > 1 => self.find_from(roll, [&first, &second]),
+            found => found,
+        }
+    }
+
+    fn find_from(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
         let mut passing = self.passing(roll, points)?;
         passing.sort_by(|a, b| b.height.total_cmp(&a.height));
         let mut best: Option<ContactPoint> = None;
@@ -89,36 +106,27 @@ impl ContactProblem {
         std::iter::once(Vec::new()).chain(edges(0)).chain(edges(1)).collect()
     }
 
-    fn passing(&self, roll: f64, [first, second]: [&[SurfacePoint]; 2]) -> Result<Vec<Passing>, NoContact> {
-        let solved = |points: &'_ [SurfacePoint]| -> Vec<Vec<f64>> {
-            points.iter().filter(|point| point.outcome == Outcome::Solved).map(|point| point.unknowns.clone()).collect()
-        };
-        let (first, second) = (solved(first), solved(second));
-        let lag = self.ranges[self.lag_at()].middle();
-        let at = |p: &[f64], q: &[f64]| self.members(&[p, q, &[lag]].concat(), roll);
-        let Some((p, q)) = first.first().zip(second.first()) else { return Err(NoContact::Apart) };
-        let places: Vec<Vector3<f64>> = second.iter().map(|q| at(p, q)[1].position).collect();
-        let own: Vec<Vector3<f64>> = first.iter().map(|p| at(p, q)[0].position).collect();
+    fn passing(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<Vec<Passing>, NoContact> {
         for (member, outline) in self.outlines.iter().enumerate() {
-            let points = [&first, &second][member];
-            let section = |unknowns: &Vec<f64>| match member {
-                0 => at(unknowns, q)[0].section(),
-                _ => at(p, unknowns)[1].section(),
-            };
-            if outline.as_ref().is_some_and(|outline| !points.iter().any(|point| outline.holds(section(point)))) {
+            let section = |point: &SurfacePoint| [point.position[2], point.position[0].hypot(point.position[1])];
+            if outline.as_ref().is_some_and(|outline| !points[member].iter().any(|point| outline.holds(section(point))))
+            {
                 return Err(NoContact::NoFlank(member));
             }
         }
+        let lag = self.ranges[self.lag_at()].middle();
+        let [of_first, of_second] = self.poses_at(lag, roll);
+        let [first, second] = points;
+        let places: Vec<[f64; 3]> = second.iter().map(|point| placed(&of_second, point.position)).collect();
         let mut found = Vec::new();
         let mut refused = None;
         let mut last: Option<Vec<f64>> = None;
-        for (p, place) in first.iter().zip(&own) {
-            let nearest = (0..second.len()).min_by(|a, b| {
-                let off = |k: usize| (places[k] - place).norm_squared();
-                off(*a).total_cmp(&off(*b))
-            });
-            let beside = nearest.map(|k| [&second[k][..], &[lag]].concat());
-            let starts = last.iter().cloned().chain(beside);
+        for point in first {
+            let place = placed(&of_first, point.position);
+            let off = |at: &usize| (0..3).map(|k| (places[*at][k] - place[k]).powi(2)).sum::<f64>();
+            let nearest = (0..second.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
+            let beside = nearest.map(|k| [&second[k].unknowns[..], &[lag]].concat());
+            let (starts, p) = (last.iter().cloned().chain(beside), &point.unknowns[..]);
             let Some(through) = starts.into_iter().find_map(|start| self.through(roll, p, &start)) else { continue };
             let unknowns = [p, &through[..]].concat();
             let members = self.members(&unknowns, roll);
@@ -138,6 +146,14 @@ impl ContactProblem {
             }
         }
         if found.is_empty() { Err(refused.unwrap_or(NoContact::Apart)) } else { Ok(found) }
+    }
+
+    /// Of both members at a lag and a roll position.
+    fn poses_at(&self, lag: f64, roll: f64) -> [Pose; 2] {
+        let mut poses = [0.0; 24];
+        let inputs: Vec<f64> = [lag].into_iter().chain(self.given(roll)).collect();
+        ScalarEvaluator::new(&self.poses).run(&inputs, &mut poses);
+        [0, 1].map(|member| std::array::from_fn(|k| poses[12 * member + k]))
     }
 
     /// Unknowns of the second flank and the lag at which it passes through a point of the first.

@@ -55,7 +55,7 @@ impl ContactProblem {
     }
 
     /// The root with these edges and no others, however far beyond other edges it lies.
-    fn root(
+    pub(super) fn root(
         &self,
         roll: f64,
         start: &[f64],
