@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::symbolic::curve::Curve;
+use crate::symbolic::op::Binary;
 use crate::tape::kernel;
 use crate::tape::{Instruction, Operation, Tape};
 
@@ -42,6 +43,11 @@ pub(crate) fn execute(instructions: &[Instruction], curves: &[Arc<Curve>], regis
         registers[step.out as usize] = match step.operation {
             Operation::Unary(op) => op.apply(a),
             Operation::Curve(order) => curves[step.b as usize].value(order, a),
+            // most of what there is, without a call
+            Operation::Binary(Binary::Add) => a + registers[step.b as usize],
+            Operation::Binary(Binary::Sub) => a - registers[step.b as usize],
+            Operation::Binary(Binary::Mul) => a * registers[step.b as usize],
+            Operation::Binary(Binary::Div) => a / registers[step.b as usize],
             Operation::Binary(op) => op.apply(a, registers[step.b as usize]),
             Operation::SinCos => {
                 let (sine, cosine) = kernel::sin_cos(a);

@@ -60,7 +60,7 @@ impl ContactProblem {
                 }
             }
         };
-        let ((mut points, begins), (after, ends)) = (follow(-1), follow(1));
+        let ((mut points, begins), (after, ends)) = rayon::join(|| follow(-1), || follow(1));
         let first = -(points.len() as isize);
         points.reverse();
         points.push(from.clone());
