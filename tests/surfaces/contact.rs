@@ -389,7 +389,7 @@ fn a_mounting_error_changes_the_vertex_as_solving_again_does() {
         let (problem, points) = path(pair, &rolls(rows_of(aligned), "thetaP"));
         let vertex = problem.vertex(&points[12], [-0.425, 0.2]).expect("the error has a vertex");
         for parameter in 0..ERRORS.len() {
-            let change = problem.change(&vertex, parameter, true).expect("the vertex is regular");
+            let change = problem.change(&vertex, &[(parameter, 1.0)], true).expect("the vertex is regular");
             // third derivatives by an error are below 1 per mm or radian and its square, of the roll a hundred times that
             const STEP: f64 = 2e-4;
             let [before, after] = [-STEP, STEP].map(|step| {

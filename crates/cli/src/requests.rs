@@ -100,6 +100,7 @@ impl Contact {
             compound: self.compound,
             sensitivity: self.sensitivity,
             vhj: self.vhj,
+            certify: self.certify,
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,

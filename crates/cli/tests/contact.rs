@@ -76,8 +76,9 @@ fn mounting_errors_do_what_is_told_of_them() {
     let spec = ["contact", PAIR, "--no-picture", "--positions", "20", "--out", out.to_str().unwrap()];
     let told = document(&[&spec[..], &["--sensitivity", "--vhj"]].concat(), 0);
     let middle = |found: &Value, name: &str| number(&found["middle"], name);
-    for influence in told["influences"].as_array().expect("influences") {
-        let (axis, per) = (influence["axis"].as_str().expect("a name"), influence["per"].as_str().expect("an error"));
+    let influences = told["influences"].as_array().expect("influences");
+    for influence in influences.iter().filter(|influence| influence["kind"] == "mounting") {
+        let (axis, per) = (influence["name"].as_str().expect("a name"), influence["per"].as_str().expect("an error"));
         let [plus, minus] = ["", "-"].map(|sign| {
             let error = format!("{axis}={sign}{}", per.replace(' ', ""));
             document(&[&spec[..], &["--error", &error]].concat(), 0)
@@ -88,19 +89,66 @@ fn mounting_errors_do_what_is_told_of_them() {
         let error = 0.5 * (middle(&plus, "error") - middle(&minus, "error")).to_radians() * 1e6;
         assert!((error - number(influence, "error")).abs() < 1e-3 * error.abs().max(1.0), "{influence} {error}");
     }
-    for row in told["vhj"].as_array().expect("rows").iter().filter(|row| !row["errors"].is_null()) {
-        let errors: Vec<String> = (0..2)
-            .map(|k| {
-                format!("{}={:?}mm", row["axes"][k].as_str().expect("a name"), row["errors"][k].as_f64().expect("mm"))
-            })
-            .collect();
-        let found = document(&[&spec[..], &["--error", &errors[0], "--error", &errors[1]]].concat(), 0);
+    let rows = told["vhj"].as_array().expect("rows");
+    assert_eq!(rows.len(), 6, "toe, middle and heel, with the gear as it is and moved");
+    // the others take the error or the tools out of their ranges
+    let is_within = |row: &&Value| {
+        let axes = row["axes"].as_array().expect("axes").len();
+        [("toe", 2), ("middle", 2), ("middle", 3), ("heel", 3)]
+            .iter()
+            .any(|(to, count)| row["to"] == *to && axes == *count)
+    };
+    for row in rows.iter().filter(is_within) {
+        let axes = row["axes"].as_array().expect("axes").iter().zip(row["errors"].as_array().expect("a mounting"));
+        let errors = axes.map(|(axis, error)| format!("{}={:?}mm", axis.as_str().unwrap(), error.as_f64().unwrap()));
+        let options = errors.flat_map(|error| ["--error".to_string(), error]).collect::<Vec<String>>();
+        let found = document(&[&spec[..], &options.iter().map(String::as_str).collect::<Vec<&str>>()].concat(), 0);
         let shares = &found["middle"]["on"][1]["shares"];
         for (k, name) in ["lengthwise", "profilewise"].into_iter().enumerate() {
             assert!((shares[k].as_f64().expect("a share") - number(row, name)).abs() < 1e-7, "{row} {shares}");
         }
+        if row["axes"].as_array().expect("axes").len() == 3 {
+            let [found, told] = [&found, &told].map(|of| number(&of["middle"], "error").to_radians());
+            assert!((found - told).abs() < 1e-8, "{row}: {found} {told}");
+        }
     }
-    assert!(told["vhj"].as_array().expect("rows").iter().any(|row| !row["errors"].is_null()));
+}
+
+/// Settings of the bevel pair with their values and units, and the change that influences are told for.
+const SETTINGS: [(&str, f64, &str, f64); 5] = [
+    ("pinion_cutter.outside_point_radius", 98.691, "mm", 0.01),
+    ("p.machine_root_angle", 15.64096727073747, "deg", 1.0 / 60.0),
+    ("p.modified_roll_2c", 0.092298, "", 0.092298e-3),
+    ("g.ratio_of_roll", 1.023367028989512, "", 1.023367028989512e-3),
+    ("gear_cutter.blade_angle", 20.0, "deg", 1.0 / 60.0),
+];
+
+/// What is told of settings is what solving again with another value finds.
+#[test]
+fn settings_do_what_is_told_of_them() {
+    let out = folder("contact_settings");
+    let spec = ["contact", PAIR, "--no-picture", "--positions", "20", "--out", out.to_str().unwrap()];
+    let told = document(&[&spec[..], &["--sensitivity"]].concat(), 0);
+    let middle = |found: &Value, name: &str| number(&found["middle"], name);
+    for (name, value, unit, step) in SETTINGS {
+        let influences = told["influences"].as_array().expect("influences");
+        let influence = influences.iter().find(|of| of["name"] == name).expect("a setting that changes the contact");
+        let [plus, minus] = [1.0, -1.0].map(|sign| {
+            let setting = format!("{name}={:?}{unit}", value + sign * step);
+            document(&[&spec[..], &["--set", &setting]].concat(), 0)
+        });
+        let turn = 0.5 * (middle(&plus, "turn") - middle(&minus, "turn"));
+        assert!((turn - number(influence, "turn")).abs() < 1e-3 * turn.abs().max(1e-2), "{influence} {turn}");
+        let error = 0.5 * (middle(&plus, "error") - middle(&minus, "error")).to_radians() * 1e6;
+        assert!((error - number(influence, "error")).abs() < 1e-3 * error.abs().max(1.0), "{influence} {error}");
+        let parabola = 0.5 * (middle(&plus, "parabola") - middle(&minus, "parabola")) / middle(&told, "parabola");
+        let share = number(influence, "parabola");
+        assert!((parabola - share).abs() < 2e-3 * share.abs().max(1e-2), "{influence} {parabola}");
+        let axis = |found: &Value| found["middle"]["ellipse"][0].as_f64().expect("an ellipse");
+        let ellipse = 0.5 * (axis(&plus) - axis(&minus)) / axis(&told);
+        let share = number(influence, "ellipse");
+        assert!((ellipse - share).abs() < 2e-3 * share.abs().max(1e-2), "{influence} {ellipse}");
+    }
 }
 
 /// Two crowned paddles, written here; their contact is in the middle of both, by hand.

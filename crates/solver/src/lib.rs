@@ -31,11 +31,11 @@ pub use analysis::inspection::{Inspection, beside};
 pub use analysis::intersection::{Intersection, Line, Meeting};
 pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
-pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter};
+pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter, total_derivatives};
 pub use analysis::trim::{Trim, trim};
 pub use contact::{
-    Carried, ContactChange, ContactPath, ContactPoint, ContactProblem, ContactState, Engagement, FlankEdge, Gap,
-    GapProblem, NoContact, Outline, OutlineSegment, RollingPair,
+    Carried, ContactChange, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState, Engagement,
+    FlankEdge, Gap, GapProblem, NoContact, Outline, OutlineSegment, RollingPair,
 };
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};

@@ -45,12 +45,16 @@ pub(crate) struct Contact {
     /// Thickness of the marking compound
     #[arg(long, value_name = "LENGTH", default_value = "6.35um", value_parser = length)]
     pub(crate) compound: f64,
-    /// Also what each axis of the pair's machine does to the contact: an error of 0.01 mm or 1 arcmin
+    /// Also what each axis of the pair's machine and each setting does to the contact: 0.01 mm, 1 arcmin, or a thousandth of the value
     #[arg(long)]
     pub(crate) sensitivity: bool,
-    /// Also how far the pinion is to be offset (E) and moved along its axis (P) to bring the contact to toe, middle and heel
+    /// Also how far the pinion is to be offset (E) and moved along its axis (P), and the gear along its own (G), to bring the contact to
+    /// toe, middle and heel
     #[arg(long)]
     pub(crate) vhj: bool,
+    /// Also prove by interval arithmetic that exactly one point of contact lies where it is computed
+    #[arg(long)]
+    pub(crate) certify: bool,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,

@@ -5,9 +5,11 @@ pub(crate) mod influence;
 pub(crate) mod pair;
 pub(crate) mod pattern;
 pub(crate) mod place;
+mod proof;
 pub(crate) mod result;
 pub(crate) mod rolling;
 pub(crate) mod summary;
+pub(crate) mod tester;
 mod text;
 
 use std::time::Instant;
@@ -106,16 +108,23 @@ fn of_contact(
     } else {
         Vec::new()
     };
-    let vhj = if request.vhj { influence::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
+    let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
     let backlash = summary::backlash(job, &members, request, &errors, &rolling, session)?;
+    let (proven, open) = if request.certify {
+        let (proven, open) = proof::of_engagement(&members, &rolling);
+        (Some(proven), open)
+    } else {
+        (None, Vec::new())
+    };
     let files = files::write(job, &members, &rolling, &patterns, (request, origin, session))?;
     let result = summary.of_rolling(&rolling, &patterns);
     Ok(ContactResult {
         influences,
         vhj,
         backlash,
+        proven,
         files,
-        not_done: origin.located(&[job], result.not_done.clone()),
+        not_done: origin.located(&[job], [&result.not_done[..], &open].concat()),
         remarks: origin.located(&[job], result.remarks.clone()),
         ..result
     })

@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Contact, GeneratedSurface, Job, OutlineCurve, Solid};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{BoundSurface, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
+use flank_solver::{BoundSurface, ContactProblem, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::project::units;
-use crate::solve::{self, SolveOptions, bound};
+use crate::solve::{self, SolveOptions, bound, ranges};
 
 /// A pair turns evenly, and as its numbers of teeth say, if pitches differ by less than this share.
 const EVEN: f64 = 1e-12;
@@ -63,19 +63,43 @@ impl<'j, 'g> Members<'j, 'g> {
     /// The pair mounted with errors, one for each axis of the pair's machine; those in `open` stay symbols by which the contact is
     /// differentiated.
     pub(crate) fn pair(&self, job: &Job<'g>, errors: &[f64], open: &[usize]) -> RollingPair<'_, 'g> {
+        self.mounted(self.bound.each_ref(), &job.bindings(), (errors, open))
+    }
+
+    /// The pair with flanks that may have symbols left.
+    fn mounted<'b>(
+        &self,
+        surfaces: [&'b BoundSurface<'g>; 2],
+        values: &[(Expr<'g>, Expr<'g>)],
+        (errors, open): (&[f64], &[usize]),
+    ) -> RollingPair<'b, 'g> {
         let Contact { placements, roll, lag, errors: axes, .. } = self.contact;
         let graph = roll.variable.graph();
         let closed = axes.iter().zip(errors).enumerate().filter(|(at, _)| !open.contains(at));
-        let given: Vec<(Expr<'g>, Expr<'g>)> =
-            closed.map(|(_, (axis, error))| (axis.variable, graph.constant(*error))).chain(job.bindings()).collect();
+        let closed = closed.map(|(_, (axis, error))| (axis.variable, graph.constant(*error)));
+        let given: Vec<(Expr<'g>, Expr<'g>)> = closed.chain(values.iter().copied()).collect();
         RollingPair {
-            surfaces: self.bound.each_ref(),
+            surfaces,
             placements: placements.each_ref().map(|placement| placement.substituted(&given)),
             roll: roll.variable,
             lag: (lag.variable, Range { low: lag.low, high: lag.high }),
             outlines: self.solids.map(|solid| solid.map(outline)),
             parameters: open.iter().map(|at| (axes[*at].variable, errors[*at])).collect(),
         }
+    }
+
+    /// The equations of the pair in which all its axes and then all settings of the job are symbols, but for what is counted, whose value
+    /// stands there.
+    pub(crate) fn open_problem(&self, job: &Job<'g>, errors: &[f64]) -> ContactProblem {
+        let graph = self.contact.roll.variable.graph();
+        let (counts, settings): (Vec<_>, Vec<_>) = job.parameters.iter().partition(|parameter| parameter.is_count);
+        let counts: Vec<(Expr<'g>, Expr<'g>)> =
+            counts.iter().map(|count| (count.variable, graph.constant(count.value))).collect();
+        let bound = self.surfaces.map(|surface| BoundSurface::new(&surface.surface, ranges(surface), &counts));
+        let axes: Vec<usize> = (0..errors.len()).collect();
+        let mut pair = self.mounted(bound.each_ref(), &counts, (errors, &axes));
+        pair.parameters.extend(settings.iter().map(|setting| (setting.variable, setting.value)));
+        ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound")
     }
 
     /// How far the members roll from one pair of teeth to the next: as the spec says, or by the teeth of both solids, which turn evenly.

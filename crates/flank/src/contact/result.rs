@@ -45,9 +45,11 @@ pub struct ContactResult {
     /// Between this contact and the one of the opposite flanks, where the job has it.
     pub backlash: Option<Backlash>,
     /// What mounting errors do to the middle, if that was asked for.
-    pub influences: Vec<MountingInfluence>,
+    pub influences: Vec<ContactInfluence>,
     /// Mountings that bring the contact to other places, if that was asked for.
     pub vhj: Vec<VhjRow>,
+    /// What is proven of the contact from its first touch to its last, if that was asked for.
+    pub proven: Option<ProvenContact>,
     /// Files written, in their order.
     pub files: Vec<String>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
@@ -56,6 +58,18 @@ pub struct ContactResult {
     pub remarks: Vec<Remark>,
     #[serde(skip)]
     pub(super) timing: Timing,
+}
+
+/// What interval arithmetic proves of a contact: at each of these roll positions exactly one solution of its equations lies so near to the
+/// computed one.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ProvenContact {
+    /// Roll positions that are proven.
+    pub points: usize,
+    /// The largest distance of the point of contact, mm; null where nothing is proven.
+    pub radius_mm: Option<f64>,
+    /// The largest deviation of the error, in the unit of the unknown.
+    pub error: Option<f64>,
 }
 
 /// A flank of a contact.
@@ -199,12 +213,24 @@ pub struct Backlash {
     pub normal: f64,
 }
 
-/// What one mounting error does to the middle, per 0.01 mm or arcminute.
+/// What causes a change of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum InfluenceKind {
+    /// An axis of the pair's machine.
+    Mounting,
+    /// A setting of a machine, a tool or the job; what is defined by it follows.
+    Setting,
+}
+
+/// What one mounting error or setting does to the middle, to first order.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct MountingInfluence {
-    /// The axis.
-    pub axis: String,
-    /// The error that it is told for.
+pub struct ContactInfluence {
+    /// The axis of the pair's machine, or the setting of a machine, a tool or the job.
+    pub name: String,
+    /// Which of both it is.
+    pub kind: InfluenceKind,
+    /// The change that it is told for.
     pub per: String,
     /// How far the middle moves on the first and on the second flank, mm.
     pub moved_mm: [f64; 2],

@@ -92,6 +92,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             backlash: None,
             influences: Vec::new(),
             vhj: Vec::new(),
+            proven: None,
             files: Vec::new(),
             not_done: Vec::new(),
             remarks: Vec::new(),

@@ -4,7 +4,9 @@ use std::fmt;
 
 use flank_export::fixed;
 
-use crate::contact::result::{ContactKind, ContactMiddle, ContactPattern, ContactResult};
+use crate::contact::result::{
+    ContactInfluence, ContactKind, ContactMiddle, ContactPattern, ContactResult, InfluenceKind,
+};
 use crate::project::units;
 
 /// Below this a parabola or a curvature of the gap is zero, in the units in which it is printed: rounding.
@@ -19,18 +21,7 @@ impl fmt::Display for ContactResult {
         writeln!(f, "{}\n", self.heading())?;
         self.facts().iter().try_for_each(|(name, text)| writeln!(f, "  {name:12} {text}"))?;
         self.write_influences(f)?;
-        if !self.vhj.is_empty() {
-            writeln!(f)?;
-        }
-        for row in &self.vhj {
-            let (to, lengthwise) = (&row.to, fixed(row.lengthwise, 1));
-            let nothing = || format!("no {} bring the contact there", row.axes.join(" and "));
-            let mounted = row.errors.as_ref().map_or_else(nothing, |errors| {
-                let each = row.axes.iter().zip(errors).map(|(axis, error)| format!("{axis} {} mm", fixed(*error, 4)));
-                each.collect::<Vec<String>>().join(", ")
-            });
-            writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounted}")?;
-        }
+        self.write_vhj(f)?;
         if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
     }
 }
@@ -92,6 +83,16 @@ impl ContactResult {
                 format!("{least} {unit}, {normal} mm along the normal, to {other} at {over} {turn} {over_unit}"),
             ));
         }
+        if let Some(proven) = &self.proven {
+            let near = proven.radius_mm.zip(proven.error).map_or(String::new(), |(radius, error)| {
+                let (radius, error) = (units::scientific(radius, 1), units::scientific(error, 1));
+                format!(": exactly one contact within {radius} mm and {error} {} of each", self.unknown_unit)
+            });
+            facts.push((
+                "proven",
+                format!("{} of {}{near}", proven.points, units::counted(self.timing.points, "position")),
+            ));
+        }
         facts.into_iter().map(|(name, text)| (name.to_string(), text)).collect()
     }
 
@@ -133,21 +134,59 @@ impl ContactResult {
         facts
     }
 
-    fn write_influences(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.influences.is_empty() {
-            return Ok(());
-        }
-        let unit = self.error.as_ref().map_or("", |error| error.unit.as_str());
-        let width = self.influences.iter().map(|of| of.axis.len()).max().unwrap_or(0).max(4);
-        writeln!(f, "\n  {:width$}  per       moves on both, mm   {unit:>9}  parabola %  ellipse %", "axis")?;
-        for of in &self.influences {
-            let [a, b] = of.moved_mm.map(|way| fixed(way, 4));
-            let percent = |share: Option<f64>| share.map_or("-".to_string(), |share| fixed(100.0 * share, 2));
-            let (error, parabola, ellipse) = (fixed(of.error, 3), percent(of.parabola), percent(of.ellipse));
-            let (axis, per) = (&of.axis, &of.per);
-            writeln!(f, "  {axis:width$}  {per:8}  {a:>8} {b:>8}   {error:>9}  {parabola:>10}  {ellipse:>9}")?;
+    /// A row for each place, and from toe to heel.
+    fn write_vhj(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for rows in self.vhj.chunk_by(|a, b| a.axes == b.axes) {
+            writeln!(f)?;
+            let mounted = |errors: &[f64]| {
+                let each =
+                    rows[0].axes.iter().zip(errors).map(|(axis, error)| format!("{axis} {:>8} mm", fixed(*error, 4)));
+                each.collect::<Vec<String>>().join(", ")
+            };
+            let unchanged = if rows[0].axes.len() > 2 { ", the error as it is" } else { "" };
+            for row in rows {
+                let (to, lengthwise) = (&row.to, fixed(row.lengthwise, 1));
+                let nothing = || format!("no {} bring the contact there", row.axes.join(" and "));
+                let mounting = row.errors.as_deref().map_or_else(nothing, mounted);
+                writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounting}{unchanged}")?;
+            }
+            if let [Some(toe), .., Some(heel)] = &rows.iter().map(|row| row.errors.as_ref()).collect::<Vec<_>>()[..] {
+                let way: Vec<f64> = heel.iter().zip(toe.iter()).map(|(heel, toe)| heel - toe).collect();
+                writeln!(f, "  toe to heel{:18}{}", ":", mounted(&way))?;
+            }
         }
         Ok(())
+    }
+
+    fn write_influences(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.error.as_ref().map_or("", |error| error.unit.as_str());
+        for (kind, title) in [(InfluenceKind::Mounting, "axis"), (InfluenceKind::Setting, "setting")] {
+            let (shown, rest): (Vec<_>, Vec<_>) =
+                self.influences.iter().filter(|of| of.kind == kind).partition(|of| of.is_shown());
+            let width = shown.iter().map(|of| of.name.len()).max().unwrap_or(0).max(title.len());
+            if !shown.is_empty() {
+                writeln!(f, "\n  {title:width$}  per       moves on both, mm   {unit:>9}  parabola %  ellipse %")?;
+            }
+            for of in &shown {
+                let [a, b] = of.moved_mm.map(|way| fixed(way, 4));
+                let percent = |share: Option<f64>| share.map_or("-".to_string(), |share| fixed(100.0 * share, 2));
+                let (error, parabola, ellipse) = (fixed(of.error, 3), percent(of.parabola), percent(of.ellipse));
+                let (name, per) = (&of.name, &of.per);
+                writeln!(f, "  {name:width$}  {per:8}  {a:>8} {b:>8}   {error:>9}  {parabola:>10}  {ellipse:>9}")?;
+            }
+            if !rest.is_empty() {
+                let more = rest.len();
+                writeln!(f, "  {more} more: less than this table can show")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl ContactInfluence {
+    /// Whether a table with four decimals of a millimetre and three of an error shows more than zeros.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.moved_mm.iter().any(|way| *way >= 5e-5) || self.error.abs() >= 5e-4
     }
 }
 

@@ -288,6 +288,8 @@ pub struct ContactRequest {
     pub sensitivity: bool,
     /// Also mountings that bring the contact to toe, middle and heel.
     pub vhj: bool,
+    /// Also proofs that the flanks touch where they are said to.
+    pub certify: bool,
     /// Folder for the files; made if it is not there.
     pub out: PathBuf,
     /// Files with gaps and paths.
@@ -309,6 +311,7 @@ impl ContactRequest {
             compound: 0.00635,
             sensitivity: false,
             vhj: false,
+            certify: false,
             out: "build".into(),
             format: vec![PointFormat::Csv],
             no_picture: false,

@@ -34,12 +34,12 @@ fn of_contact(findings: &Findings<'_, '_>, (result, picture): &super::ShownConta
     blocks
 }
 
-/// What mounting errors do.
+/// What mounting errors and settings do.
 fn influences(result: &ContactResult) -> Option<Block> {
     let unit = result.error.as_ref().map_or("", |error| error.unit.as_str());
     let columns = [
-        Column::code("axis"),
-        Column::words("error"),
+        Column::code("axis or setting"),
+        Column::words("change"),
         Column::numbers("middle moves on the first flank, mm"),
         Column::numbers("on the second, mm"),
         Column::numbers(&format!("error of the middle, {unit}")),
@@ -50,11 +50,12 @@ fn influences(result: &ContactResult) -> Option<Block> {
     let rows: Vec<Vec<String>> = result
         .influences
         .iter()
+        .filter(|of| of.is_shown())
         .map(|of| {
             let [first, second] = of.moved_mm.map(|way| fixed(way, 4));
             let (parabola, ellipse) = (percent(of.parabola), percent(of.ellipse));
-            vec![of.axis.clone(), of.per.clone(), first, second, fixed(of.error, 3), parabola, ellipse]
+            vec![of.name.clone(), of.per.clone(), first, second, fixed(of.error, 3), parabola, ellipse]
         })
         .collect();
-    (!rows.is_empty()).then(|| Block::Table("What a mounting error does".to_string(), columns.to_vec(), rows))
+    (!rows.is_empty()).then(|| Block::Table("What mounting errors and settings do".to_string(), columns.to_vec(), rows))
 }

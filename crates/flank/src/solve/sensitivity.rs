@@ -121,7 +121,7 @@ const ARCMIN: f64 = PI / 10_800.0;
 /// The change of a parameter that is usual when a machine is set, so that parameters of all dimensions can be ranked: 0.01 mm of a length
 /// and one arcminute of an angle; of all others a thousandth of the value, where that is zero of the width of the range, and where
 /// there is none of one, in mm and radians.
-fn usual_change(parameter: &Parameter<'_>) -> f64 {
+pub(crate) fn usual_change(parameter: &Parameter<'_>) -> f64 {
     const SHARE: f64 = 1e-3;
     match parameter.dimension {
         Dimension::LENGTH => 0.01,

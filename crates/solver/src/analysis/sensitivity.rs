@@ -194,6 +194,15 @@ fn along_normal(normal: &[Interval], moved: &[Interval; 3]) -> f64 {
     if is_nothing && share.magnitude().is_finite() { 0.0 } else { share.middle() }
 }
 
+/// For each parameter the numbers of those that follow it, itself among them, with their total derivatives by it.
+///
+/// # Errors
+/// If a definition depends on something that is no earlier parameter.
+pub fn total_derivatives(parameters: &[Parameter<'_>]) -> Result<Vec<Vec<(usize, f64)>>, TapeError> {
+    let middle = |of: Vec<(usize, Interval)>| of.into_iter().map(|(k, follows)| (k, follows.middle())).collect();
+    Ok(following(parameters, |_| true)?.into_iter().map(middle).collect())
+}
+
 /// The total derivatives of all parameters with respect to each of them, which is changed itself while its definition is left
 /// aside: as when it is given another value by hand. Of each the parameters that follow it and for which `moves` says so.
 fn following(

@@ -11,7 +11,7 @@ use crate::contact::point::ContactPoint;
 /// The step over which the gap's curvatures are differenced, as a share of the ranges: its square, and rounding over it, are below 1e-10.
 const STEP: f64 = 1e-5;
 
-/// By how much a contact changes with a parameter, per unit of it. Lengths are mm, angles radians.
+/// By how much a contact changes with parameters, per unit of their change. Lengths are mm, angles radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactChange {
     /// Of the roll position, where the contact is followed as the vertex of the lag; zero where the roll is held.
@@ -35,13 +35,16 @@ struct Moved {
 }
 
 impl ContactProblem {
-    /// What a parameter changes: at the vertex of the lag, if the point is it and stays it, else at the same roll position. `None` where the
-    /// contact is singular.
-    pub fn change(&self, at: &ContactPoint, parameter: usize, is_vertex: bool) -> Option<ContactChange> {
+    /// What a change of parameters changes, each by its number with its share in the change: at the vertex of the lag, if the point is it
+    /// and stays it, else at the same roll position. `None` where the contact is singular.
+    pub fn change(&self, at: &ContactPoint, of: &[(usize, f64)], is_vertex: bool) -> Option<ContactChange> {
         let (unknowns, lag) = (at.all_unknowns(), self.lag_at());
         let (system, parameters) = self.equations(&at.edges, at.roll, &at.first_normal.into())?;
-        let along =
-            |roll: f64, change: f64| system.series(&unknowns, &parameters, &[(0, roll), (1 + parameter, change)], 3);
+        let along = |roll: f64, change: f64| {
+            let changed = of.iter().map(|(parameter, share)| (1 + parameter, share * change));
+            let rates: Vec<(usize, f64)> = [(0, roll)].into_iter().chain(changed).collect();
+            system.series(&unknowns, &parameters, &rates, 3)
+        };
         let (rolled, changed) = (along(1.0, 0.0)?, along(0.0, 1.0)?);
         let (both, against) = (along(1.0, 1.0)?, along(1.0, -1.0)?);
         let lag_slope = 0.5 * (both[lag][2] - against[lag][2]);
@@ -49,7 +52,7 @@ impl ContactProblem {
         let roll = if is_vertex { -lag_slope / (2.0 * rolled[lag][2]) } else { 0.0 };
         let rates: Vec<f64> =
             rolled.iter().zip(&changed).map(|(rolled, changed)| changed[1] + roll * rolled[1]).collect();
-        let Moved { over: moved, gap } = self.moved(at, parameter, roll, &rates)?;
+        let Moved { over: moved, gap } = self.moved(at, of, roll, &rates)?;
         Some(ContactChange {
             roll,
             lag: rates[lag],
@@ -61,13 +64,10 @@ impl ContactProblem {
     }
 
     /// How the point moves over both members, and what becomes of the gap, where the unknowns change at these rates.
-    fn moved(&self, at: &ContactPoint, parameter: usize, roll: f64, rates: &[f64]) -> Option<Moved> {
+    fn moved(&self, at: &ContactPoint, of: &[(usize, f64)], roll: f64, rates: &[f64]) -> Option<Moved> {
         let values = at.all_unknowns().into_iter().chain(self.given(at.roll));
-        let speeds = rates
-            .iter()
-            .copied()
-            .chain([roll])
-            .chain((0..self.values.len()).map(|k| f64::from(u8::from(k == parameter))));
+        let share = |k: usize| of.iter().find(|(parameter, _)| *parameter == k).map_or(0.0, |(_, share)| *share);
+        let speeds = rates.iter().copied().chain([roll]).chain((0..self.values.len()).map(share));
         let inputs: Vec<f64> = values.zip(speeds).flat_map(|(value, speed)| [value, speed]).collect();
         let mut outputs = vec![0.0; 2 * self.state.output_count()];
         TaylorEvaluator::new(&self.state, 1).run(&inputs, &mut outputs);

@@ -11,6 +11,7 @@ mod outline;
 mod path;
 mod pattern;
 mod point;
+mod proof;
 mod start;
 mod touching;
 
@@ -28,6 +29,7 @@ pub use outline::{Outline, OutlineSegment};
 pub use path::ContactPath;
 pub use pattern::{Gap, GapProblem};
 pub use point::{ContactPoint, ContactState};
+pub use proof::ContactProof;
 pub use start::NoContact;
 
 /// Two surfaces that roll on each other.

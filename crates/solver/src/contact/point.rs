@@ -75,6 +75,9 @@ pub struct ContactPoint {
     pub(super) first_normal: [f64; 3],
 }
 
+/// Where the position of the first flank stands among the [`outputs`]: after its axis and a point of that.
+pub(super) const POSITION: std::ops::Range<usize> = 6..9;
+
 /// All that [`ContactProblem::point`] reads, in the order in which it does.
 pub(super) fn outputs<'g>(
     flanks: &[PlacedFlank<'_, 'g>; 2],

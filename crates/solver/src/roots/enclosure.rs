@@ -5,6 +5,11 @@ use flank_expr::{Interval, IntervalEvaluator};
 use crate::equations::solution::Range;
 use crate::equations::system::System;
 
+/// Widenings of the box about a computed root that are tried; each makes it four times as wide.
+const WIDENINGS: u32 = 8;
+/// The smallest radius, as a share of an unknown: a few units in the last place.
+const LEAST_SHARE: f64 = 1e-15;
+
 /// Evaluates a system on boxes at one set of parameters.
 pub(crate) struct Enclosure<'s> {
     whole: IntervalEvaluator<'s>,
@@ -160,6 +165,21 @@ impl<'s> Enclosure<'s> {
             exists &= (wander + Interval::point(value.magnitude())).hi < radii[row];
         }
         if exists { Proof::ExactlyOne } else { Proof::AtMostOne }
+    }
+
+    /// Radii about a computed root within which exactly one root is proven to lie, as small as they are found; `None` if that cannot be
+    /// proven.
+    pub(crate) fn proven_radii(&mut self, root: &[f64]) -> Option<Vec<f64>> {
+        let steps = self.newton_reach(root)?;
+        let least = |p: &f64| LEAST_SHARE * p.abs().max(f64::MIN_POSITIVE / LEAST_SHARE);
+        let mut radii: Vec<f64> = steps.iter().zip(root).map(|(step, p)| 2.0 * step + least(p)).collect();
+        for _ in 0..WIDENINGS {
+            if self.proof(root, &radii) == Proof::ExactlyOne {
+                return Some(radii);
+            }
+            radii.iter_mut().for_each(|radius| *radius *= 4.0);
+        }
+        None
     }
 
     /// How far Newton's step from a point leads in each unknown, at most; `None` where the Jacobian has no inverse.

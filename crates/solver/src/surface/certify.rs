@@ -2,14 +2,9 @@
 
 use flank_expr::{Interval, IntervalEvaluator};
 
-use crate::roots::enclosure::{Enclosure, Proof, around};
+use crate::roots::enclosure::{Enclosure, around};
 use crate::surface::SurfaceProblem;
 use crate::surface::points::SurfacePoint;
-
-/// Widenings of the box about a point that are tried; each makes it four times as wide.
-const WIDENINGS: u32 = 8;
-/// The smallest radius, as a share of an unknown: a few units in the last place.
-const LEAST_SHARE: f64 = 1e-15;
 
 /// Certifies points of one surface.
 ///
@@ -39,16 +34,8 @@ impl Certifier<'_> {
     /// lie; `None` if that cannot be proven.
     pub fn radius(&mut self, target: [f64; 2], point: &SurfacePoint) -> Option<f64> {
         self.enclosure.set_parameters(&target);
-        let steps = self.enclosure.newton_reach(&point.unknowns)?;
-        let least = |p: &f64| LEAST_SHARE * p.abs().max(f64::MIN_POSITIVE / LEAST_SHARE);
-        let mut radii: Vec<f64> = steps.iter().zip(&point.unknowns).map(|(step, p)| 2.0 * step + least(p)).collect();
-        for _ in 0..WIDENINGS {
-            if self.enclosure.proof(&point.unknowns, &radii) == Proof::ExactlyOne {
-                return Some(self.spread(point, &radii)).filter(|radius| radius.is_finite());
-            }
-            radii.iter_mut().for_each(|radius| *radius *= 4.0);
-        }
-        None
+        let radii = self.enclosure.proven_radii(&point.unknowns)?;
+        Some(self.spread(point, &radii)).filter(|radius| radius.is_finite())
     }
 
     /// How far the position may be from the computed one while the unknowns stay in their box.
