@@ -57,8 +57,8 @@ pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
 pub use contact::contact;
 pub use contact::result::{
-    Backlash, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult, FlankEnd,
-    InfluenceKind, LeadingEdge, MountedError, PlaceOnFlank, ProvenContact, TransmissionError, VhjRow,
+    Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
+    FlankEnd, InfluenceKind, LeadingEdge, MountedError, PlaceOnFlank, ProvenContact, TransmissionError, VhjRow,
 };
 pub use convert::convert;
 pub use convert::result::{

@@ -2,6 +2,7 @@
 
 pub(crate) mod files;
 pub(crate) mod influence;
+mod interference;
 pub(crate) mod pair;
 pub(crate) mod pattern;
 pub(crate) mod place;
@@ -86,12 +87,11 @@ fn of_contact(
     session: Session,
 ) -> Result<ContactResult, Failure> {
     let errors = influence::mounting(job, contact, &request.errors)?;
-    let members = Members::solved(job, contact, session)?;
+    let mut members = Members::solved(job, contact, session)?;
     members.check_range(job)?;
     let _working = session.begin(format!("rolling {}", contact.name))?;
-    let pair = members.pair(job, &errors, &[]);
     let steps = request.positions as usize;
-    let rolling = match Rolling::of_pair(&members, &pair, (steps, members.pitch(job))) {
+    let rolling = match Rolling::of_members(job, &mut members, &errors, steps) {
         Ok(rolling) => rolling,
         Err(why) => {
             let summary = Summary::new(job, &members, request, &errors);
@@ -101,6 +101,7 @@ fn of_contact(
     };
     session.check()?;
     let summary = Summary::new(job, &members, request, &errors);
+    let pair = members.pair(job, &errors, &[]);
     let patterns = pattern::on_both(&members, &pair, &rolling, request.compound);
     session.check()?;
     let influences = if request.sensitivity {
@@ -110,6 +111,7 @@ fn of_contact(
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
     let backlash = summary::backlash(job, &members, request, &errors, &rolling, session)?;
+    let (clearances, cutting, unseen) = interference::of_spaces(job, &members, &errors, &rolling, session)?;
     let (proven, open) = if request.certify {
         let (proven, open) = proof::of_engagement(&members, &rolling);
         (Some(proven), open)
@@ -122,10 +124,11 @@ fn of_contact(
         influences,
         vhj,
         backlash,
+        clearances,
         proven,
         files,
-        not_done: origin.located(&[job], [&result.not_done[..], &open].concat()),
-        remarks: origin.located(&[job], result.remarks.clone()),
+        not_done: origin.located(&[job], [&result.not_done[..], &cutting, &open].concat()),
+        remarks: origin.located(&[job], [&result.remarks[..], &unseen].concat()),
         ..result
     })
 }
@@ -142,16 +145,17 @@ pub(crate) fn shown(
 ) -> Result<(ContactResult, Option<Picture>), Failure> {
     let request = ContactRequest::new(jobs.clone());
     let errors = influence::mounting(job, contact, &[])?;
-    let members = Members::solved(job, contact, session)?;
+    let mut members = Members::solved(job, contact, session)?;
     members.check_range(job)?;
-    let pair = members.pair(job, &errors, &[]);
-    let summary = Summary::new(job, &members, &request, &errors);
-    let rolling = match Rolling::of_pair(&members, &pair, (request.positions as usize, members.pitch(job))) {
+    let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
         Ok(rolling) => rolling,
         Err(why) => {
+            let summary = Summary::new(job, &members, &request, &errors);
             return Ok((ContactResult { not_done: vec![refused(&members, why)], ..summary.of_nothing() }, None));
         }
     };
+    let summary = Summary::new(job, &members, &request, &errors);
+    let pair = members.pair(job, &errors, &[]);
     let patterns = pattern::on_both(&members, &pair, &rolling, request.compound);
     let influences = influence::of_all(job, &members, &errors, &rolling, request.compound);
     let picture = files::picture_of(job, &members, &rolling, &patterns, (request.compound, header.clone()));

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Contact, GeneratedSurface, Job, OutlineCurve, Solid};
+use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{BoundSurface, ContactProblem, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
 
@@ -22,9 +23,13 @@ pub(crate) struct Members<'j, 'g> {
     pub(crate) bound: [BoundSurface<'g>; 2],
     /// The points that the samples of both ask for.
     pub(crate) points: [Vec<SurfacePoint>; 2],
+    /// Which tooth of the second member meets the first: so many pitches from the one that the spec describes.
+    pub(crate) tooth: i32,
 }
 
 impl<'j, 'g> Members<'j, 'g> {
+    /// The flanks that a contact names.
+    ///
     /// # Errors
     /// If a flank is not sampled, or the work is cancelled.
     pub(crate) fn solved(
@@ -32,32 +37,54 @@ impl<'j, 'g> Members<'j, 'g> {
         contact: &'j Contact<'g>,
         session: Session,
     ) -> Result<Members<'j, 'g>, Failure> {
-        let surfaces = contact.surfaces.map(|at| &job.surfaces[at]);
-        let points = |surface: &'j GeneratedSurface<'g>| -> Result<Vec<SurfacePoint>, Failure> {
-            let name = &surface.name;
-            let sample = surface.sample.as_ref().ok_or(format!(
-                "contact `{}`: `{name}` is not sampled: the contact is looked for from its points; add `sample {name} {{ … }}`",
-                contact.name
-            ))?;
-            let _working = session.begin(format!("solving {name}"))?;
-            let wanted = SolveOptions {
-                geometry: false,
-                sensitivity: false,
-                certificates: false,
-                together: None,
-                of_shown: false,
-                session,
-            };
-            Ok(solve::points(job, surface, sample, wanted).points)
-        };
+        let [first, second] = contact.surfaces;
+        let points = [points(job, contact, first, session)?, points(job, contact, second, session)?];
+        Ok(Members::of(job, contact, contact.surfaces, points))
+    }
+
+    /// A surface of each member with its points: the flanks, or others in the same frames.
+    fn of(
+        job: &'j Job<'g>,
+        contact: &'j Contact<'g>,
+        surfaces: [usize; 2],
+        points: [Vec<SurfacePoint>; 2],
+    ) -> Members<'j, 'g> {
         let solid_of = |at: usize| job.solids.iter().find(|solid| solid.space.contains(&at));
-        Ok(Members {
+        let of_job = surfaces.map(|at| &job.surfaces[at]);
+        Members {
             contact,
-            surfaces,
-            solids: contact.surfaces.map(solid_of),
-            bound: surfaces.map(|surface| bound(job, surface)),
-            points: [points(surfaces[0])?, points(surfaces[1])?],
-        })
+            surfaces: of_job,
+            solids: surfaces.map(solid_of),
+            bound: of_job.map(|surface| bound(job, surface)),
+            points,
+            tooth: 0,
+        }
+    }
+
+    /// The other surfaces of each member's tooth space, each with the mate's flank, that are sampled; and the names of those that are not.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub(crate) fn beside(
+        &self,
+        job: &'j Job<'g>,
+        session: Session,
+    ) -> Result<(Vec<Members<'j, 'g>>, Vec<&'j str>), Failure> {
+        let (mut found, mut unknown) = (Vec::new(), Vec::new());
+        for member in [0, 1] {
+            let space = self.solids[member].map_or(&[][..], |solid| &solid.space);
+            for &at in space.iter().filter(|at| **at != self.contact.surfaces[member]) {
+                if job.surfaces[at].sample.is_none() {
+                    unknown.push(job.surfaces[at].name.as_str());
+                    continue;
+                }
+                let own = points(job, self.contact, at, session)?;
+                let (mut surfaces, mut both) = (self.contact.surfaces, self.points.clone());
+                (surfaces[member], both[member]) = (at, own);
+                found.push(Members { tooth: self.tooth, ..Members::of(job, self.contact, surfaces, both) });
+            }
+        }
+        Ok((found, unknown))
     }
 
     /// The pair mounted with errors, one for each axis of the pair's machine; those in `open` stay symbols by which the contact is
@@ -78,14 +105,23 @@ impl<'j, 'g> Members<'j, 'g> {
         let closed = axes.iter().zip(errors).enumerate().filter(|(at, _)| !open.contains(at));
         let closed = closed.map(|(_, (axis, error))| (axis.variable, graph.constant(*error)));
         let given: Vec<(Expr<'g>, Expr<'g>)> = closed.chain(values.iter().copied()).collect();
+        let [first, second] = placements.each_ref().map(|placement| placement.substituted(&given));
         RollingPair {
             surfaces,
-            placements: placements.each_ref().map(|placement| placement.substituted(&given)),
+            placements: [first, self.of_tooth(second)],
             roll: roll.variable,
             lag: (lag.variable, Range { low: lag.low, high: lag.high }),
             outlines: self.solids.map(|solid| solid.map(outline)),
             parameters: open.iter().map(|at| (axes[*at].variable, errors[*at])).collect(),
         }
+    }
+
+    /// The placement of the second member's tooth.
+    fn of_tooth(&self, placement: Chain<'g>) -> Chain<'g> {
+        let Some(solid) = self.solids[1].filter(|_| self.tooth != 0) else { return placement };
+        let graph = self.contact.roll.variable.graph();
+        let turn = graph.constant(f64::from(self.tooth) * TAU / f64::from(solid.teeth));
+        placement.then(&Chain::new(graph, vec![Step::Rotate(Axis::Z, turn)]))
     }
 
     /// The equations of the pair in which all its axes and then all settings of the job are symbols, but for what is counted, whose value
@@ -154,6 +190,31 @@ impl<'g> Members<'_, 'g> {
         }
         Ok(())
     }
+}
+
+/// The points that the sample of a surface asks for.
+fn points<'g>(
+    job: &Job<'g>,
+    contact: &Contact<'g>,
+    surface: usize,
+    session: Session,
+) -> Result<Vec<SurfacePoint>, Failure> {
+    let surface = &job.surfaces[surface];
+    let name = &surface.name;
+    let sample = surface.sample.as_ref().ok_or(format!(
+        "contact `{}`: `{name}` is not sampled: the contact is looked for from its points; add `sample {name} {{ … }}`",
+        contact.name
+    ))?;
+    let _working = session.begin(format!("solving {name}"))?;
+    let wanted = SolveOptions {
+        geometry: false,
+        sensitivity: false,
+        certificates: false,
+        together: None,
+        of_shown: false,
+        session,
+    };
+    Ok(solve::points(job, surface, sample, wanted).points)
 }
 
 /// The outline of a solid as the solver takes it.

@@ -44,6 +44,8 @@ pub struct ContactResult {
     pub pattern: Vec<ContactPattern>,
     /// Between this contact and the one of the opposite flanks, where the job has it.
     pub backlash: Option<Backlash>,
+    /// Between the edges of each flank and the other surfaces of the mate's tooth space, as far as they come together.
+    pub clearances: Vec<Clearance>,
     /// What mounting errors do to the middle, if that was asked for.
     pub influences: Vec<ContactInfluence>,
     /// Mountings that bring the contact to other places, if that was asked for.
@@ -211,6 +213,20 @@ pub struct Backlash {
     pub turn: f64,
     /// The same along the normal of this contact, mm.
     pub normal: f64,
+}
+
+/// The room that the edges of a tooth have in the space of its mate, beside the flanks of the contact.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Clearance {
+    /// The flank whose edges they are.
+    pub of: String,
+    /// The surface of the mate's space.
+    pub with: String,
+    /// The least room along the normal of that surface, mm, over the roll positions and over nine places of each edge: negative where an
+    /// edge cuts into it.
+    pub least_mm: f64,
+    /// Where that is on the roll.
+    pub turn: f64,
 }
 
 /// What causes a change of a contact.

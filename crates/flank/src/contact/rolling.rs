@@ -1,5 +1,6 @@
 //! The contact of a pair over its roll: found, followed through the mesh, and all pairs of teeth together.
 
+use flank_chain_dsl::Job;
 use flank_solver::{
     ContactPoint, ContactProblem, ContactState, Engagement, NoContact, Outcome, RollingPair, SurfacePoint,
 };
@@ -13,6 +14,9 @@ const COARSE: usize = 12;
 /// An error of the ratio below this at all positions is none: rounding.
 const STRAIGHT: f64 = 1e-12;
 
+/// The teeth of the second member that are tried, by pitches.
+const TEETH: [i32; 3] = [0, 1, -1];
+
 /// A pair of flanks over its roll.
 pub(crate) struct Rolling {
     pub(crate) problem: ContactProblem,
@@ -25,9 +29,32 @@ pub(crate) struct Rolling {
 }
 
 impl Rolling {
+    /// Mounted with errors. Of the second member's teeth it takes the one that touches within the range of the unknown: that of the spec or one
+    /// beside it.
+    ///
     /// # Errors
     /// Why there is no contact.
-    pub(crate) fn of_pair(
+    pub(crate) fn of_members<'g>(
+        job: &Job<'g>,
+        members: &mut Members<'_, 'g>,
+        errors: &[f64],
+        steps: usize,
+    ) -> Result<Rolling, NoContact> {
+        let every = members.pitch(job);
+        let teeth = if members.solids[1].is_some() { &TEETH[..] } else { &TEETH[..1] };
+        let mut reason = None;
+        for tooth in teeth {
+            members.tooth = *tooth;
+            match Rolling::of_pair(members, &members.pair(job, errors, &[]), (steps, every)) {
+                Ok(rolling) => return Ok(rolling),
+                Err(why) => reason = reason.or(Some(why)),
+            }
+        }
+        members.tooth = 0;
+        Err(reason.expect("there is a tooth"))
+    }
+
+    fn of_pair(
         members: &Members<'_, '_>,
         pair: &RollingPair<'_, '_>,
         (steps, every): (usize, Option<f64>),
@@ -59,11 +86,14 @@ impl Rolling {
 
     /// Steps of one pitch about the middle, or all where there is one pair alone.
     pub(crate) fn steps(&self) -> std::ops::Range<isize> {
-        let Engagement { steps, first, points, .. } = &self.engagement;
-        match self.has_pitch {
-            true => -(*steps as isize / 2)..*steps as isize - *steps as isize / 2,
-            false => *first..*first + points.len() as isize,
-        }
+        let steps = self.engagement.steps as isize;
+        if self.has_pitch { -(steps / 2)..steps - steps / 2 } else { self.all_steps() }
+    }
+
+    /// All steps at which the pair of teeth touches.
+    pub(crate) fn all_steps(&self) -> std::ops::Range<isize> {
+        let Engagement { first, points, .. } = &self.engagement;
+        *first..*first + points.len() as isize
     }
 
     /// Roll position of a step.

@@ -90,6 +90,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             edges: Vec::new(),
             pattern: Vec::new(),
             backlash: None,
+            clearances: Vec::new(),
             influences: Vec::new(),
             vhj: Vec::new(),
             proven: None,
@@ -373,9 +374,8 @@ pub(crate) fn backlash(
         other.name != own.name && other.roll.variable == own.roll.variable && other.lag.variable == own.lag.variable
     });
     for other in others {
-        let of_other = Members::solved(job, other, session)?;
-        let pair = of_other.pair(job, errors, &[]);
-        let Ok(opposite) = Rolling::of_pair(&of_other, &pair, (request.positions as usize, of_other.pitch(job))) else {
+        let mut of_other = Members::solved(job, other, session)?;
+        let Ok(opposite) = Rolling::of_members(job, &mut of_other, errors, request.positions as usize) else {
             continue;
         };
         let is_opposite = opposite.middle().is_some_and(|point| point.opening * middle.opening < 0.0);

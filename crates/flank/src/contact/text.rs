@@ -83,6 +83,18 @@ impl ContactResult {
                 format!("{least} {unit}, {normal} mm along the normal, to {other} at {over} {turn} {over_unit}"),
             ));
         }
+        let is_bounded = self.members.iter().any(|member| member.solid.is_some());
+        if self.kind.is_some() && is_bounded && self.clearances.is_empty() {
+            facts.push((
+                "room",
+                "only the flanks are looked at: no solid names fillets or roots of its spaces".to_string(),
+            ));
+        }
+        for room in &self.clearances {
+            let (least, turn) = (fixed(room.least_mm, 4), fixed(room.turn, 3));
+            let what = format!("edges of {} to {}", room.of, room.with);
+            facts.push(("room", format!("{least} mm from {what}, least at {over} {turn} {over_unit}")));
+        }
         if let Some(proven) = &self.proven {
             let near = proven.radius_mm.zip(proven.error).map_or(String::new(), |(radius, error)| {
                 let (radius, error) = (units::scientific(radius, 1), units::scientific(error, 1));

@@ -103,6 +103,8 @@ pub enum RemarkKind {
     OnePair,
     /// A pair of teeth still touches where the range of the roll ends.
     RollTooShort,
+    /// A surface of a tooth space was not held against the mate.
+    NotLookedAt,
 }
 
 impl<Kind> Message<Kind> {

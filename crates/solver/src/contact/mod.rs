@@ -49,6 +49,16 @@ pub struct RollingPair<'s, 'g> {
     pub parameters: Vec<(Expr<'g>, f64)>,
 }
 
+impl RollingPair<'_, '_> {
+    /// The same pair with its members named the other way round: it touches at the same places.
+    pub fn swapped(mut self) -> Self {
+        self.surfaces.reverse();
+        self.placements.reverse();
+        self.outlines.reverse();
+        self
+    }
+}
+
 /// The equations of a contact of two flanks.
 #[derive(Clone, Debug)]
 pub struct ContactProblem {
@@ -105,7 +115,7 @@ impl ContactProblem {
         let edges = has_edges.then(|| EdgeSystems::new(&placed, &unknowns, &given)).transpose()?;
         Ok(ContactProblem {
             touching: System::one_by_one(&residuals, &unknowns, &parameters)?,
-            through: System::one_by_one(&through, &followed, &of_first)?,
+            through: System::new(&through, &followed, &of_first)?,
             state: Tape::new(&point::outputs(&placed, [&first, &second], pair.roll, lag), &inputs)?,
             poses: Tape::new(&poses, &[&[lag][..], &given].concat())?,
             unknowns: [first.unknowns.len(), second.unknowns.len()],

@@ -64,8 +64,15 @@ impl OutlineSegment {
         Bound { origin: self.from, inward: to_center.map(|x| side * x / radius), bend: -side / radius }
     }
 
+    /// Places `[z, rho]` along it, evenly spaced between its ends.
+    pub fn places(&self, count: usize) -> Vec<[f64; 2]> {
+        let at = |share: f64| [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k]));
+        // of an arc those of the chord, brought to it
+        (0..count).map(|k| self.nearest(at((k as f64 + 0.5) / count as f64))).collect()
+    }
+
     /// The point of the segment that is nearest.
-    fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
+    pub fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
         let chord = minus(self.to, self.from);
         let ends = || {
             if dot(minus(point, self.from), chord) < dot(minus(point, self.to), [-chord[0], -chord[1]]) {

@@ -4,14 +4,15 @@
 //! that lag is extreme: before, they are apart everywhere, and beyond, they cut into each other. On a grid of solved points the
 //! extreme is near the contact.
 
-use flank_expr::ScalarEvaluator;
+use flank_expr::{LANES, ScalarEvaluator};
 use nalgebra::Vector3;
 
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
-use crate::contact::point::{ContactPoint, ContactState, Pose, opening, placed};
+use crate::contact::point::{ContactPoint, ContactState, Pose, opening, placed, turned};
 use crate::equations::solution::Outcome;
-use crate::newton::scalar::solve_with;
+use crate::newton::batch::LaneNewton;
+use crate::newton::scalar::solve;
 use crate::surface::points::SurfacePoint;
 
 /// Places, the most extreme first, from which a contact is looked for.
@@ -21,6 +22,10 @@ const UNEVEN: f64 = 1e-12;
 /// A lag that moves the flank along the normal by less than this share of what it moves it at all does not open the pair.
 const LOCKED: f64 = 1e-6;
 
+/// Normals at points beside each other, one of each flank, that are less than this far apart face the same way: their product.
+const AVERTED: f64 = 0.3;
+/// Points at most from which the second flank is passed through with care.
+const WITH_CARE: usize = 24;
 /// Points of the first flank through which the second is passed at first, if it has more: all where none of them leads to a contact.
 const FEW: usize = 150;
 
@@ -71,8 +76,36 @@ impl ContactProblem {
         }
     }
 
+    /// For points of the first flank, at its edges say, the lag near a given one at which the second flank passes through each, and how far
+    /// that flank moves along its own normal, into the first, for a step of the lag: `None` where it does not pass, ends before, or
+    /// faces the other way. Found from the nearest solved points of the second flank; those of the first are to be solved.
+    pub fn passed(&self, roll: f64, lag: f64, [first, second]: [&[SurfacePoint]; 2]) -> Vec<Option<[f64; 2]>> {
+        let second: Vec<&SurfacePoint> = second.iter().filter(|point| point.outcome == Outcome::Solved).collect();
+        let [of_first, of_second] = self.poses_at(lag, roll);
+        let places: Vec<[f64; 3]> = second.iter().map(|point| placed(&of_second, point.position)).collect();
+        let start = |point: &SurfacePoint| {
+            let place = placed(&of_first, point.position);
+            let off = |at: &usize| (0..3).map(|k| (places[*at][k] - place[k]).powi(2)).sum::<f64>();
+            let nearest = (0..second.len()).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+            Some([&second[nearest].unknowns[..], &[lag]].concat())
+        };
+        let starts: Option<Vec<_>> = first.iter().map(|point| Some((&point.unknowns[..], start(point)?))).collect();
+        let Some(starts) = starts else { return vec![None; first.len()] };
+        let mut all = vec![None; first.len()];
+        for (at, ((p, _), through)) in starts.iter().zip(self.through(roll, &starts, false)).enumerate() {
+            let Some(through) = through else { continue };
+            let members = self.members(&[p, &through[..]].concat(), roll);
+            let [own, mate] = &members;
+            let ends = self.outlines[1].as_ref().is_some_and(|outline| !outline.holds(mate.section()));
+            if !ends && own.normal.dot(&mate.normal) < 0.0 {
+                all[at] = Some([through[through.len() - 1], opening(&members, &-mate.normal)]);
+            }
+        }
+        all
+    }
+
     fn find_from(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
-        let mut passing = self.passing(roll, points)?;
+        let mut passing = self.passing(roll, points, true)?;
         passing.sort_by(|a, b| b.height.total_cmp(&a.height));
         let mut best: Option<ContactPoint> = None;
         // no point that both flanks have may open the pair more than the contact does
@@ -97,16 +130,23 @@ impl ContactProblem {
         }
     }
 
-    /// With which edges a contact is looked for: flank on flank first.
+    /// With which edges a contact is looked for: flank on flank first, then each edge, then each corner of an outline.
     fn ways(&self) -> Vec<Vec<FlankEdge>> {
-        let edges = |member: usize| {
-            let segments = self.outlines[member].as_ref().map_or(0, |outline| outline.segments().len());
-            (0..segments).map(move |segment| vec![FlankEdge { member, segment }])
+        let segments = |member: usize| self.outlines[member].as_ref().map_or(0, |outline| outline.segments().len());
+        let edges = |member: usize| (0..segments(member)).map(move |segment| vec![FlankEdge { member, segment }]);
+        let corners = |member: usize| {
+            let count = segments(member);
+            (0..count).filter(move |_| count > 2).map(move |k| {
+                let mut corner = [k, (k + 1) % count].map(|segment| FlankEdge { member, segment });
+                corner.sort();
+                corner.to_vec()
+            })
         };
-        std::iter::once(Vec::new()).chain(edges(0)).chain(edges(1)).collect()
+        let all = std::iter::once(Vec::new()).chain(edges(0)).chain(edges(1));
+        all.chain(corners(0)).chain(corners(1)).collect()
     }
 
-    fn passing(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<Vec<Passing>, NoContact> {
+    fn passing(&self, roll: f64, points: [&[SurfacePoint]; 2], with_care: bool) -> Result<Vec<Passing>, NoContact> {
         for (member, outline) in self.outlines.iter().enumerate() {
             let section = |point: &SurfacePoint| [point.position[2], point.position[0].hypot(point.position[1])];
             if outline.as_ref().is_some_and(|outline| !points[member].iter().any(|point| outline.holds(section(point))))
@@ -118,19 +158,24 @@ impl ContactProblem {
         let [of_first, of_second] = self.poses_at(lag, roll);
         let [first, second] = points;
         let places: Vec<[f64; 3]> = second.iter().map(|point| placed(&of_second, point.position)).collect();
-        let mut found = Vec::new();
         let mut refused = None;
-        let mut last: Option<Vec<f64>> = None;
+        let mut starts: Vec<(&[f64], Vec<f64>)> = Vec::new();
         for point in first {
-            let place = placed(&of_first, point.position);
+            let (place, normal) = (placed(&of_first, point.position), turned(&of_first, point.normal));
             let off = |at: &usize| (0..3).map(|k| (places[*at][k] - place[k]).powi(2)).sum::<f64>();
-            let nearest = (0..second.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
-            let beside = nearest.map(|k| [&second[k].unknowns[..], &[lag]].concat());
-            let (starts, p) = (last.iter().cloned().chain(beside), &point.unknowns[..]);
-            let Some(through) = starts.into_iter().find_map(|start| self.through(roll, p, &start)) else { continue };
+            let Some(nearest) = (0..second.len()).min_by(|a, b| off(a).total_cmp(&off(b))) else { continue };
+            let facing = turned(&of_second, second[nearest].normal);
+            if (0..3).map(|k| normal[k] * facing[k]).sum::<f64>() > AVERTED {
+                refused = refused.or(Some(NoContact::SameSide));
+                continue;
+            }
+            starts.push((&point.unknowns, [&second[nearest].unknowns[..], &[lag]].concat()));
+        }
+        let mut found = Vec::new();
+        for ((p, _), through) in starts.iter().zip(self.through(roll, &starts, with_care)) {
+            let Some(through) = through else { continue };
             let unknowns = [p, &through[..]].concat();
             let members = self.members(&unknowns, roll);
-            last = Some(through);
             if self.beyond(&members).is_some() {
                 continue;
             }
@@ -156,10 +201,31 @@ impl ContactProblem {
         [0, 1].map(|member| std::array::from_fn(|k| poses[12 * member + k]))
     }
 
-    /// Unknowns of the second flank and the lag at which it passes through a point of the first.
-    fn through(&self, roll: f64, p: &[f64], start: &[f64]) -> Option<Vec<f64>> {
-        let mut evaluation = self.through.evaluation(&p.iter().copied().chain(self.given(roll)).collect::<Vec<f64>>());
-        let solution = solve_with(&mut evaluation, &self.ranges[self.unknowns[0]..], start);
-        (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
+    /// Unknowns of the second flank and the lag at which it passes through points of the first one, each from a start: many at once, and
+    /// with care, if that is wanted, where none of them is found so.
+    fn through(&self, roll: f64, starts: &[(&[f64], Vec<f64>)], with_care: bool) -> Vec<Option<Vec<f64>>> {
+        let ranges = &self.ranges[self.unknowns[0]..];
+        let parameters = |p: &[f64]| p.iter().copied().chain(self.given(roll)).collect::<Vec<f64>>();
+        let mut newton = LaneNewton::new(&self.through, ranges);
+        let mut found = Vec::with_capacity(starts.len());
+        for starts in starts.chunks(LANES) {
+            for (lane, (p, start)) in starts.iter().enumerate() {
+                newton.put(lane, start.iter().copied(), &parameters(p));
+            }
+            newton.run(&vec![true; starts.len()], true);
+            found.extend((0..starts.len()).map(|lane| {
+                let is_root = newton.is_root(lane) && newton.outcome(lane) == Outcome::Solved;
+                is_root.then(|| (0..ranges.len()).map(|k| newton.input(k)[lane]).collect())
+            }));
+        }
+        if !with_care || found.iter().any(Option::is_some) {
+            return found;
+        }
+        let alone = |(p, start): &(&[f64], Vec<f64>)| {
+            let solution = solve(&self.through, ranges, &parameters(p), start);
+            (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
+        };
+        let stride = starts.len().div_ceil(WITH_CARE).max(1);
+        starts.iter().enumerate().map(|(k, start)| k.is_multiple_of(stride).then(|| alone(start)).flatten()).collect()
     }
 }

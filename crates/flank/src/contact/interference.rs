@@ -1,0 +1,134 @@
+//! Whether the edges of a tooth come too near to what its mate's tooth space has beside the flank: fillet and root.
+//!
+//! A place of an edge touches such a surface at a lag of its own. As long as that opens the pair less than the lag with which it rolls, there
+//! is room.
+
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_solver::{ContactProblem, Outcome, OutlineSegment, SurfacePoint};
+
+use crate::contact::pair::{self, Members};
+use crate::contact::result::Clearance;
+use crate::contact::rolling::Rolling;
+use crate::project::failure::Failure;
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::project::requests::Session;
+use crate::project::units;
+use crate::solve;
+
+/// Places along each edge.
+const PLACES: usize = 9;
+/// An edge is one of a flank whose points come so near to it, as a share of the way across them.
+const BESIDE: f64 = 0.3;
+/// Room below this is no rounding: the tooth cuts into its mate, mm.
+const REACHES_IN: f64 = -1e-7;
+
+/// Of each other surface of the tooth spaces the least room, what of them is cut into, and what is not looked at.
+///
+/// # Errors
+/// If the work is cancelled.
+pub(crate) fn of_spaces(
+    job: &Job<'_>,
+    members: &Members<'_, '_>,
+    errors: &[f64],
+    rolling: &Rolling,
+    session: Session,
+) -> Result<(Vec<Clearance>, Vec<NotDone>, Vec<Remark>), Failure> {
+    let (others, unknown) = members.beside(job, session)?;
+    let mut clearances = Vec::new();
+    for other in &others {
+        session.check()?;
+        clearances.extend(clearance(job, members, other, (errors, rolling), session));
+    }
+    let name = &members.contact.name;
+    let cuts = |room: &&Clearance| room.least_mm < REACHES_IN;
+    let not_done = clearances.iter().filter(cuts).map(|room| {
+        let Clearance { of, with, .. } = room;
+        let least = units::scientific(-room.least_mm, 2);
+        NotDone::new(
+            NotDoneKind::Penetration,
+            of,
+            format!("contact {name}: an edge of {of} cuts {least} mm into {with}"),
+        )
+    });
+    let not_done = not_done.collect();
+    let remarks = unknown.into_iter().map(|surface| {
+        let message =
+            format!("contact {name}: {surface} is not sampled: whether the mate cuts into it is not looked at");
+        Remark::new(RemarkKind::NotLookedAt, surface, message)
+    });
+    Ok((clearances, not_done, remarks.collect()))
+}
+
+/// The least room between the edges of a flank and a surface of the mate's space; `None` where they never come together, or keep the pair
+/// from moving the other way, as the opposite flank does.
+fn clearance<'g>(
+    job: &Job<'g>,
+    members: &Members<'_, 'g>,
+    other: &Members<'_, 'g>,
+    (errors, rolling): (&[f64], &Rolling),
+    session: Session,
+) -> Option<Clearance> {
+    let of = usize::from(other.surfaces[0].name == members.surfaces[0].name);
+    let flank = 1 - of;
+    let edges = edges(job, members, flank, session);
+    let pair = other.pair(job, errors, &[]);
+    let pair = if flank == 0 { pair } else { pair.swapped() };
+    let problem = ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound");
+    let opens = rolling.middle()?.opening.signum();
+    let mut least: Option<(f64, f64)> = None;
+    for step in rolling.all_steps() {
+        let Some(carried) = rolling.engagement.carried(step) else { continue };
+        let roll = rolling.roll(step);
+        for [lag, opening] in problem.passed(roll, carried.lag, [&edges, &other.points[of]]).into_iter().flatten() {
+            let room = (carried.lag - lag) * opening;
+            if opening * opens > 0.0 && least.is_none_or(|(least, _)| room < least) {
+                least = Some((room, roll));
+            }
+        }
+    }
+    let (least_mm, roll) = least?;
+    Some(Clearance {
+        of: other.surfaces[flank].name.clone(),
+        with: other.surfaces[of].name.clone(),
+        least_mm,
+        turn: units::shown(members.contact.roll.dimension, roll),
+    })
+}
+
+/// Points of a flank along the segments of its outline at which it ends.
+fn edges(job: &Job<'_>, members: &Members<'_, '_>, flank: usize, session: Session) -> Vec<SurfacePoint> {
+    let (surface, Some(solid)) = (members.surfaces[flank], members.solids[flank]) else { return Vec::new() };
+    let solved: Vec<&SurfacePoint> =
+        members.points[flank].iter().filter(|point| point.outcome == Outcome::Solved).collect();
+    let outline = pair::outline(solid);
+    let along = |segment: &OutlineSegment| along(job, surface, segment, (&solved, session));
+    outline.segments().iter().flat_map(along).collect()
+}
+
+fn along<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    segment: &OutlineSegment,
+    (solved, session): (&[&SurfacePoint], Session),
+) -> Vec<SurfacePoint> {
+    let section = |point: &SurfacePoint| [point.position[2], point.position[0].hypot(point.position[1])];
+    let off = |point: &SurfacePoint| {
+        let [z, rho] = section(point);
+        let [near_z, near_rho] = segment.nearest([z, rho]);
+        (z - near_z).hypot(rho - near_rho)
+    };
+    let ends = |k: usize| {
+        let values = solved.iter().map(|point| section(point)[k]);
+        values.fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x), high.max(x)])
+    };
+    let [[z0, z1], [rho0, rho1]] = [ends(0), ends(1)];
+    let Some(near) = solved.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else { return Vec::new() };
+    if off(near) > BESIDE * (z1 - z0).min(rho1 - rho0) {
+        return Vec::new();
+    }
+    let [x, y, z] = surface.surface.position.0;
+    let problem = solve::problem(job, surface, [z, (x * x + y * y).sqrt()], session);
+    let places = segment.places(PLACES);
+    let (points, _) = problem.solve_points(&places, [1, PLACES], Some(&near.unknowns), None);
+    (0..points.len()).map(|k| points.point(k)).filter(|point| point.outcome == Outcome::Solved).collect()
+}
