@@ -54,7 +54,7 @@ fn placed<'g>(job: &Job<'g>, contact: &Contact<'g>, chain: &Chain<'g>, values: &
 fn assert_placed(spec: &str, axes: &[&str], expected: impl Fn(f64, f64, &[f64]) -> [Matrix4<f64>; 2]) {
     let graph = Graph::new();
     let job = job(&graph, &format!("specs/pairs/{spec}.chain"), &[]);
-    let [contact] = &job.contacts[..] else { panic!("{spec} has one contact") };
+    let contact = job.contacts.first().expect("a contact");
     assert_eq!(errors(contact), axes, "{spec}");
     let wrong: Vec<f64> = (0..axes.len()).map(|k| 0.037 * (k as f64 + 1.3) * [1.0, -1.0][k % 2]).collect();
     let (roll, lag) = (0.4321, -0.0123);

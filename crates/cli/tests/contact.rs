@@ -264,3 +264,99 @@ fn what_cannot_touch_is_told() {
     let (code, message) = told(&run(&shallow));
     assert!(code == Some(3) && message.contains("the outline of driver leaves no sampled point of left"), "{message}");
 }
+
+/// Each position of the published pair, and of a line contact that ends at its fronts.
+#[test]
+fn contacts_are_proven_where_they_are_computed() {
+    let out = folder("contact_proven");
+    for spec in [PAIR, SPUR_PAIR] {
+        let told =
+            document(&["contact", spec, "drive_side", "--certify", "--no-picture", "--out", out.to_str().unwrap()], 0);
+        let proven = &told["proven"];
+        assert!(number(proven, "points") > 100.0, "{proven}");
+        // rounding of places of 100 mm, amplified by a gap curvature of 1e-3 against the other of 1e-1
+        assert!(number(proven, "radius_mm") < 1e-9 && number(proven, "error") < 1e-11, "{spec}: {proven}");
+    }
+}
+
+const SPUR_PAIR: &str = "specs/pairs/spur_pair.chain";
+
+/// Spur gears without backlash, 0.1 mm farther apart: both sides by the involutes' closed form.
+#[test]
+fn backlash_is_that_of_involutes() {
+    let out = folder("contact_backlash");
+    let spec = ["contact", SPUR_PAIR, "drive_side", "--no-picture", "--out", out.to_str().unwrap()];
+    let tight = document(&spec, 0);
+    assert!(number(&tight["backlash"], "normal").abs() < 1e-9, "{}", tight["backlash"]);
+    let apart = document(&[&spec[..], &["--error", "m.A=0.1mm"]].concat(), 0);
+    let (distance, angle) = (91.5, 20f64.to_radians());
+    let working = (distance * angle.cos() / (distance + 0.1)).acos();
+    let involute = |x: f64| x.tan() - x;
+    let normal = 2.0 * distance * angle.cos() * (involute(working) - involute(angle));
+    assert!((number(&apart["backlash"], "normal") - normal).abs() < 1e-9, "{} {normal}", apart["backlash"]);
+    let turn = (normal / (55.5 * angle.cos())).to_degrees();
+    assert!((number(&apart["backlash"], "least") - turn).abs() < 1e-9, "{} {turn}", apart["backlash"]);
+}
+
+/// The gear's tip over the pinion's fillet: the tip is a point of an involute, the fillet the curve beside a trochoid, both in closed form.
+#[test]
+fn the_room_between_a_tip_and_a_fillet_is_that_of_closed_form() {
+    let out = folder("contact_room");
+    let spec = ["contact", SPUR_PAIR, "drive_side", "--no-picture", "--out", out.to_str().unwrap()];
+    let told = document(&spec, 0);
+    let rooms = told["clearances"].as_array().expect("clearances");
+    let room = rooms.iter().find(|room| room["with"] == "pinion_fillet").expect("the pinion's fillet");
+    let [turn, least] = ["turn", "least_mm"].map(|name| number(room, name));
+    assert_eq!(room["of"], "gear_flank");
+    // what is told is of places of the roll a sixtieth of a pitch apart
+    let step = 360.0 / 24.0 / 60.0;
+    let at = |k: i32| room_over_fillet(turn + f64::from(k) * step);
+    assert!((at(0).expect("the tip is over the fillet") - least).abs() < 1e-9, "{least} {:?}", at(0));
+    assert!([-2, -1, 1].iter().all(|k| at(*k).is_none_or(|other| other > least)), "{:?}", [-2, -1, 1].map(at));
+}
+
+/// Along the fillet's normal, mm, at a turn of the pinion, deg; `None` where the tip stands over no point of the fillet.
+fn room_over_fillet(turn: f64) -> Option<f64> {
+    let (module, shift, angle) = (3.0, 0.2, 20f64.to_radians());
+    let (teeth, radius, distance, tip) = (37.0, 36.0, 91.5, 55.5 + 0.8 * 3.0);
+    let turn = turn.to_radians();
+    let involute = |x: f64| x.tan() - x;
+    // half the angle of the gear's tooth space at its tip
+    let thickness = module * (std::f64::consts::FRAC_PI_2 - 2.0 * shift * angle.tan());
+    let at_tip = (55.5 * angle.cos() / tip).acos();
+    let space = std::f64::consts::PI / teeth - thickness / 111.0 - involute(angle) + involute(at_tip);
+    let gear = std::f64::consts::PI - std::f64::consts::PI / teeth - 24.0 / teeth * turn + space;
+    // the centre of the rack's rounding below the pitch line and beside its tooth's middle
+    let rounding = 0.38 * module;
+    let below = 1.25 * module - rounding - shift * module;
+    let beside =
+        std::f64::consts::PI * module / 4.0 - (1.25 * module - rounding) * angle.tan() - rounding / angle.cos();
+    // the point of the fillet and its normal, out of the pinion, where the rounding's normal goes through the pitch point
+    let fillet = |theta: f64| {
+        let toward = [theta.sin(), -theta.cos()];
+        let roll = (-toward[1] / toward[0] * below - beside) / radius;
+        let (sine, cosine) = (turn - roll).sin_cos();
+        let [x, y] = [radius - below - rounding * toward[0], beside + radius * roll - rounding * toward[1]];
+        let turned = |[x, y]: [f64; 2]| [x * cosine - y * sine, x * sine + y * cosine];
+        (turned([x, y]), turned(toward))
+    };
+    let off = |theta: f64| {
+        let [x, y] = fillet(theta).0;
+        (x - distance).hypot(y) - tip
+    };
+    let places = 400;
+    let at = |k: usize| angle + (0.4999 * std::f64::consts::PI - angle) * k as f64 / places as f64;
+    let crossings = (0..places).filter(|k| off(at(*k)) * off(at(k + 1)) <= 0.0).map(|k| {
+        let (mut low, mut high) = (at(k), at(k + 1));
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if off(low) * off(middle) <= 0.0 { high = middle } else { low = middle }
+        }
+        let ([x, y], normal) = fillet(0.5 * (low + high));
+        let lag = (y.atan2(x - distance) - gear + 7.0 * std::f64::consts::PI).rem_euclid(2.0 * std::f64::consts::PI)
+            - std::f64::consts::PI;
+        let opening = normal[0] * -y + normal[1] * (x - distance);
+        -lag * opening
+    });
+    crossings.reduce(f64::min)
+}

@@ -29,7 +29,7 @@ is said by a `solid` of each member.
 Examples:
   flank contact specs/pairs/bevel_19x62.chain
   flank contact specs/pairs/bevel_19x62.chain --error m.E=0.1mm --error m.S=2arcmin
-  flank contact specs/pairs/bevel_19x62.chain --sensitivity --vhj
+  flank contact specs/pairs/bevel_19x62.chain --sensitivity --vhj --certify
   flank contact specs/pairs/spur_pair.chain drive_side --format csv,json --out mesh")]
 pub(crate) struct Contact {
     #[command(flatten)]

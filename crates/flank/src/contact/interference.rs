@@ -22,6 +22,13 @@ const BESIDE: f64 = 0.3;
 /// Room below this is no rounding: the tooth cuts into its mate, mm.
 const REACHES_IN: f64 = -1e-7;
 
+/// What is known of the room in tooth spaces.
+pub(crate) struct Rooms {
+    pub(crate) clearances: Vec<Clearance>,
+    pub(crate) not_done: Vec<NotDone>,
+    pub(crate) remarks: Vec<Remark>,
+}
+
 /// Of each other surface of the tooth spaces the least room, what of them is cut into, and what is not looked at.
 ///
 /// # Errors
@@ -32,7 +39,7 @@ pub(crate) fn of_spaces(
     errors: &[f64],
     rolling: &Rolling,
     session: Session,
-) -> Result<(Vec<Clearance>, Vec<NotDone>, Vec<Remark>), Failure> {
+) -> Result<Rooms, Failure> {
     let (others, unknown) = members.beside(job, session)?;
     let mut clearances = Vec::new();
     for other in &others {
@@ -50,13 +57,13 @@ pub(crate) fn of_spaces(
             format!("contact {name}: an edge of {of} cuts {least} mm into {with}"),
         )
     });
-    let not_done = not_done.collect();
+    let not_done: Vec<NotDone> = not_done.collect();
     let remarks = unknown.into_iter().map(|surface| {
         let message =
             format!("contact {name}: {surface} is not sampled: whether the mate cuts into it is not looked at");
         Remark::new(RemarkKind::NotLookedAt, surface, message)
     });
-    Ok((clearances, not_done, remarks.collect()))
+    Ok(Rooms { not_done, remarks: remarks.collect(), clearances })
 }
 
 /// The least room between the edges of a flank and a surface of the mate's space; `None` where they never come together, or keep the pair

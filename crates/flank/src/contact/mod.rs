@@ -111,7 +111,7 @@ fn of_contact(
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
     let backlash = summary::backlash(job, &members, request, &errors, &rolling, session)?;
-    let (clearances, cutting, unseen) = interference::of_spaces(job, &members, &errors, &rolling, session)?;
+    let rooms = interference::of_spaces(job, &members, &errors, &rolling, session)?;
     let (proven, open) = if request.certify {
         let (proven, open) = proof::of_engagement(&members, &rolling);
         (Some(proven), open)
@@ -124,11 +124,11 @@ fn of_contact(
         influences,
         vhj,
         backlash,
-        clearances,
+        clearances: rooms.clearances,
         proven,
         files,
-        not_done: origin.located(&[job], [&result.not_done[..], &cutting, &open].concat()),
-        remarks: origin.located(&[job], [&result.remarks[..], &unseen].concat()),
+        not_done: origin.located(&[job], [&result.not_done[..], &rooms.not_done, &open].concat()),
+        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result
     })
 }
