@@ -104,8 +104,9 @@ pub use project::requests::{
 pub use project::{Project, shown_path};
 pub use report::report;
 pub use report::result::{
-    AxisKind, AxisSource, BuiltAxis, BuiltFrame, BuiltMachine, ExtremeCurvature, GeneratingProcess, Input, InputSource,
-    NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
+    AxisKind, AxisSource, BuiltAxis, BuiltFrame, BuiltMachine, BuiltSolid, ExtremeCurvature, GeneratingProcess, Input,
+    InputSource, NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
+    SolidEdge,
 };
 pub use solve::result::{
     BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,

@@ -10,6 +10,7 @@ mod machines;
 mod pictures;
 pub(crate) mod result;
 mod results;
+mod solids;
 mod target;
 mod unchecked;
 
@@ -169,7 +170,9 @@ impl<'j, 'g> Findings<'j, 'g> {
     }
 
     fn document(&self) -> Document {
-        let mut sections = vec![inputs::section(self), machines::section(self), results::section(self)];
+        let mut sections = vec![inputs::section(self), machines::section(self)];
+        sections.extend(solids::section(self));
+        sections.push(results::section(self));
         sections.extend([extremes::section(self), ends::section(self)]);
         sections.extend(influences::section(self));
         sections.extend(contacts::section(self));
@@ -253,6 +256,8 @@ impl<'j, 'g> Findings<'j, 'g> {
             inputs: inputs::told(self),
             motions: inputs::motions_told(self),
             machines: machines::told(self),
+            solids: solids::all(self),
+            contacts: self.contacts.iter().map(|(contact, _)| contact.clone()).collect(),
             surfaces: results::told(self),
             lines: ends::told(self),
             faces: step::results(&self.faces),

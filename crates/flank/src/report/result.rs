@@ -5,6 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::contact::result::ContactResult;
 use crate::project::answer::Answer;
 use crate::project::quantity::{NamedValue, Travel, UnitSymbol};
 use crate::project::remark::NotDone;
@@ -42,6 +43,10 @@ pub struct ReportResult {
     pub motions: Vec<PassedMotion>,
     /// As they were built.
     pub machines: Vec<BuiltMachine>,
+    /// Bodies whose outlines say where teeth end.
+    pub solids: Vec<BuiltSolid>,
+    /// As in flank.contact/1.
+    pub contacts: Vec<ContactResult>,
     /// Surfaces with a sample: as in flank.solve/3, and more.
     pub surfaces: Vec<ReportedSurface>,
     /// Where surfaces turn back, contact ends, one trims another; also those that were not found.
@@ -114,6 +119,34 @@ pub struct PassedMotion {
     pub passed_low: Option<f64>,
     /// Largest value over the solved points.
     pub passed_high: Option<f64>,
+}
+
+/// A solid of the job.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct BuiltSolid {
+    /// As the job calls it.
+    pub name: String,
+    /// The frame about whose z axis it is turned.
+    pub frame: String,
+    /// How many tooth spaces it has.
+    pub teeth: u32,
+    /// The surfaces of one space, from one side to the other.
+    pub space: Vec<String>,
+    /// Closed, the material on the left.
+    pub outline: Vec<SolidEdge>,
+}
+
+/// A segment of a solid's outline in its axial section: points are `[z, rho]`, mm.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SolidEdge {
+    /// Tip, toe, heel.
+    pub name: String,
+    /// Where it begins.
+    pub from: [f64; 2],
+    /// Where it ends.
+    pub to: [f64; 2],
+    /// Of an arc, mm; null for a line.
+    pub radius: Option<f64>,
 }
 
 /// A machine of the job.
