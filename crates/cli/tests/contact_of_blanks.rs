@@ -44,5 +44,8 @@ fn pairs_from_blanks_bear_in_the_middle_of_the_tooth() {
             assert!(pattern["touches"].as_array().expect("sides").iter().all(|side| side != "toe" && side != "heel"));
         }
         assert!(number(&contact["backlash"]["normal"]) > 0.05, "{what}");
+        for room in contact["clearances"].as_array().expect("rooms") {
+            assert!(number(&room["least_mm"]) > 0.0, "{what}");
+        }
     }
 }
