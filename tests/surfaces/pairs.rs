@@ -7,7 +7,7 @@ use flank_expr::geometry::Chain;
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{ContactPoint, ContactProblem};
 use flank_tests::pairs::with_pair;
-use flank_tests::{difference, job, number, reference_json};
+use flank_tests::{difference, job, job_of_text, number, reference_json};
 use nalgebra::{Matrix4, Vector3};
 use serde_json::Value;
 
@@ -180,5 +180,74 @@ fn involute_pinions_turn_their_gears_evenly() {
         for point in path(&job, &[], &rolls) {
             assert!(point.lag.abs() < 1e-11, "{spec}: {point:?}");
         }
+    }
+}
+
+/// A gear touches the pinion that it envelopes along lines and turns it evenly; so does a wheel the worm that is as large as its hob.
+#[test]
+fn what_a_flank_envelopes_it_touches_along_lines_without_error() {
+    for (spec, set, [from, to]) in
+        [("conjugate_pair", None, [-1.0, 1.0]), ("worm_and_wheel", Some(("oversize", "0 mm")), [-1.5, 1.5])]
+    {
+        let graph = Graph::new();
+        let job = job(&graph, &format!("specs/pairs/{spec}.chain"), set.as_slice());
+        let rolls: Vec<f64> = (0..=100).map(|k| from + (to - from) * 0.01 * f64::from(k)).collect();
+        let path = with_pair(&job, &[], false, |pair, points| {
+            ContactProblem::new(pair).expect("nothing is unbound").path(&rolls, points)
+        });
+        // a point of a line is followed until it leaves the flanks
+        let found: Vec<ContactPoint> = path.points.into_iter().flatten().collect();
+        assert!(found.len() > 10, "{spec}: {} of {}", found.len(), rolls.len());
+        for point in found {
+            assert!(point.lag.abs() < 1e-11, "{spec}: {point:?}");
+            let gap = point.gap.expect("a regular point");
+            assert!(gap.k1 > 0.01 && gap.k2.abs() < 1e-9 * gap.k1, "{spec}: {gap:?}");
+        }
+    }
+}
+
+/// A worm is a screw: pushed along its axis it turns the wheel as if it had been turned by as much as the lead asks.
+#[test]
+fn a_worm_pushed_along_its_axis_turns_its_wheel_as_if_it_were_turned() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/pairs/worm_and_wheel.chain", &[]);
+    let value = |name: &str| job.parameters.iter().find(|p| p.name == name).expect("a parameter").value;
+    let pushed = 0.3;
+    // right-handed: a turn forwards carries the thread backwards
+    let as_turn = -pushed / (value("module") * value("starts") / 2.0);
+    let rolls: Vec<f64> = (-3..=5).map(|k| 0.5 * f64::from(k)).collect();
+    let turned: Vec<f64> = rolls.iter().map(|roll| roll + as_turn).collect();
+    let by_turn = path(&job, &[], &turned);
+    for (pushed, turned) in path(&job, &[("m.P", pushed)], &rolls).iter().zip(&by_turn) {
+        let follows = -value("starts") / value("teeth") * as_turn;
+        assert!((pushed.lag - turned.lag - follows).abs() < 1e-11, "{pushed:?} {turned:?}");
+        assert!(difference(&pushed.position, &turned.position) < 1e-8, "{pushed:?} {turned:?}");
+    }
+}
+
+/// Which member is named first changes the sense of the normal and nothing else.
+#[test]
+fn a_hypoid_pair_is_the_same_from_either_side() {
+    let library = [
+        "functions/bevel.chain",
+        "machines/bevel_pair.chain",
+        "machines/cradle.chain",
+        "tools/face_mill.chain",
+        "pairs/hypoid_pair.chain",
+    ];
+    let text = flank_tests::library(&library);
+    let [one, other] = ["pinion_concave with gear_convex", "gear_convex with pinion_concave"];
+    assert!(text.contains(one));
+    let rolls: Vec<f64> = (-5..=3).map(|k| 0.08 * f64::from(k)).collect();
+    let [here, there] = [text.clone(), text.replace(one, other)].map(|text| {
+        let graph = Graph::new();
+        path(&job_of_text(&graph, &text), &[], &rolls)
+    });
+    for (here, there) in here.iter().zip(&there) {
+        assert!((here.lag - there.lag).abs() < 1e-12, "{here:?} {there:?}");
+        assert!(difference(&here.position, &there.position) < 1e-9, "{here:?} {there:?}");
+        assert!(difference(&here.normal, &there.normal.map(|n| -n)) < 1e-11, "{here:?} {there:?}");
+        let [a, b] = [here, there].map(|point| point.gap.as_ref().expect("a regular point"));
+        assert!(difference(&[a.k1, a.k2], &[b.k1, b.k2]) < 1e-10, "{a:?} {b:?}");
     }
 }
