@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use serde_json::Value;
-use support::{flank, folder, text, written};
+use support::{flank, folder, text, top, written};
 
 const PAIR: &str = "specs/pairs/bevel_19x62.chain";
 
@@ -280,6 +280,38 @@ fn contacts_are_proven_where_they_are_computed() {
 }
 
 const SPUR_PAIR: &str = "specs/pairs/spur_pair.chain";
+
+/// The outline of a solid is where its teeth end: for samples too. The same gear in a blank that is 0.5 mm smaller and as much narrower.
+#[test]
+fn points_beyond_the_blank_are_trimmed() {
+    let out = folder("contact_blank");
+    let text = std::fs::read_to_string(top().join(SPUR_PAIR)).expect("the spec");
+    let text = text.replace("\"../", &format!("\"{}/specs/", top().canonicalize().expect("the repository").display()));
+    let smaller = text
+        .replace("[back, pinion_tip]", "[back, pinion_tip - 0.5 mm]")
+        .replace("[front, pinion_tip]", "[front + 0.5 mm, pinion_tip - 0.5 mm]")
+        .replace("[front, pinion_radius / 2]", "[front + 0.5 mm, pinion_radius / 2]");
+    let spec = written(&out, "smaller.chain", &smaller);
+    let table = ["--no-picture", "--format", "csv", "--out", out.to_str().unwrap()];
+    let solved = flank(&[&["solve", &spec, "--job", "spur_pair"][..], &table].concat());
+    let told = String::from_utf8_lossy(&solved.stderr).into_owned();
+    assert_eq!(solved.status.code(), Some(3), "{told}");
+    assert!(told.contains("beyond tip of solid pinion, where its blank ends"), "{told}");
+    assert!(told.contains("beyond front of solid pinion, where its blank ends"), "{told}");
+    let rows = std::fs::read_to_string(out.join("spur_pair.csv")).expect("the table");
+    let mut rows = rows.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<&str>>());
+    let names = rows.next().expect("names");
+    let place = |name: &str| names.iter().position(|of| *of == name).expect(name);
+    let [surface, x, y, z, status] = ["surface", "x", "y", "z", "status"].map(place);
+    let mut counts = [0; 2];
+    for row in rows.filter(|row| row[surface].starts_with("pinion")) {
+        let [x, y, z] = [x, y, z].map(|at| row[at].parse::<f64>().expect("a number"));
+        let is_beyond = x.hypot(y) > 39.1 + 1e-9 || z < -9.5 - 1e-9;
+        assert_eq!(row[status], if is_beyond { "trimmed" } else { "solved" }, "{x} {y} {z}");
+        counts[usize::from(is_beyond)] += 1;
+    }
+    assert!(counts.iter().all(|count| *count > 20), "{counts:?}");
+}
 
 /// Spur gears without backlash, 0.1 mm farther apart: both sides by the involutes' closed form.
 #[test]

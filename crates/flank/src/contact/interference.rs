@@ -6,14 +6,14 @@
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_solver::{ContactProblem, Outcome, OutlineSegment, SurfacePoint};
 
-use crate::contact::pair::{self, Members};
+use crate::contact::pair::Members;
 use crate::contact::result::Clearance;
 use crate::contact::rolling::Rolling;
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::Session;
 use crate::project::units;
-use crate::solve;
+use crate::solve::{self, blank};
 
 /// Places along each edge.
 const PLACES: usize = 9;
@@ -107,7 +107,7 @@ fn edges(job: &Job<'_>, members: &Members<'_, '_>, flank: usize, session: Sessio
     let (surface, Some(solid)) = (members.surfaces[flank], members.solids[flank]) else { return Vec::new() };
     let solved: Vec<&SurfacePoint> =
         members.points[flank].iter().filter(|point| point.outcome == Outcome::Solved).collect();
-    let outline = pair::outline(solid);
+    let outline = blank::outline(solid);
     let along = |segment: &OutlineSegment| along(job, surface, segment, (&solved, session));
     outline.segments().iter().flat_map(along).collect()
 }

@@ -2,15 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use flank_chain_dsl::{Contact, GeneratedSurface, Job, OutlineCurve, Solid};
+use flank_chain_dsl::{Contact, GeneratedSurface, Job, Solid};
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{BoundSurface, ContactProblem, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
+use flank_solver::{BoundSurface, ContactProblem, Range, RollingPair, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::project::units;
-use crate::solve::{self, SolveOptions, bound, ranges};
+use crate::solve::{self, SolveOptions, blank, bound, ranges};
 
 /// A pair turns evenly, and as its numbers of teeth say, if pitches differ by less than this share.
 const EVEN: f64 = 1e-12;
@@ -111,7 +111,7 @@ impl<'j, 'g> Members<'j, 'g> {
             placements: [first, self.of_tooth(second)],
             roll: roll.variable,
             lag: (lag.variable, Range { low: lag.low, high: lag.high }),
-            outlines: self.solids.map(|solid| solid.map(outline)),
+            outlines: self.solids.map(|solid| solid.map(blank::outline)),
             parameters: open.iter().map(|at| (axes[*at].variable, errors[*at])).collect(),
         }
     }
@@ -215,18 +215,4 @@ fn points<'g>(
         session,
     };
     Ok(solve::points(job, surface, sample, wanted).points)
-}
-
-/// The outline of a solid as the solver takes it.
-pub(crate) fn outline(solid: &Solid) -> Outline {
-    let segment = |segment: &flank_chain_dsl::OutlineSegment| OutlineSegment {
-        name: segment.name.clone(),
-        from: segment.from,
-        to: segment.to,
-        center: match segment.curve {
-            OutlineCurve::Line => None,
-            OutlineCurve::Arc { center } => Some(center),
-        },
-    };
-    Outline::new(solid.outline.iter().map(segment).collect())
 }

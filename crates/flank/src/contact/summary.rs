@@ -3,7 +3,7 @@
 use flank_chain_dsl::{Dimension, Job};
 use flank_solver::{ContactPoint, ContactState, FlankEdge, Outcome};
 
-use crate::contact::pair::{self, Members};
+use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{dot, fine, fine_unit, rows_at, shares};
 use crate::contact::result::{
@@ -16,6 +16,7 @@ use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{ContactRequest, Session};
 use crate::project::units;
+use crate::solve::blank;
 
 /// Pairs of teeth whose errors differ by no more than this turn alike: rounding.
 const ALIKE: f64 = 1e-11;
@@ -243,7 +244,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let on = |member: usize| {
             let [x, y, z] = point.in_members[member];
             let segments =
-                self.members.solids[member].map(|solid| pair::outline(solid).segments_at([z, x.hypot(y)], ON_EDGE));
+                self.members.solids[member].map(|solid| blank::outline(solid).segments_at([z, x.hypot(y)], ON_EDGE));
             segments.into_iter().flatten().map(move |segment| FlankEdge { member, segment })
         };
         [0, 1].into_iter().flat_map(on).find(|edge| !inner.contains(edge))

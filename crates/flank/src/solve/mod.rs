@@ -1,5 +1,6 @@
 //! `flank solve`
 
+pub(crate) mod blank;
 pub(crate) mod branches;
 pub(crate) mod certify;
 pub(crate) mod cut;

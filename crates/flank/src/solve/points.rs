@@ -40,7 +40,7 @@ pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &Surf
     let has_numbers = || solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
     let outcome = match solved.outcome {
         flank_solver::Outcome::Solved => Outcome::Solved,
-        flank_solver::Outcome::CutAway(CutBy::Other(_)) if has_numbers() => Outcome::Trimmed,
+        flank_solver::Outcome::CutAway(CutBy::Other(_) | CutBy::Blank(_)) if has_numbers() => Outcome::Trimmed,
         flank_solver::Outcome::CutAway(_) if has_numbers() => Outcome::Undercut,
         flank_solver::Outcome::Undecided if has_numbers() => Outcome::Undecided,
         other => return Point::unsolved(other.word(), solved.residual, reason),

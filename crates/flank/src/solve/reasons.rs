@@ -4,6 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, RangedVariable};
 use flank_solver::{CutBy, Outcome};
 
 use crate::project::units;
+use crate::solve::blank;
 use crate::solve::summary::Summary;
 
 /// By how much points are outside the ranges: `u by up to 0.168672 mm`; nothing if none is.
@@ -47,6 +48,9 @@ pub(super) fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: Cut
         CutBy::Other(number) => {
             format!("by what makes {}, as `trim` asks for", job.surfaces[surface.trimmed_by[number]].name)
         }
+        CutBy::Blank(segment) => blank::of(job, surface).map_or_else(String::new, |solid| {
+            format!("beyond {} of solid {}, where its blank ends", solid.outline[segment].name, solid.name)
+        }),
     }
 }
 

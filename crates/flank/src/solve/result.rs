@@ -282,7 +282,7 @@ impl From<Outcome> for Status {
     fn from(outcome: Outcome) -> Status {
         match outcome {
             Outcome::Solved => Status::Solved,
-            Outcome::CutAway(CutBy::Other(_)) => Status::Trimmed,
+            Outcome::CutAway(CutBy::Other(_) | CutBy::Blank(_)) => Status::Trimmed,
             Outcome::CutAway(_) => Status::Undercut,
             Outcome::Undecided => Status::Undecided,
             Outcome::Outside { .. } | Outcome::NotKept { .. } => Status::OutOfRange,

@@ -6,6 +6,7 @@ use flank_solver::{GridReport, Outcome, Solution, SurfacePoint, SurfaceProblem};
 use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
 use crate::project::requests::Session;
+use crate::solve::blank;
 use crate::solve::branches;
 use crate::solve::certify;
 use crate::solve::cut::{self, Cut};
@@ -127,7 +128,7 @@ impl<'g> Found<'_, 'g> {
 }
 
 /// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away, or its own tool in another
-/// position.
+/// position, and those beyond the blank of its solid.
 pub(crate) fn points<'j, 'g>(
     job: &'j Job<'g>,
     surface: &'j GeneratedSurface<'g>,
@@ -144,6 +145,7 @@ pub(crate) fn points<'j, 'g>(
     let trims = trims.collect();
     secondary::judge_trims(job, surface, &mut points, sample.counts);
     let positions = secondary::judge(job, surface, &mut points, sample.counts);
+    blank::cut(job, surface, &mut points);
     Found { problem, points, effort, trims, positions }
 }
 

@@ -8,6 +8,7 @@ use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem}
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
+use crate::solve::blank;
 use crate::solve::geometry::{self, Described, TOGETHER};
 use crate::solve::options::SolveOptions;
 use crate::solve::points::{patch, point};
@@ -152,11 +153,12 @@ fn needs_all(
     let trim = surface.trimmed_by.first().map(|by| ("trim", *by));
     let between = trim.or(surface.cut_by.map(|by| ("cut", by)));
     let between = between.map(|(word, by)| format!("`{word} {} by {}`", surface.name, job.surfaces[by].name));
+    let solid = blank::of(job, surface).map(|solid| format!("the outline of solid {}", solid.name));
     let required = sample.limits.first().map(|limit| format!("what its sample requires of `{}`", limit.of.name));
     let of_each = |is_given: bool| is_given && !wanted.of_shown;
     let flags = [(of_each(wanted.sensitivity), "option `sensitivity`"), (wanted.certificates, "option `certify`")];
     let flag = flags.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
-    between.or(required).or(wanted.together.or(flag).map(str::to_string))
+    between.or(solid).or(required).or(wanted.together.or(flag).map(str::to_string))
 }
 
 impl<'j, 'g> Streamed<'j, 'g> {

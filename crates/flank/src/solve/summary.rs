@@ -72,6 +72,8 @@ pub(crate) struct Summary {
     pub(crate) cut_elsewhere: BTreeMap<usize, usize>,
     /// By the number of the trim.
     pub(crate) trimmed: BTreeMap<usize, usize>,
+    /// Beyond a segment of the outline of their solid.
+    pub(crate) beyond_blank: BTreeMap<usize, usize>,
     /// Of the points that did not converge; NaN if none came near.
     pub(crate) least_residual: f64,
 }
@@ -91,6 +93,7 @@ impl Summary {
             cut_by_tool: 0,
             cut_elsewhere: BTreeMap::new(),
             trimmed: BTreeMap::new(),
+            beyond_blank: BTreeMap::new(),
             least_residual: f64::NAN,
         }
     }
@@ -121,6 +124,7 @@ impl Summary {
             Outcome::CutAway(CutBy::ItsTool) => self.cut_by_tool += 1,
             Outcome::CutAway(CutBy::ItsToolElsewhere(by)) => *self.cut_elsewhere.entry(by).or_default() += 1,
             Outcome::CutAway(CutBy::Other(number)) => *self.trimmed.entry(number).or_default() += 1,
+            Outcome::CutAway(CutBy::Blank(segment)) => *self.beyond_blank.entry(segment).or_default() += 1,
             Outcome::NotConverged { .. } => self.least_residual = self.least_residual.min(point.residual),
             Outcome::Undecided | Outcome::Singular | Outcome::Ambiguous => {}
         }

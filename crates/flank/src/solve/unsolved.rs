@@ -30,7 +30,9 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     }
     let trims = summary.trimmed.iter().map(|(number, count)| (CutBy::Other(*number), *count));
     let elsewhere = summary.cut_elsewhere.iter().map(|(by, count)| (CutBy::ItsToolElsewhere(*by), *count));
-    for (cutter, count) in [(CutBy::ItsTool, summary.cut_by_tool)].into_iter().chain(elsewhere).chain(trims) {
+    let blanks = summary.beyond_blank.iter().map(|(segment, count)| (CutBy::Blank(*segment), *count));
+    let own = [(CutBy::ItsTool, summary.cut_by_tool)].into_iter();
+    for (cutter, count) in own.chain(elsewhere).chain(trims).chain(blanks) {
         let is_whole = cutter == CutBy::ItsTool && count == summary.asked;
         let side = if is_whole && is_inside_out(job, solved) {
             "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
@@ -39,9 +41,10 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
         };
         let depth = match cutter {
             CutBy::ItsToolElsewhere(by) => secondary::depth(&solved.positions, by),
-            CutBy::ItsTool | CutBy::Other(_) => String::new(),
+            CutBy::ItsTool | CutBy::Other(_) | CutBy::Blank(_) => String::new(),
         };
-        tell(count, format!("cut away {}{depth}{side}", by_what(job, solved.surface, cutter)));
+        let cut = if matches!(cutter, CutBy::Blank(_)) { "" } else { "cut away " };
+        tell(count, format!("{cut}{}{depth}{side}", by_what(job, solved.surface, cutter)));
     }
     tell(
         summary.count(Outcome::Undecided),

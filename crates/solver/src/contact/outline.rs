@@ -109,8 +109,8 @@ impl Outline {
         &self.segments
     }
 
-    /// The segment beyond which a point lies, and how far; `None` for a point inside or on the outline.
-    pub(super) fn beyond(&self, point: [f64; 2]) -> Option<(usize, f64)> {
+    /// The segment beyond which a point lies, and how far, mm; `None` for a point inside or on the outline.
+    pub fn beyond(&self, point: [f64; 2]) -> Option<(usize, f64)> {
         let reach = |k: &usize| {
             let segment = &self.segments[*k];
             (norm(minus(point, segment.nearest(point))), -segment.bound().height(point).abs())

@@ -138,6 +138,8 @@ pub enum CutBy {
     ItsToolElsewhere(usize),
     /// Another surface, by the number that it has for [`trim`](crate::trim).
     Other(usize),
+    /// Nothing that is generated: the blank ends before, at this segment of its [`Outline`](crate::Outline).
+    Blank(usize),
 }
 
 impl Outcome {
@@ -145,7 +147,7 @@ impl Outcome {
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Solved => "solved",
-            Outcome::CutAway(CutBy::Other(_)) => "trimmed",
+            Outcome::CutAway(CutBy::Other(_) | CutBy::Blank(_)) => "trimmed",
             Outcome::CutAway(_) => "undercut",
             Outcome::Undecided => "undecided",
             Outcome::Outside { .. } | Outcome::NotKept { .. } => "out_of_range",

@@ -1,0 +1,35 @@
+//! Where the blank of a solid ends: points of its surfaces beyond it are none of the body.
+
+use flank_chain_dsl::{GeneratedSurface, Job, OutlineCurve, Solid};
+use flank_solver::{CutBy, Outcome, Outline, OutlineSegment, SurfacePoint};
+
+/// The solid to whose tooth spaces a surface belongs.
+pub(crate) fn of<'j>(job: &'j Job<'_>, surface: &GeneratedSurface<'_>) -> Option<&'j Solid> {
+    job.solids.iter().find(|solid| solid.space.iter().any(|at| job.surfaces[*at].name == surface.name))
+}
+
+/// The outline of a solid as the solver takes it.
+pub(crate) fn outline(solid: &Solid) -> Outline {
+    let segment = |segment: &flank_chain_dsl::OutlineSegment| OutlineSegment {
+        name: segment.name.clone(),
+        from: segment.from,
+        to: segment.to,
+        center: match segment.curve {
+            OutlineCurve::Line => None,
+            OutlineCurve::Arc { center } => Some(center),
+        },
+    };
+    Outline::new(solid.outline.iter().map(segment).collect())
+}
+
+/// Marks the solved points of a surface that lie beyond the outline of its solid.
+pub(crate) fn cut(job: &Job<'_>, surface: &GeneratedSurface<'_>, points: &mut [SurfacePoint]) {
+    let Some(solid) = of(job, surface) else { return };
+    let outline = outline(solid);
+    for point in points.iter_mut().filter(|point| point.outcome == Outcome::Solved) {
+        let [x, y, z] = point.position;
+        if let Some((segment, _)) = outline.beyond([z, x.hypot(y)]) {
+            point.outcome = Outcome::CutAway(CutBy::Blank(segment));
+        }
+    }
+}
