@@ -179,7 +179,10 @@ impl Loader {
         let here = from_real.parent().unwrap_or(Path::new("/"));
         let shown = tidy(&from_shown.parent().unwrap_or(Path::new("")).join(&used.node));
         if Path::new(&used.node).is_absolute() {
-            return self.outside(used);
+            self.loaded.lacks_files = true;
+            let message = format!("`{}` is an absolute path, which leads elsewhere on another machine", used.node);
+            let help = "write it from the folder of this file on, as `../machines/generator.chain`";
+            return self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
         }
         let real = match self.loaded.from.real_path(&here.join(&used.node)) {
             Ok(real) => real,

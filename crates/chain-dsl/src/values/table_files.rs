@@ -74,7 +74,13 @@ impl Tables {
         let real = self.from.real_path(&folder.join(named)).map_err(|error| {
             (Code::UnreadableFile, format!("cannot read `{named}`: {}", crate::load::reason(&error)))
         })?;
-        if Path::new(named).is_absolute() || !real.starts_with(project) {
+        if Path::new(named).is_absolute() {
+            let message = format!(
+                "`{named}` is an absolute path, which leads elsewhere on another machine: write it from the folder of this file on"
+            );
+            return Err((Code::OutsideProject, message));
+        }
+        if !real.starts_with(project) {
             return Err((
                 Code::OutsideProject,
                 format!("`{named}` lies outside the project folder {}", project.display()),
