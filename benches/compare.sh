@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flank beside hand-written C++ and CasADi on the common jobs, run in turns: `benches/compare.sh [repetitions]`. Needs g++, and for
-# CasADi (the flank alone) python3 with venv and pip. Prints nanoseconds a point (the fastest repetition) and shares of the hand-written program's time.
+# flank beside hand-written C++ and CasADi on the common jobs, run in turns, and beside SciPy and CasADi on the contact of a pair:
+# `benches/compare.sh [repetitions]`. Needs g++, and for CasADi (the flank alone) and SciPy python3 with venv and pip. Prints nanoseconds a point (the fastest repetition) and shares of the hand-written program's time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 repetitions=${1:-15}
@@ -12,10 +12,12 @@ cargo build --quiet --release -p flank-benches --example adapter
 flank=target/release/examples/adapter
 
 casadi=
-if python3 -m venv "$work/venv" && "$work/venv/bin/pip" install --quiet casadi numpy; then
-    casadi="$work/venv/bin/python benches/peers/spiral_bevel_casadi.py"
+python=
+if python3 -m venv "$work/venv" && "$work/venv/bin/pip" install --quiet casadi numpy scipy; then
+    python="$work/venv/bin/python"
+    casadi="$python benches/peers/spiral_bevel_casadi.py"
 else
-    echo "without CasADi: it cannot be installed" >&2
+    echo "without CasADi and SciPy: they cannot be installed" >&2
 fi
 
 # the fastest of the times that a run prints, in nanoseconds a point
@@ -45,3 +47,11 @@ for case in "flank 31 61" "flank 501 501" "grid 501 501" "grid 1000 1000"; do
         }'
     done
 done
+
+# milliseconds for the contact of 101 positions; flank's is the line `path_101`
+if [ -n "$python" ]; then
+    for peer in scipy casadi; do
+        awk -v p="$peer" -v t="$(fastest 101 $python benches/peers/contact.py --peer $peer)" 'BEGIN { printf "contact by %s: %.2f ms\n", p, t * 101 / 1e6 }'
+    done
+fi
+cargo bench --quiet -p flank-benches --bench contact -- path_101

@@ -153,7 +153,9 @@ pub(crate) fn build<'g>(
     builder.parameters = binder.parameters;
     for statement in &job.statements {
         match statement {
-            JobStatement::Mount { tool, frame } => builder.mount(context, tool, frame, job),
+            JobStatement::Mount { names, frame } => {
+                names.iter().for_each(|name| builder.mount(context, name, frame, job));
+            }
             JobStatement::Drive(drive) => builder.drive(context, drive),
             _ => {}
         }

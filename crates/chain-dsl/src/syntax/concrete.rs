@@ -121,7 +121,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
     };
     let rule = pair.as_rule();
     let mut inner = inner(pair);
-    if matches!(rule, Rule::drive | Rule::surface | Rule::sample) {
+    if matches!(rule, Rule::drive | Rule::surface | Rule::sample | Rule::mount) {
         inner = rows(inner);
     }
     if matches!(kind, Kind::Block | Kind::Statement) {

@@ -48,7 +48,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "param" => JobStatement::Param(piece.param(name)),
         "machine" => JobStatement::Machine(piece.instance(name)),
         "tool" => JobStatement::Tool(piece.instance(name)),
-        "mount" => JobStatement::Mount { tool: name, frame: piece.path_after("on") },
+        "mount" => JobStatement::Mount { names: piece.names(), frame: piece.path_after("on") },
         "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
         "unknown" => JobStatement::Unknown(piece.parameter(piece.range.start + 1, name)),
         "drive" => JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }),

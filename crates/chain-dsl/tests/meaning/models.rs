@@ -356,9 +356,8 @@ const AGAIN: &str = "
         tool a = ball(radius: reach)
         tool b = a
         tool c = b(radius: 6 mm)
-        mount a on m.slide
+        mount a, c on m.slide
         mount b on n.slide
-        mount c on m.slide
         motion turn : angle in 0 deg .. 90 deg
         drive m.C, m.Z, n.C, n.Z = turn, 0 mm, turn, 1 mm
         surface one, three in m.work = envelope(a.face, c.face, over: turn)

@@ -100,7 +100,9 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Let(it) => let_statement(it),
         JobStatement::Machine(it) => instance("machine", it),
         JobStatement::Tool(it) => instance("tool", it),
-        JobStatement::Mount { tool, frame } => format!("mount {} {}", tool.node, path(frame)),
+        JobStatement::Mount { names, frame } => {
+            format!("mount {} {}", listed(names, |name: &Name| name.node.to_string()), path(frame))
+        }
         JobStatement::Motion(it) => format!("motion {}", parameter(it)),
         JobStatement::Unknown(it) => format!("unknown {}", parameter(it)),
         JobStatement::Profile(it) => {

@@ -61,6 +61,12 @@ impl<'j, 'g> Members<'j, 'g> {
         }
     }
 
+    /// The other surfaces of a member's tooth space.
+    pub(crate) fn space(&self, job: &Job<'g>, member: usize) -> Vec<usize> {
+        let space = self.solids[member].map_or(&[][..], |solid| &solid.space);
+        space.iter().copied().filter(|at| job.surfaces[*at].name != self.surfaces[member].name).collect()
+    }
+
     /// The other surfaces of each member's tooth space, each with the mate's flank, that are sampled; and the names of those that are not.
     ///
     /// # Errors
@@ -72,8 +78,7 @@ impl<'j, 'g> Members<'j, 'g> {
     ) -> Result<(Vec<Members<'j, 'g>>, Vec<&'j str>), Failure> {
         let (mut found, mut unknown) = (Vec::new(), Vec::new());
         for member in [0, 1] {
-            let space = self.solids[member].map_or(&[][..], |solid| &solid.space);
-            for &at in space.iter().filter(|at| **at != self.contact.surfaces[member]) {
+            for at in self.space(job, member) {
                 if job.surfaces[at].sample.is_none() {
                     unknown.push(job.surfaces[at].name.as_str());
                     continue;

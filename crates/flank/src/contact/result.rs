@@ -83,6 +83,8 @@ pub struct ContactMember {
     pub frame: String,
     /// The solid whose outline says where its teeth end; null where nothing does, and no edge is known.
     pub solid: Option<String>,
+    /// The other surfaces of its tooth space, against which the edges of the mate are held.
+    pub space: Vec<String>,
 }
 
 /// What two flanks are to each other.

@@ -66,6 +66,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             surface: self.members.surfaces[k].name.clone(),
             frame: self.members.surfaces[k].frame.clone(),
             solid: self.members.solids[k].map(|solid| solid.name.clone()),
+            space: self.members.space(self.job, k).iter().map(|at| self.job.surfaces[*at].name.clone()).collect(),
         };
         let axes = &self.members.contact.errors;
         let mounted =

@@ -83,12 +83,13 @@ impl ContactResult {
                 format!("{least} {unit}, {normal} mm along the normal, to {other} at {over} {turn} {over_unit}"),
             ));
         }
-        let is_bounded = self.members.iter().any(|member| member.solid.is_some());
-        if self.kind.is_some() && is_bounded && self.clearances.is_empty() {
-            facts.push((
-                "room",
-                "only the flanks are looked at: no solid names fillets or roots of its spaces".to_string(),
-            ));
+        if self.kind.is_some() && self.clearances.is_empty() && self.members.iter().any(|member| member.solid.is_some())
+        {
+            let nothing = match self.members.iter().all(|member| member.space.is_empty()) {
+                true => "only the flanks are looked at: no solid names fillets or roots of its spaces",
+                false => "no edge comes together with what else the tooth spaces have",
+            };
+            facts.push(("room", nothing.to_string()));
         }
         for room in &self.clearances {
             let (least, turn) = (fixed(room.least_mm, 4), fixed(room.turn, 3));

@@ -49,10 +49,10 @@ pub enum JobStatement {
     Machine(Instance),
     /// `tool c = definition(setting: value, …)`
     Tool(Instance),
-    /// `mount c on m.cutter`
+    /// `mount c on m.cutter`, `mount flank, coast on m.pinion`
     Mount {
-        /// The tool.
-        tool: Name,
+        /// Tools, or surfaces that the job makes.
+        names: Vec<Name>,
         /// The frame.
         frame: Path,
     },

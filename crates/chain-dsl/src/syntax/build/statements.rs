@@ -182,7 +182,7 @@ impl Build<'_> {
     fn mount(&mut self, pair: Pair<'_, Rule>) -> JobStatement {
         let mut parts = Parts::of(pair);
         JobStatement::Mount {
-            tool: self.name(parts.required(Rule::name)),
+            names: parts.all(Rule::name).into_iter().map(|name| self.name(name)).collect(),
             frame: self.path(parts.required(Rule::path)),
         }
     }
