@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Instructions that a point of a grid and a whole process take, counted by valgrind, against `benches/instructions.txt`: a rise of more
+# Instructions that a point of a grid, a part of a contact and a whole process take, counted by valgrind, against `benches/instructions.txt`: a rise of more
 # than 3 % fails. `benches/instructions.sh --accept` writes today's counts there; the commit that does so says why.
 # Counted are repetitions after the first one, and processes from their start to the written CSV file, in the dev profile: expressions
 # and solver are optimised there, reading and writing are not.
@@ -19,12 +19,17 @@ if [ "${1:-}" != --accept ] && ! grep -qx "# $compiler" $counts; then
 fi
 # incremental builds have more and smaller units of code, 1 % more instructions
 export CARGO_INCREMENTAL=0
-cargo build --quiet -p flank-benches --example adapter
+cargo build --quiet -p flank-benches --examples
 cargo build --quiet --workspace --bin flank
 
 run() { # job rows columns repetitions
     valgrind --tool=callgrind --callgrind-out-file=/dev/null target/debug/examples/adapter \
         --job "$1" --n1 "$2" --n2 "$3" --threads 1 --reps "$4" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'
+}
+
+rolling() { # job repetitions
+    RAYON_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null target/debug/examples/rolling "$1" "$2" 2>&1 >/dev/null |
+        sed -n 's/.*Collected : //p'
 }
 
 process() { # name
@@ -41,7 +46,7 @@ process() { # name
 fresh=$(mktemp)
 out=$(mktemp -d)
 trap 'rm -rf "$fresh" "$out"' EXIT
-printf '# %s\n# job rows columns instructions-a-point, process - - thousands\n' "$compiler" >"$fresh"
+printf '# %s\n# job rows columns instructions-a-point, part contact - thousands, process - - thousands\n' "$compiler" >"$fresh"
 failed=0
 while read -r job rows columns before; do
     if [ "$rows" = - ]; then
@@ -51,6 +56,9 @@ while read -r job rows columns before; do
             exit 1
         }
         now=$((now / 1000))
+    elif [ "$rows" = contact ]; then
+        what="$job of a contact" unit="thousand instructions"
+        now=$((($(rolling "$job" 4) - $(rolling "$job" 1)) / 3 / 1000))
     else
         what="$job $rows x $columns" unit="instructions a point"
         now=$((($(run "$job" "$rows" "$columns" 6) - $(run "$job" "$rows" "$columns" 1)) / 5 / (rows * columns)))
