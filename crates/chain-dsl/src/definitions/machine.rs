@@ -34,11 +34,25 @@ pub(crate) struct Flat<'a> {
     laws: Named<'a, (&'a ast::Assignment, LawKind)>,
     /// Laws beside the first of their axis: perhaps meant for another one.
     repeated_laws: usize,
-    frames: Named<'a, &'a ast::Frame>,
+    frames: Named<'a, Hung<'a>>,
     /// Each with the place of its machine in the line.
     words: Vec<(&'a ast::NcWord, usize)>,
     /// Of all machines of the line: what a variant demands comes on top of what its parents do.
     requirements: Vec<&'a Requirement>,
+}
+
+/// A frame, and the frame that it hangs on: the one that is written, or one that a variant inserted there.
+#[derive(Clone, Copy)]
+struct Hung<'a> {
+    name: &'a Name,
+    parent: Option<&'a Name>,
+    transforms: &'a [ast::Call],
+}
+
+impl<'a> Hung<'a> {
+    fn written(frame: &'a ast::Frame) -> Hung<'a> {
+        Hung { name: &frame.name, parent: frame.parent.as_ref(), transforms: &frame.transforms }
+    }
 }
 
 /// A law that the machine itself states.
@@ -112,6 +126,7 @@ pub(crate) fn flatten<'a, 'g>(
             return None;
         }
         flat.repeated_laws += check_duplicates(context, machine);
+        machine.statements.iter().for_each(|statement| flat.insert(context, statement));
         machine.statements.iter().for_each(|statement| flat.add(statement, place));
     }
     if let Some(axis) = flat.axes.list.get(limits::AXES.most) {
@@ -136,7 +151,7 @@ fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
         MachineStatement::Param(param) => (&param.name, "value"),
         MachineStatement::Let(binding) => (&binding.name, "value"),
         MachineStatement::Axis(axis) => (&axis.name, "value"),
-        MachineStatement::Frame(frame) => (&frame.name, "frame"),
+        MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => (&frame.name, "frame"),
         MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
         MachineStatement::Nc(_) | MachineStatement::Require(_) => return None,
     })
@@ -194,12 +209,41 @@ impl<'a> Flat<'a> {
                 self.constants.put(name, statement);
             }
             MachineStatement::Axis(axis) => self.axes.put(&axis.name, axis),
-            MachineStatement::Frame(frame) => self.frames.put(&frame.name, frame),
+            MachineStatement::Frame(frame) => self.frames.put(&frame.name, Hung::written(frame)),
+            // it hangs there already
+            MachineStatement::Insert(_) => {}
             MachineStatement::Fix(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Fix)),
             MachineStatement::Couple(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Couple)),
             MachineStatement::Nc(word) => self.words.push((word, place)),
             MachineStatement::Require(required) => self.requirements.push(required),
         }
+    }
+
+    /// Hangs a frame that a variant inserts between another one and all that its parents hang on that.
+    fn insert(&mut self, context: &mut Context<'_>, statement: &'a MachineStatement) {
+        let MachineStatement::Insert(frame) = statement else { return };
+        let inserted = Hung::written(frame);
+        // the parser has reported a missing name
+        let Some(parent) = inserted.parent.filter(|parent| !parent.node.is_empty()) else { return };
+        if !self.frames.places.contains_key(parent.node.as_str()) {
+            let known = self.frames.list.iter().map(|frame| frame.name.node.as_str());
+            return context.unknown(parent, "frame of a parent", known);
+        }
+        if let Some(&known) = self.frames.places.get(frame.name.node.as_str()) {
+            return context.duplicate(&frame.name, self.frames.list[known].name.span);
+        }
+        let hangs_there = |frame: &&mut Hung<'a>| frame.parent.is_some_and(|other| other.node == parent.node);
+        let mut moved = 0;
+        for frame in self.frames.list.iter_mut().filter(hangs_there) {
+            frame.parent = Some(inserted.name);
+            moved += 1;
+        }
+        if moved == 0 {
+            let message = format!("nothing hangs on `{}` that `{}` could carry", parent.node, frame.name.node);
+            let help = format!("a frame at the end is declared: `frame {} in {} = …`", frame.name.node, parent.node);
+            context.report(Diagnostic::new(Code::FrameTree, frame.name.span, message).help(help));
+        }
+        self.frames.put(inserted.name, inserted);
     }
 
     fn params(&self) -> Vec<&'a ast::Param> {
@@ -321,7 +365,7 @@ impl<'a> Flat<'a> {
             context.report(limits::FRAMES.exceeded(machine.span));
             return (Vec::new(), true);
         }
-        let roots: Vec<&&ast::Frame> = self.frames.list.iter().filter(|frame| frame.parent.is_none()).collect();
+        let roots: Vec<&Hung<'_>> = self.frames.list.iter().filter(|frame| frame.parent.is_none()).collect();
         if let Some(second) = roots.get(1) {
             let message = format!("`{}` hangs on nothing, and so does `{}`", second.name.node, roots[0].name.node);
             let diagnostic = Diagnostic::new(Code::FrameTree, second.name.span, message)
@@ -332,7 +376,7 @@ impl<'a> Flat<'a> {
         let index: HashMap<&str, usize> =
             self.frames.list.iter().enumerate().map(|(k, frame)| (frame.name.node.as_str(), k)).collect();
         for frame in &self.frames.list {
-            if let Some(parent) = &frame.parent
+            if let Some(parent) = frame.parent
                 && !index.contains_key(parent.node.as_str())
             {
                 context.unknown(parent, "frame", index.keys().copied().filter(|name| *name != frame.name.node));
@@ -342,7 +386,7 @@ impl<'a> Flat<'a> {
         let mut lacks_transforms = false;
         let frames = self.order_frames(&index).into_iter().map(|(k, parent)| {
             let frame = self.frames.list[k];
-            let steps = transforms::steps(context, &frame.transforms, scope);
+            let steps = transforms::steps(context, frame.transforms, scope);
             lacks_transforms |= steps.is_none();
             Frame { name: frame.name.node.clone(), parent, steps: steps.unwrap_or_default() }
         });
@@ -358,7 +402,7 @@ impl<'a> Flat<'a> {
             while let Some(k) = at.filter(|k| state[*k] == 0) {
                 state[k] = 1;
                 way.push(k);
-                at = self.frames.list[k].parent.as_ref().and_then(|parent| index.get(parent.node.as_str()).copied());
+                at = self.frames.list[k].parent.and_then(|parent| index.get(parent.node.as_str()).copied());
             }
             if let Some(k) = at.filter(|k| state[*k] == 1) {
                 let names: Vec<&str> = way
@@ -372,7 +416,7 @@ impl<'a> Flat<'a> {
                 };
                 let message = format!("frames hang on each other in a circle: {shown} → {}", names[0]);
                 let place =
-                    self.frames.list[k].parent.as_ref().map_or(self.frames.list[k].name.span, |parent| parent.span);
+                    self.frames.list[k].parent.map_or(self.frames.list[k].name.span, |parent| parent.span);
                 let root = self.frames.list.iter().find(|frame| frame.parent.is_none());
                 let help = match root.map(|root| &root.name.node) {
                     Some(root) => {
@@ -391,7 +435,7 @@ impl<'a> Flat<'a> {
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.frames.list.len()];
         let mut order: Vec<(usize, Option<usize>)> = Vec::new();
         for (k, frame) in self.frames.list.iter().enumerate() {
-            match frame.parent.as_ref().map(|parent| index.get(parent.node.as_str())) {
+            match frame.parent.map(|parent| index.get(parent.node.as_str())) {
                 Some(Some(&parent)) => children[parent].push(k),
                 Some(None) => {}
                 None => order.push((k, None)),

@@ -92,7 +92,7 @@ fn parameter(context: &mut Context<'_>, name: &Name) {
 
 fn written_frames(machine: &ast::Machine) -> impl Iterator<Item = &ast::Frame> {
     machine.statements.iter().filter_map(|statement| match statement {
-        MachineStatement::Frame(frame) => Some(frame),
+        MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => Some(frame),
         _ => None,
     })
 }
@@ -107,7 +107,11 @@ fn frames(context: &mut Context<'_>, machine: &ast::Machine, parents: &HashSet<&
         return;
     }
     let carries = |frame: &&ast::Frame| parents.contains(frame.name.node.as_str()) || by_jobs.has(&frame.name);
-    for frame in written_frames(machine).filter(|frame| !carries(frame)) {
+    let written = machine.statements.iter().filter_map(|statement| match statement {
+        MachineStatement::Frame(frame) => Some(frame),
+        _ => None,
+    });
+    for frame in written.filter(|frame| !carries(frame)) {
         let message =
             format!("no job reaches frame `{}`: no tool sits on it and no surface is given in it", frame.name.node);
         context.report(Diagnostic::new(Code::UnreachedFrame, frame.name.span, message));
@@ -157,7 +161,7 @@ impl Used {
                 MachineStatement::Param(param) => self.param(param),
                 MachineStatement::Let(binding) => self.expression(&binding.value),
                 MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
-                MachineStatement::Frame(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
+                MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
                 MachineStatement::Nc(word) => {
                     self.expression(&word.value);

@@ -169,7 +169,7 @@ const EQUALS: usize = usize::MAX;
 fn family(head: &[Part<'_>]) -> Option<(Family, &'static [usize])> {
     Some(match head.first()?.text {
         "axis" => (Family::Axis, &[2]),
-        "frame" => (Family::Frame, &[2, EQUALS]),
+        "frame" | "insert" => (Family::Frame, &[2, EQUALS]),
         "fix" | "couple" => (Family::Law, &[1, EQUALS]),
         "nc" => (Family::NcWord, &[EQUALS]),
         "machine" | "tool" => (Family::Instance, &[1, EQUALS]),

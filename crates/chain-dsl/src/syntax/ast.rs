@@ -104,6 +104,8 @@ pub enum MachineStatement {
     Axis(Axis),
     /// `frame name in parent = transform …`
     Frame(Frame),
+    /// `insert name in parent = transform …`: a frame between another one and all that hangs on it.
+    Insert(Frame),
     /// `fix A = …`: an axis that stands still.
     Fix(Assignment),
     /// `couple C = …`: an axis that follows others.

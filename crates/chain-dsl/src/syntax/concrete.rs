@@ -94,7 +94,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::expression => return parts.push(expression(pair)),
         Rule::function => return parts.push(function(pair)),
         Rule::motion | Rule::unknown => return parts.push(motion(pair)),
-        Rule::frame => return parts.push(frame(pair)),
+        Rule::frame | Rule::insert => return parts.push(frame(pair)),
         Rule::contact => return parts.push(contact(pair)),
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),

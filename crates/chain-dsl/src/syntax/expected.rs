@@ -74,11 +74,11 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::open_brace if before.name => {
             format!("`{{` after the name of the {}", noun(before.statement))
         }
-        Rule::open_paren if before.statement == "frame" => TRANSFORM.to_owned(),
+        Rule::open_paren if matches!(before.statement, "frame" | "insert") => TRANSFORM.to_owned(),
         Rule::open_paren if before.name => {
             format!("`(` after the name of the {}", noun(before.statement))
         }
-        Rule::kw_in if before.statement == "frame" => "`in` and the frame that it hangs on".to_owned(),
+        Rule::kw_in if matches!(before.statement, "frame" | "insert") => "`in` and the frame that it hangs on".to_owned(),
         Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
             "`in` and the frame in which the surface is given".to_owned()
         }
@@ -124,8 +124,8 @@ fn name(before: &Before<'_>) -> String {
         ("drive", _) => path(before).to_owned(),
         ("sample", "as") => "the name of the sample".to_owned(),
         ("surface" | "sample", ",") if !before.in_brackets => "the name of the surface".to_owned(),
-        ("frame", "in") => "the frame that it hangs on".to_owned(),
-        ("frame", _) => TRANSFORM.to_owned(),
+        ("frame" | "insert", "in") => "the frame that it hangs on".to_owned(),
+        ("frame" | "insert", _) => TRANSFORM.to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),
         ("machine", "=") => "the name of a machine".to_owned(),
         ("tool", "=") => "the name of a tool".to_owned(),
@@ -166,7 +166,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
 
 fn assigned(before: &Before<'_>) -> String {
     match before.statement {
-        "frame" | "surface" | "solid" => "the name of the frame".to_owned(),
+        "frame" | "insert" | "surface" | "solid" => "the name of the frame".to_owned(),
         statement => format!("the name of the {}", noun(statement)),
     }
 }
@@ -182,6 +182,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "require" => "condition",
         "fn" => "function",
         "nc" => "NC word",
+        "insert" => "frame",
         other => other,
     }
 }

@@ -31,7 +31,7 @@ impl<'s> Mistake<'s> {
     pub(super) fn new(scan: &'s Scan<'s>, range: Range<usize>, place: usize, expected: Vec<Rule>) -> Mistake<'s> {
         let mut found = scan.token_at(place).clamp(range.start, range.end);
         // A frame's last name is not followed by a parenthesis: then the name itself is wrong, unless there is one further on.
-        let lacks_parenthesis = scan.say(range.start) == "frame" && expected == [Rule::open_paren];
+        let lacks_parenthesis = matches!(scan.say(range.start), "frame" | "insert") && expected == [Rule::open_paren];
         if lacks_parenthesis && (scan.say(found) != "(" || scan.indent(found).is_some()) {
             found -= 1;
         }

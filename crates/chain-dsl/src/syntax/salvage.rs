@@ -21,6 +21,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
         "param" => MachineStatement::Param(piece.param(name)),
         "axis" => MachineStatement::Axis(piece.axis(name)),
         "frame" => MachineStatement::Frame(piece.frame(name)),
+        "insert" => MachineStatement::Insert(piece.frame(name)),
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
         "nc" => MachineStatement::Nc(NcWord { address: name, value: piece.error(), increment: None }),

@@ -270,9 +270,10 @@ impl Writer {
     }
 
     fn frame(&mut self) {
-        self.put("frame");
+        let keyword = self.random.of(&["frame", "insert"]);
+        self.put(keyword);
         self.name();
-        if self.random.one_in(5) {
+        if keyword == "frame" && self.random.one_in(5) {
             return;
         }
         self.put("in");

@@ -250,6 +250,47 @@ fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     assert_eq!(z.map_text(), ["4 * sin(turn)", "4 * cos(turn)", "turn"]);
 }
 
+#[test]
+fn an_inserted_frame_carries_all_that_hung_on_another_one() {
+    let surface = "
+            tool b = ball
+            mount b on m.nose
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            drive m.Z = 1 mm/rad * turn
+            surface s in m.work = envelope(b.face, over: turn)";
+    let machines = "
+        machine long_lathe extends lathe {
+            frame nose  in slide = translate_y(2 mm)
+            frame steady in slide = translate_y(3 mm)
+        }
+        machine wrong_lathe extends long_lathe {
+            insert tilted in slide = rotate_x(1 deg)
+            insert sunk in tilted = translate_y(-5 um)
+        }
+        machine again extends wrong_lathe {
+            insert higher in slide = translate_z(1 mm)
+        }";
+    let of = |machine: &str| {
+        let graph = Graph::new();
+        let text = format!("{machines} job j {{ machine m = {machine}(height: 4 mm) {surface} }}");
+        let compilation = compiled(&graph, &text);
+        let job = &compilation.jobs[0];
+        let frames = &job.machines[0].frames;
+        let parent = |name: &str| {
+            let frame = frames.iter().find(|frame| frame.name == name).expect("declared");
+            frame.parent.map(|parent| frames[parent].name.clone()).unwrap_or_default()
+        };
+        let path = &job.surfaces[0].generation.path;
+        (path.iter().map(|(frame, _)| frame.clone()).collect::<Vec<_>>().join(" "), parent("steady"), parent("sunk"))
+    };
+    let named = |path: &str, steady: &str, sunk: &str| (path.to_string(), steady.to_string(), sunk.to_string());
+    let wrong = "m.work m.bed m.slide m.tilted m.sunk m.nose";
+    assert_eq!(of("wrong_lathe"), named(wrong, "sunk", "tilted"));
+    let again = "m.work m.bed m.slide m.higher m.tilted m.sunk m.nose";
+    assert_eq!(of("again"), named(again, "sunk", "tilted"));
+}
+
 trait MapText {
     fn map_text(&self) -> Vec<String>;
 }

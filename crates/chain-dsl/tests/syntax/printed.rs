@@ -47,6 +47,12 @@ fn value_type(it: &Type) -> String {
     dimension(&it.dimension) + &it.size.map_or(String::new(), |size| format!("[{size}]"))
 }
 
+fn frame(word: &str, it: &Frame) -> String {
+    let parent = it.parent.as_ref().map_or(String::new(), |name| format!(" in {}", named(name)));
+    let transforms: String = it.transforms.iter().map(|it| format!(" {}", call(it))).collect();
+    format!("{}{word} {}{parent}{transforms}", doc(&it.doc), it.name.node)
+}
+
 fn machine_statement(statement: &MachineStatement) -> String {
     match statement {
         MachineStatement::Param(it) => param(it),
@@ -54,11 +60,8 @@ fn machine_statement(statement: &MachineStatement) -> String {
         MachineStatement::Axis(it) => {
             format!("{}axis {} {:?}{}", doc(&it.doc), it.name.node, it.kind, optional_range(it.range.as_ref()))
         }
-        MachineStatement::Frame(it) => {
-            let parent = it.parent.as_ref().map_or(String::new(), |name| format!(" in {}", named(name)));
-            let transforms: String = it.transforms.iter().map(|it| format!(" {}", call(it))).collect();
-            format!("{}frame {}{parent}{transforms}", doc(&it.doc), it.name.node)
-        }
+        MachineStatement::Frame(it) => frame("frame", it),
+        MachineStatement::Insert(it) => frame("insert", it),
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),
         MachineStatement::Nc(it) => {

@@ -19,24 +19,23 @@ impl System {
         along: &[(usize, f64)],
         order: usize,
     ) -> Option<Vec<Vec<f64>>> {
-        let (size, terms) = (self.size(), order + 1);
+        let size = self.size();
         let mut evaluation = self.evaluation(parameters);
         evaluation.at(root);
         let jacobian = Mat::from_fn(size, size, |i, j| evaluation.jacobian(i, j));
         let inverse = PartialPivLu::new(jacobian.as_ref());
-        let mut inputs = vec![0.0; terms * (size + parameters.len())];
-        root.iter().chain(parameters).enumerate().for_each(|(k, x)| inputs[terms * k] = *x);
-        if order > 0 {
-            along.iter().for_each(|(k, rate)| inputs[terms * (size + k) + 1] = *rate);
+        let rate = |k: usize| along.iter().find(|(of, _)| size + of == k).map_or(0.0, |(_, rate)| *rate);
+        let mut series: Vec<Vec<f64>> = root.iter().map(|x| vec![*x]).collect();
+        for k in 1..=order {
+            let unknowns = series.iter().map(|known| &known[..]);
+            let given: Vec<[f64; 2]> = parameters.iter().enumerate().map(|(j, x)| [*x, rate(size + j)]).collect();
+            let known = unknowns.chain(given.iter().map(|given| &given[..]));
+            let inputs: Vec<f64> = known.flat_map(|known| (0..=k).map(|j| known.get(j).copied().unwrap_or(0.0))).collect();
+            let mut outputs = vec![0.0; (k + 1) * size];
+            TaylorEvaluator::new(self.residual_tape(), k).run(&inputs, &mut outputs);
+            let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[(k + 1) * i + k]));
+            series.iter_mut().enumerate().for_each(|(i, series)| series.push(by[(i, 0)]));
         }
-        let mut outputs = vec![0.0; terms * size];
-        let mut evaluator = TaylorEvaluator::new(self.residual_tape(), order);
-        for k in 1..terms {
-            evaluator.run(&inputs, &mut outputs);
-            let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[terms * i + k]));
-            (0..size).for_each(|i| inputs[terms * i + k] = by[(i, 0)]);
-        }
-        inputs.truncate(terms * size);
-        inputs.iter().all(|c| c.is_finite()).then(|| inputs.chunks(terms).map(<[f64]>::to_vec).collect())
+        series.iter().flatten().all(|c| c.is_finite()).then_some(series)
     }
 }

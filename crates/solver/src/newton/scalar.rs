@@ -114,7 +114,8 @@ impl<'r> Descent<'r> {
                     self.stage = Stage::Best;
                 }
             }
-            Stage::Best => self.end(at),
+            // the step that led nowhere began here: it has told whether the Jacobian is singular
+            Stage::Best => self.is_root = is_at_root(at, &self.p),
             Stage::Nothing => {}
         }
     }

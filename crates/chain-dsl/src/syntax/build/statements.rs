@@ -22,6 +22,7 @@ impl Build<'_> {
             Rule::let_statement => MachineStatement::Let(self.let_statement(pair)),
             Rule::axis => MachineStatement::Axis(self.axis(pair)),
             Rule::frame => MachineStatement::Frame(self.frame(pair)),
+            Rule::insert => MachineStatement::Insert(self.frame(pair)),
             Rule::fix => MachineStatement::Fix(self.assignment(pair)),
             Rule::couple => MachineStatement::Couple(self.assignment(pair)),
             Rule::nc_word => MachineStatement::Nc(self.nc_word(pair)),

@@ -120,6 +120,14 @@ impl<'t, N: Coefficient> TaylorEvaluator<'t, N> {
         let (out, rest) = rest.split_at_mut(terms);
         let (other, room) = rest.split_at_mut(terms);
         for step in self.tape.instructions() {
+            let is_done = match terms {
+                2 => series::short::<N, 2>(step, &mut self.registers),
+                3 => series::short::<N, 3>(step, &mut self.registers),
+                _ => false,
+            };
+            if is_done {
+                continue;
+            }
             let place = |register: u32| terms * register as usize..terms * (register as usize + 1);
             a.copy_from_slice(&self.registers[place(step.a)]);
             match step.operation {

@@ -3,12 +3,54 @@
 //! A function y = f(a) whose derivative is a series g already known has `k y_k = Σ j a_j g_{k−j}`; where g needs y itself, as with
 //! `exp`, its coefficients are worked out just ahead (Moore's recurrences; see Griewank and Walther, Evaluating Derivatives, ch. 13).
 
+use std::array::from_fn;
+
 use super::Coefficient;
 use crate::symbolic::curve::Curve;
 use crate::symbolic::op::{Binary, Unary};
+use crate::tape::{Instruction, Operation};
 
 /// Whole powers up to this one are products, so that they have series at zero as well.
 const LARGEST_PRODUCT: i32 = 64;
+
+/// The commonest operations on series so short that their loops are unrolled; `false` for others, which are left to do.
+pub(super) fn short<N: Coefficient, const TERMS: usize>(step: &Instruction, registers: &mut [N]) -> bool {
+    let (registers, _) = registers.as_chunks_mut::<TERMS>();
+    let a = registers[step.a as usize];
+    let b = || registers[step.b as usize];
+    let none = [N::number(0.0); TERMS];
+    let out = match step.operation {
+        Operation::Unary(Unary::Neg) => a.map(|a| -a),
+        Operation::Unary(Unary::Sqrt) => written(none, |out| root(&a, out)),
+        Operation::Binary(Binary::Add) => {
+            let b = b();
+            from_fn(|k| a[k] + b[k])
+        }
+        Operation::Binary(Binary::Sub) => {
+            let b = b();
+            from_fn(|k| a[k] - b[k])
+        }
+        Operation::Binary(Binary::Mul) => {
+            let b = b();
+            from_fn(|k| product(&a, &b, k))
+        }
+        Operation::Binary(Binary::Div) => written(none, |out| quotient(&a, &b(), out)),
+        Operation::SinCos => {
+            let (mut sine, mut cosine) = (none, none);
+            sin_cos(&a, &mut sine, &mut cosine);
+            registers[step.b as usize] = cosine;
+            sine
+        }
+        _ => return false,
+    };
+    registers[step.out as usize] = out;
+    true
+}
+
+fn written<T>(mut out: T, write: impl FnOnce(&mut T)) -> T {
+    write(&mut out);
+    out
+}
 
 /// A one-operand operation; `other` and `room` (two series long) are overwritten.
 pub(super) fn unary<N: Coefficient>(op: Unary, a: &[N], out: &mut [N], other: &mut [N], room: &mut [N]) {
@@ -199,6 +241,7 @@ fn power<N: Coefficient>(a: &[N], b: &[N], out: &mut [N], other: &mut [N], room:
 }
 
 /// Coefficient k of a b.
+#[inline(always)]
 fn product<N: Coefficient>(a: &[N], b: &[N], k: usize) -> N {
     sum((0..=k).map(|j| a[j] * b[k - j]))
 }
@@ -208,6 +251,7 @@ fn slope<N: Coefficient>(a: &[N], g: &[N], k: usize) -> N {
     sum((1..=k).map(|j| count::<N>(j) * a[j] * g[k - j]))
 }
 
+#[inline(always)]
 fn sum<N: Coefficient>(terms: impl Iterator<Item = N>) -> N {
     terms.reduce(|sum, term| sum + term).unwrap_or(N::number(0.0))
 }
