@@ -368,6 +368,8 @@ pub enum SampleGrid {
         /// Both coordinates at toe root, heel root, toe tip, heel tip.
         corners: [[f64; 2]; 4],
     },
+    /// Points that are listed one by one, in one row.
+    Points(Vec<[f64; 2]>),
 }
 
 /// Where a [`SampleGrid`] ends, in the parameters of the job.
@@ -409,6 +411,7 @@ impl SampleGrid {
         match self {
             SampleGrid::Values([rows, columns]) => [rows[row], columns[column]],
             SampleGrid::Shares { shares: [rows, columns], corners } => between(*corners, [rows[row], columns[column]]),
+            SampleGrid::Points(points) => points[column],
         }
     }
 
@@ -430,6 +433,7 @@ impl SampleGrid {
         match self {
             SampleGrid::Values(values) => SampleGrid::Values(pick(values)),
             SampleGrid::Shares { shares, corners } => SampleGrid::Shares { shares: pick(shares), corners: *corners },
+            SampleGrid::Points(points) => SampleGrid::Points(lines[1].iter().map(|at| points[*at]).collect()),
         }
     }
 
@@ -442,6 +446,10 @@ impl SampleGrid {
             SampleGrid::Values(values) => SampleGrid::Values(values.each_ref().map(|values| halved(values))),
             SampleGrid::Shares { shares, corners } => {
                 SampleGrid::Shares { shares: shares.each_ref().map(|shares| halved(shares)), corners: *corners }
+            }
+            SampleGrid::Points(points) => {
+                let half = |at: usize| [0, 1].map(|k| 0.5 * (points[(at - 1) / 2][k] + points[at / 2][k]));
+                SampleGrid::Points((1..2 * points.len()).map(half).collect())
             }
         }
     }

@@ -34,6 +34,55 @@ fn solve_writes_points_and_pictures() {
     assert_eq!(csv.lines().filter(|line| line.ends_with(",solved")).count(), 1302);
 }
 
+/// Columns of the rows of a surface in a CSV file.
+fn columns(out: &Path, surface: &str, names: [&str; 3]) -> Vec<[f64; 3]> {
+    let csv = std::fs::read_to_string(out.join("helical_gear.csv")).expect("written");
+    let mut lines = csv.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().expect("a head");
+    let places = names.map(|name| head.iter().position(|column| *column == name).expect("a column"));
+    let rows = lines.filter(|row| row[0] == surface && row.ends_with(&["solved"]));
+    rows.map(|row| places.map(|at| row[at].parse().expect("a number"))).collect()
+}
+
+/// In no order, so that each point is far from the one before.
+#[test]
+fn points_of_a_table_are_those_of_the_grid() {
+    let at = folder("solve-table");
+    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let run = |name: &str, text: &str| {
+        let out = at.join(name);
+        let run =
+            flank(&["solve", &written(&at, &format!("{name}.chain"), text), "--out", out.to_str().expect("plain")]);
+        (out, run)
+    };
+    let (grid, solved) = run("grid", &spec);
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let mut points = columns(&grid, "lower_flank", ["x", "y", "z"]);
+    assert_eq!(points.len(), 651);
+    // 260 and 651 have no common factor
+    points = (0..points.len()).map(|k| points[260 * k % 651]).collect();
+    let rows = points.iter().map(|[x, y, z]| format!("{z:?},{:?}\n", x.hypot(*y))).collect::<String>();
+    written(&at, "gauge.csv", &format!("z [mm],rho [mm]\n{rows}"));
+    let from = spec.find("sample lower_flank {").expect("a sample");
+    let (head, rest) = spec.split_at(from);
+    let rest = rest.lines().enumerate().map(|(k, line)| match k {
+        1 => "points: table(\"gauge.csv\", z: length, rho: length)\n".to_string(),
+        2 => String::new(),
+        _ => format!("{line}\n"),
+    });
+    let (table, solved) = run("table", &(head.to_string() + &rest.collect::<String>()));
+    assert_eq!(solved.status.code(), Some(0), "{}", text(&solved.stderr));
+    let found = columns(&table, "lower_flank", ["x", "y", "z"]);
+    assert_eq!(found.len(), 651);
+    for (found, point) in found.iter().zip(&points) {
+        // both solve to rounding; rho of the table is rounded
+        assert!((0..3).all(|k| (found[k] - point[k]).abs() < 1e-11), "{found:?} {point:?}");
+    }
+
+    let svg = std::fs::read_to_string(table.join("helical_gear.svg")).expect("drawn");
+    assert!(!svg.contains("of 1 x 651 points"), "all of them are drawn");
+}
+
 /// A table says as much of the points as the spec: another cell is another hash.
 #[test]
 fn the_hash_of_a_spec_is_also_that_of_its_tables() {
@@ -307,7 +356,14 @@ fn statuses_have_reasons() {
 #[test]
 fn branches_are_listed_as_json() {
     let out = folder("branches");
-    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let spec = self_contained(&[
+        "machines/hobbing_geared",
+        "machines/hobbing_3axis",
+        "machines/hobbing_6axis",
+        "tools/involute",
+        "tools/hob_zi",
+        "hobbing/helical_gear",
+    ]);
     let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
     let spec = written(&out, "unsaid.chain", &(unsaid.join("\n") + "\n"));
     let run = flank(&["solve", &spec, "--json", "--no-picture", "--out", out.to_str().unwrap()]);
@@ -491,7 +547,14 @@ fn what_is_set_by_hand_is_told_where_it_is() {
 #[test]
 fn why_a_surface_has_no_point_is_told_in_its_row() {
     let out = folder("none_solved");
-    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let spec = self_contained(&[
+        "machines/hobbing_geared",
+        "machines/hobbing_3axis",
+        "machines/hobbing_6axis",
+        "tools/involute",
+        "tools/hob_zi",
+        "hobbing/helical_gear",
+    ]);
     let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
     let unsaid = written(&out, "unsaid.chain", &(unsaid.join("\n") + "\n"));
     let solve = |arguments: &[&str]| {

@@ -415,8 +415,7 @@ impl<'a> Flat<'a> {
                     None => names.join(" → "),
                 };
                 let message = format!("frames hang on each other in a circle: {shown} → {}", names[0]);
-                let place =
-                    self.frames.list[k].parent.map_or(self.frames.list[k].name.span, |parent| parent.span);
+                let place = self.frames.list[k].parent.map_or(self.frames.list[k].name.span, |parent| parent.span);
                 let root = self.frames.list.iter().find(|frame| frame.parent.is_none());
                 let help = match root.map(|root| &root.name.node) {
                     Some(root) => {

@@ -161,7 +161,9 @@ impl Used {
                 MachineStatement::Param(param) => self.param(param),
                 MachineStatement::Let(binding) => self.expression(&binding.value),
                 MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
-                MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => frame.transforms.iter().for_each(|call| self.call(call)),
+                MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => {
+                    frame.transforms.iter().for_each(|call| self.call(call))
+                }
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
                 MachineStatement::Nc(word) => {
                     self.expression(&word.value);

@@ -7,9 +7,10 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
-use crate::syntax::ast::{self, Expression, SampleEntry, SampleValues};
+use crate::syntax::ast::{self, Expression, ExpressionKind, SampleEntry, SampleValues};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::{Dimension, shown};
+use crate::values::tables;
 use crate::values::value::{Scope, Value};
 
 /// Corners of a flank in the axial section.
@@ -89,6 +90,9 @@ fn grid<'g>(
     if written.entries.iter().any(is_outline) {
         return outline(context, (path, written), surface, scope);
     }
+    if let Some((entry, call)) = written.entries.iter().find_map(|entry| Some((entry, table(entry)?))) {
+        return tabulated(context, (path, written), (entry, call), surface, scope);
+    }
     let [rows, columns] = written.entries.as_slice() else {
         let message = format!("a sample takes two coordinates, this one has {}", written.entries.len());
         let help = "for example `sample flank { z: -5 mm .. 5 mm by 11, rho: 48 mm .. 52 mm by 9 }`";
@@ -111,6 +115,72 @@ fn grid<'g>(
         counts,
         grid,
         ends: SampleEnds { values: [row_ends, column_ends], corners: None },
+        keep: Vec::new(),
+        limits: Vec::new(),
+    })
+}
+
+/// `points: table("gauge.csv", z: length, rho: length)`
+fn table(entry: &SampleEntry) -> Option<&ast::Call> {
+    match &entry.values {
+        SampleValues::Value(Expression { kind: ExpressionKind::Call(call), .. }) if call.function.node == "table" => {
+            Some(call)
+        }
+        _ => None,
+    }
+}
+
+/// Points one by one, from two columns of a table that are called as the coordinates.
+fn tabulated<'g>(
+    context: &mut Context<'g>,
+    (path, written): (&ast::Path, &ast::Sample),
+    (entry, call): (&SampleEntry, &ast::Call),
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Sample<'g>> {
+    let example = "`sample flank { points: table(\"gauge.csv\", z: length, rho: length) }`";
+    if entry.key.node != "points" || entry.definition.is_some() {
+        let message = format!("a table gives `points`, not `{}`", entry.key.node);
+        let help = format!("both coordinates come from it: {example}");
+        context.report(Diagnostic::new(Code::SampleShape, entry.key.span, message).help(help));
+        return None;
+    }
+    if let Some(other) = written.entries.iter().find(|other| other.key.node != entry.key.node) {
+        let message = format!("`{}` stands beside points from a table", other.key.node);
+        let help = format!("the table has both coordinates: {example}; a second sample has a name of its own");
+        context.report(Diagnostic::new(Code::SampleShape, other.key.span, message).help(help));
+        return None;
+    }
+    let table = tables::columns(context, call)?;
+    let [first, second] = table.columns.map(|(name, dimension)| {
+        let found = coordinate(context, (name, None), surface, scope)?;
+        if found.dimension == dimension {
+            return Some(found);
+        }
+        let message = format!("coordinate `{}` is {}, not {dimension}", name.node, found.dimension);
+        context.report(Diagnostic::new(Code::WrongDimension, name.span, message));
+        None
+    });
+    let coordinates = [first?, second?];
+    let rows = table.rows(context)?;
+    let points: Vec<[f64; 2]> = rows.iter().map(|(first, second)| [*first, *second]).collect();
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        let message = "the table has no points";
+        context.report(Diagnostic::new(Code::SampleShape, table.span, message));
+        return None;
+    };
+    let ends = [0, 1].map(|k| [first, last].map(|point| context.graph.constant(point[k])));
+    check_size(context, path, 1, points.len())?;
+    let counts = [1, points.len()];
+    let grid = SampleGrid::Points(points);
+    let middle = grid.middle(counts);
+    let [rows, columns] = coordinates;
+    Some(Sample {
+        labels: ["list".to_string(), "point".to_string()],
+        coordinates: [surface.about(rows, middle[0]), surface.about(columns, middle[1])],
+        counts,
+        grid,
+        ends: SampleEnds { values: ends, corners: None },
         keep: Vec::new(),
         limits: Vec::new(),
     })

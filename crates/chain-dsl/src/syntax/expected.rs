@@ -78,7 +78,9 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::open_paren if before.name => {
             format!("`(` after the name of the {}", noun(before.statement))
         }
-        Rule::kw_in if matches!(before.statement, "frame" | "insert") => "`in` and the frame that it hangs on".to_owned(),
+        Rule::kw_in if matches!(before.statement, "frame" | "insert") => {
+            "`in` and the frame that it hangs on".to_owned()
+        }
         Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
             "`in` and the frame in which the surface is given".to_owned()
         }

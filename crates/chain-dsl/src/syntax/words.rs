@@ -15,8 +15,7 @@ pub(super) enum Reserved {
 pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
-pub(super) const IN_MACHINE: &[&str] = 
-    &["param", "let", "axis", "frame", "insert", "fix", "couple", "nc", "require"];
+pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "insert", "fix", "couple", "nc", "require"];
 
 /// Words that begin a statement in a tool.
 pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
@@ -32,8 +31,8 @@ pub(super) const IN_JOB: &[&str] = &[
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] = &[
-    "fn", "machine", "tool", "job", "param", "let", "axis", "frame", "insert", "profile", "surface", "motion", "unknown",
-    "solid", "contact",
+    "fn", "machine", "tool", "job", "param", "let", "axis", "frame", "insert", "profile", "surface", "motion",
+    "unknown", "solid", "contact",
 ];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.

@@ -298,6 +298,52 @@ fn wrong_tables_are_told() {
 }
 
 #[test]
+fn points_come_from_two_columns_of_a_table() {
+    let spec = "machine lathe { axis C : rotary frame bed frame work in bed = rotate_z(C) }
+        tool pick {
+            surface edge(s: length in 0 mm .. 4 mm) { at = [15 mm - s, 0 mm, s] body towards [1, 0, 0] }
+        }
+        job j {
+            machine m = lathe
+            tool p = pick
+            mount p on m.bed
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C = turn
+            surface s in m.work = sweep(p.edge, over: turn)
+            sample s { points: table(\"gauge.csv\", z: length, turn: angle) }
+        }";
+    let table = "turn [deg], z [um]\n10, 3000\n45, 1000\n20, 2500\n";
+    let check = |name: &str, spec: &str, table: &str| {
+        let folder = project(name, &[("t.chain", spec), ("gauge.csv", table)]);
+        codes(&folder.join("t.chain"), &[])
+    };
+    assert_eq!(check("points-right", spec, table), []);
+    let folder = project("points-right", &[("t.chain", spec), ("gauge.csv", table)]);
+    let graph = Graph::new();
+    let compilation = compile_file(&graph, &folder.join("t.chain"), &[]);
+    let sample = compilation.jobs[0].surfaces[0].sample.as_ref().expect("a sample");
+    assert_eq!(sample.counts, [1, 3]);
+    let turns = [10.0f64, 45.0, 20.0].map(f64::to_radians);
+    for ((found, z), turn) in sample.targets().iter().zip([3.0, 1.0, 2.5]).zip(turns) {
+        assert!((found[0] - z).abs() < 1e-15 && (found[1] - turn).abs() < 1e-15, "{found:?}");
+    }
+    assert_eq!(check("points-empty", spec, "turn [deg], z [um]\n"), [Code::SampleShape]);
+    assert_eq!(check("points-beside", &spec.replace("points:", "z: 3 mm, points:"), table), [Code::SampleShape]);
+    assert_eq!(check("points-key", &spec.replace("points:", "z:"), table), [Code::SampleShape]);
+    assert_eq!(
+        check("points-coordinate", &spec.replace("turn: angle) }", "tern: angle) }"), table),
+        [Code::UnknownName]
+    );
+    assert_eq!(
+        check("points-dimension", &spec.replace("turn: angle) }", "turn: length) }"), table),
+        [Code::WrongDimension]
+    );
+    assert_eq!(check("points-column", spec, &table.replace("z [um]", "rho [um]")), [Code::WrongTable]);
+    assert_eq!(check("points-unit", spec, &table.replace("[um]", "[deg]")), [Code::WrongTable]);
+    assert_eq!(check("points-missing", &spec.replace("gauge.csv", "gage.csv"), table), [Code::UnreadableFile]);
+}
+
+#[test]
 fn jobs_are_taken_by_name() {
     let two = format!("{JOB}{}", JOB.replace("job j", "job other").replace("use", "//"));
     let folder = project("jobs", &[("library.chain", LIBRARY), ("jobs/j.chain", &two)]);

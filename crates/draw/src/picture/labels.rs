@@ -52,7 +52,10 @@ pub(super) fn draw(drawn: &[&Drawn<'_>], view: &View, rect: Rect, taken: &mut Oc
 }
 
 fn borders_named(drawn: &Drawn<'_>, label: &str, view: &View) -> Vec<Border> {
-    let Mesh { rows, columns, ref nodes } = drawn.mesh;
+    let Mesh { rows, columns, ref nodes, is_joined } = drawn.mesh;
+    if !is_joined {
+        return Vec::new();
+    }
     let mut lines: Vec<Vec<usize>> = Vec::new();
     if drawn.patch.rows.label == label && columns > 0 {
         lines.extend([0, columns - 1].map(|j| (0..rows).map(|i| i * columns + j).collect()));

@@ -83,6 +83,16 @@ pub struct Axis {
     pub count: usize,
 }
 
+impl Axis {
+    /// The label of the one row of points that are no neighbours of each other.
+    pub const LIST: &'static str = "list";
+
+    /// Whether its points are no neighbours of each other: no line joins them.
+    pub fn is_list(&self) -> bool {
+        self.label == Axis::LIST
+    }
+}
+
 /// One of the parameters a surface was solved for.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Unknown {

@@ -29,6 +29,8 @@ pub struct Mesh {
     pub columns: usize,
     /// Row by row; `None` where a point is not solved.
     pub nodes: Vec<Option<Node>>,
+    /// Whether nodes beside each other are joined: not those of a list.
+    pub is_joined: bool,
 }
 
 /// The point as a node, if it is solved and within reach.
@@ -38,19 +40,21 @@ pub fn node(point: &Point) -> Option<Node> {
 }
 
 impl Mesh {
-    /// The patch with at most `cells` cells in each direction; first and last rows and columns always stay.
+    /// The patch with at most `cells` cells in each direction, or as many points of a list as these have; first and last rows and
+    /// columns always stay.
     pub fn of_patch(patch: &Patch, cells: usize) -> Self {
         let rows = thinned(patch.rows.count, cells);
-        let columns = thinned(patch.columns.count, cells);
+        let is_list = patch.rows.is_list();
+        let columns = thinned(patch.columns.count, if is_list { cells.saturating_mul(cells) } else { cells });
         let nodes = rows.iter().flat_map(|&i| columns.iter().map(move |&j| patch.point(i, j).and_then(node))).collect();
-        Mesh { rows: rows.len(), columns: columns.len(), nodes }
+        Mesh { rows: rows.len(), columns: columns.len(), nodes, is_joined: !is_list }
     }
 
     /// The same with at most `cells` cells in each direction.
     pub fn coarser(&self, cells: usize) -> Self {
         let (rows, columns) = (thinned(self.rows, cells), thinned(self.columns, cells));
         let nodes = rows.iter().flat_map(|&i| columns.iter().map(move |&j| self.nodes[i * self.columns + j])).collect();
-        Mesh { rows: rows.len(), columns: columns.len(), nodes }
+        Mesh { rows: rows.len(), columns: columns.len(), nodes, is_joined: self.is_joined }
     }
 
     /// The numbers of the patch's points that the nodes are, in the order of the nodes.
@@ -93,7 +97,7 @@ impl Mesh {
                 *edges.entry((from.min(to), from.max(to))).or_default() += 1;
             }
         }
-        for at in 0..self.nodes.len() {
+        for at in (0..self.nodes.len()).filter(|_| self.is_joined) {
             let right = ((at + 1) % self.columns != 0).then_some(at + 1);
             let below = Some(at + self.columns).filter(|&below| below < self.nodes.len());
             for next in [right, below].into_iter().flatten() {
@@ -134,11 +138,24 @@ mod tests {
     #[test]
     fn a_missing_corner_leaves_a_triangle_and_an_inner_border() {
         let here = Some(Node { position: [0.0; 3], normal: None });
-        let mesh = Mesh { rows: 3, columns: 3, nodes: vec![here, here, here, here, here, here, here, here, None] };
+        let mesh = Mesh {
+            rows: 3,
+            columns: 3,
+            nodes: vec![here, here, here, here, here, here, here, here, None],
+            is_joined: true,
+        };
         let faces = mesh.faces();
         assert_eq!(faces.iter().map(Vec::len).collect::<Vec<_>>(), [4, 4, 4, 3]);
         let edges = mesh.edges();
         assert_eq!(edges[&(5, 7)], 1);
         assert_eq!(edges[&(1, 4)], 2);
+    }
+
+    #[test]
+    fn points_of_a_list_are_not_joined() {
+        let here = Some(Node { position: [0.0; 3], normal: None });
+        let row = Mesh { rows: 1, columns: 3, nodes: vec![here; 3], is_joined: true };
+        assert_eq!(row.edges().len(), 2);
+        assert!(Mesh { is_joined: false, ..row }.edges().is_empty());
     }
 }

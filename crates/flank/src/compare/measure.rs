@@ -83,6 +83,11 @@ impl<'j, 'g> Placed<'j, 'g> {
         let sample = surface.sample.as_ref().ok_or(format!(
             "`{name}` is not sampled: its sample says where it is measured; add `sample {name} {{ … }}`"
         ))?;
+        if let SampleGrid::Points(_) = sample.grid {
+            return Err(Failure::from(format!(
+                "`{name}` is sampled at the points of a table: a grid needs an area, which a sample of two coordinates has"
+            )));
+        }
         if let Some(k) = sample.counts.iter().position(|count| *count < 2) {
             return Err(Failure::from(format!(
                 "`{name}` is sampled at one value of `{}` only: a grid needs an area between two",
@@ -160,6 +165,8 @@ fn lattice<'g>(sample: &Sample<'g>, across: bool, shares: [&[f64]; 2]) -> Sample
             let corners = [*toe_root, *toe_tip, *heel_root, *heel_tip];
             ([a, b], SampleGrid::Shares { shares: between([columns, rows], shares), corners })
         }
+        // a list has no area, and is refused before
+        (SampleGrid::Points(points), _) => ([a, b], SampleGrid::Points(points.clone())),
     };
     Sample { coordinates, counts: shares.map(<[f64]>::len), grid, ..sample.clone() }
 }

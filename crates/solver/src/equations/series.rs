@@ -30,7 +30,8 @@ impl System {
             let unknowns = series.iter().map(|known| &known[..]);
             let given: Vec<[f64; 2]> = parameters.iter().enumerate().map(|(j, x)| [*x, rate(size + j)]).collect();
             let known = unknowns.chain(given.iter().map(|given| &given[..]));
-            let inputs: Vec<f64> = known.flat_map(|known| (0..=k).map(|j| known.get(j).copied().unwrap_or(0.0))).collect();
+            let inputs: Vec<f64> =
+                known.flat_map(|known| (0..=k).map(|j| known.get(j).copied().unwrap_or(0.0))).collect();
             let mut outputs = vec![0.0; (k + 1) * size];
             TaylorEvaluator::new(self.residual_tape(), k).run(&inputs, &mut outputs);
             let by = inverse.solve(&Mat::from_fn(size, 1, |i, _| -outputs[(k + 1) * i + k]));

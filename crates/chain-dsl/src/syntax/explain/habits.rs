@@ -77,7 +77,9 @@ impl Mistake<'_> {
             (_, ":") if statement == "let" && wants(Rule::equals) => {
                 "a `let` takes its dimension from its value: write `let name = value`"
             }
-            (")", "*") if matches!(statement, "frame" | "insert") => "transforms stand side by side, without a sign between them",
+            (")", "*") if matches!(statement, "frame" | "insert") => {
+                "transforms stand side by side, without a sign between them"
+            }
             ("/", "*") if self.touches(self.found) => block_comment(self.scan, self.found - 1)?,
             (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
             _ => block_comment(self.scan, self.found)?,
