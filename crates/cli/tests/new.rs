@@ -24,7 +24,9 @@ fn jobs_in(folder: &std::path::Path) -> Vec<String> {
 #[test]
 fn every_job_of_the_library_can_be_started_from() {
     let listed = text(&flank(&["new"]).stdout);
-    let (offered, others) = listed.split_once("\n\n").expect("two lists");
+    let (offered, others) = listed.split_once("\n\n").expect("several lists");
+    let (others, parts) = others.split_once("\n\n").expect("several lists");
+    assert!(parts.contains("  hobbing_6axis ") && parts.contains("  hob_zi "), "{parts}");
     let names: Vec<&str> = offered.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
     // every job of the library is in one of them
     let together: Vec<&str> =
@@ -157,7 +159,7 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
         "{beside}"
     );
     assert!(wrong(&["conjugat"], 2).contains("did you mean `conjugate`?"));
-    assert!(wrong(&["xyz"], 2).contains("the library has no job `xyz`; `flank new` lists them"));
+    assert!(wrong(&["xyz"], 2).contains("the library has no job, machine or tool `xyz`; `flank new` lists them"));
     assert!(
         wrong(&["helical_gear", "--set", "tooth=3"], 1).contains("has no parameter `tooth`; it has: `normal_module`")
     );
@@ -168,6 +170,42 @@ fn what_cannot_be_made_is_told_and_writes_nothing() {
     for flag in [&["--name", "mine"][..], &["--set", "teeth=3"], &["--interactive"]] {
         assert!(wrong(flag, 2).contains("<TEMPLATE>"), "{flag:?} without a job to start from");
     }
+}
+
+/// Every machine and tool as it is, and a variant of a machine, which compiles.
+#[test]
+fn machines_and_tools_are_taken_too() {
+    let listed = text(&flank(&["new"]).stdout);
+    let parts = listed.split("\n\n").skip(2).flat_map(|list| list.lines().skip(1));
+    let names: Vec<&str> = parts.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 40, "{names:?}");
+    let out = folder("new-parts");
+    let path = out.to_str().expect("a plain path");
+    for name in names {
+        let run = flank(&["new", name, "--out", path]);
+        assert!(run.status.success(), "{name}: {}", text(&run.stderr));
+        let told = text(&run.stdout);
+        assert!(told.contains(&format!("{name}(…) in a job that uses ")), "{told}");
+    }
+    let run = flank(&["new", "hobbing_6axis", "--name", "my_machine", "--out", path, "--json"]);
+    let made: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
+    assert_eq!([&made["name"], &made["kind"]], ["my_machine", "machine"]);
+    let file = out.join("machines/my_machine.chain");
+    assert!(std::fs::read_to_string(&file).expect("written").contains("machine my_machine extends hobbing_6axis {}"));
+    for command in [&["check"][..], &["fmt", "--check"]] {
+        let run = flank(&[command, &[file.to_str().expect("a plain path")]].concat());
+        assert!(run.status.success(), "{}", text(&run.stderr));
+    }
+    let refused = |arguments: &[&str]| {
+        let run = flank(&[&["new", "--out", path][..], arguments].concat());
+        assert_ne!(run.status.code(), Some(0));
+        text(&run.stderr)
+    };
+    assert!(refused(&["hob_zi", "--name", "mine"]).contains("a tool, which no other one extends"));
+    assert!(refused(&["hob_zi", "--set", "starts=2"]).contains("gets its values in a job"));
+    assert!(refused(&["cradle_tilt", "--name", "cradle_tilt"]).contains("the library's own file"));
+    assert!(refused(&["cradle_generator", "--name", "cradle_generator_mirrored"]).contains("--> --name:1:1"));
+    assert!(refused(&["hobing_6axis"]).contains("did you mean `hobbing_6axis`?"));
 }
 
 /// What is wrong with a value or a name is shown where it was given, and nothing of it in a folder that is gone.

@@ -169,7 +169,7 @@ fn texts_and_files() {
     judge.run(&["explain", "E0301", "--json"], 0);
     judge.run(&["new", "--json"], 0);
     let made = judge.run(&["new", "helical_gear", "--name", "mine", "--json", "--out", out.to_str().unwrap()], 0);
-    assert_eq!((&made[0]["job"], &made[0]["spec"]), (&"mine".into(), &made[0]["files"][0]));
+    assert_eq!((&made[0]["name"], &made[0]["spec"]), (&"mine".into(), &made[0]["files"][0]));
     judge.run(&["new", "helical_gear", "--set", "teeth=0", "--json", "--out", out.to_str().unwrap()], 1);
     judge.run(&["schema", "--json"], 0);
     judge.run(&["completions", "bash", "--json"], 0);
@@ -179,7 +179,7 @@ fn texts_and_files() {
     let imported = judge.run(&[&import[..], &["--coefficients", "taylor"]].concat(), 0);
     assert!(imported[0]["text"].as_str().expect("a text").contains("job imported {"));
     judge.run(&import, 1);
-    judge.has_met(&["flank.check/1", "flank.fmt/1", "flank.explain/1", "flank.new/2", "flank.templates/2"]);
+    judge.has_met(&["flank.check/1", "flank.fmt/1", "flank.explain/1", "flank.new/3", "flank.templates/3"]);
     judge.has_met(&["flank.schemas/1", "flank.completions/1", "flank.man/1", "flank.import/2", "flank.failure/1"]);
 }
 

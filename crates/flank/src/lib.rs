@@ -74,7 +74,7 @@ pub use draw::result::{PlotResult, WrittenPicture};
 pub use exchange::changes::Words;
 pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
 pub use exchange::templates::{
-    JobFromTemplate, NewJob, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters,
+    FromLibrary, MadeKind, NewJob, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters,
     templates,
 };
 pub use flank_chain_dsl::syntax::is_reserved;
@@ -144,6 +144,6 @@ const _: () = {
     is_shared::<Layout>();
     is_shared::<Imported>();
     is_shared::<TemplateList>();
-    is_shared::<JobFromTemplate>();
+    is_shared::<FromLibrary>();
     is_shared::<Failure>();
 };

@@ -76,7 +76,7 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Write a page to look at: the machine moves, the tool generates the work, in 3-D, without a network
     View(View),
-    /// Make a job of one in the library, with all that it uses
+    /// Make a job of one in the library, with all that it uses; or take a machine or a tool of it
     New(New),
     /// The JSON schemas of all that the program prints and writes as JSON
     Schema(Schema),
@@ -483,11 +483,13 @@ pub(crate) struct Man {
 Examples:
   flank new                                                   what there is to start from
   flank new helical_gear --name my_gear --set teeth=37 --set helix_angle=\"15 deg\"
-  flank new pinion_19x62 --interactive --out my_gears                 asks for each parameter; Enter keeps it")]
+  flank new pinion_19x62 --interactive --out my_gears                 asks for each parameter; Enter keeps it
+  flank new hobbing_6axis --name my_machine                   a variant of a machine, to go on with
+  flank new hob_zi                                            a tool as it is")]
 pub(crate) struct New {
-    /// The job to start from; without one, all are listed
+    /// The job, machine or tool to start from; without one, all are listed
     pub(crate) template: Option<String>,
-    /// What the new job is called
+    /// What the new job is called, or the variant of a machine
     #[arg(long, value_name = "NAME", value_parser = job_name, requires = "template")]
     pub(crate) name: Option<String>,
     /// Give a parameter another value
@@ -499,7 +501,7 @@ pub(crate) struct New {
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = ".", value_parser = folder(), requires = "template")]
     pub(crate) out: PathBuf,
-    /// Print the jobs to start from, or the files, as JSON
+    /// Print what there is to start from, or the files, as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

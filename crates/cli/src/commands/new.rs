@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use flank::{NewJob, TemplateList, Words, new_job, template_parameters, templates};
+use flank::{MadeKind, NewJob, Template, TemplateList, Words, new_job, template_parameters, templates};
 
 use crate::arguments::New;
 use crate::failure::Failure;
@@ -27,17 +27,30 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
     print(&if arguments.json {
         document::text(&made)
     } else {
-        format!("wrote {}\n\nnow: flank solve {}\n", made.files.join(", "), made.spec)
+        let now = match made.kind {
+            MadeKind::Job => format!("now: flank solve {}", made.spec),
+            MadeKind::Machine => format!("now: machine m = {}(…) in a job that uses {}", made.name, made.spec),
+            MadeKind::Tool => format!("now: tool t = {}(…) in a job that uses {}", made.name, made.spec),
+        };
+        format!("wrote {}\n\n{now}\n", made.files.join(", "))
     });
     Ok(Ending::Done)
 }
 
-fn list(TemplateList { templates, together }: &TemplateList) -> String {
-    let width = templates.iter().map(|template| template.name.len()).max().unwrap_or(0);
-    let mut out = "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string();
-    templates.iter().for_each(|template| out += &format!("  {:width$}  {}\n", template.name, template.about));
+fn list(TemplateList { templates, together, machines, tools }: &TemplateList) -> String {
+    let all = templates.iter().chain(machines).chain(tools);
+    let width = all.map(|template| template.name.len()).max().unwrap_or(0);
+    let table = |of: &[Template]| -> String {
+        of.iter().map(|template| format!("  {:width$}  {}\n", template.name, template.about)).collect()
+    };
+    let mut out =
+        "Jobs to start from, as in `flank new helical_gear --name my_gear`:\n".to_string() + &table(templates);
     out += "\nJobs that belong together in one file, or vary another, are not made into files of their own; to start from them copy theirs:\n";
     together.iter().for_each(|of| out += &format!("  {}: {}\n", of.file, of.jobs.join(", ")));
+    out += "\nMachines, as they are or to vary, as in `flank new hobbing_6axis --name my_machine`:\n";
+    out += &table(machines);
+    out += "\nTools:\n";
+    out += &table(tools);
     out
 }
 

@@ -2,5 +2,6 @@
 
 pub(crate) mod changes;
 pub(crate) mod import;
+mod parts;
 pub(crate) mod templates;
 mod xml_cost;

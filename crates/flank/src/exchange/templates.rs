@@ -1,4 +1,4 @@
-//! A job of the library becomes one of the user's, with the machines and tools that it uses.
+//! A job of the library becomes one of the user's, with the machines and tools that it uses; so does a machine or a tool by itself.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -13,6 +13,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::changes::{Changes, Given, Words};
+use crate::exchange::parts;
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
 use crate::project::shown_path;
@@ -22,15 +23,19 @@ static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 
 /// The jobs of the library that one can start from, of `flank new` without a name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.templates/2")]
+#[serde(tag = "schema", rename = "flank.templates/3")]
 pub struct TemplateList {
     /// The jobs that stand alone in their file, by name.
     pub templates: Vec<Template>,
     /// Files whose jobs belong together, or vary others: none of them is made into a file of its own.
     pub together: Vec<Together>,
+    /// The machines of the library, by name.
+    pub machines: Vec<Template>,
+    /// Its tools.
+    pub tools: Vec<Template>,
 }
 
-/// A job to start from.
+/// Something to start from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Template {
     /// Its name.
@@ -48,12 +53,12 @@ pub struct Together {
     pub jobs: Vec<String>,
 }
 
-/// A job to be made of one of the library.
+/// A job to be made of one of the library, or a machine or tool of it.
 #[derive(Clone, Debug)]
 pub struct NewJob {
-    /// The job to start from.
+    /// The job, machine or tool to start from.
     pub template: String,
-    /// What the new job is called; as the template without it.
+    /// What the new job is called, as the template without it; of a machine the name of a variant.
     pub name: Option<Words>,
     /// Other values for parameters; of several for one the last one counts.
     pub values: Vec<(String, Words)>,
@@ -72,24 +77,47 @@ pub struct TemplateParameter {
     pub default: String,
 }
 
-/// A job made of one in the library, of `flank new`.
+/// What `flank new` made of something in the library.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.new/2")]
-pub struct JobFromTemplate {
+#[serde(tag = "schema", rename = "flank.new/3")]
+pub struct FromLibrary {
     /// Its name.
-    pub job: String,
+    pub name: String,
+    /// What it is.
+    pub kind: MadeKind,
     /// Its file.
     pub spec: String,
     /// Files written, in their order: its own first.
     pub files: Vec<String>,
 }
 
+/// What can be made of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MadeKind {
+    /// A job.
+    Job,
+    /// A machine, or a variant of one.
+    Machine,
+    /// A tool.
+    Tool,
+}
+
 /// What the library has to start from.
 pub fn templates() -> TemplateList {
     let Offer { templates, together } = offer();
+    let of = |kind: MadeKind| {
+        let parts = parts::all().into_iter().filter(move |part| part.kind == kind);
+        parts.map(|part| Template { name: part.name, about: first_sentence(&part.doc) }).collect()
+    };
     let templates = templates.into_iter().map(|(name, source)| Template { name, about: source.doc });
     let together = together.into_iter().map(|(path, jobs)| Together { file: in_library(path), jobs });
-    TemplateList { templates: templates.collect(), together: together.collect() }
+    TemplateList {
+        templates: templates.collect(),
+        together: together.collect(),
+        machines: of(MadeKind::Machine),
+        tools: of(MadeKind::Tool),
+    }
 }
 
 /// The parameters of a job to start from that have a value.
@@ -97,6 +125,9 @@ pub fn templates() -> TemplateList {
 /// # Errors
 /// Why there is nothing to start from under that name.
 pub fn template_parameters(template: &str) -> Result<Vec<TemplateParameter>, Failure> {
+    if parts::find(template).is_some() {
+        return Ok(Vec::new());
+    }
     let source = find(template)?;
     let parameter = |parameter: &&Param| {
         let span = parameter.default.as_ref()?.span;
@@ -109,15 +140,19 @@ pub fn template_parameters(template: &str) -> Result<Vec<TemplateParameter>, Fai
     Ok(source.parameters().iter().filter_map(parameter).collect())
 }
 
-/// Writes a job of the library under a new name, with other values, and all that it uses, as far as it compiles. Nothing that
-/// stands in the folder is changed.
+/// Writes a job of the library under a new name, with other values, and all that it uses, as far as it compiles; or a machine or a tool
+/// as it is, or a variant of a machine to go on with. Nothing that stands in the folder is changed.
 ///
 /// # Errors
 /// Why there is nothing to start from under that name; what is wrong with what was given; what stands in the way.
-pub fn new_job(request: &NewJob) -> Result<JobFromTemplate, Failure> {
+pub fn new_job(request: &NewJob) -> Result<FromLibrary, Failure> {
     let name = request.name.as_ref().map_or(&request.template, |name| &name.text);
-    let files = find(&request.template)?.named(request)?.write(&request.folder)?;
-    Ok(JobFromTemplate { job: name.clone(), spec: files[0].clone(), files })
+    let (kind, made) = match parts::find(&request.template) {
+        Some(part) => (part.kind, part.made(request)?),
+        None => (MadeKind::Job, find(&request.template)?.named(request)?),
+    };
+    let files = made.write(&request.folder)?;
+    Ok(FromLibrary { name: name.clone(), kind, spec: files[0].clone(), files })
 }
 
 /// A job of the library.
@@ -139,7 +174,7 @@ struct Offer {
 
 fn offer() -> Offer {
     let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
-    for (path, text) in files(&LIBRARY) {
+    for (path, text) in library() {
         let (file, _) = parse(text, FileId(0));
         let (mut jobs, mut variants) = (Vec::new(), Vec::new());
         for item in file.items {
@@ -167,6 +202,10 @@ fn offer() -> Offer {
 pub(crate) fn defines(path: &str, name: &str) -> bool {
     let text = LIBRARY.get_file(path).and_then(|file| file.contents_utf8()).unwrap_or_default();
     parse(text, FileId(0)).0.items.iter().filter_map(Item::name).any(|known| known.node == name)
+}
+
+pub(super) fn library() -> impl Iterator<Item = (&'static Path, &'static str)> {
+    files(&LIBRARY)
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
@@ -203,10 +242,12 @@ fn find(name: &str) -> Result<Source, Failure> {
                 // a job is also meant by its file
                 let stem = Path::new(name).file_stem().map_or(name.into(), |stem| stem.to_string_lossy());
                 let of_file = templates.iter().find(|(_, job)| job.path.file_stem().is_some_and(|own| *own == *stem));
+                let parts = parts::all();
                 let known = templates.keys().chain(together.values().flatten()).map(String::as_str);
+                let known = known.chain(parts.iter().map(|part| part.name.as_str()));
                 let near = of_file.map(|(job, _)| job.as_str()).or_else(|| closest(&stem, known));
                 let near = near.map_or(String::new(), |near| format!(", did you mean `{near}`?"));
-                format!("the library has no job `{name}`{near}; `flank new` lists them")
+                format!("the library has no job, machine or tool `{name}`{near}; `flank new` lists them")
             }
         })
     })
@@ -245,7 +286,7 @@ impl Source {
 }
 
 /// Adds what a file of the library uses, and what that uses.
-fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<(), String> {
+pub(super) fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<(), String> {
     let (file, _) = parse(text, FileId(0));
     for item in file.items {
         let Item::Use(used) = item else { continue };
@@ -274,12 +315,12 @@ fn plain(path: &Path) -> PathBuf {
     })
 }
 
-/// A new job.
-struct Made {
-    /// By their path in the user's folder: the job's own file first, then those that it uses.
-    files: Vec<(PathBuf, String)>,
+/// Something new.
+pub(super) struct Made {
+    /// By their path in the user's folder: its own file first, then those that it uses.
+    pub(super) files: Vec<(PathBuf, String)>,
     /// What was changed of the template.
-    changes: Changes,
+    pub(super) changes: Changes,
 }
 
 impl Made {
@@ -326,8 +367,8 @@ impl Made {
                 Err(error) => &format!("cannot be read ({error})"),
             };
             let way = match number {
-                0 => "take another folder, or another name for the job",
-                _ => "the new job is made with the library's: take another folder",
+                0 => "take another folder, or another name",
+                _ => "what is new is made with the library's: take another folder",
             };
             return Err(Failure::Input(format!("{shown} is there already and {why}; {way}")));
         }

@@ -13,7 +13,7 @@ use crate::convert::result::{AxisMotion, FoundSettings};
 use crate::derive::result::{CostTable, Derivation};
 use crate::draw::result::PlotResult;
 use crate::exchange::import::Imported;
-use crate::exchange::templates::{JobFromTemplate, TemplateList};
+use crate::exchange::templates::{FromLibrary, TemplateList};
 use crate::language::check::CheckResult;
 use crate::language::errors::Explanation;
 use crate::page::result::ViewResult;
@@ -50,7 +50,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<ViewResult>(),
         schema_of::<ReportResult>(),
         schema_of::<Imported>(),
-        schema_of::<JobFromTemplate>(),
+        schema_of::<FromLibrary>(),
         schema_of::<TemplateList>(),
     ];
     let all: BTreeMap<String, Schema> =
