@@ -76,13 +76,16 @@ pub(crate) fn build<'g>(
             ToolStatement::Param(param) => Some(&param.name),
             ToolStatement::Let(binding) => Some(&binding.name),
             ToolStatement::Profile(profile) => Some(&profile.name),
-            ToolStatement::Surface(surface) => Some(&surface.name),
-            ToolStatement::Require(_) => None,
+            ToolStatement::Surface(_) | ToolStatement::Require(_) => None,
         };
-        if let Some(name) = name
-            && let Some(first) = seen.insert(&name.node, name.span)
-        {
-            context.duplicate(name, first);
+        let names = match statement {
+            ToolStatement::Surface(surface) => &surface.names[..],
+            _ => name.map_or(&[][..], std::slice::from_ref),
+        };
+        for name in names {
+            if let Some(first) = seen.insert(&name.node, name.span) {
+                context.duplicate(name, first);
+            }
         }
         match statement {
             ToolStatement::Param(param) => binder.bind(context, param, &mut scope),
@@ -107,28 +110,55 @@ pub(crate) fn build<'g>(
     let parameters = binder.parameters;
     let mut surfaces = Vec::new();
     for statement in &tool.statements {
-        if let ToolStatement::Surface(written) = statement {
-            let is_wanted = wanted(&written.name.node, None);
-            let pieces = if is_wanted { pieces(context, written, &scope, wanted) } else { None };
-            surfaces.push(ToolSurface { name: written.name.node.clone(), pieces });
+        let ToolStatement::Surface(written) = statement else { continue };
+        for side in sides(context, written) {
+            let is_wanted = wanted(&side.name.node, None);
+            let pieces = if is_wanted { pieces(context, side, &scope, wanted) } else { None };
+            surfaces.push(ToolSurface { name: side.name.node.clone(), pieces });
         }
     }
     BuiltTool { parameters, scope, surfaces }
 }
 
+/// One of the surfaces of a statement: its name, and the value that is its own.
+#[derive(Clone, Copy)]
+struct OneSide<'a> {
+    written: &'a ast::ToolSurface,
+    name: &'a Name,
+    own: Option<(&'a Name, &'a ast::Expression)>,
+}
+
+/// All that a statement names; none where it has not a value for each (which is reported).
+fn sides<'a>(context: &mut Context<'_>, written: &'a ast::ToolSurface) -> Vec<OneSide<'a>> {
+    let values = written.each.as_ref().map_or(1, |each| each.values.len());
+    if values != written.names.len() {
+        let names = written.names.len();
+        let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+        let (message, place) = match &written.each {
+            Some(each) => (format!("{} for {}", counted(values, "value"), counted(names, "surface")), each.span),
+            None => (format!("{} for one surface", counted(names, "name")), written.names[1].span),
+        };
+        let help = "say what is different for each name: `surface left, right(u: …, v: …) for side in [1, -1] { … }`";
+        context.report(Diagnostic::new(Code::UnevenLists, place, message).help(help));
+        return Vec::new();
+    }
+    let own = |k: usize| written.each.as_ref().map(|each| (&each.name, &each.values[k]));
+    written.names.iter().enumerate().map(|(k, name)| OneSide { written, name, own: own(k) }).collect()
+}
+
 /// The smooth pieces of a surface: one for each segment of the profile that it runs along.
 fn pieces<'g>(
     context: &mut Context<'g>,
-    written: &ast::ToolSurface,
+    side: OneSide<'_>,
     scope: &Scope<'g>,
     wanted: Wanted<'_>,
 ) -> Option<Vec<Piece<'g>>> {
-    let mut along = written.parameters.iter().filter_map(|parameter| match parameter {
+    let mut along = side.written.parameters.iter().filter_map(|parameter| match parameter {
         SurfaceParameter::Along(name, profile) => Some((name, profile)),
         SurfaceParameter::Within(_) => None,
     });
     let Some((_, name)) = along.next() else {
-        let surface = build_surface(context, written, scope, None);
+        let surface = build_surface(context, side, scope, None);
         return Some(vec![Piece { name: None, surface }]);
     };
     if let Some((second, _)) = along.next() {
@@ -153,9 +183,9 @@ fn pieces<'g>(
     let named = |place: Option<usize>| profile.segments.get(place?).map(|segment| segment.name.as_str());
     let piece = |(k, segment): (usize, &Rc<Segment<'g>>)| Piece {
         name: Some(segment.name.clone()),
-        surface: if wanted(&written.name.node, Some(&segment.name)) {
+        surface: if wanted(&side.name.node, Some(&segment.name)) {
             let beside = [named(k.checked_sub(1)), named(Some(k + 1))];
-            build_surface(context, written, scope, Some(Along { profile: &name.node, segment, beside }))
+            build_surface(context, side, scope, Some(Along { profile: &name.node, segment, beside }))
         } else {
             None
         },
@@ -165,11 +195,12 @@ fn pieces<'g>(
 
 fn build_surface<'g>(
     context: &mut Context<'g>,
-    written: &ast::ToolSurface,
+    side: OneSide<'_>,
     scope: &Scope<'g>,
     along: Option<Along<'_, 'g>>,
 ) -> Option<(ToolShape<'g>, Vec<RangedVariable<'g>>)> {
-    let (scope, unknowns) = own_names(context, written, scope, along)?;
+    let (scope, unknowns) = own_names(context, side, scope, along)?;
+    let written = side.written;
     let (position, steel) = point_and_steel(context, written, &scope)?;
     let shape = match (written.parameters.len(), unknowns.as_slice()) {
         (1, [u]) => ToolShape::Edge(Edge { parameter: u.variable, position, steel }),
@@ -190,17 +221,21 @@ fn build_surface<'g>(
 /// The names that a surface has beside those of the tool, and its parameters: without those whose range is wrong (and reported).
 fn own_names<'g>(
     context: &mut Context<'g>,
-    written: &ast::ToolSurface,
+    OneSide { written, name, own }: OneSide<'_>,
     scope: &Scope<'g>,
     along: Option<Along<'_, 'g>>,
 ) -> Option<(Scope<'g>, Vec<RangedVariable<'g>>)> {
-    if !context.spend(scope.len(), written.name.span) {
+    if !context.spend(scope.len(), name.span) {
         return None;
     }
     let mut scope = scope.clone();
     let mut unknowns = Vec::new();
     if let Some(Along { profile, segment, .. }) = along {
         scope.insert(profile.to_string(), Value::Segment(Rc::clone(segment)));
+    }
+    if let Some((name, value)) = own {
+        let value = context.evaluate(value, &scope);
+        scope.insert(name.node.clone(), value);
     }
     for parameter in &written.parameters {
         sample::check_unknown(context, parameter.name(), "surface parameter");
@@ -221,10 +256,10 @@ fn own_names<'g>(
     if !matches!(written.parameters.len(), 1 | 2) {
         let message = format!(
             "a surface has two parameters (a cutting edge one), `{}` has {}",
-            written.name.node,
+            name.node,
             written.parameters.len()
         );
-        context.report(Diagnostic::new(Code::WrongArguments, written.name.span, message));
+        context.report(Diagnostic::new(Code::WrongArguments, name.span, message));
         return None;
     }
     for binding in &written.lets {

@@ -184,6 +184,7 @@ impl Used {
                     profile.segments.iter().for_each(|segment| self.expression(&segment.value));
                 }
                 ToolStatement::Surface(surface) => {
+                    surface.each.iter().flat_map(|each| &each.values).for_each(|value| self.expression(value));
                     for parameter in &surface.parameters {
                         match parameter {
                             SurfaceParameter::Within(parameter) => self.range(&parameter.range),

@@ -252,16 +252,29 @@ pub struct Segment {
 pub struct ToolSurface {
     /// `///` lines above it.
     pub doc: Vec<String>,
-    /// Its name.
-    pub name: Name,
+    /// Its name, or those of all its sides.
+    pub names: Vec<Name>,
     /// Its parameters with their ranges.
     pub parameters: Vec<SurfaceParameter>,
+    /// `for side in [1, -1]`: what has another value for each of the names.
+    pub each: Option<EachSide>,
     /// `let`s in order.
     pub lets: Vec<Let>,
     /// `at = [x, y, z]`
     pub at: Expression,
     /// `body …`
     pub body: Body,
+}
+
+/// `for side in [1, -1]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct EachSide {
+    /// The name that stands for the values.
+    pub name: Name,
+    /// One for each surface.
+    pub values: Vec<Expression>,
+    /// Where they are written.
+    pub span: Span,
 }
 
 /// A parameter of a tool's surface.

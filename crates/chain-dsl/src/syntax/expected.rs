@@ -213,6 +213,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_job => "job",
         Rule::kw_on => "on",
         Rule::kw_along => "along",
+        Rule::kw_for => "for",
         Rule::kw_as => "as",
         Rule::kw_in | Rule::kw_runs => "in",
         Rule::kw_by => "by",

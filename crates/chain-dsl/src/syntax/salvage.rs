@@ -98,10 +98,13 @@ pub(super) fn head(scan: &Scan, first: usize) -> Head {
 /// What stands before the block of a tool's surface.
 pub(super) fn surface_head(scan: &Scan, range: Range<usize>) -> SurfaceParts {
     let piece = Piece { scan, range };
-    let name = piece.defined().unwrap_or_else(|| piece.nameless());
+    let mut names = piece.names();
+    if names.is_empty() {
+        names.push(piece.nameless());
+    }
     let firsts = piece.firsts_in_parentheses();
     let parameters = firsts.into_iter().map(|index| piece.surface_parameter(index)).collect();
-    SurfaceParts { doc: piece.doc(), parameters, ..SurfaceParts::new(name) }
+    SurfaceParts { doc: piece.doc(), parameters, ..SurfaceParts::new(names) }
 }
 
 /// A function; nothing for a `use` or a variant of a job.

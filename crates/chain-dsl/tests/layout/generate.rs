@@ -309,6 +309,11 @@ impl Writer {
     fn tool_surface(&mut self) {
         self.put("surface");
         self.name();
+        let has_sides = self.random.one_in(3);
+        if has_sides {
+            self.put(",");
+            self.name();
+        }
         self.put("(");
         if self.random.one_in(3) {
             self.name();
@@ -322,6 +327,12 @@ impl Writer {
             self.parameter();
         }
         self.put(")");
+        if has_sides {
+            self.put("for");
+            self.name();
+            self.put("in");
+            self.vector(1);
+        }
         self.put("{");
         if self.random.one_in(2) {
             self.assignment("let");

@@ -1,6 +1,6 @@
 //! Models that texts make: inheritance, coupled axes, poses between frames, envelopes of envelopes.
 
-use flank_chain_dsl::{Code, Compilation, compile_text, derivation, render};
+use flank_chain_dsl::{Code, Compilation, GeneratedSurface, compile_text, derivation, render};
 use flank_expr::{Graph, Style};
 
 use crate::errors;
@@ -248,6 +248,45 @@ fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     let bindings = compilation.jobs[0].bindings();
     let z = graph.substitute(&pose.translation.0, &bindings);
     assert_eq!(z.map_text(), ["4 * sin(turn)", "4 * cos(turn)", "turn"]);
+}
+
+#[test]
+fn sides_of_a_surface_are_surfaces_written_one_by_one() {
+    let of = |surfaces: &str| {
+        let graph = Graph::new();
+        let text = format!(
+            "tool wedge {{
+                param half : length = 2 mm
+                {surfaces}
+            }}
+            job j {{
+                machine m = lathe(height: 4 mm)
+                tool w = wedge
+                mount w on m.slide
+                motion turn : angle in 0 deg .. 90 deg
+                drive m.C, m.Z = turn, 1 mm/rad * turn
+                surface a, b in m.work = envelope(w.plus, w.minus, over: turn)
+            }}"
+        );
+        let compilation = compiled(&graph, &text);
+        let surfaces = &compilation.jobs[0].surfaces;
+        let shown = |surface: &GeneratedSurface<'_>| {
+            let all = surface.surface.position.0.into_iter().chain(surface.surface.normal.0);
+            all.chain(surface.surface.constraints.iter().copied()).map(|part| part.to_string()).collect::<Vec<_>>()
+        };
+        surfaces.iter().map(shown).collect::<Vec<_>>()
+    };
+    let one = |name: &str, side: &str| {
+        format!(
+            "surface {name}(u: length in 0 mm .. 5 mm, v: length in -1 mm .. 1 mm) {{
+                at = [u, {side} * (half + u), v]
+                body towards [1 mm, -{side} * half, 0 mm]
+            }}"
+        )
+    };
+    let sides = one("plus, minus", "side").replacen(" {\n", " for side in [1, -1] {\n", 1);
+    assert!(sides.contains("for side in"), "{sides}");
+    assert_eq!(of(&sides), of(&(one("plus", "1") + &one("minus", "(-1)"))));
 }
 
 #[test]

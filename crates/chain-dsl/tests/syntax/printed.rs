@@ -84,7 +84,11 @@ fn tool_statement(statement: &ToolStatement) -> Vec<String> {
         }
         ToolStatement::Surface(it) => {
             let parameters: Vec<String> = it.parameters.iter().map(surface_parameter).collect();
-            let head = format!("{}surface {}({})", doc(&it.doc), it.name.node, parameters.join(", "));
+            let each = it.each.as_ref().map_or(String::new(), |each| {
+                format!(" for {} in [{}]", each.name.node, listed(&each.values, expression))
+            });
+            let names = listed(&it.names, |name| name.node.clone());
+            let head = format!("{}surface {names}({}){each}", doc(&it.doc), parameters.join(", "));
             let body = match &it.body.side {
                 Side::Inside => "inside".to_owned(),
                 Side::Outside => "outside".to_owned(),

@@ -165,6 +165,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_along
             | kw_surface
             | kw_at
+            | kw_for
             | kw_body
             | kw_towards
             | kw_mount

@@ -6,7 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 
-use super::super::ast::{Body, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface};
+use super::super::ast::{Body, EachSide, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface};
 use super::super::grammar::Rule;
 use super::super::scan::shorten;
 use super::{Build, Head, Parts};
@@ -25,10 +25,20 @@ impl Build<'_> {
     pub(in super::super) fn surface_head(&mut self, pair: Pair<'_, Rule>) -> SurfaceParts {
         let doc = self.doc(&pair);
         let mut parts = Parts::of(pair);
-        let name = self.name(parts.required(Rule::name));
+        let names = parts.all(Rule::name).into_iter().map(|name| self.name(name)).collect();
         let parameters =
             parts.all(Rule::surface_parameter).into_iter().map(|pair| self.surface_parameter(pair)).collect();
-        SurfaceParts { doc, parameters, ..SurfaceParts::new(name) }
+        let each = parts.optional(Rule::each_side).map(|each| self.each_side(each));
+        SurfaceParts { doc, parameters, each, ..SurfaceParts::new(names) }
+    }
+
+    fn each_side(&mut self, pair: Pair<'_, Rule>) -> EachSide {
+        let mut parts = Parts::of(pair);
+        let name = self.name(parts.required(Rule::name));
+        let vector = parts.required(Rule::vector);
+        let span = self.span(&vector);
+        let values = Parts::of(vector).all(Rule::expression).into_iter().map(|value| self.expression(value)).collect();
+        EachSide { name, values, span }
     }
 
     fn surface_parameter(&mut self, pair: Pair<'_, Rule>) -> SurfaceParameter {
@@ -95,7 +105,8 @@ impl Build<'_> {
 
     /// A tool's surface, with a report on what it lacks.
     pub(in super::super) fn finish_surface(&mut self, parts: SurfaceParts) -> ToolSurface {
-        let SurfaceParts { doc, name, parameters, lets, at, body, broken } = parts;
+        let SurfaceParts { doc, names, parameters, each, lets, at, body, broken } = parts;
+        let name = names[0].clone();
         let place = name.span;
         if at.is_none() && !broken {
             let message = format!("the surface `{}` does not say where its points are", shorten(&name.node));
@@ -108,15 +119,17 @@ impl Build<'_> {
         let error = Expression { kind: ExpressionKind::Error, span: place };
         let at = at.unwrap_or_else(|| error.clone());
         let body = body.unwrap_or(Body { side: Side::Towards(error), span: place });
-        ToolSurface { doc, name, parameters, lets, at, body }
+        ToolSurface { doc, names, parameters, each, lets, at, body }
     }
 }
 
 /// A tool's surface while it is being read.
 pub(in super::super) struct SurfaceParts {
     pub(in super::super) doc: Vec<String>,
-    pub(in super::super) name: Name,
+    /// At least one.
+    pub(in super::super) names: Vec<Name>,
     pub(in super::super) parameters: Vec<SurfaceParameter>,
+    pub(in super::super) each: Option<EachSide>,
     pub(in super::super) lets: Vec<Let>,
     pub(in super::super) at: Option<Expression>,
     pub(in super::super) body: Option<Body>,
@@ -125,11 +138,12 @@ pub(in super::super) struct SurfaceParts {
 }
 
 impl SurfaceParts {
-    pub(in super::super) fn new(name: Name) -> SurfaceParts {
+    pub(in super::super) fn new(names: Vec<Name>) -> SurfaceParts {
         SurfaceParts {
             doc: Vec::new(),
-            name,
+            names,
             parameters: Vec::new(),
+            each: None,
             lets: Vec::new(),
             at: None,
             body: None,
