@@ -196,14 +196,186 @@ fn compared(found: &Value, expected: &Value, of: &str) -> [usize; 2] {
     [compared, bent]
 }
 
+const BEVEL_PAIR: &str = "specs/pairs/bevel_19x62.chain";
+const SPUR_PAIR: &str = "specs/pairs/spur_pair.chain";
+
+/// What a page was written with.
+fn data(file: &Path) -> Value {
+    let html = std::fs::read_to_string(file).expect("the page");
+    let begin = "<script type=\"application/json\" id=\"data\">";
+    let from = html.find(begin).expect("its data") + begin.len();
+    let to = from + html[from..].find("</script>").expect("an end");
+    serde_json::from_str(&html[from..to]).expect("JSON")
+}
+
+/// Doubles of a page.
+fn decoded(text: &Value) -> Vec<f64> {
+    let value = |letter: u8| -> u32 {
+        u32::from(match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => 0,
+        })
+    };
+    let text = text.as_str().expect("base64").as_bytes();
+    let bytes: Vec<u8> = text
+        .chunks(4)
+        .flat_map(|four| four.iter().fold(0, |bits, letter| bits << 6 | value(*letter)).to_be_bytes()[1..].to_vec())
+        .collect();
+    bytes.chunks_exact(8).map(|eight| f64::from_le_bytes(eight.try_into().expect("eight"))).collect()
+}
+
+/// Turn and lag of each position of a contact, and the point on the first flank, as `flank contact` writes them.
+fn rolled(spec: &str, name: &str, out: &Path) -> Vec<([f64; 2], Vec<f64>)> {
+    let folder = out.to_str().expect("a plain path");
+    let run = flank(&["contact", spec, "--out", folder, "--format", "json", "--no-picture"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let file = std::fs::read(out.join(format!("{name}.json"))).expect("the path");
+    let file: Value = serde_json::from_slice(&file).expect("JSON");
+    let points = file["surfaces"][2]["points"].as_array().expect("the path on the first flank").clone();
+    let number = |value: &Value| value.as_f64().expect("a number");
+    points.iter().map(|point| ([0, 1].map(|k| number(&point["fields"][k])), numbers(&point["position"]))).collect()
+}
+
+/// What turns in the page are the positions of the contact analysis, and the page is the same on one thread and on several.
+#[test]
+fn a_pair_rolls_through_the_positions_that_were_solved() {
+    let folder = folder("view_pair");
+    let (file, told) = page(BEVEL_PAIR, &folder);
+    assert!(told["bytes"].as_u64().expect("a size") < 3_000_000, "{told}");
+    let data = data(&file);
+    let contact = &data["contacts"][0];
+    let (rolls, touches) = (decoded(&contact["rolls"]), decoded(&contact["maps"][0]["touches"]));
+    let (lags, apart) = (decoded(&contact["lags"]), decoded(&contact["apart"]));
+    let expected = rolled(BEVEL_PAIR, "bevel_19x62.drive_side", &folder);
+    assert_eq!(rolls.len(), expected.len());
+    let mut carried = 0;
+    for (k, ([turn, lag], position)) in expected.iter().enumerate() {
+        assert!((rolls[k].to_degrees() - turn).abs() < 1e-9, "turn {turn}");
+        let flat = [position[2], position[0].hypot(position[1])];
+        assert!((0..2).all(|i| (touches[6 * k + i] - flat[i]).abs() < 1e-12), "the point on the map at {turn}");
+        if apart[k] == 0.0 {
+            carried += 1;
+            assert!((lags[k].to_degrees() - lag).abs() < 1e-9, "lag at {turn}");
+        }
+    }
+    // of 2.06 pitches of contact of the flanks, and more of edges, one is carried
+    assert!((60..=62).contains(&carried), "{carried}");
+    let [pinion, gear] = [0, 1].map(|k| contact["members"][k]["pitch"].as_f64().expect("a solid says how many teeth"));
+    assert!(
+        (pinion - std::f64::consts::TAU / 19.0).abs() < 1e-15 && (gear - std::f64::consts::TAU / 62.0).abs() < 1e-15
+    );
+    let gap = |surface: &Value| {
+        let fields = surface["fields"].as_array().expect("fields").iter();
+        fields.filter(|field| field["name"] == contact["gap"]).count()
+    };
+    assert!(data["surfaces"].as_array().expect("surfaces").iter().all(|surface| gap(surface) == 1));
+
+    let alone = folder.join("alone");
+    let run = Command::new(env!("CARGO_BIN_EXE_flank"))
+        .args(["view", BEVEL_PAIR, "--out", alone.to_str().expect("a plain path")])
+        .current_dir(top())
+        .env("RAYON_NUM_THREADS", "1")
+        .output()
+        .expect("the binary runs");
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let [one, several] = [alone.join("bevel_19x62.html"), file].map(|file| std::fs::read(file).expect("the page"));
+    assert!(one == several, "the page depends on the number of threads");
+}
+
+/// Both sides of a spur pair touch along lines: no ellipse, no error; all surfaces of both tooth spaces are members.
+#[test]
+fn line_contact_and_both_sides() {
+    let (file, _) = page(SPUR_PAIR, &folder("view_spur_pair"));
+    let data = data(&file);
+    let contacts = data["contacts"].as_array().expect("contacts");
+    assert_eq!(contacts.len(), 2);
+    for contact in contacts {
+        assert!(contact["count"].as_u64() > Some(90), "{}", contact["count"]);
+        assert!(decoded(&contact["ellipses"]).iter().all(|x| x.is_nan()));
+        // as the solid lists them, from one side of the space to the other
+        assert_eq!(contact["members"][1]["surfaces"], json!([6, 7, 5, 4]));
+    }
+}
+
+/// Without solids one pair of flanks is shown; one that is out of reach has a page that says so, and so has the program.
+#[test]
+fn a_pair_without_solids_and_one_that_never_touches() {
+    let folder = folder("view_pair_cases");
+    let out = folder.to_str().expect("a plain path");
+    let spec = self_contained(&[
+        "machines/hobbing_6axis",
+        "machines/parallel_pair",
+        "machines/rack_generating",
+        "tools/rack",
+        "pairs/spur_pair",
+    ]);
+    let (solids, samples) =
+        (spec.find("    solid pinion").expect("solids"), spec.find("    sample pinion_flank").expect("samples"));
+    let bare = format!("{}{}", &spec[..solids], &spec[samples..]);
+    // which tooth of the gear the other side would meet, nothing says
+    let coast = bare.find("    contact coast_side").expect("the other side");
+    let bare = written(&folder, "bare.chain", &format!("{}}}\n", &bare[..coast]));
+    let (file, _) = page(&bare, &folder);
+    let shown = data(&file);
+    assert!(shown["contacts"][0]["count"].as_u64() > Some(0), "{}", shown["contacts"][0]["refused"]);
+    assert!(shown["contacts"][0]["members"][0]["pitch"].is_null());
+    assert_eq!(shown["contacts"][0]["members"][0]["surfaces"], json!([0, 1, 2, 3]));
+
+    let run = flank(&["view", SPUR_PAIR, "--set", "m.centre_distance=120 mm", "--out", out, "--json"]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("do not reach each other"), "{}", text(&run.stderr));
+    let contact = &data(&folder.join("spur_pair.html"))["contacts"][0];
+    assert_eq!(contact["count"], json!(0));
+    assert!(contact["refused"].as_str().expect("why").contains("do not reach each other"), "{contact}");
+}
+
+/// Rolls pairs as in `tests/page/pair.mjs`.
+#[test]
+fn a_pair_turns_in_the_browser() {
+    let folder = folder("view_pair_browser");
+    if !browser_is_there() {
+        return;
+    }
+    let drive = |file: &Path, expected: Value| {
+        let arguments = [file, folder.as_path()].map(|path| path.to_str().expect("a plain path"));
+        node("pair.mjs", &arguments, &expected).expect("node drives the browser")
+    };
+    let positions = |spec: &str, name: &str| -> Vec<Value> {
+        let all = rolled(spec, name, &folder).into_iter();
+        all.map(|([turn, lag], _)| json!({ "turn": turn, "lag": lag })).collect()
+    };
+    let (file, _) = page(BEVEL_PAIR, &folder);
+    let at = positions(BEVEL_PAIR, "bevel_19x62.drive_side");
+    drive(&file, json!({ "name": "bevel", "motion": "turn", "at": at }));
+    let (file, _) = page(SPUR_PAIR, &folder);
+    let at = positions(SPUR_PAIR, "spur_pair.drive_side");
+    drive(&file, json!({ "name": "spur", "motion": "turn", "at": at, "other": 1 }));
+    let out = folder.to_str().expect("a plain path");
+    flank(&["view", SPUR_PAIR, "--set", "m.centre_distance=120 mm", "--out", out]);
+    let file = folder.join("spur_pair.html");
+    drive(&file, json!({ "name": "apart", "motion": "turn", "refused": "do not reach each other" }));
+}
+
+/// Whether the tests can drive a browser; what they skip is told.
+fn browser_is_there() -> bool {
+    let browser = std::env::var("CHROMIUM").unwrap_or("/usr/bin/chromium".to_string());
+    let driver = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/node_modules/playwright-core");
+    let is_there = Path::new(&browser).exists() && driver.exists();
+    if !is_there {
+        eprintln!("skipped 1 test: {browser} or {} is not there; .ci/run installs both", driver.display());
+    }
+    is_there
+}
+
 /// Opens, turns, clicks and moves as in `tests/page/browser.mjs`.
 #[test]
 fn the_page_works_in_a_browser() {
     let folder = folder("view_browser");
-    let browser = std::env::var("CHROMIUM").unwrap_or("/usr/bin/chromium".to_string());
-    let driver = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/page/node_modules/playwright-core");
-    if !Path::new(&browser).exists() || !driver.exists() {
-        eprintln!("skipped 1 test: {browser} or {} is not there; .ci/run installs both", driver.display());
+    if !browser_is_there() {
         return;
     }
     let (file, _) = page(PINION, &folder);

@@ -8,8 +8,8 @@ mod picture;
 mod report;
 
 pub use page::{
-    PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
-    ToolForm, write_page,
+    PageAxis, PageContact, PageFrame, PageJoint, PageMachine, PageMember, PageMotion, PageNumber, PageParameter,
+    PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm, write_page,
 };
 pub use picture::{
     ContactDrawing, DrawnFrame, ErrorCurves, LinkKind, MachineDrawing, MachineLink, Picture, PictureError,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::contact::{self, ContactOut};
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
 use crate::base64::encoded;
 use crate::picture::{patch_colours, scale_colours};
@@ -31,6 +32,7 @@ pub(super) struct Document<'a> {
     tools: &'a [PageTool],
     surfaces: Vec<SurfaceOut<'a>>,
     lines: Vec<LineOut<'a>>,
+    contacts: Vec<ContactOut<'a>>,
 }
 
 #[derive(Serialize)]
@@ -104,6 +106,7 @@ impl<'a> Document<'a> {
             tools: &scene.tools,
             surfaces: surfaces.iter().zip(&scene.surfaces).map(|(patch, scene)| surface(patch, scene)).collect(),
             lines: lines.iter().map(line).collect(),
+            contacts: scene.contacts.iter().map(|contact| contact::out(contact, surfaces)).collect(),
         }
     }
 }

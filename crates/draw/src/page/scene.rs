@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use flank_export::Unit;
 
+use super::contact::PageContact;
+
 /// Everything of a page that is not in its dataset.
 ///
 /// Angles are radians here, as in the functions; the page shows degrees. Each function takes its numbers one by one, then an array
@@ -22,6 +24,8 @@ pub struct Scene {
     pub tools: Vec<PageTool>,
     /// For each surface what is known beside its points.
     pub surfaces: Vec<PageSurface>,
+    /// Pairs of them that roll on each other.
+    pub contacts: Vec<PageContact>,
     /// JavaScript functions, each an `export function`.
     pub functions: String,
     /// Their names.

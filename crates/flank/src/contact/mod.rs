@@ -22,6 +22,7 @@ use flank_expr::Graph;
 use flank_solver::NoContact;
 
 use self::pair::Members;
+use self::pattern::GapMap;
 use self::result::ContactResult;
 use self::rolling::Rolling;
 use self::summary::Summary;
@@ -133,10 +134,46 @@ fn of_contact(
     })
 }
 
-/// A contact for a page that writes no files of its own: what is known of it, and its picture with this origin if the flanks touch.
+/// A contact as it rolls, without files.
+pub(crate) struct Rolled<'j, 'g> {
+    pub(crate) result: ContactResult,
+    pub(crate) members: Members<'j, 'g>,
+    /// The roll, and what the marking compound shows on each flank; `None` where they do not touch, which the result says.
+    pub(crate) found: Option<(Rolling, Vec<GapMap>)>,
+}
+
+/// Rolls a contact as it is mounted.
 ///
 /// # Errors
 /// If a flank is not sampled, the range of the unknown holds two teeth, or the work is cancelled.
+pub(crate) fn rolled<'j, 'g>(
+    job: &'j Job<'g>,
+    contact: &'j Contact<'g>,
+    request: &ContactRequest,
+    session: Session,
+) -> Result<Rolled<'j, 'g>, Failure> {
+    let errors = influence::mounting(job, contact, &[])?;
+    let mut members = Members::solved(job, contact, session)?;
+    members.check_range(job)?;
+    let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
+        Ok(rolling) => rolling,
+        Err(why) => {
+            let nothing = Summary::new(job, &members, request, &errors).of_nothing();
+            let result = ContactResult { not_done: vec![refused(&members, why)], ..nothing };
+            return Ok(Rolled { result, members, found: None });
+        }
+    };
+    session.check()?;
+    let pair = members.pair(job, &errors, &[]);
+    let maps = pattern::on_both(&members, &pair, &rolling, request.compound);
+    let result = Summary::new(job, &members, request, &errors).of_rolling(&rolling, &maps);
+    Ok(Rolled { result, members, found: Some((rolling, maps)) })
+}
+
+/// A contact for a page that writes no files of its own: what is known of it, and its picture with this origin if the flanks touch.
+///
+/// # Errors
+/// See [`rolled`].
 pub(crate) fn shown(
     job: &Job<'_>,
     contact: &Contact<'_>,
@@ -145,21 +182,11 @@ pub(crate) fn shown(
 ) -> Result<(ContactResult, Option<Picture>), Failure> {
     let request = ContactRequest::new(jobs.clone());
     let errors = influence::mounting(job, contact, &[])?;
-    let mut members = Members::solved(job, contact, session)?;
-    members.check_range(job)?;
-    let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
-        Ok(rolling) => rolling,
-        Err(why) => {
-            let summary = Summary::new(job, &members, &request, &errors);
-            return Ok((ContactResult { not_done: vec![refused(&members, why)], ..summary.of_nothing() }, None));
-        }
-    };
-    let summary = Summary::new(job, &members, &request, &errors);
-    let pair = members.pair(job, &errors, &[]);
-    let patterns = pattern::on_both(&members, &pair, &rolling, request.compound);
+    let Rolled { result, members, found } = rolled(job, contact, &request, session)?;
+    let Some((rolling, patterns)) = found else { return Ok((result, None)) };
     let influences = influence::of_all(job, &members, &errors, &rolling, request.compound);
     let picture = files::picture_of(job, &members, &rolling, &patterns, (request.compound, header.clone()));
-    Ok((ContactResult { influences, ..summary.of_rolling(&rolling, &patterns) }, Some(picture)))
+    Ok((ContactResult { influences, ..result }, Some(picture)))
 }
 
 /// Why two flanks do not touch, with a way out.

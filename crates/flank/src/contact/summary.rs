@@ -267,7 +267,8 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         self.members.solids[edge.member].map_or(String::new(), |solid| solid.outline[edge.segment].name.clone())
     }
 
-    fn whole_edge_name(&self, edges: &[FlankEdge]) -> String {
+    /// Edges that touch, in words.
+    pub(crate) fn whole_edge_name(&self, edges: &[FlankEdge]) -> String {
         let name =
             |edge: &FlankEdge| format!("{} of {}", self.edge_name(*edge), self.members.surfaces[edge.member].name);
         edges.iter().map(name).collect::<Vec<String>>().join(" x ")

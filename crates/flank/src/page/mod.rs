@@ -1,5 +1,6 @@
 //! `flank view`
 
+mod contacts;
 mod functions;
 mod machines;
 mod parameters;
@@ -56,13 +57,16 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = tally(&solved, &mut dataset.patches);
         let mut not_done = table::failures(job, &solved);
+        let contacts = contacts::rolled(job, &request.jobs, wanted.session)?;
+        contacts::add_gaps(&contacts, &solved, &mut dataset.patches);
+        not_done.extend(contacts.iter().flat_map(contacts::Shown::refused));
         let mut remarks = Vec::new();
         let written = if tally.solved == 0 {
             let message = format!("no page: job `{}` has no point to show", job.name);
             not_done.push(NotDone::new(NotDoneKind::NoPage, &job.name, message));
             None
         } else {
-            let page = write(&graph, job, &solved, &dataset, (request, &origin, monitor))?;
+            let page = write(&graph, job, (&solved, &contacts), &dataset, (request, &origin, monitor))?;
             remarks.extend(page.shown_in_part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
             Some(page)
         };
@@ -111,13 +115,13 @@ struct Written {
 fn write<'g>(
     graph: &'g Graph,
     job: &Job<'g>,
-    solved: &[Solved<'_, 'g>],
+    (solved, contacts): (&[Solved<'_, 'g>], &[contacts::Shown<'_, 'g>]),
     dataset: &Dataset,
     (request, origin, monitor): (&ViewRequest, &Origin, &dyn Monitor),
 ) -> Result<Written, Failure> {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
-    let mut scene = scene(graph, job, solved);
+    let mut scene = scene(graph, job, solved, contacts);
     let is_part = solved.iter().any(|solved| solved.streamed.is_some());
     let shown_in_part = if is_part {
         let asked: usize = solved.iter().map(|solved| solved.summary.asked).sum();
@@ -150,13 +154,18 @@ fn write<'g>(
 }
 
 /// What the page shows beside the points.
-fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scene {
+fn scene<'g>(
+    graph: &'g Graph,
+    job: &Job<'g>,
+    solved: &[Solved<'_, 'g>],
+    contacts: &[contacts::Shown<'_, 'g>],
+) -> Scene {
     let mut functions = Functions::of_job(job);
     let surfaces: Vec<_> =
         solved.iter().map(|solved| surfaces::page_surface(graph, job, solved, &mut functions)).collect();
     Scene {
         doc: job.doc.clone(),
-        motions: job.motions.iter().map(|motion| page_motion(motion, solved)).collect(),
+        motions: job.motions.iter().map(|motion| page_motion(motion, solved, contacts)).collect(),
         parameters: parameters::page_parameters(job, solved),
         machines: job
             .machines
@@ -166,6 +175,7 @@ fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scen
             .collect(),
         tools: tools::page_tools(job, solved, &mut functions),
         surfaces,
+        contacts: contacts.iter().filter_map(|contact| contact.page(job, solved)).collect(),
         definitions: parameters::definitions(job, &mut functions),
         notes: Vec::new(),
         functions: functions.text,
@@ -173,20 +183,33 @@ fn scene<'g>(graph: &'g Graph, job: &Job<'g>, solved: &[Solved<'_, 'g>]) -> Scen
     }
 }
 
-/// Over what the solved points pass, and a little beyond; it starts where the middle of the first surface is generated.
-fn page_motion(motion: &RangedVariable<'_>, solved: &[Solved<'_, '_>]) -> PageMotion {
+/// Over what the solved points pass, and a little beyond; it starts where the middle of the first surface is generated. A motion by which a
+/// pair rolls goes over the roll of its contacts, and starts in the middle of the first.
+fn page_motion<'g>(
+    motion: &RangedVariable<'g>,
+    solved: &[Solved<'_, 'g>],
+    contacts: &[contacts::Shown<'_, 'g>],
+) -> PageMotion {
     let values = |solved: &Solved<'_, '_>| -> Vec<f64> {
         let place = solved.surface.unknowns.iter().position(|unknown| unknown.variable == motion.variable);
         let of_points = solved.points.iter().filter(|point| point.outcome == flank_solver::Outcome::Solved);
         place.map_or(Vec::new(), |k| of_points.map(|point| point.unknowns[k]).collect())
     };
     let all: Vec<Vec<f64>> = solved.iter().map(values).collect();
+    let rolls: Vec<[f64; 3]> = contacts.iter().filter_map(|contact| contact.rolls(motion)).collect();
     let passed = all.iter().flatten();
     let low = passed.clone().copied().reduce(f64::min).unwrap_or(motion.low);
     let high = passed.copied().reduce(f64::max).unwrap_or(motion.high);
     let margin = BEYOND * (high - low);
-    let (low, high) = if low < high { (low - margin, high + margin) } else { (motion.low, motion.high) };
-    let start = all.iter().find(|values| !values.is_empty()).map(|values| values[values.len() / 2]);
+    let (low, high) = match &rolls[..] {
+        [] if low < high => (low - margin, high + margin),
+        [] => (motion.low, motion.high),
+        [[low, high, _], others @ ..] => {
+            others.iter().fold((*low, *high), |(low, high), other| (low.min(other[0]), high.max(other[1])))
+        }
+    };
+    let generated = all.iter().find(|values| !values.is_empty()).map(|values| values[values.len() / 2]);
+    let start = rolls.first().map(|roll| roll[2]).or(generated);
     PageMotion {
         name: motion.name.clone(),
         unit: solve::unit(motion.dimension),

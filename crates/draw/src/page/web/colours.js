@@ -10,6 +10,14 @@ export function components(hex) {
     return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 }
 
+/** The colour of a scale at a share of it. */
+export function mixed(scale, share) {
+    const along = Math.min(Math.max(share, 0), 1) * (scale.length - 1);
+    const low = Math.min(Math.floor(along), scale.length - 2);
+    const [a, b] = [scale[low], scale[low + 1]].map(components);
+    return `rgb(${a.map((x, k) => Math.round(255 * (x + (along - low) * (b[k] - x)))).join(" ")})`;
+}
+
 /** The lowest and the highest value of a quantity over the solved points of some surfaces; null where there is none. */
 export function rangeOf(surfaces, name) {
     let [low, high] = [Infinity, -Infinity];

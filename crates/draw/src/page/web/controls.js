@@ -35,12 +35,14 @@ function play(page, k, button) {
     if (page.playing === null) return;
     button.textContent = "■";
     let before = null;
+    // where a pair rolls from one solved position to the next, small steps add up here
+    let at = page.motions[k];
     const tick = (time) => {
         if (page.playing !== k) return;
         const by = before === null ? 0 : ((time - before) / 1000 / PLAY) * (high - low);
         before = time;
-        const next = page.motions[k] + by;
-        page.moveBy(k, next > high ? low : next);
+        at = at + by > high ? low : at + by;
+        page.moveBy(k, at);
         requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);

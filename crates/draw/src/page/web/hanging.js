@@ -40,12 +40,13 @@ function touched(page, surface) {
 export function hangBlank(page) {
     page.blanks.forEach((blank) => blank.removeFromParent());
     const largest = (best, mesh) => (!best || mesh.surface.count > best.surface.count ? mesh : best);
-    const mesh = page.visible.reduce(largest, null);
-    if (!mesh) return;
-    const blank = blankOf(mesh.surface, FAINT);
-    blank.visible = byId("blank").checked;
-    page.stage.frames[mesh.surface.data.frame_index].add(blank);
-    page.blanks = [blank];
+    const meshes = page.pair ? page.pair.flanks : [page.visible.reduce(largest, null)].filter(Boolean);
+    page.blanks = meshes.map(({ surface }) => {
+        const blank = blankOf(surface, FAINT);
+        blank.visible = byId("blank").checked;
+        page.groupOf(surface).add(blank);
+        return blank;
+    });
 }
 
 /** Lines such as those where a surface is trimmed; they hold for the job's own values. */
@@ -87,7 +88,7 @@ export function markLost(page) {
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
         const mark = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: LOST }));
-        page.stage.frames[surface.data.frame_index].add(mark);
+        page.groupOf(surface).add(mark);
         return mark;
     });
 }

@@ -7,6 +7,7 @@ import { Machine } from "./machine.js";
 import { WorkMesh } from "./meshes.js";
 import { withUnit } from "./numbers.js";
 import { element, pointRows, table } from "./panel.js";
+import { Pair } from "./pair.js";
 import { Settings } from "./settings.js";
 import { Stage } from "./stage.js";
 import { WorkSurface } from "./surface.js";
@@ -14,6 +15,8 @@ import { WorkSurface } from "./surface.js";
 const LINE = "#e6007e";
 /** Where a machine has more frames, only those of tools and work are shown at first. */
 const MOST_FRAMES = 6;
+/** No point is generated there: members in mesh are finished. */
+const NOWHERE = 1e9;
 
 class Page {
     constructor(data, functions) {
@@ -43,19 +46,48 @@ class Page {
         buildParameters(this);
         buildAbout(this);
         listen(this);
-        this.showMachine(data.surfaces[0].machine);
+        // of several contacts the first one that was found
+        const found = data.contacts.findIndex(({ count }) => count > 0);
+        if (data.contacts.length > 0) this.showContact(Math.max(found, 0));
+        else this.showMachine(data.surfaces[0].machine);
+    }
+
+    showContact(number) {
+        this.contact = number;
+        this.showMachine(this.data.contacts[number].machine);
+    }
+
+    /** The contact that is shown on a machine: the one that was chosen last, or its first. */
+    pairOn(number) {
+        const on = this.data.contacts.flatMap(({ machine }, k) => (machine === number ? [k] : []));
+        const shown = on.includes(this.contact) ? this.contact : on[0];
+        return shown === undefined ? null : new Pair(this, shown);
+    }
+
+    /** What a surface hangs on. */
+    groupOf(surface) {
+        return this.pair ? this.pair.groupOf(surface) : this.stage.frames[surface.data.frame_index];
     }
 
     /** Builds everything that hangs on the frames of one machine. */
     showMachine(number) {
         this.number = number;
+        if (byId("machine")) byId("machine").value = number;
         this.machine = this.machines[number];
+        this.pair = this.pairOn(number);
+        byId("contact").hidden = !this.pair;
+        if (this.pair?.isFound) {
+            this.motions = this.pair.rolledTo(this.motions[this.pair.roll], this.motions);
+            this.quantity = this.pair.data.gap;
+        }
         this.machine.move(this.motions, this.settings);
-        this.visible = this.meshes.filter((mesh) => mesh.surface.data.machine === number);
+        this.visible = this.pair?.meshes ?? this.meshes.filter((mesh) => mesh.surface.data.machine === number);
         this.stage.show(this.machine, triadSize(this));
         this.marker = newMarker();
         this.blanks = [];
-        for (const mesh of this.visible) this.stage.frames[mesh.surface.data.frame_index].add(mesh.object);
+        this.pair?.hang();
+        this.motions.forEach((value, k) => this.motionSliders[k].set(value));
+        for (const mesh of this.visible) this.groupOf(mesh.surface).add(mesh.object);
         hangTools(this);
         hangBlank(this);
         hangLines(this);
@@ -66,7 +98,7 @@ class Page {
         this.showFrames(this.framesChoice.value);
         this.colourBy(this.quantity);
         this.update();
-        this.fitAll(new THREE.Vector3(...eye(this)));
+        this.fitAll(new THREE.Vector3(...(this.pair?.eye() ?? eye(this))));
     }
 
     /** The motions at which a point is generated; those that it does not depend on as they are. */
@@ -80,7 +112,7 @@ class Page {
 
     showFrames(which) {
         const tools = this.data.tools.filter((tool) => tool.machine === this.number).map((tool) => tool.frame);
-        const work = this.visible.map(({ surface }) => surface.data.frame_index);
+        const work = this.visible.map(({ surface }) => this.pair?.frameOf(surface) ?? surface.data.frame_index);
         const main = new Set([0, ...tools, ...work]);
         this.stage.showFrames((frame) => which === "all" || (which === "some" && main.has(frame)), which !== "none");
     }
@@ -97,10 +129,11 @@ class Page {
         byId("quantity").value = name;
         const surfaces = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.surface);
         const of = (surface) => surface.quantities().find((one) => one.name === name);
-        const range = name ? rangeOf(surfaces, name) : null;
+        const range = name && name === this.pair?.data.gap ? this.pair.range : name ? rangeOf(surfaces, name) : null;
         this.shared.isColoured.value = name !== "";
         this.shared.range.value.set(range?.low ?? 0, range?.high ?? 1);
         for (const mesh of this.visible) mesh.colour(of(mesh.surface));
+        this.pair?.follow();
         drawLegend(byId("legend"), surfaces.map(of).find(Boolean), range, this.data.scale);
         this.stage.request();
     }
@@ -113,20 +146,22 @@ class Page {
 
     /** A motion moved by hand: from then on what is not yet cut is pale. */
     moveBy(k, value) {
-        this.showCut(true);
+        if (!this.pair) this.showCut(true);
         this.setMotion(k, value);
     }
 
     setMotion(k, value) {
         this.motions[k] = this.data.motions[k].is_count ? Math.round(value) : value;
-        this.motionSliders[k].set(this.motions[k]);
+        if (this.pair?.isFound && k === this.pair.roll) this.motions = this.pair.rolledTo(value, this.motions);
+        this.motions.forEach((value, k) => this.motionSliders[k].set(value));
         this.update();
     }
 
     /** Everything that depends on where the machine stands. */
     update() {
         this.machine.move(this.motions, this.settings);
-        this.meshes.forEach((mesh) => mesh.move(this.motions));
+        this.meshes.forEach((mesh) => mesh.move(this.pair ? this.motions.map(() => NOWHERE) : this.motions));
+        this.pair?.update();
         this.stage.place(this.seenFrom);
         const { axes } = this.machine.data;
         byId("axes").querySelector("table")?.remove();
@@ -190,12 +225,12 @@ class Page {
         const heading = element("h2", { textContent: "Point" });
         const parts = [heading, table(pointRows(surface, point))];
         if (surface.isSolved(point)) {
-            this.stage.frames[surface.data.frame_index].add(this.marker);
+            this.groupOf(surface).add(this.marker);
             this.marker.position.set(...surface.vector(surface.positions, point));
             this.marker.scale.setScalar(0.05 * this.stage.size);
             const go = element("button", { textContent: "Bring the tool here", type: "button", id: "bring" });
             go.addEventListener("click", () => this.bringTool(surface, point));
-            parts.splice(1, 0, go);
+            if (!this.pair) parts.splice(1, 0, go);
         }
         this.marker.visible = surface.isSolved(point);
         byId("point").replaceChildren(...parts);
@@ -208,8 +243,8 @@ class Page {
 
     /** Tool and work; where the tool is an edge only, the work's outline too: else little would tell where things are. */
     fitAll(towards) {
-        const work = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.object);
-        const around = this.toolParts.some((part) => part.isMesh) ? [] : this.blanks;
+        const work = this.pair?.teeth ?? this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.object);
+        const around = this.pair || this.toolParts.some((part) => part.isMesh) ? [] : this.blanks;
         this.stage.fit([...work, ...this.toolParts, ...around], towards);
     }
 

@@ -60,10 +60,10 @@ export class Slider {
         return `${this.name} goes from ${low} to ${high} only`;
     }
 
-    /** Lets the slider go over these values, in the unit that is shown. */
-    stretch(low, high) {
+    /** Lets the slider go over these values, in the unit that is shown, in these steps. */
+    stretch(low, high, step = (high - low) / STEPS) {
         [this.low, this.high] = [low, high];
-        Object.assign(this.range, { min: low, max: high, step: this.isCount ? 1 : (high - low) / STEPS || "any" });
+        Object.assign(this.range, { min: low, max: high, step: this.isCount ? 1 : step || "any" });
     }
 
     /** Shows a value of the machine; of one that it shows already the box may be in work. */
