@@ -455,6 +455,30 @@ impl SampleGrid {
     }
 }
 
+impl<'g> Sample<'g> {
+    /// A value of the rows (0) or columns (1) that lies beyond two ends.
+    pub(crate) fn beyond(&self, axis: usize, (low, high): (f64, f64)) -> Option<f64> {
+        let SampleGrid::Values(values) = &self.grid else { return None };
+        let slack = ON_END * (high - low);
+        values[axis].iter().copied().find(|value| *value < low - slack || *value > high + slack)
+    }
+
+    /// The rows (0) or columns (1) whose values lie between two ends, with these; `None` if there are none.
+    pub(crate) fn within(mut self, graph: &'g Graph, axis: usize, (low, high): (f64, f64)) -> Option<Sample<'g>> {
+        let SampleGrid::Values(values) = &mut self.grid else { return None };
+        let slack = ON_END * (high - low);
+        values[axis].retain(|value| *value >= low - slack && *value <= high + slack);
+        values[axis].iter_mut().for_each(|value| *value = value.clamp(low, high));
+        let ends = [*values[axis].first()?, *values[axis].last()?];
+        self.counts[axis] = values[axis].len();
+        self.ends.values[axis] = ends.map(|end| graph.constant(end));
+        Some(self)
+    }
+}
+
+/// A value this near to an end, as a share of the way between both, is the end: rounding.
+const ON_END: f64 = 1e-12;
+
 impl Sample<'_> {
     /// Values of the coordinates at all points, row by row.
     pub fn targets(&self) -> Vec<[f64; 2]> {

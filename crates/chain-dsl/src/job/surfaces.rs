@@ -11,6 +11,7 @@ use crate::limits;
 use crate::model::{GeneratedSurface, Generation, Process, RangedVariable, ToolShape, path};
 use crate::syntax::ast::{self, Expression, ExpressionKind};
 use crate::values::context::{Context, quoted};
+use crate::values::dimension::shown;
 use crate::values::value::Value;
 
 use super::available::{Available, joined, which_piece};
@@ -309,6 +310,11 @@ impl<'g> Builder<'_, 'g> {
 
     fn sample_surface(&mut self, context: &mut Context<'g>, of: &ast::Sampled, written: &ast::Sample, job: &ast::Job) {
         let path = &of.surface;
+        if let [name] = path.segments.as_slice()
+            && !self.pieces_of(&name.node).is_empty()
+        {
+            return self.sample_profile(context, of, name, written);
+        }
         let Some(index) = self.finished(context, path, job) else { return };
         if of.name.is_none() && self.surfaces[index].0.sample.is_some() {
             let message = format!("`{}` is sampled twice", self.surfaces[index].0.name);
@@ -323,6 +329,55 @@ impl<'g> Builder<'_, 'g> {
             (Some(name), Some(sample)) => self.named_samples.push((name.clone(), index, sample)),
             (None, sample) => self.surfaces[index].0.sample = sample,
             (Some(_), None) => {}
+        }
+    }
+
+    /// All pieces of a surface by the run along the profile that they come from: each has the values that lie on it.
+    fn sample_profile(&mut self, context: &mut Context<'g>, of: &ast::Sampled, name: &Name, written: &ast::Sample) {
+        let is_piece =
+            |surface: &GeneratedSurface<'g>| surface.name.split_once('.').is_some_and(|(whole, _)| whole == name.node);
+        let pieces: Vec<usize> = (0..self.surfaces.len()).filter(|k| is_piece(&self.surfaces[*k].0)).collect();
+        let run = |at: usize| self.surfaces[at].0.unknowns.iter().find(|unknown| unknown.piece.is_some());
+        let runs: Vec<RangedVariable<'g>> = pieces.iter().filter_map(|at| run(*at).cloned()).collect();
+        let Some(along) = runs.first().map(|run| run.name.clone()).filter(|_| runs.len() == pieces.len()) else {
+            let pieces = self.pieces_of(&name.node);
+            return which_piece(context, name, &pieces);
+        };
+        let Some(axis) = written.entries.iter().position(|entry| entry.key.node == along) else {
+            let pieces = self.pieces_of(&name.node);
+            let message = format!("`{}` is in pieces: {}", name.node, quoted(&pieces));
+            let help = format!(
+                "name one of them, as in `{}.{}`; or ask all of them for points by `{along}`, the run along the profile",
+                name.node, pieces[0]
+            );
+            return context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+        };
+        let ends = runs.iter().fold((f64::MAX, f64::MIN), |(low, high), run| (low.min(run.low), high.max(run.high)));
+        for (at, run) in pieces.into_iter().zip(&runs) {
+            let surface = &self.surfaces[at].0;
+            if of.name.is_none() && surface.sample.is_some() {
+                let message = format!("`{}` is sampled twice", surface.name);
+                context.report(Diagnostic::new(Code::DuplicateName, name.span, message));
+                continue;
+            }
+            let Some(sample) = sample::build(context, (&of.surface, written), surface, &self.scope) else { return };
+            if let Some(beyond) = sample.beyond(axis, ends) {
+                let [beyond, low, high] = [beyond, ends.0, ends.1].map(|value| shown(value, run.dimension));
+                let message = format!("`{along}` is {beyond}, beyond the profile, which runs from {low} to {high}");
+                let place = written.entries[axis].key.span;
+                return context.report(Diagnostic::new(Code::SampleShape, place, message));
+            }
+            let sample = sample.within(context.graph, axis, (run.low, run.high));
+            let sample = sample.filter(|sample| check_independence(context, surface, sample, name.span));
+            match (&of.name, sample) {
+                (_, None) => {}
+                (None, sample) => self.surfaces[at].0.sample = sample,
+                (Some(own), Some(sample)) => {
+                    let piece = surface.name.split_once('.').map_or("", |(_, piece)| piece);
+                    let own = Name { node: format!("{}.{piece}", own.node), span: own.span };
+                    self.named_samples.push((own, at, sample));
+                }
+            }
         }
     }
 

@@ -250,6 +250,72 @@ fn the_chain_leads_from_the_work_over_the_common_frame_to_the_tool() {
     assert_eq!(z.map_text(), ["4 * sin(turn)", "4 * cos(turn)", "turn"]);
 }
 
+/// A rack's tooth whose profile has two straight pieces, of 3 mm and of 5 mm, and a job with a sample of what they leave.
+fn of_two_pieces(sample: &str) -> String {
+    format!(
+        "machine planer {{
+            axis Y : linear
+            axis C : rotary
+            frame bed
+            frame slide in bed = translate(36 mm, Y, 0 mm)
+            frame table in bed = rotate_z(C)
+        }}
+        tool bent {{
+            profile p {{
+                short = line(from: [0 mm, 0 mm], to: [2.4 mm, -1.8 mm])
+                long  = line(from: [2.4 mm, -1.8 mm], to: [5.4 mm, -5.8 mm])
+            }}
+            surface face(s: along p, v: length in -1 mm .. 1 mm) {{
+                at = [p(s)[0], p(s)[1], v]
+                body towards [0, -1, 0]
+            }}
+        }}
+        job j {{
+            machine m = planer
+            tool b = bent
+            mount b on m.slide
+            motion roll : angle in -40 deg .. 40 deg
+            drive m.C, m.Y = roll, 36 mm * roll
+            surface t in m.table = envelope(b.face, over: roll)
+            {sample}
+        }}"
+    )
+}
+
+#[test]
+fn a_whole_profile_is_sampled_as_one() {
+    let graph = Graph::new();
+    let text = of_two_pieces(
+        "sample t { v: 0.1 mm .. 0.2 mm by 2, s: 0 mm .. 8 mm by 17 }
+        sample t as ends { s: [0 mm, 3 mm, 8 mm], v: 0.1 mm .. 0.2 mm by 3 }
+        sample t as tail { s: 4 mm .. 8 mm by 3, v: 0.1 mm .. 0.2 mm by 3 }",
+    );
+    let compilation = compiled(&graph, &text);
+    let of = |name: &str| {
+        let surface = compilation.jobs[0].surfaces.iter().find(|surface| surface.name == name)?;
+        let sample = surface.sample.as_ref()?;
+        let targets = sample.targets();
+        Some((sample.counts, targets[0], targets[targets.len() - 1]))
+    };
+    let [one, two] = [0.1, 0.2];
+    // 3 mm is the end of the one and the beginning of the other
+    assert_eq!(of("t.short"), Some(([2, 7], [one, 0.0], [two, 3.0])));
+    assert_eq!(of("t.long"), Some(([2, 11], [one, 3.0], [two, 8.0])));
+    assert_eq!(of("ends.short"), Some(([2, 3], [0.0, one], [3.0, two])));
+    assert_eq!(of("ends.long"), Some(([2, 3], [3.0, one], [8.0, two])));
+    assert_eq!(of("tail.long"), Some(([3, 3], [4.0, one], [8.0, two])));
+    // no value lies on it
+    assert_eq!(of("tail.short"), None);
+    for (sample, code) in [
+        ("sample t { rho: 34 mm .. 36 mm by 2, v: 0.1 mm .. 0.2 mm by 3 }", Code::WrongKind),
+        ("sample t { s: 0 mm .. 9 mm by 3, v: 0.1 mm .. 0.2 mm by 3 }", Code::SampleShape),
+        ("sample t.short { s: 1 mm, v: 0 mm } sample t { s: 1 mm, v: 0.1 mm .. 0.2 mm by 3 }", Code::DuplicateName),
+    ] {
+        let found: Vec<Code> = errors(&of_two_pieces(sample)).iter().map(|finding| finding.code).collect();
+        assert_eq!(found, [code], "{sample}");
+    }
+}
+
 #[test]
 fn sides_of_a_surface_are_surfaces_written_one_by_one() {
     let of = |surfaces: &str| {

@@ -6,7 +6,9 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 
-use super::super::ast::{Body, EachSide, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface};
+use super::super::ast::{
+    Body, EachSide, Expression, ExpressionKind, Let, Profile, Segment, Side, SurfaceParameter, ToolSurface,
+};
 use super::super::grammar::Rule;
 use super::super::scan::shorten;
 use super::{Build, Head, Parts};
