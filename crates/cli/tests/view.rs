@@ -295,6 +295,7 @@ fn line_contact_and_both_sides() {
     assert_eq!(contacts.len(), 2);
     for contact in contacts {
         assert!(contact["count"].as_u64() > Some(90), "{}", contact["count"]);
+        assert_eq!(contact["kind"], json!("line contact"));
         assert!(decoded(&contact["ellipses"]).iter().all(|x| x.is_nan()));
         // as the solid lists them, from one side of the space to the other
         assert_eq!(contact["members"][1]["surfaces"], json!([6, 7, 5, 4]));

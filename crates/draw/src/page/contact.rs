@@ -9,6 +9,8 @@ use crate::base64::encoded;
 
 /// A flank of which less than this share of its area is left in the axial plane shows nothing there.
 const LEAST_SHARE: f64 = 0.04;
+/// One of which less than this share lies beside itself there is folded.
+const UNFOLDED: f64 = 0.9;
 
 /// Two flanks that roll on each other. Angles are radians, lengths mm.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -21,6 +23,8 @@ pub struct PageContact {
     pub motions: [usize; 2],
     /// The flanks' members.
     pub members: [PageMember; 2],
+    /// What the flanks are to each other: point or line contact; empty where they do not touch.
+    pub kind: String,
     /// What is known of the whole contact.
     pub numbers: Vec<PageNumber>,
     /// Why there is nothing to show; empty where there is.
@@ -92,6 +96,7 @@ pub(super) struct ContactOut<'a> {
     machine: usize,
     motions: [usize; 2],
     members: &'a [PageMember; 2],
+    kind: &'a str,
     numbers: &'a [PageNumber],
     refused: &'a str,
     gap: &'a str,
@@ -129,6 +134,7 @@ pub(super) fn out<'a>(contact: &'a PageContact, patches: &[Patch]) -> ContactOut
         machine: contact.machine,
         motions: contact.motions,
         members: &contact.members,
+        kind: &contact.kind,
         numbers: &contact.numbers,
         refused: &contact.refused,
         gap: &contact.gap,
@@ -174,7 +180,7 @@ fn map(patch: &Patch, member: usize, touches: &[PageTouch]) -> MapOut {
 enum Flat {
     /// Turned about its axis into the axial plane.
     Axial,
-    /// Seen square to its middle, from there along these two directions.
+    /// Seen square to where its middle row begins: along the row and across.
     Tangent { from: [f64; 3], along: [[f64; 3]; 2] },
 }
 
@@ -185,7 +191,7 @@ impl Flat {
             let point = patch.points.get(row * columns + column)?;
             point.is_solved().then_some(point.position)
         };
-        let (mut seen, mut all) = (0.0, 0.0);
+        let (mut seen, mut folded, mut all) = (0.0, 0.0, 0.0);
         for row in 1..patch.rows.count {
             for column in 1..columns {
                 let corners = [(row - 1, column - 1), (row - 1, column), (row, column - 1)];
@@ -193,16 +199,17 @@ impl Flat {
                 let [u, v] = [b, c].map(|end| sub(end, a));
                 all += length(cross(u, v));
                 let ([p, q], r) = ([a, b].map(axial), axial(c));
-                seen += (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+                let area: f64 = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+                seen += area;
+                folded += area.abs();
             }
         }
-        if seen.abs() >= LEAST_SHARE * all {
+        if seen.abs() >= LEAST_SHARE * all && seen.abs() >= UNFOLDED * folded {
             return Flat::Axial;
         }
-        let middle = patch.points.len() / 2;
-        let mut solved = patch.points.iter().filter(|point| point.is_solved());
-        let near = patch.points.get(middle).filter(|point| point.is_solved()).or_else(|| solved.clone().next());
-        let (Some(near), Some(far)) = (near, solved.next_back()) else { return Flat::Axial };
+        let row = patch.rows.count / 2 * columns;
+        let mut along = patch.points.iter().skip(row).take(columns).filter(|point| point.is_solved());
+        let (Some(near), Some(far)) = (along.next(), along.next_back()) else { return Flat::Axial };
         match unit(across(sub(far.position, near.position), near.normal)) {
             Some(way) => Flat::Tangent { from: near.position, along: [way, cross(near.normal, way)] },
             None => Flat::Axial,

@@ -19,6 +19,9 @@ use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{ContactRequest, JobSelection, Session};
 use crate::solve::solved::Solved;
 
+/// A pair of teeth that is apart by less carries too: rounding, um.
+const ALIKE: f64 = 1e-6;
+
 /// A contact of the job, or why it cannot be rolled.
 pub(super) struct Shown<'j, 'g> {
     contact: &'j Contact<'g>,
@@ -114,7 +117,12 @@ impl<'g> Shown<'_, 'g> {
             ..PageContact::default()
         };
         let Ok(Rolled { result, found: Some((rolling, _)), .. }) = &self.rolled else { return Some(base) };
-        Some(PageContact { numbers: numbers(result), touches: self.touches(job, rolling), ..base })
+        Some(PageContact {
+            kind: kind(result).to_string(),
+            numbers: numbers(result),
+            touches: self.touches(job, rolling),
+            ..base
+        })
     }
 
     fn member(&self, job: &Job<'g>, k: usize, flank: usize, place: &dyn Fn(usize) -> Option<usize>) -> PageMember {
@@ -157,11 +165,7 @@ impl<'g> Shown<'_, 'g> {
                 roll: point.roll,
                 lag,
                 errors: [lag, point.lag].map(error),
-                apart: if carried.is_none_or(|carried| carried.pair == 0) {
-                    0.0
-                } else {
-                    1e3 * ((lag - point.lag) * point.opening).abs()
-                },
+                apart: Some(1e3 * ((lag - point.lag) * point.opening).abs()).filter(|um| *um > ALIKE).unwrap_or(0.0),
                 edges: if point.is_of_flanks() { String::new() } else { summary.whole_edge_name(&point.edges) },
                 position: point.position,
                 normal: point.normal,
@@ -179,6 +183,15 @@ impl<'g> Shown<'_, 'g> {
         let [short, long] = point.ellipse(self.request.compound).filter(|_| is_point)?;
         let [across, along] = point.gap?.directions?;
         Some([along.map(|x| long * x), across.map(|x| short * x)])
+    }
+}
+
+fn kind(result: &ContactResult) -> &'static str {
+    match result.kind {
+        Some(ContactKind::Point) => "point contact",
+        Some(ContactKind::Line) => "line contact",
+        Some(ContactKind::Crossing) => "the flanks run into each other beside the point",
+        None => "",
     }
 }
 

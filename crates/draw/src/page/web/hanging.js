@@ -40,7 +40,7 @@ function touched(page, surface) {
 export function hangBlank(page) {
     page.blanks.forEach((blank) => blank.removeFromParent());
     const largest = (best, mesh) => (!best || mesh.surface.count > best.surface.count ? mesh : best);
-    const meshes = page.pair ? page.pair.flanks : [page.visible.reduce(largest, null)].filter(Boolean);
+    const meshes = page.pair ? page.pair.turned : [page.visible.reduce(largest, null)].filter(Boolean);
     page.blanks = meshes.map(({ surface }) => {
         const blank = blankOf(surface, FAINT);
         blank.visible = byId("blank").checked;
@@ -102,7 +102,8 @@ export function triadSize(page) {
     if (points.length === 0) return 10;
     const box = new THREE.Sphere().setFromPoints(points);
     const far = points.reduce((most, point) => Math.max(most, Math.hypot(point.x, point.y)), 0);
-    return Math.max(0.5 * box.radius, 0.2 * far, 1e-3);
+    // beside teeth in mesh they would hide what is looked at
+    return (page.pair ? 0.4 : 1) * Math.max(0.5 * box.radius, 0.2 * far, 1e-3);
 }
 
 /** The direction from which most is seen of the first surface's outer side, and tool and work lie least behind each other. */

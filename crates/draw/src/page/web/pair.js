@@ -38,6 +38,11 @@ export class Pair {
         return { low: 0, high: FILMS * this.data.film };
     }
 
+    /** The flanks of those members that are known to be turned about z. */
+    get turned() {
+        return this.flanks.filter((_, k) => this.data.members[k].pitch !== null);
+    }
+
     /** The frame of the pair's machine that a surface is mounted on. */
     frameOf(surface) {
         return this.data.members[this.owner.get(surface)].frame;
@@ -71,15 +76,21 @@ export class Pair {
             }
             return group;
         });
-        this.size = 0.12 * stage.size;
+        this.size = 0.3 * stage.size;
         this.ellipse = lineOf([], TOUCH);
         this.normal = lineOf([], TOUCH);
         const radius = 0.12 * this.size;
         const material = (opacity) => new THREE.MeshBasicMaterial({ color: TOUCH, side: THREE.DoubleSide, transparent: true, opacity });
-        this.point = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, 0.1 * radius, 24), material(1));
+        // three discs, of which one at least is seen from anywhere
+        const discs = [0, 1, 2].map(() => new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, 0.1 * radius, 24), material(1)));
+        discs[1].rotation.x = Math.PI / 2;
+        discs[2].rotation.z = Math.PI / 2;
+        this.point = new THREE.Group().add(...discs);
         this.film = new THREE.Mesh(new THREE.BufferGeometry(), material(0.35));
         this.touch = new THREE.Group().add(this.film, this.ellipse, this.normal, this.point);
-        for (const part of this.touch.children) {
+        for (const part of [this.film, this.ellipse, this.normal, ...discs]) {
+            // after the teeth, and seen through them
+            part.material.transparent = true;
             part.material.depthTest = false;
             part.renderOrder = 3;
         }
@@ -148,7 +159,6 @@ export class Pair {
         const arm = (way, from, to) => [from, to].flatMap((by) => point.clone().addScaledVector(way, by).toArray());
         put(this.normal, arm(normal, -2.5 * this.size, 2.5 * this.size));
         this.point.position.copy(point);
-        this.point.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
         const [long, short] = [of(this.ellipses, 6 * index), of(this.ellipses, 6 * index + 3)];
         const around = Number.isFinite(long.x) ? Array.from({ length: SIDES + 1 }, (_, k) => (2 * Math.PI * k) / SIDES) : [];
         const places = around.map((turn) => point.clone().addScaledVector(long, Math.cos(turn)).addScaledVector(short, Math.sin(turn)));
@@ -193,8 +203,9 @@ export class Pair {
             choice.value = this.number;
             choice.addEventListener("change", () => page.showContact(Number(choice.value)));
             parts.push(element("label", { className: "choice" }, element("span", { textContent: "contact" }), choice));
-        } else parts.push(element("p", { className: "hint", textContent: data.name }));
-        parts.push(this.now);
+        }
+        const about = [...(page.data.contacts.length > 1 ? [] : [data.name]), ...(data.kind ? [data.kind] : [])].join(", ");
+        parts.push(element("p", { className: "hint", textContent: about }), this.now);
         if (this.isFound) parts.push(...this.drawings(), table(data.numbers.map(({ name, value, unit }) => [name, `${digits(value, 4)} ${unit}`])));
         byId("contact").replaceChildren(...parts);
     }
