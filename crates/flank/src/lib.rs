@@ -73,9 +73,9 @@ pub use draw::plot;
 pub use draw::result::{PlotResult, WrittenPicture};
 pub use exchange::changes::Words;
 pub use exchange::import::{Coefficients, ImportRequest, Imported, Signs, import};
+pub use exchange::made::{MadeKind, NewJob};
 pub use exchange::templates::{
-    FromLibrary, MadeKind, NewJob, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters,
-    templates,
+    FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::is_reserved;
 pub use flank_chain_dsl::{Buffers, Code, Disk, Files};

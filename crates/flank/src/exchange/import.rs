@@ -8,7 +8,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::exchange::{templates, xml_cost};
+use crate::exchange::{library, xml_cost};
 use crate::project::choices::choices;
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
@@ -174,7 +174,7 @@ pub fn import(files: &dyn Files, request: &ImportRequest) -> Result<Imported, Fa
 /// # Errors
 /// In words, if the library that the job uses has something of its name.
 fn check_name(name: &str) -> Result<(), Failure> {
-    match LIBRARY.into_iter().find(|path| templates::defines(path, name)) {
+    match LIBRARY.into_iter().find(|path| library::defines(path, name)) {
         Some(path) => {
             let message =
                 format!("the job cannot be called `{name}`: {path}, which it uses, has something of that name");

@@ -2,6 +2,8 @@
 
 pub(crate) mod changes;
 pub(crate) mod import;
+pub(crate) mod library;
+pub(crate) mod made;
 mod parts;
 pub(crate) mod templates;
 mod xml_cost;

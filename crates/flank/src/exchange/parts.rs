@@ -7,7 +7,8 @@ use flank_chain_dsl::syntax::parse;
 use flank_chain_dsl::{FileId, Span};
 
 use crate::exchange::changes::{Changes, Given};
-use crate::exchange::templates::{Made, MadeKind, NewJob, library, used_by};
+use crate::exchange::library::{texts, used_by};
+use crate::exchange::made::{Made, MadeKind, NewJob};
 use crate::project::failure::Failure;
 
 /// A machine or a tool of the library.
@@ -22,7 +23,7 @@ pub(super) struct Part {
 
 /// All of them by name; those in files of jobs belong to these.
 pub(super) fn all() -> Vec<Part> {
-    let mut parts: Vec<Part> = library().flat_map(|(path, text)| in_file(path, text)).collect();
+    let mut parts: Vec<Part> = texts().flat_map(|(path, text)| in_file(path, text)).collect();
     parts.sort_by(|a, b| a.name.cmp(&b.name));
     parts
 }

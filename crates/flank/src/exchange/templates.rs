@@ -1,25 +1,20 @@
 //! A job of the library becomes one of the user's, with the machines and tools that it uses; so does a machine or a tool by itself.
 
 use std::collections::BTreeMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use flank_chain_dsl::syntax::ast::{Item, Job, JobStatement, Param};
 use flank_chain_dsl::syntax::parse;
-use flank_chain_dsl::{FileId, closest, compile_file};
-use flank_export::{FileSet, WriteError, make_folder};
-use flank_expr::Graph;
-use include_dir::{Dir, include_dir};
+use flank_chain_dsl::{FileId, closest};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::changes::{Changes, Given, Words};
+use crate::exchange::library::{texts, used_by};
+use crate::exchange::made::{Made, MadeKind, NewJob};
 use crate::exchange::parts;
 use crate::project::failure::Failure;
-use crate::project::findings::Findings;
 use crate::project::shown_path;
-
-/// The library as it was when the program was built.
-static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
 
 /// The jobs of the library that one can start from, of `flank new` without a name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -53,19 +48,6 @@ pub struct Together {
     pub jobs: Vec<String>,
 }
 
-/// A job to be made of one of the library, or a machine or tool of it.
-#[derive(Clone, Debug)]
-pub struct NewJob {
-    /// The job, machine or tool to start from.
-    pub template: String,
-    /// What the new job is called, as the template without it; of a machine the name of a variant.
-    pub name: Option<Words>,
-    /// Other values for parameters; of several for one the last one counts.
-    pub values: Vec<(String, Words)>,
-    /// The folder for the files; made if it is not there.
-    pub folder: PathBuf,
-}
-
 /// A parameter of a job to start from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TemplateParameter {
@@ -89,18 +71,6 @@ pub struct FromLibrary {
     pub spec: String,
     /// Files written, in their order: its own first.
     pub files: Vec<String>,
-}
-
-/// What can be made of the library.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MadeKind {
-    /// A job.
-    Job,
-    /// A machine, or a variant of one.
-    Machine,
-    /// A tool.
-    Tool,
 }
 
 /// What the library has to start from.
@@ -174,7 +144,7 @@ struct Offer {
 
 fn offer() -> Offer {
     let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
-    for (path, text) in library() {
+    for (path, text) in texts() {
         let (file, _) = parse(text, FileId(0));
         let (mut jobs, mut variants) = (Vec::new(), Vec::new());
         for item in file.items {
@@ -196,21 +166,6 @@ fn offer() -> Offer {
         }
     }
     offer
-}
-
-/// Whether a file of the library defines something of a name.
-pub(crate) fn defines(path: &str, name: &str) -> bool {
-    let text = LIBRARY.get_file(path).and_then(|file| file.contents_utf8()).unwrap_or_default();
-    parse(text, FileId(0)).0.items.iter().filter_map(Item::name).any(|known| known.node == name)
-}
-
-pub(super) fn library() -> impl Iterator<Item = (&'static Path, &'static str)> {
-    files(&LIBRARY)
-}
-
-fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
-    let inner = folder.dirs().flat_map(|inner| files(inner).collect::<Vec<_>>());
-    folder.files().filter_map(|file| Some((file.path(), file.contents_utf8()?))).chain(inner)
 }
 
 /// The lines up to the first that ends with a full stop, as one.
@@ -283,123 +238,4 @@ impl Source {
         used_by(self.path, self.text, &mut files).map_err(Failure::Input)?;
         Ok(Made { files, changes })
     }
-}
-
-/// Adds what a file of the library uses, and what that uses.
-pub(super) fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<(), String> {
-    let (file, _) = parse(text, FileId(0));
-    for item in file.items {
-        let Item::Use(used) = item else { continue };
-        let path = plain(&path.with_file_name(used.node));
-        if all.iter().any(|(known, _)| *known == path) {
-            continue;
-        }
-        let text = LIBRARY.get_file(&path).and_then(|file| file.contents_utf8());
-        let text = text.ok_or_else(|| format!("the library lacks {}", shown_path(&path)))?;
-        all.push((path.clone(), text.to_owned()));
-        used_by(&path, text, all)?;
-    }
-    Ok(())
-}
-
-/// A path without `..`.
-fn plain(path: &Path) -> PathBuf {
-    path.components().fold(PathBuf::new(), |mut out, part| {
-        match part {
-            Component::ParentDir => {
-                out.pop();
-            }
-            other => out.push(other),
-        }
-        out
-    })
-}
-
-/// Something new.
-pub(super) struct Made {
-    /// By their path in the user's folder: its own file first, then those that it uses.
-    pub(super) files: Vec<(PathBuf, String)>,
-    /// What was changed of the template.
-    pub(super) changes: Changes,
-}
-
-impl Made {
-    /// Writes what compiles, and names it: the job's own file first. Nothing that stands there is changed.
-    fn write(mut self, out: &Path) -> Result<Vec<String>, Failure> {
-        self.compiled(out)?;
-        self.check_that_nothing_stands_there(out)?;
-        if !is_in_project(out) {
-            self.files.push((PathBuf::from(MARKER), MARK.to_owned()));
-        }
-        put(out, &self.files)?;
-        Ok(self.files.iter().map(|(path, _)| shown_path(&out.join(path))).collect())
-    }
-
-    /// # Errors
-    /// What is wrong with what was given, shown there, or with the files as they would stand in `out`.
-    fn compiled(&self, out: &Path) -> Result<(), Failure> {
-        let no_folder = |error| Failure::Input(format!("no temporary folder: {}", WriteError::from(error)));
-        let trial = tempfile::tempdir().map_err(no_folder)?;
-        put(trial.path(), &self.files)?;
-        let file = trial.path().join(&self.files[0].0);
-        let graph = Graph::new();
-        let mut compilation = compile_file(&graph, &file, &[]);
-        if !compilation.has_errors() {
-            return Ok(());
-        }
-        let (sources, findings) = (&mut compilation.sources, &mut compilation.diagnostics);
-        let own = sources.files().find(|(_, source)| source.path == file).map(|(id, _)| id);
-        if let Some(own) = own {
-            self.changes.shown_as_given(findings, own, sources);
-        }
-        sources.show_below(trial.path(), out);
-        Err(Failure::Findings(Findings::new(findings, sources)))
-    }
-
-    fn check_that_nothing_stands_there(&self, out: &Path) -> Result<(), Failure> {
-        for (number, (path, text)) in self.files.iter().enumerate() {
-            let path = out.join(path);
-            let shown = shown_path(&path);
-            let why = match std::fs::read(&path) {
-                Ok(there) if there == text.as_bytes() => continue,
-                Ok(_) => "says something else",
-                Err(error) if is_absent(&error) => continue,
-                Err(error) => &format!("cannot be read ({error})"),
-            };
-            let way = match number {
-                0 => "take another folder, or another name",
-                _ => "what is new is made with the library's: take another folder",
-            };
-            return Err(Failure::Input(format!("{shown} is there already and {why}; {way}")));
-        }
-        Ok(())
-    }
-}
-
-/// The file that marks the top folder of a project: files use each other below it, from wherever the program is called.
-const MARKER: &str = "flank.toml";
-const MARK: &str = "# The top folder of a project of flank: its files may use each other.\n";
-
-/// Whether files in a folder, which may not be there yet, are in a project already.
-fn is_in_project(out: &Path) -> bool {
-    let Ok(out) = std::path::absolute(out) else { return false };
-    let real = out.ancestors().find_map(|folder| std::fs::canonicalize(folder).ok());
-    let folders = real.iter().flat_map(|folder| folder.ancestors()).chain([out.as_path()]);
-    folders.into_iter().any(|folder| [".git", MARKER].iter().any(|mark| folder.join(mark).exists()))
-}
-
-/// Whether a file cannot be read because there is none: `NotADirectory` is what stands where its folder should be, which is told
-/// when the folder is made.
-fn is_absent(error: &std::io::Error) -> bool {
-    matches!(error.kind(), std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory)
-}
-
-fn put(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Failure> {
-    let mut set = FileSet::default();
-    for (path, text) in files {
-        let path = folder.join(path);
-        make_folder(path.parent().unwrap_or(folder))?;
-        set.write(&path, |out| Ok(out.write_all(text.as_bytes())?))?;
-    }
-    Ok(set.finish()?)
 }

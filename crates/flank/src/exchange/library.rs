@@ -1,0 +1,59 @@
+//! The texts of the library.
+
+use std::path::{Component, Path, PathBuf};
+
+use flank_chain_dsl::FileId;
+use flank_chain_dsl::syntax::ast::Item;
+use flank_chain_dsl::syntax::parse;
+use include_dir::{Dir, include_dir};
+
+use crate::project::shown_path;
+
+/// The library as it was when the program was built.
+static LIBRARY: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../specs");
+
+/// Whether a file of the library defines something of a name.
+pub(crate) fn defines(path: &str, name: &str) -> bool {
+    let text = LIBRARY.get_file(path).and_then(|file| file.contents_utf8()).unwrap_or_default();
+    parse(text, FileId(0)).0.items.iter().filter_map(Item::name).any(|known| known.node == name)
+}
+
+/// All files with their paths within the library.
+pub(super) fn texts() -> impl Iterator<Item = (&'static Path, &'static str)> {
+    files(&LIBRARY)
+}
+
+fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
+    let inner = folder.dirs().flat_map(|inner| files(inner).collect::<Vec<_>>());
+    folder.files().filter_map(|file| Some((file.path(), file.contents_utf8()?))).chain(inner)
+}
+
+/// Adds what a file of the library uses, and what that uses.
+pub(super) fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<(), String> {
+    let (file, _) = parse(text, FileId(0));
+    for item in file.items {
+        let Item::Use(used) = item else { continue };
+        let path = plain(&path.with_file_name(used.node));
+        if all.iter().any(|(known, _)| *known == path) {
+            continue;
+        }
+        let text = LIBRARY.get_file(&path).and_then(|file| file.contents_utf8());
+        let text = text.ok_or_else(|| format!("the library lacks {}", shown_path(&path)))?;
+        all.push((path.clone(), text.to_owned()));
+        used_by(&path, text, all)?;
+    }
+    Ok(())
+}
+
+/// A path without `..`.
+fn plain(path: &Path) -> PathBuf {
+    path.components().fold(PathBuf::new(), |mut out, part| {
+        match part {
+            Component::ParentDir => {
+                out.pop();
+            }
+            other => out.push(other),
+        }
+        out
+    })
+}
