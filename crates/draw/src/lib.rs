@@ -12,9 +12,10 @@ pub use page::{
     PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm, write_page,
 };
 pub use picture::{
-    ContactDrawing, DrawnFrame, ErrorCurves, LinkKind, MachineDrawing, MachineLink, Picture, PictureError,
-    PictureOptions, Section, SectionLine, ToolPosition, axis_positions, contact, field_lines, field_maps, machine,
-    picture, section, topography,
+    ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, LinkKind,
+    MOST_CONTACTS, MachineDrawing, MachineLink, Picture, PictureError, PictureOptions, Section, SectionLine, Station,
+    StationShape, ToolPosition, axis_positions, contact, field_lines, field_maps, machine, picture, round_step,
+    section, topography,
 };
 pub use report::{
     Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,

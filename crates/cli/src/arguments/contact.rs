@@ -71,7 +71,7 @@ pub(crate) struct Contact {
     pub(crate) evaluator: EvaluatorArguments,
 }
 
-fn error(text: &str) -> Result<(String, MountingError), String> {
+pub(super) fn error(text: &str) -> Result<(String, MountingError), String> {
     let wanted = || "write AXIS=VALUE with a unit, for example m.E=0.1mm or m.S=2arcmin".to_string();
     let (axis, value) = text.split_once('=').ok_or_else(wanted)?;
     let (axis, value) = (axis.trim(), value.trim());

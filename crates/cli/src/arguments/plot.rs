@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::{PictureFormat, PlotKind};
+use flank::{MountingError, PictureFormat, PlotKind};
 
 use super::choice::{described, names};
-use super::{EvaluatorArguments, JobArguments, folder};
+use super::contact::error;
+use super::{EvaluatorArguments, JobArguments, count, folder, length};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -19,7 +20,8 @@ Examples:
   flank plot specs/bevel/pinion_19x62.chain --what section,machine,motion --surface convex
   flank plot specs/hobbing/spur_gear.chain --what contact-lines --surface flank_plus,flank_minus --format svg
   flank plot specs/bevel/pinion_19x62.chain --what sensitivity --of m.radial_distance,c.blade_angle
-  flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --reference conjugate.concave")]
+  flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --reference conjugate.concave
+  flank plot specs/pairs/spur_pair.chain --what pattern,error --error m.S=2arcmin")]
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) which: JobArguments,
@@ -35,6 +37,18 @@ pub(crate) struct Plot {
     /// The parameters or settings whose influence `sensitivity` shows; those that do most otherwise
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) of: Vec<String>,
+    /// The contacts that pattern, error, gap and path show, several with commas; otherwise all of the job, side by side
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) contact: Vec<String>,
+    /// For pictures of contacts: an axis of the pair's machine that is mounted wrong, with its unit: m.E=0.1mm, m.S=2arcmin
+    #[arg(long = "error", value_name = "AXIS=VALUE", value_parser = error)]
+    pub(crate) errors: Vec<(String, MountingError)>,
+    /// For pictures of contacts: roll positions over a pitch [default: 60]
+    #[arg(long, value_name = "COUNT", value_parser = count(4..=10_000), allow_hyphen_values = true)]
+    pub(crate) positions: Option<u32>,
+    /// For pictures of contacts: thickness of the marking compound [default: 6.35um]
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) compound: Option<f64>,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,

@@ -75,6 +75,35 @@ impl ValueGrid {
         }
     }
 
+    /// Fills where the value is no greater than a bound.
+    pub(super) fn fill_up_to(&self, bound: f64, colour: Colour, sheet: &mut Sheet) {
+        for i in 0..self.rows.saturating_sub(1) {
+            // all of a cell, a part of it, or nothing
+            let within = |j: usize| -> Option<bool> {
+                let corners = self.corners(i, j).map(|corner| corner.map(|(_, value)| value <= bound));
+                let known = corners.into_iter().collect::<Option<Vec<bool>>>()?;
+                known.contains(&true).then(|| !known.contains(&false))
+            };
+            let cells: Vec<Option<bool>> = (0..self.columns.saturating_sub(1)).map(within).collect();
+            let mut from = 0;
+            for run in cells.chunk_by(|a, b| a == b && *a == Some(true)) {
+                match run[0] {
+                    Some(true) => self.fill_run(i, from..from + run.len(), colour, sheet),
+                    Some(false) => {
+                        let corners: Vec<(Place, f64)> = self.corners(i, from).into_iter().flatten().collect();
+                        let part: Vec<Place> =
+                            clipped(&corners, |value| bound - value).into_iter().map(|(place, _)| place).collect();
+                        if part.len() > 2 {
+                            sheet.polygon(&part, colour, colour, SEAM);
+                        }
+                    }
+                    None => {}
+                }
+                from += run.len();
+            }
+        }
+    }
+
     /// Fills all cells in one colour.
     pub(super) fn silhouette(&self, colour: Colour, sheet: &mut Sheet) {
         for i in 0..self.rows.saturating_sub(1) {

@@ -53,7 +53,7 @@ pub(super) struct Panel<'a> {
     pub(super) mesh: Mesh,
     /// Values at the nodes of the mesh.
     pub(super) values: Vec<Option<f64>>,
-    levels: Option<Levels>,
+    pub(super) levels: Option<Levels>,
     /// Whether all values are zero but for rounding; then they are taken as zero.
     is_rounding: bool,
     pub(super) projection: Projection,
@@ -76,7 +76,7 @@ pub(super) fn compose(
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw");
     }
     for (panel, rect) in panels.iter().zip(figure::places(panels.len(), area, GAP)) {
-        let _ = panel.draw(rect, style, &mut sheet);
+        panel.draw(rect, style, &mut sheet);
     }
     let caption = with_minus(&caption(note, &panels));
     figure::write_caption(&caption, [width, height], &mut sheet);
@@ -89,8 +89,11 @@ fn caption(note: &str, panels: &[Panel<'_>]) -> String {
 }
 
 impl<'a> Panel<'a> {
-    pub(super) fn of_field(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
-        let patch = dataset.patches.get(patch)?;
+    fn of_field(dataset: &'a Dataset, (patch, field): (usize, usize), style: Style) -> Option<Panel<'a>> {
+        Panel::of_patch(dataset.patches.get(patch)?, field, style)
+    }
+
+    pub(super) fn of_patch(patch: &'a Patch, field: usize, style: Style) -> Option<Panel<'a>> {
         let field = patch.fields.get(field)?;
         let Values::Scalars(values) = &field.values else { return None };
         let count = patch.rows.count.checked_mul(patch.columns.count);
@@ -117,19 +120,24 @@ impl<'a> Panel<'a> {
         })
     }
 
-    /// Draws it, and gives the axes that it stands on.
-    pub(super) fn draw(&self, rect: Rect, style: Style, sheet: &mut Sheet) -> Option<Chart> {
+    /// The same laid flat as the side of a tooth: its length to the right, its tip up.
+    pub(super) fn laid_flat(self) -> Panel<'a> {
+        Panel { projection: Projection::laid_flat(self.patch, &self.mesh), ..self }
+    }
+
+    /// Draws it.
+    fn draw(&self, rect: Rect, style: Style, sheet: &mut Sheet) {
         let (room, left) = (rect.width(), rect.left);
         let name = one_line(&self.field.name);
         let size = (17.0 * room / font::width(&name, 17.0)).clamp(12.0, 17.0);
         sheet.text([left, rect.top + 15.0], Anchor::Start, size, INK, &font::fitted(&name, size, room));
         let map = Rect { top: rect.top + HEAD, ..rect };
         let key = Rect { top: rect.bottom - FOOT + 6.0, bottom: rect.bottom - FOOT + 6.0 + KEY, ..rect };
-        let (about, chart) = match (&self.levels, style) {
+        let about = match (&self.levels, style) {
             (Some(levels), Style::Relief) => {
                 relief::draw(self, levels, Rect { bottom: rect.bottom - FOOT, ..map }, sheet);
                 draw_key(levels, &shown_unit(&self.field.unit), key, sheet);
-                ("heights above the grid".to_owned(), None)
+                "heights above the grid".to_owned()
             }
             _ => {
                 let below = if style == Style::Lines { 0.0 } else { FOOT };
@@ -142,17 +150,16 @@ impl<'a> Panel<'a> {
                     let key = Rect { left: chart.rect.left, top, right: key.right, bottom: top + KEY };
                     draw_key(levels, &shown_unit(&self.field.unit), key, sheet);
                 }
-                (self.about(&chart), Some(chart))
+                self.about(&chart)
             }
         };
         let about = format!("{}, {}; {about}", one_line(&self.patch.name), shown_unit(&self.field.unit));
         sheet.text([left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &font::fitted(&about, 13.0, room));
-        chart
     }
 
     fn draw_on(&self, chart: &Chart, style: Style, sheet: &mut Sheet) {
         let titles = self.projection.titles.each_ref();
-        chart.draw_axes(titles.map(|text| Title { text, numbered: self.projection.is_axial }), sheet);
+        chart.draw_axes(titles.map(|text| Title { text, numbered: self.projection.is_in_mm() }), sheet);
         let grid = self.grid(chart);
         match &self.levels {
             Some(levels) if levels.single() == Some(0.0) => {
@@ -184,14 +191,14 @@ impl<'a> Panel<'a> {
     }
 
     /// The axes, with room around the flank for words.
-    fn chart(&self, rect: Rect) -> Chart {
+    pub(super) fn chart(&self, rect: Rect) -> Chart {
         let rect = rect.inside([chart::MARGINS[0], 0.0, 0.0, chart::MARGINS[3]]);
         let bounds = chart::bounds(self.projection.nodes.iter().flatten().copied());
         let widest = self.projection.words.iter().map(|(_, word)| font::width(word, labels::WORD)).fold(0.0, f64::max);
         let aside = (widest + 26.0).min(0.24 * rect.width());
         let above = 30.0_f64.min(0.2 * rect.height());
         let room = rect.inside([aside, above, aside, above]);
-        if !self.projection.is_axial {
+        if !self.projection.is_in_mm() {
             return Chart::filling(room, bounds).moved_to(rect);
         }
         let [across, up] = bounds.map(|[low, high]| (high - low).max(1e-9));
@@ -205,10 +212,15 @@ impl<'a> Panel<'a> {
     }
 
     /// How the flank is laid flat.
-    fn about(&self, chart: &Chart) -> String {
+    pub(super) fn about(&self, chart: &Chart) -> String {
         let stretch = chart.scale[1] / chart.scale[0];
-        if !self.projection.is_axial {
-            "laid by rows and columns".to_owned()
+        if !self.projection.is_axial() {
+            if self.projection.is_in_mm() {
+                "laid by the lengths of rows and columns"
+            } else {
+                "laid by rows and columns"
+            }
+            .to_owned()
         } else if stretch > 1.5 {
             format!("in the axial plane, upwards {stretch:.0} times larger")
         } else {
@@ -217,17 +229,22 @@ impl<'a> Panel<'a> {
     }
 
     pub(super) fn grid(&self, chart: &Chart) -> ValueGrid {
+        self.grid_of(chart, |at| self.values[at])
+    }
+
+    /// Other values over the same nodes.
+    pub(super) fn grid_of(&self, chart: &Chart, value: impl Fn(usize) -> Option<f64>) -> ValueGrid {
         let parts = [(self.mesh.rows, CELLS[0]), (self.mesh.columns, CELLS[1])]
             .map(|(count, least)| least.div_ceil(count.saturating_sub(1).max(1)).max(1));
         let node = |i: usize, j: usize| {
             let at = i * self.mesh.columns + j;
-            Some((chart.place(self.projection.nodes[at]?), self.values[at]?))
+            Some((chart.place(self.projection.nodes[at]?), value(at)?))
         };
         ValueGrid::refined([self.mesh.rows, self.mesh.columns], node, parts)
     }
 
     /// Bands of colour, thin lines between them: dashed below zero, thick at zero.
-    fn draw_bands(&self, grid: &ValueGrid, levels: &Levels, sheet: &mut Sheet) {
+    pub(super) fn draw_bands(&self, grid: &ValueGrid, levels: &Levels, sheet: &mut Sheet) {
         grid.fill(levels, sheet);
         let bounds = levels.bounds();
         for &level in bounds.iter().take(bounds.len() - 1).skip(1) {
@@ -270,7 +287,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    fn draw_border(&self, grid: &ValueGrid, width: f64, sheet: &mut Sheet) {
+    pub(super) fn draw_border(&self, grid: &ValueGrid, width: f64, sheet: &mut Sheet) {
         grid.borders().iter().for_each(|side| sheet.line(side, INK, width));
     }
 
@@ -281,7 +298,7 @@ impl<'a> Panel<'a> {
         let mut crosses = missing::Crosses::default();
         for (at, k) in self.mesh.picked(self.patch).enumerate().filter(|(at, _)| self.values[*at].is_none()) {
             let (i, j) = (k / self.patch.columns.count, k % self.patch.columns.count);
-            let place = if self.projection.is_axial {
+            let place = if self.projection.is_axial() {
                 let known = node(&self.patch.points[k]).map(|node| node.position);
                 known.or_else(|| missing::likely_position(self.patch, i, j)).and_then(|p| self.projection.place(p))
             } else {
@@ -294,7 +311,7 @@ impl<'a> Panel<'a> {
     }
 
     /// What the sides are, in words beside them.
-    fn draw_words(&self, chart: &Chart, sheet: &mut Sheet) {
+    pub(super) fn draw_words(&self, chart: &Chart, sheet: &mut Sheet) {
         let all: Vec<Place> = self.projection.nodes.iter().flatten().map(|place| chart.place(*place)).collect();
         for (side, word) in &self.projection.words {
             let line = self.projection.side(*side).into_iter().filter_map(|at| self.projection.nodes[at]);

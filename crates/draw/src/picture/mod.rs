@@ -37,7 +37,10 @@ mod svg;
 
 pub(crate) use palette::{patch_colours, scale_colours};
 
-pub use contact::{ContactDrawing, ErrorCurves};
+pub use contact::{
+    ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, ErrorCurves, MOST_CONTACTS, Station,
+    StationShape,
+};
 pub use error::PictureError;
 use flank_export::Dataset;
 use flank_export::MotionTable;
@@ -246,11 +249,16 @@ pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Pictu
     on_sheet(options, |size| positions::compose(tables, size))
 }
 
-/// Draws a contact of two flanks: both flanks laid flat with the gap to the mate, the edge of the marking compound thick, the path of
-/// contact on them, and the error of the pairs of teeth over the roll.
+/// Draws contacts of two flanks side by side, each flank laid flat with its length to the right and its tip up.
 #[must_use]
-pub fn contact(drawing: &ContactDrawing, options: &PictureOptions) -> Picture {
-    on_sheet(options, |size| contact::compose(drawing, size))
+pub fn contact(kind: ContactPicture, drawing: &ContactDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| contact::compose(drawing, kind, size))
+}
+
+/// The next of 1, 2, 5, 10, 20, … tenths and so on: a step that numbers on a scale have.
+#[must_use]
+pub fn round_step(value: f64) -> f64 {
+    levels::round_up(value)
 }
 
 /// The letters of pictures that are elements of one page, once for all of them.

@@ -1,14 +1,15 @@
-//! Files of a contact: how near the mate comes to the points of both flanks, the path on both, and pictures.
+//! Files of a contact: how near the mate comes to the points of both flanks, the path on both, and a picture.
 
 use flank_chain_dsl::Job;
-use flank_draw::{ContactDrawing, ErrorCurves, Picture, PictureOptions, contact as picture};
-use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
+use flank_draw::{ContactPicture, DrawnContact, PictureOptions};
+use flank_export::{Axis, Dataset, Field, Patch, Values};
 use flank_solver::{ContactPoint, Outcome, SurfacePoint};
 
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{fine, fine_unit};
 use crate::contact::rolling::Rolling;
+use crate::draw::contacts::drawing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::requests::{ContactRequest, Session};
@@ -16,8 +17,8 @@ use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::{header, patch};
 
-/// Pictures show no gap as wider than so many films: the pattern is to be seen.
-const FILMS: f64 = 5.0;
+/// The field of the least distance to the mate.
+pub(crate) const GAP: &str = "gap";
 
 /// Writes them and names them.
 ///
@@ -27,7 +28,7 @@ pub(crate) fn write(
     job: &Job<'_>,
     members: &Members<'_, '_>,
     rolling: &Rolling,
-    maps: &[GapMap],
+    (maps, drawn): (&[GapMap], DrawnContact),
     (request, origin, session): (&ContactRequest, &Origin, Session),
 ) -> Result<Vec<String>, Failure> {
     let name = format!("{}.{}", job.name, members.contact.name);
@@ -37,47 +38,15 @@ pub(crate) fn write(
         request.compound * 1e3
     ));
     let flanks: Vec<Patch> = maps.iter().enumerate().map(|(member, map)| flank(job, members, member, map)).collect();
-    let drawn =
-        (!request.no_picture).then(|| drawn(job, members, rolling, &flanks, (request.compound, header.clone())));
+    let picture = (!request.no_picture).then(|| {
+        let drawing = drawing(&job.name, vec![drawn], ContactPicture::Overview, header.clone());
+        flank_draw::contact(ContactPicture::Overview, &drawing, &PictureOptions::default())
+    });
     let paths = (0..2).map(|member| path(job, members, rolling, member));
     let dataset = Dataset { header, patches: flanks.into_iter().chain(paths).collect() };
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
-    folder.picture_after(&name, drawn.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
+    folder.picture_after(&name, picture.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
     folder.finish()
-}
-
-/// The picture of a contact, with the origin that stands on it.
-pub(crate) fn picture_of(
-    job: &Job<'_>,
-    members: &Members<'_, '_>,
-    rolling: &Rolling,
-    maps: &[GapMap],
-    (compound, header): (f64, Header),
-) -> Picture {
-    let flanks: Vec<Patch> = maps.iter().enumerate().map(|(member, map)| flank(job, members, member, map)).collect();
-    drawn(job, members, rolling, &flanks, (compound, header))
-}
-
-fn drawn(
-    job: &Job<'_>,
-    members: &Members<'_, '_>,
-    rolling: &Rolling,
-    flanks: &[Patch],
-    (compound, header): (f64, Header),
-) -> Picture {
-    let film = compound * 1e3;
-    let drawing = ContactDrawing {
-        dataset: Dataset { header, patches: flanks.iter().map(|patch| near(patch, compound)).collect() },
-        title: format!("{}: pattern of {}", job.name, members.contact.name),
-        note: format!(
-            "Gap to the mate over the whole mesh of a pair of teeth, um, up to {FILMS} films of {film} um; the compound is pressed away \
-             where it is thinner than one."
-        ),
-        film,
-        paths: [0, 1].map(|member| flank_path(rolling, member)).to_vec(),
-        error: curves(members, rolling, compound),
-    };
-    picture(&drawing, &PictureOptions::default())
 }
 
 fn field(name: &str, unit: &str, meaning: &str, values: impl Iterator<Item = Option<f64>>) -> Field {
@@ -90,7 +59,7 @@ fn field(name: &str, unit: &str, meaning: &str, values: impl Iterator<Item = Opt
 }
 
 /// The points of a flank's sample with the least gap of each.
-fn flank(job: &Job<'_>, members: &Members<'_, '_>, member: usize, map: &GapMap) -> Patch {
+pub(crate) fn flank(job: &Job<'_>, members: &Members<'_, '_>, member: usize, map: &GapMap) -> Patch {
     let surface = members.surfaces[member];
     let sample = surface.sample.as_ref();
     let axis = |k: usize| Axis {
@@ -102,7 +71,7 @@ fn flank(job: &Job<'_>, members: &Members<'_, '_>, member: usize, map: &GapMap) 
     let turn = |position: usize| units::shown(roll.dimension, map.positions[position][0]);
     let fields = vec![
         field(
-            "gap",
+            GAP,
             "um",
             "least distance to the mate along the normal, over the mesh",
             map.gaps.iter().map(|gap| Some(1e3 * (*gap)?.distance)),
@@ -121,73 +90,6 @@ fn unit_name(dimension: flank_chain_dsl::Dimension) -> &'static str {
     match units::symbol(dimension) {
         "" => "1",
         symbol => symbol,
-    }
-}
-
-/// The same, no gap wider than so many films.
-fn near(patch: &Patch, compound: f64) -> Patch {
-    let Values::Scalars(gaps) = &patch.fields[0].values else { return patch.clone() };
-    let near = gaps.iter().map(|gap| gap.map(|gap| gap.min(FILMS * 1e3 * compound)));
-    Patch {
-        fields: vec![Field { values: Values::Scalars(near.collect()), ..patch.fields[0].clone() }],
-        ..patch.clone()
-    }
-}
-
-/// Where the flanks touch on one of them.
-fn flank_path(rolling: &Rolling, member: usize) -> Vec<[f64; 3]> {
-    let flank = rolling.engagement.points.iter().filter(|point| point.is_of_flanks());
-    flank.map(|point| point.in_members[member]).collect()
-}
-
-/// Pairs of teeth are drawn as far as they stay behind the one that carries by no more than so many times its own error.
-const BEHIND: f64 = 4.0;
-
-/// The error of each pair of teeth that touches over the pitch about the middle, and of the one that carries.
-fn curves(members: &Members<'_, '_>, rolling: &Rolling, compound: f64) -> ErrorCurves {
-    let (roll, lag) = (&members.contact.roll, &members.contact.lag);
-    let reference = rolling.middle().map_or(0.0, |middle| middle.lag);
-    let engagement = &rolling.engagement;
-    let place =
-        |step: isize, at: f64| [units::shown(roll.dimension, rolling.roll(step)), fine(lag.dimension, at - reference)];
-    let steps = || rolling.steps();
-    let mut numbers: Vec<isize> = steps().flat_map(|step| engagement.pairs(step)).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
-    if !rolling.has_pitch {
-        numbers = vec![0];
-    }
-    let lags: Vec<f64> = steps().filter_map(|step| Some(engagement.carried(step)?.lag)).collect();
-    let ends = lags.iter().fold([f64::MAX, f64::MIN], |[low, high], lag| [low.min(*lag), high.max(*lag)]);
-    let is_shown = |point: &ContactPoint, step: isize| {
-        let carried = engagement.carried(step).filter(|_| rolling.has_pitch);
-        carried.is_none_or(|carried| {
-            (point.lag - carried.lag).abs() <= (BEHIND * (ends[1] - ends[0])).max(compound / point.opening.abs())
-        })
-    };
-    let pair = |number: isize| {
-        let mut pieces: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
-        for step in steps() {
-            let Some(point) = engagement.point(number, step).filter(|point| is_shown(point, step)) else { continue };
-            let (is_edge, at) = (!point.is_of_flanks(), place(step, point.lag));
-            match pieces.last_mut() {
-                Some((kind, points)) if *kind == is_edge => points.push(at),
-                // pieces share the point between them
-                last => {
-                    let before = last.and_then(|(_, points)| points.last().copied());
-                    pieces.push((is_edge, before.into_iter().chain([at]).collect()));
-                }
-            }
-        }
-        pieces
-    };
-    let carried = |step: isize| Some(place(step, engagement.carried(step)?.lag));
-    let unit = units::symbol(roll.dimension);
-    ErrorCurves {
-        over: format!("{}, {unit}", roll.name),
-        unit: fine_unit(lag.dimension).to_string(),
-        pairs: numbers.into_iter().map(pair).collect(),
-        composite: if rolling.has_pitch { steps().filter_map(carried).collect() } else { Vec::new() },
     }
 }
 

@@ -1,5 +1,6 @@
 //! `flank contact`
 
+pub(crate) mod drawn;
 pub(crate) mod files;
 pub(crate) mod influence;
 mod interference;
@@ -16,8 +17,7 @@ mod text;
 use std::time::Instant;
 
 use flank_chain_dsl::{Contact, Job};
-use flank_draw::Picture;
-use flank_export::Header;
+use flank_draw::DrawnContact;
 use flank_expr::Graph;
 use flank_solver::NoContact;
 
@@ -30,7 +30,7 @@ use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ContactRequest, JobSelection, Session};
+use crate::project::requests::{ContactRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 
@@ -119,7 +119,8 @@ fn of_contact(
     } else {
         (None, Vec::new())
     };
-    let files = files::write(job, &members, &rolling, &patterns, (request, origin, session))?;
+    let shown = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
+    let files = files::write(job, &members, &rolling, (&patterns, shown), (request, origin, session))?;
     let result = summary.of_rolling(&rolling, &patterns);
     Ok(ContactResult {
         influences,
@@ -152,7 +153,7 @@ pub(crate) fn rolled<'j, 'g>(
     request: &ContactRequest,
     session: Session,
 ) -> Result<Rolled<'j, 'g>, Failure> {
-    let errors = influence::mounting(job, contact, &[])?;
+    let errors = influence::mounting(job, contact, &request.errors)?;
     let mut members = Members::solved(job, contact, session)?;
     members.check_range(job)?;
     let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
@@ -170,23 +171,27 @@ pub(crate) fn rolled<'j, 'g>(
     Ok(Rolled { result, members, found: Some((rolling, maps)) })
 }
 
-/// A contact for a page that writes no files of its own: what is known of it, and its picture with this origin if the flanks touch.
+/// A contact for what writes no files of its own: what is known of it, and what pictures show of it if the flanks touch.
 ///
 /// # Errors
-/// See [`rolled`].
+/// If an error names no axis of the pair; see [`rolled`].
 pub(crate) fn shown(
     job: &Job<'_>,
     contact: &Contact<'_>,
-    jobs: &JobSelection,
-    (header, session): (&Header, Session),
-) -> Result<(ContactResult, Option<Picture>), Failure> {
-    let request = ContactRequest::new(jobs.clone());
-    let errors = influence::mounting(job, contact, &[])?;
-    let Rolled { result, members, found } = rolled(job, contact, &request, session)?;
+    request: &ContactRequest,
+    session: Session,
+) -> Result<(ContactResult, Option<DrawnContact>), Failure> {
+    let errors = influence::mounting(job, contact, &request.errors)?;
+    let Rolled { result, members, found } = rolled(job, contact, request, session)?;
     let Some((rolling, patterns)) = found else { return Ok((result, None)) };
-    let influences = influence::of_all(job, &members, &errors, &rolling, request.compound);
-    let picture = files::picture_of(job, &members, &rolling, &patterns, (request.compound, header.clone()));
-    Ok((ContactResult { influences, ..result }, Some(picture)))
+    let influences = if request.sensitivity {
+        influence::of_all(job, &members, &errors, &rolling, request.compound)
+    } else {
+        Vec::new()
+    };
+    let pair = members.pair(job, &errors, &[]);
+    let drawn = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
+    Ok((ContactResult { influences, ..result }, Some(drawn)))
 }
 
 /// Why two flanks do not touch, with a way out.

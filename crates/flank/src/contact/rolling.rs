@@ -14,6 +14,9 @@ const COARSE: usize = 12;
 /// An error of the ratio below this at all positions is none: rounding.
 const STRAIGHT: f64 = 1e-12;
 
+/// Pairs of teeth whose errors differ by no more than this turn alike: rounding.
+const ALIKE: f64 = 1e-11;
+
 /// The teeth of the second member that are tried, by pitches.
 const TEETH: [i32; 3] = [0, 1, -1];
 
@@ -101,6 +104,27 @@ impl Rolling {
         let Engagement { steps, pitch, .. } = self.engagement;
         let middle = self.middle().map_or(f64::NAN, |point| point.roll);
         middle + step as f64 * pitch / steps as f64
+    }
+
+    /// Roll positions at which one pair of teeth hands over to the next.
+    pub(crate) fn transfers(&self) -> Vec<f64> {
+        let engagement = &self.engagement;
+        let steps = if self.has_pitch { self.steps() } else { 0..0 };
+        let handed = (steps.start..steps.end).filter_map(|step| {
+            let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
+            let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
+            // two pairs that turn alike hand nothing over: which one is ahead is rounding
+            let ahead = |step: isize| {
+                let [before, after] = [before, after].map(|pair| engagement.point(pair, step).map(|point| point.lag));
+                Some((before? - after?).abs())
+            };
+            if [step, step + 1].into_iter().any(|step| ahead(step).is_some_and(|ahead| ahead < ALIKE)) {
+                return None;
+            }
+            let between = [self.roll(step), self.roll(step + 1)];
+            self.problem.transfer(engagement, [before, after], between)
+        });
+        handed.collect()
     }
 
     /// The composite lag at any roll position.

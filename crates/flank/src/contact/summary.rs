@@ -18,8 +18,6 @@ use crate::project::requests::{ContactRequest, Session};
 use crate::project::units;
 use crate::solve::blank;
 
-/// Pairs of teeth whose errors differ by no more than this turn alike: rounding.
-const ALIKE: f64 = 1e-11;
 /// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
 const ON_EDGE: f64 = 1e-6;
 /// A gap below this is no rounding: the mate reaches in, mm.
@@ -170,7 +168,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             false => engagement.point(0, step).map(|point| point.lag),
         };
         // between two positions the composite is extreme where a pair hands over; the vertex is one of them
-        let handed = if rolling.has_pitch { self.transfers(rolling) } else { Vec::new() };
+        let handed = rolling.transfers();
         let at_transfers = handed.iter().filter_map(|roll| rolling.lag_at(*roll));
         let lags: Vec<f64> = rolling.steps().filter_map(lag).chain(at_transfers).collect();
         let ends = lags.iter().map(|lag| (*lag, *lag)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)))?;
@@ -189,27 +187,6 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let Some(carried) = engagement.carried(step) else { return 0 };
         let points = engagement.pairs(step).into_iter().filter_map(|pair| engagement.point(pair, step));
         points.filter(|point| ((point.lag - carried.lag) * point.opening).abs() <= self.request.compound).count()
-    }
-
-    /// Roll positions at which one pair of teeth hands over to the next.
-    fn transfers(&self, rolling: &Rolling) -> Vec<f64> {
-        let engagement = &rolling.engagement;
-        let steps = rolling.steps();
-        let handed = (steps.start..steps.end).filter_map(|step| {
-            let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
-            let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
-            // two pairs that turn alike hand nothing over: which one is ahead is rounding
-            let ahead = |step: isize| {
-                let [before, after] = [before, after].map(|pair| engagement.point(pair, step).map(|point| point.lag));
-                Some((before? - after?).abs())
-            };
-            if [step, step + 1].into_iter().any(|step| ahead(step).is_some_and(|ahead| ahead < ALIKE)) {
-                return None;
-            }
-            let between = [rolling.roll(step), rolling.roll(step + 1)];
-            rolling.problem.transfer(engagement, [before, after], between)
-        });
-        handed.collect()
     }
 
     /// Where contact of the flanks begins and ends, with the roll positions.

@@ -1,6 +1,7 @@
 //! `flank plot`
 
 mod comparison;
+pub(crate) mod contacts;
 mod machine;
 mod maps;
 mod motion;
@@ -65,6 +66,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(P
             "option `of` names what `sensitivity` shows, and that is not among option `what`".to_string(),
         ));
     }
+    contacts::check(request)?;
     match &request.reference {
         Some(_) => comparison::check(request)?,
         None if request.what.contains(&PlotKind::Deviation) => {
@@ -90,6 +92,7 @@ fn plot_jobs(
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Vec<PlotResult>, Failure> {
+    contacts::check_names(jobs, request)?;
     let named = request.surface.iter().map(|name| find(jobs, name)).collect::<Result<Vec<_>, _>>()?;
     if let [first, rest @ ..] = &named[..]
         && let Some(other) = rest.iter().find(|other| other.job.name != first.job.name)
@@ -97,43 +100,63 @@ fn plot_jobs(
         let [first, other] = [first, other].map(Named::whole_name);
         return Err(format!("`{first}` and `{other}` belong to different jobs; draw them one after the other").into());
     }
+    let shows_contacts = request.what.iter().any(|what| contacts::KINDS.contains(what));
+    // without any contact each job says what fits instead
+    let without = jobs.iter().all(|job| job.contacts.is_empty());
     let is_meant = |job: &&Job<'_>| match named.first() {
         Some(of) => of.job.name == job.name,
+        None if shows_contacts && !without => !contacts::of_job(job, request).is_empty(),
         None => job.surfaces.iter().any(|surface| surface.sample.is_some()),
     };
     let meant: Vec<&Job<'_>> = jobs.iter().filter(is_meant).collect();
     if meant.is_empty() {
         return Err("no job asks for points: add a `sample` for one of its surfaces".to_string().into());
     }
+    let of_surfaces: Vec<PlotKind> =
+        request.what.iter().copied().filter(|what| !contacts::KINDS.contains(what)).collect();
     let plot = |job: &&Job<'_>| -> Result<PlotResult, Failure> {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
         let header = with_origin(solve::header(&[job], &request.jobs, origin), request);
         let solved = |kinds: &[PlotKind]| Subject::new(job, &names, header.clone(), kinds, session);
-        let subject = solved(&request.what)?;
-        session.check()?;
         // what fits is known of what is solved with all that pictures show
-        let drawings = drawings(&subject, request).map_err(|(what, why)| {
+        let refused = |(what, why): (PlotKind, Unfit)| -> Failure {
             solved(PlotKind::ALL).map_or_else(|e| e, |all| unfit(&all, what, &why, request).into())
-        })?;
-        let written = write(&drawings, &job.name, (request, session), origin)?;
-        let mut not_done = table::failures(job, &subject.solved);
-        not_done.extend(cut::unknown(subject.solved.iter().map(Solved::left)));
-        not_done.extend(travel::beyond(job, &subject.solved));
+        };
+        let (mut drawn, mut not_done) = (Vec::new(), Vec::new());
+        if !of_surfaces.is_empty() || request.what.is_empty() {
+            let subject = solved(&of_surfaces)?;
+            session.check()?;
+            drawn.extend(drawings(&subject, &of_surfaces, request).map_err(refused)?);
+            not_done.extend(table::failures(job, &subject.solved));
+            not_done.extend(cut::unknown(subject.solved.iter().map(Solved::left)));
+            not_done.extend(travel::beyond(job, &subject.solved));
+        }
+        if shows_contacts {
+            let found = contacts::solved(job, request, session)?;
+            drawn.extend(contacts::drawings(job, &found, request, &header).map_err(refused)?);
+            not_done.extend(found.not_done);
+        }
+        drawn.sort_by_key(|(what, _)| request.what.iter().position(|asked| asked == what));
+        let written = write(&drawn, &job.name, (request, session), origin)?;
         Ok(told(&job.name, written, origin.located(&[job], not_done), request))
     };
     meant.iter().map(plot).collect()
 }
 
-/// What is asked for.
+/// What is asked for of surfaces.
 ///
 /// # Errors
 /// The first kind that does not fit, and why.
-fn drawings(subject: &Subject<'_, '_>, request: &PlotRequest) -> Result<Vec<(PlotKind, Drawing)>, (PlotKind, Unfit)> {
+fn drawings(
+    subject: &Subject<'_, '_>,
+    kinds: &[PlotKind],
+    request: &PlotRequest,
+) -> Result<Vec<(PlotKind, Drawing)>, (PlotKind, Unfit)> {
     let options = options(request);
-    if request.what.is_empty() {
+    if kinds.is_empty() {
         return Ok(defaults(subject, options));
     }
-    let asked = request.what.iter().map(|&what| {
+    let asked = kinds.iter().map(|&what| {
         draw(subject, what, &request.of, options).map(|drawing| (what, drawing)).map_err(|why| (what, why))
     });
     asked.collect()
@@ -169,11 +192,16 @@ pub(crate) fn draw(
         PlotKind::Section => section::draw(subject, &options),
         PlotKind::Machine => machine::draw(subject, &options),
         PlotKind::Motion => motion::draw(subject, &options),
+        PlotKind::Pattern | PlotKind::Error | PlotKind::Gap | PlotKind::Path => Err(contacts::NONE.to_string()),
     }
 }
 
 fn unfit(subject: &Subject<'_, '_>, what: PlotKind, why: &str, request: &PlotRequest) -> String {
-    let others = PlotKind::ALL.iter().filter(|other| draw(subject, **other, &request.of, options(request)).is_ok());
+    let fits = |other: PlotKind| match contacts::KINDS.contains(&other) {
+        true => !subject.job.contacts.is_empty(),
+        false => draw(subject, other, &request.of, options(request)).is_ok(),
+    };
+    let others = PlotKind::ALL.iter().filter(|other| fits(**other));
     let others: Vec<String> = others.map(|other| other.name().to_string()).collect();
     format!(
         "option `what {}` does not fit job {}: {why}\nwhat fits: {}",

@@ -160,6 +160,14 @@ choices! {
         Machine = "machine",
         /// Positions of the axes over the motions.
         Motion = "motion",
+        /// Contact pattern of a pair: both flanks laid flat with what the marking compound shows, path and ellipses.
+        Pattern = "pattern",
+        /// Transmission error of a pair over the roll, with all pairs of teeth in mesh.
+        Error = "error",
+        /// Maps of the least gap between the flanks of a pair over the roll.
+        Gap = "gap",
+        /// The path of contact of a pair on both flanks, with roll positions and ellipses.
+        Path = "path",
     }
 }
 

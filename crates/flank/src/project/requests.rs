@@ -182,6 +182,14 @@ pub struct PlotRequest {
     pub reference: Option<String>,
     /// The parameters whose influence is shown; those that do most otherwise.
     pub of: Vec<String>,
+    /// The contacts that pictures of contacts show; all of a job if none is named.
+    pub contact: Vec<String>,
+    /// How the members of contacts are mounted wrong, as for [`ContactRequest::errors`].
+    pub errors: Vec<(String, MountingError)>,
+    /// Positions over a pitch, if not as many as [`ContactRequest::new`] has.
+    pub positions: Option<u32>,
+    /// Thickness of the marking compound, mm, if not that of [`ContactRequest::new`].
+    pub compound: Option<f64>,
     /// Folder for the files; made if it is not there.
     pub out: PathBuf,
     /// Files of each picture.

@@ -1,18 +1,21 @@
 //! The contacts of a job on its report.
 
-use flank_draw::{Block, Column, Figure, ReportSection, Tone};
+use flank_draw::{Block, Column, DrawnContact, Figure, PictureOptions, ReportSection, Tone};
 use flank_export::fixed;
 
 use super::Findings;
 use crate::contact::result::ContactResult;
+use crate::draw::Drawing;
+use crate::draw::contacts::draw;
+use crate::project::choices::{Choice, PlotKind};
 
-/// What is known of each contact, with its picture.
+/// What is known of each contact, with its pictures.
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
     let blocks: Vec<Block> = findings.contacts.iter().flat_map(|contact| of_contact(findings, contact)).collect();
     (!blocks.is_empty()).then(|| ReportSection { title: "Contact".to_string(), blocks })
 }
 
-fn of_contact(findings: &Findings<'_, '_>, (result, picture): &super::ShownContact) -> Vec<Block> {
+fn of_contact(findings: &Findings<'_, '_>, (result, drawn): &super::ShownContact) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(result.contact.clone()), Block::Paragraph(result.heading())];
     for missing in &result.not_done {
         let details = missing.details.iter().map(|detail| findings.spelled(detail)).collect();
@@ -23,14 +26,14 @@ fn of_contact(findings: &Findings<'_, '_>, (result, picture): &super::ShownConta
     }
     blocks.push(Block::Facts(result.facts()));
     blocks.extend(influences(result));
-    blocks.extend(picture.iter().map(|picture| {
-        let name = format!("{}.report.{}", findings.job.name, result.contact);
-        Block::Figure(Figure {
-            name,
-            picture: picture.clone(),
-            caption: "what the marking compound shows, the path of contact, and the error over the roll".to_string(),
-        })
-    }));
+    let figure = |what: PlotKind, contact: &DrawnContact| {
+        let from = (findings.subject.dataset.header.clone(), &PictureOptions::default());
+        let Drawing { picture, shows } = draw(&findings.job.name, std::slice::from_ref(contact), what, from);
+        let name = format!("{}.report.{}.{}", findings.job.name, result.contact, what.name());
+        Block::Figure(Figure { name, picture, caption: format!("{}: {shows}", what.name()) })
+    };
+    let kinds = [PlotKind::Pattern, PlotKind::Error];
+    blocks.extend(drawn.iter().flat_map(|contact| kinds.map(|what| figure(what, contact))));
     blocks
 }
 

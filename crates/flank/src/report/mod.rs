@@ -15,7 +15,7 @@ mod target;
 mod unchecked;
 
 use flank_chain_dsl::{Job, Sources};
-use flank_draw::{Block, Figure, Picture, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_draw::{Block, DrawnContact, Figure, PictureOptions, Report as Document, ReportSection, Tone};
 use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
@@ -26,7 +26,7 @@ use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::NotDone;
-use crate::project::requests::{ReportRequest, Session, check};
+use crate::project::requests::{ContactRequest, ReportRequest, Session, check};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::certify;
@@ -87,8 +87,8 @@ struct Findings<'j, 'g> {
     contacts: Vec<ShownContact>,
 }
 
-/// What is known of a contact, and its picture.
-type ShownContact = (ContactResult, Option<Picture>);
+/// What is known of a contact, and what pictures show of it.
+type ShownContact = (ContactResult, Option<DrawnContact>);
 
 impl<'j, 'g> Findings<'j, 'g> {
     fn of_job(
@@ -121,7 +121,8 @@ impl<'j, 'g> Findings<'j, 'g> {
         let header = solve::header(&[job], &request.jobs, origin);
         // the page says once where all its pictures come from
         let unsigned = Header { spec: String::new(), ..header.clone() };
-        let shown = |contact| contact::shown(job, contact, &request.jobs, (&unsigned, wanted.session));
+        let of_contacts = ContactRequest { sensitivity: true, ..ContactRequest::new(request.jobs.clone()) };
+        let shown = |contact| contact::shown(job, contact, &of_contacts, wanted.session);
         let contacts = job.contacts.iter().map(shown).collect::<Result<_, Failure>>()?;
         let subject = Subject::of_solved(job, solved, &[], unsigned)?;
         let drawings = draw::defaults(&subject, PictureOptions::default());

@@ -1,0 +1,190 @@
+//! A flank of a contact laid flat.
+
+use flank_export::text::{one_line, shown_unit};
+
+use super::{ContactPicture, DrawnContact, DrawnFlank, StationShape};
+use crate::picture::calls::{self, Call};
+use crate::picture::chart::{self, Chart, Title};
+use crate::picture::contours::ValueGrid;
+use crate::picture::font;
+use crate::picture::levels::Levels;
+use crate::picture::maps::{self, Panel, Style};
+use crate::picture::occupancy::Occupancy;
+use crate::picture::paint::{Anchor, Colour, Place, Rect, Sheet};
+use crate::picture::palette::{self, GREY, INK, PALE, WHITE};
+
+/// Above a flank: what it is, and how it is laid flat.
+const HEAD: f64 = 66.0;
+/// The key below the gaps with its numbers.
+const KEY: f64 = 12.0;
+const FOOT: f64 = 40.0;
+
+/// Where the compound is pressed away, and the edge of that.
+const FILM: Colour = Colour([151, 202, 230]);
+const FILM_EDGE: Colour = Colour([0, 114, 178]);
+/// The path of contact: seen on each colour of the maps.
+const PATH: Colour = palette::RED;
+const DASHES: [f64; 2] = [5.0, 4.0];
+
+/// Half of the size of a mark.
+const MARK: f64 = 4.5;
+/// A label stands no farther from its place, sheet units.
+const FARTHEST: f64 = 72.0;
+
+/// A flank on its axes.
+struct FlankMap<'a> {
+    flank: &'a DrawnFlank,
+    panel: Panel<'a>,
+    chart: Chart,
+    /// The roll positions of the least gap, and the film.
+    met: Option<Panel<'a>>,
+    film: f64,
+    /// All of the flank, whether it has a gap there or not.
+    ground: ValueGrid,
+}
+
+pub(super) fn draw(contact: &DrawnContact, flank: &DrawnFlank, kind: ContactPicture, rect: Rect, sheet: &mut Sheet) {
+    let Some(panel) = Panel::of_patch(&flank.patch, 0, Style::Bands).map(Panel::laid_flat) else { return };
+    let is_gap = matches!(kind, ContactPicture::Gap | ContactPicture::Overview);
+    let foot = if is_gap { FOOT } else { 0.0 };
+    let chart = panel.chart(Rect { top: rect.top + HEAD, bottom: rect.bottom - foot, ..rect });
+    let ground = panel.grid_of(&chart, |_| Some(0.0));
+    let met = Panel::of_patch(&flank.patch, 1, Style::Lines);
+    let map = FlankMap { flank, panel, chart, met, film: contact.film, ground };
+    map.write_heading(&contact.name, rect, sheet);
+    let titles = map.panel.projection.titles.each_ref();
+    let numbered = map.panel.projection.is_in_mm();
+    map.chart.draw_axes(titles.map(|text| Title { text, numbered }), sheet);
+    map.ground.silhouette(PALE, sheet);
+    let gaps = map.panel.grid(&map.chart);
+    match (kind, &map.panel.levels) {
+        (ContactPicture::Gap | ContactPicture::Overview, Some(levels)) => {
+            map.panel.draw_bands(&gaps, levels, sheet);
+            gaps.lines(contact.film).iter().for_each(|line| sheet.line(line, INK, 2.6));
+            map.draw_key(levels, rect, sheet);
+        }
+        (ContactPicture::Pattern, _) => {
+            gaps.fill_up_to(contact.film, FILM, sheet);
+            gaps.lines(contact.film).iter().for_each(|line| sheet.line(line, FILM_EDGE, 1.6));
+        }
+        _ => {}
+    }
+    map.panel.draw_border(&map.ground, 1.2, sheet);
+    if !is_gap {
+        map.draw_stations(sheet);
+    }
+    map.draw_path(sheet);
+    map.panel.draw_words(&map.chart, sheet);
+    map.draw_marks(kind, sheet);
+}
+
+impl FlankMap<'_> {
+    fn write_heading(&self, contact: &str, rect: Rect, sheet: &mut Sheet) {
+        let room = rect.width();
+        let name = one_line(&format!("{contact}: {}", self.flank.patch.name));
+        let size = (17.0 * room / font::width(&name, 17.0)).clamp(12.0, 17.0);
+        sheet.text([rect.left, rect.top + 15.0], Anchor::Start, size, INK, &font::fitted(&name, size, room));
+        let about = one_line(&format!("{}; {}", self.flank.patch.frame, self.panel.about(&self.chart)));
+        sheet.text([rect.left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &font::fitted(&about, 13.0, room));
+    }
+
+    fn draw_key(&self, levels: &Levels, rect: Rect, sheet: &mut Sheet) {
+        let top = self.chart.rect.bottom + chart::MARGINS[3] + 6.0;
+        let key = Rect { left: self.chart.rect.left, top, right: rect.right, bottom: top + KEY };
+        maps::draw_key(levels, &shown_unit(&self.panel.field.unit), key, sheet);
+    }
+
+    fn place(&self, position: [f64; 3]) -> Option<Place> {
+        self.panel.projection.place(position).map(|place| self.chart.place(place))
+    }
+
+    fn places(&self, line: &[[f64; 3]]) -> Vec<Place> {
+        line.iter().filter_map(|position| self.place(*position)).collect()
+    }
+
+    /// Ellipses and lines of contact, as far as they lie on the flank.
+    fn draw_stations(&self, sheet: &mut Sheet) {
+        let sides = self.ground.borders();
+        for station in &self.flank.stations {
+            match &station.shape {
+                StationShape::Point { ellipse, .. } => {
+                    let places = self.places(ellipse);
+                    let parts = places.split(|place| !is_within(&sides, *place)).filter(|part| part.len() > 1);
+                    parts.for_each(|part| sheet.line(part, INK, 0.8));
+                }
+                StationShape::Line(roll) => {
+                    self.lines_of_contact(*roll).iter().for_each(|line| sheet.line(line, INK, 0.8));
+                }
+            }
+        }
+    }
+
+    /// Where the flank is nearest to its mate at a roll position, within the film.
+    fn lines_of_contact(&self, roll: f64) -> Vec<Vec<Place>> {
+        let Some(met) = &self.met else { return Vec::new() };
+        let value = |at: usize| met.values[at].filter(|_| self.panel.values[at].is_some_and(|gap| gap <= self.film));
+        self.panel.grid_of(&self.chart, value).lines(roll)
+    }
+
+    fn draw_path(&self, sheet: &mut Sheet) {
+        for (is_edge, line) in &self.flank.path {
+            let places = self.places(line);
+            if *is_edge { sheet.dashes(&places, DASHES, PATH, 1.8) } else { sheet.line(&places, PATH, 2.4) }
+        }
+    }
+
+    /// The middle as a ring, transfers as dots, and round roll positions on the path, each with its label.
+    fn draw_marks(&self, kind: ContactPicture, sheet: &mut Sheet) {
+        let Rect { right, bottom, .. } = self.chart.rect;
+        let mut taken = Occupancy::new(right, bottom);
+        for (_, line) in &self.flank.path {
+            self.places(line).windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
+        }
+        for side in self.ground.borders() {
+            side.windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
+        }
+        let mut calls = Vec::new();
+        let mut call = |at: Place, text: &str, rank: u8| {
+            calls.push(Call { at, text: one_line(text), size: 13.0, colour: INK, rank, farthest: FARTHEST });
+        };
+        if kind == ContactPicture::Path {
+            for station in &self.flank.stations {
+                let at = match &station.shape {
+                    StationShape::Point { position, .. } => self.place(*position),
+                    StationShape::Line(roll) => self.lines_of_contact(*roll).first().map(|line| line[line.len() / 2]),
+                };
+                let Some(at) = at else { continue };
+                sheet.polygon(&around(at, 2.2), PATH, PATH, 0.5);
+                call(at, &station.label, 2);
+            }
+        }
+        for mark in &self.flank.marks {
+            let Some(at) = self.place(mark.position) else { continue };
+            let fill = if mark.is_transfer { INK } else { WHITE };
+            sheet.polygon(&around(at, MARK), fill, INK, 1.6);
+            taken.take(&Rect { left: at[0], top: at[1], right: at[0], bottom: at[1] }.shrunk(-MARK - 2.0));
+            if matches!(kind, ContactPicture::Pattern | ContactPicture::Path) {
+                call(at, &mark.label, u8::from(mark.is_transfer));
+            }
+        }
+        calls::write(calls, self.chart.rect, &mut taken, sheet);
+    }
+}
+
+/// A small circle.
+fn around(at: Place, radius: f64) -> Vec<Place> {
+    let corner = |k: u32| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 16.0).sin_cos();
+        [at[0] + radius * cos, at[1] + radius * sin]
+    };
+    (0..16).map(corner).collect()
+}
+
+/// Whether a place lies within closed lines: a ray from there crosses them an odd number of times.
+fn is_within(sides: &[Vec<Place>], [x, y]: Place) -> bool {
+    let crosses = |pair: &&[Place]| {
+        let [[ax, ay], [bx, by]] = [pair[0], pair[1]];
+        (ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay)
+    };
+    sides.iter().flat_map(|side| side.windows(2)).filter(crosses).count() % 2 == 1
+}
