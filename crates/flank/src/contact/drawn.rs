@@ -7,8 +7,8 @@ use flank_export::{Field, Patch, Values, fixed};
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{ContactPoint, ContactState, RollingPair};
 
-use crate::contact::files;
 use crate::contact::pair::Members;
+use crate::contact::patches;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{fine, fine_unit};
 use crate::contact::rolling::Rolling;
@@ -36,7 +36,7 @@ pub(crate) fn drawn<'g>(
     let stations = stations(members, rolling);
     let transfers = rolling.transfers();
     let flank = |member: usize| DrawnFlank {
-        patch: near(files::flank(job, members, member, &maps[member]), compound),
+        patch: near(patches::flank(job, members, member, &maps[member]), compound),
         path: path(rolling, member),
         stations: match rolling.state() {
             Some(ContactState::Line) => stations.iter().map(|point| line_at(members, point)).collect(),
@@ -55,7 +55,7 @@ pub(crate) fn drawn<'g>(
 /// The same points, no gap wider than so many films.
 fn near(patch: Patch, compound: f64) -> Patch {
     let near = |field: Field| match field.values {
-        Values::Scalars(gaps) if field.name == files::GAP => {
+        Values::Scalars(gaps) if field.name == patches::GAP => {
             let gaps = gaps.iter().map(|gap| gap.map(|gap| gap.min(FILMS * 1e3 * compound))).collect();
             Field { values: Values::Scalars(gaps), ..field }
         }
