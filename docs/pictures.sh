@@ -69,6 +69,8 @@ picture sensitivity $pinion --what sensitivity
 picture curvature $pinion --what curvature
 picture contact_lines $pinion --what contact-lines
 picture residual $pinion --what residual
+picture contact_pattern specs/pairs/bevel_19x62.chain --what pattern
+picture contact_error specs/pairs/bevel_19x62.chain --what error
 picture section specs/hobbing/spur_gear.chain --what section
 picture section_bevel $pinion --what section
 picture machine $pinion --what machine
