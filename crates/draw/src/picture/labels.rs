@@ -147,17 +147,22 @@ fn moved(place: Place, direction: Place, by: f64) -> Place {
     [place[0] + by * direction[0], place[1] + by * direction[1]]
 }
 
-/// Writes a word beside the middle of a border, or where else along it the rectangle has room.
-pub(super) fn word_beside(border: &Border, word: &str, rect: Rect, sheet: &mut Sheet) {
-    let place = |share: f64| {
+/// Writes a word beside the middle of a border, or where else along it the rectangle has room and nothing else stands.
+pub(super) fn word_beside(border: &Border, word: &str, rect: Rect, taken: &mut Occupancy, sheet: &mut Sheet) {
+    let place = |distance: f64, share: f64| {
         let (place, _, outward) = border.at(share);
         let half = 0.5 * font::width(word, WORD);
-        let [x, y] = moved(place, outward, 8.0 + half * outward[0].abs() + 0.5 * WORD * outward[1].abs());
+        let [x, y] = moved(place, outward, distance + half * outward[0].abs() + 0.5 * WORD * outward[1].abs());
         [x, y + 0.27 * WORD]
     };
-    let fits = |base: &Place| rect.contains(&text_rect(*base, Anchor::Middle, WORD, word));
-    if let Some(base) = [0.5, 0.35, 0.65, 0.2, 0.8].map(place).into_iter().find(fits) {
-        sheet.text(base, Anchor::Middle, WORD, INK, word);
+    let covered = |base: &Place| text_rect(*base, Anchor::Middle, WORD, word);
+    let along = [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92];
+    let all = [8.0, 22.0].into_iter().flat_map(|distance| along.map(|share| place(distance, share)));
+    let fitting: Vec<Place> = all.filter(|base| rect.contains(&covered(base))).collect();
+    let load = |base: &&Place| taken.share(&covered(base));
+    // the first of those that cover the least
+    if let Some(base) = fitting.iter().min_by(|a, b| load(a).total_cmp(&load(b))) {
+        taken.take(&sheet.text(*base, Anchor::Middle, WORD, INK, word));
     }
 }
 

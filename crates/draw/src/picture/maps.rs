@@ -187,7 +187,7 @@ impl<'a> Panel<'a> {
         if self.levels.is_some() {
             self.draw_missing(chart, sheet);
         }
-        self.draw_words(chart, sheet);
+        self.draw_words(chart, &mut Occupancy::new(chart.rect.right, chart.rect.bottom), sheet);
     }
 
     /// The axes, with room around the flank for words.
@@ -311,13 +311,13 @@ impl<'a> Panel<'a> {
     }
 
     /// What the sides are, in words beside them.
-    pub(super) fn draw_words(&self, chart: &Chart, sheet: &mut Sheet) {
+    pub(super) fn draw_words(&self, chart: &Chart, taken: &mut Occupancy, sheet: &mut Sheet) {
         let all: Vec<Place> = self.projection.nodes.iter().flatten().map(|place| chart.place(*place)).collect();
         for (side, word) in &self.projection.words {
             let line = self.projection.side(*side).into_iter().filter_map(|at| self.projection.nodes[at]);
             let points: Vec<Place> = line.map(|place| chart.place(place)).collect();
             if let Some(border) = Border::new(points, &all) {
-                labels::word_beside(&border, word, chart.rect, sheet);
+                labels::word_beside(&border, word, chart.rect, taken, sheet);
             }
         }
     }

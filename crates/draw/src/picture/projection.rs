@@ -9,6 +9,10 @@ use flank_export::vector::{Vector, cross, dot, length, sub};
 /// A patch of which less than this share is seen in the axial plane is laid by rows and columns.
 const LEAST_SHARE: f64 = 0.04;
 
+/// A patch lies over itself on paper where areas that are turned over take more than half of what this leaves: the last cells at a
+/// corner may be.
+const UNFOLDED: f64 = 0.98;
+
 /// What goes across and up where a flank is laid flat.
 const LAID_FLAT: [&str; 2] = ["lengthwise, mm", "profilewise, mm"];
 
@@ -70,7 +74,7 @@ impl Projection {
     pub(super) fn laid_flat(patch: &Patch, mesh: &Mesh) -> Projection {
         let all: Vec<(Side, String)> = words(patch, mesh);
         let flat: Vec<Option<[f64; 2]>> = mesh.nodes.iter().map(|node| Some(axial(node.as_ref()?.position))).collect();
-        let is_shown = share_seen(mesh, &flat) >= LEAST_SHARE && !is_thread(patch);
+        let is_shown = share_seen(mesh, &flat) >= LEAST_SHARE && !is_folded(mesh, &flat) && !is_thread(patch);
         let plain = Projection {
             rows: mesh.rows,
             columns: mesh.columns,
@@ -251,6 +255,18 @@ fn share_seen(mesh: &Mesh, flat: &[Option<[f64; 2]>]) -> f64 {
         seen += (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     }
     if all > 0.0 { seen.abs() / all } else { 0.0 }
+}
+
+/// Whether a patch lies over itself in the axial plane.
+fn is_folded(mesh: &Mesh, flat: &[Option<[f64; 2]>]) -> bool {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for face in mesh.faces() {
+        let (Some(p), Some(q), Some(r)) = (flat[face[0]], flat[face[1]], flat[face[2]]) else { continue };
+        let area: f64 = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        sum += area;
+        all += area.abs();
+    }
+    sum.abs() < UNFOLDED * all
 }
 
 /// The point between some.

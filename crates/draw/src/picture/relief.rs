@@ -5,6 +5,7 @@ use super::contours::parts_in_bands;
 use super::labels::{self, Border};
 use super::levels::{Levels, round_up};
 use super::maps::Panel;
+use super::occupancy::Occupancy;
 use super::paint::{Anchor, Item, Place, Rect, Sheet};
 use super::palette::{FAINT, GREY, INK};
 use super::projection::middle;
@@ -143,6 +144,7 @@ impl Relief {
     fn draw_words(&self, panel: &Panel<'_>, view: &View, rect: Rect, sheet: &mut Sheet) {
         let all: Vec<Place> = self.plan.iter().flatten().map(|place| view.place(*place)).collect();
         let centre = middle(&all);
+        let mut taken = Occupancy::new(rect.right, rect.bottom);
         for (side, word) in &panel.projection.words {
             let line = panel.projection.side(*side);
             let known =
@@ -155,7 +157,7 @@ impl Relief {
             let up = if middle(&feet)[1] < centre[1] { highest } else { lowest };
             feet.iter_mut().for_each(|foot| foot[1] -= up);
             if let Some(border) = Border::new(feet, &all) {
-                labels::word_beside(&border, word, rect, sheet);
+                labels::word_beside(&border, word, rect, &mut taken, sheet);
             }
         }
     }

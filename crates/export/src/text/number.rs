@@ -79,7 +79,8 @@ pub fn shown_unit(unit: &str) -> String {
         return "no unit".to_owned();
     }
     let powers = [("^2", "\u{b2}"), ("^3", "\u{b3}")];
-    powers.into_iter().fold(unit.replace("um", "\u{b5}m"), |unit, (power, raised)| unit.replace(power, raised))
+    let micro = unit.replace("um", "\u{b5}m").replace("urad", "\u{b5}rad");
+    powers.into_iter().fold(micro, |unit, (power, raised)| unit.replace(power, raised))
 }
 
 /// A text with numbers, with real minus signs before them.

@@ -1,6 +1,8 @@
 //! What pictures show of a contact: both flanks with gaps, path, ellipses and transfer points, and the error over the roll.
 
-use flank_chain_dsl::Job;
+use std::f64::consts::{PI, TAU};
+
+use flank_chain_dsl::{Job, OutlineCurve, OutlineSegment, Solid};
 use flank_draw::{ContactMark, DrawnContact, DrawnFlank, ErrorCurves, Station, StationShape, round_step};
 use flank_export::text::shown_unit;
 use flank_export::{Field, Patch, Values, fixed};
@@ -18,8 +20,9 @@ use crate::project::units;
 pub(crate) const FILMS: f64 = 5.0;
 /// About so many roll positions have their ellipse.
 const STATIONS: f64 = 9.0;
-/// Straight parts of an ellipse.
+/// Straight parts of an ellipse, and of an arc of an outline.
 const PARTS: usize = 72;
+const ARC_PARTS: usize = 24;
 /// Pairs of teeth are drawn as far as they stay behind the one that carries by no more than so many times its own error.
 const BEHIND: f64 = 4.0;
 /// Pairs of teeth whose lags differ by less hand over there, rad or mm.
@@ -34,15 +37,18 @@ pub(crate) fn drawn<'g>(
     compound: f64,
 ) -> DrawnContact {
     let stations = stations(members, rolling);
+    // flanks that touch along lines have no path of a point
+    let is_line = rolling.state() == Some(ContactState::Line);
     let transfers = rolling.transfers();
     let flank = |member: usize| DrawnFlank {
         patch: near(patches::flank(job, members, member, &maps[member]), compound),
-        path: path(rolling, member),
-        stations: match rolling.state() {
-            Some(ContactState::Line) => stations.iter().map(|point| line_at(members, point)).collect(),
-            _ => ellipses(members, (pair, member), &stations, compound),
+        outline: members.solids[member].map_or(Vec::new(), outline),
+        path: if is_line { Vec::new() } else { path(rolling, member, compound) },
+        stations: match is_line {
+            true => stations.iter().map(|point| line_at(members, point)).collect(),
+            false => ellipses(members, (pair, member), &stations, compound),
         },
-        marks: marks(members, rolling, member, &transfers),
+        marks: if is_line { Vec::new() } else { marks(members, rolling, member, &transfers) },
     };
     DrawnContact {
         name: members.contact.name.clone(),
@@ -50,6 +56,30 @@ pub(crate) fn drawn<'g>(
         flanks: [flank(0), flank(1)],
         error: curves(members, rolling, compound, &transfers),
     }
+}
+
+/// Where the teeth of a solid end, in the axial plane `y = 0` of its frame.
+fn outline(solid: &Solid) -> Vec<Vec<[f64; 3]>> {
+    let line = |segment: &OutlineSegment| {
+        let places = match segment.curve {
+            OutlineCurve::Line => vec![segment.from, segment.to],
+            OutlineCurve::Arc { center } => arc(segment, center),
+        };
+        places.into_iter().map(|[z, rho]| [rho, 0.0, z]).collect()
+    };
+    solid.outline.iter().map(line).collect()
+}
+
+/// The shorter way round.
+fn arc(segment: &OutlineSegment, [z, rho]: [f64; 2]) -> Vec<[f64; 2]> {
+    let polar = |[a, b]: [f64; 2]| ((a - z).hypot(b - rho), (b - rho).atan2(a - z));
+    let ((radius, from), (_, to)) = (polar(segment.from), polar(segment.to));
+    let turn = (to - from + PI).rem_euclid(TAU) - PI;
+    let at = |part: usize| {
+        let (sin, cos) = (from + turn * part as f64 / ARC_PARTS as f64).sin_cos();
+        [z + radius * cos, rho + radius * sin]
+    };
+    (0..=ARC_PARTS).map(at).collect()
 }
 
 /// The same points, no gap wider than so many films.
@@ -64,10 +94,20 @@ fn near(patch: Patch, compound: f64) -> Patch {
     Patch { fields: patch.fields.into_iter().map(near).collect(), ..patch }
 }
 
-/// Where a pair of teeth touches on one of its flanks, in pieces of flank on flank and of edges; pieces share the point between them.
-fn path(rolling: &Rolling, member: usize) -> Vec<(bool, Vec<[f64; 3]>)> {
-    let points = rolling.engagement.points.iter().map(|point| (!point.is_of_flanks(), point.in_members[member]));
-    pieces(points)
+/// Where a pair of teeth touches on one of its flanks, in pieces of flank on flank and of edges; an edge as long as it is within the film
+/// of the pair that carries. Pieces share the point between them.
+fn path(rolling: &Rolling, member: usize, compound: f64) -> Vec<(bool, Vec<[f64; 3]>)> {
+    let is_seen = |step: isize, point: &ContactPoint| {
+        let carried =
+            rolling.engagement.carried(step).filter(|_| rolling.has_pitch).map_or(point.lag, |carried| carried.lag);
+        point.is_of_flanks() || ((point.lag - carried) * point.opening).abs() <= compound
+    };
+    let points: Vec<(isize, &ContactPoint)> = rolling.all_steps().zip(&rolling.engagement.points).collect();
+    let runs = points.split(|(step, point)| !is_seen(*step, point));
+    let of_run = |run: &[(isize, &ContactPoint)]| {
+        pieces(run.iter().map(|(_, point)| (!point.is_of_flanks(), point.in_members[member])))
+    };
+    runs.flat_map(of_run).collect()
 }
 
 /// Runs of the same kind, each begun at the last point of the one before.
@@ -106,7 +146,8 @@ fn label(members: &Members<'_, '_>, roll: f64, decimals: usize) -> String {
     let text = fixed(roll, decimals);
     // round positions without their zeros
     let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    format!("{} {}", short.replace('-', "\u{2212}"), units::symbol(members.contact.roll.dimension)).trim().to_string()
+    let (short, unit) = (short.replace('-', "\u{2212}"), units::symbol(members.contact.roll.dimension));
+    if unit == "deg" { format!("{short}\u{b0}") } else { format!("{short} {unit}").trim().to_string() }
 }
 
 fn line_at(members: &Members<'_, '_>, point: &ContactPoint) -> Station {
@@ -132,7 +173,7 @@ fn ellipses<'g>(
         // from the frame of the contact into that of the flank: the transpose
         let own = directions.map(|d| [0, 1, 2].map(|k| (0..3).map(|row| rows[3 * row + k] * d[row]).sum::<f64>()));
         let at = |part: usize| {
-            let (sin, cos) = (std::f64::consts::TAU * part as f64 / PARTS as f64).sin_cos();
+            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
             [0, 1, 2].map(|k| point.in_members[member][k] + axes[0] * cos * own[0][k] + axes[1] * sin * own[1][k])
         };
         Some((0..=PARTS).map(at).collect())
@@ -157,7 +198,7 @@ fn marks(members: &Members<'_, '_>, rolling: &Rolling, member: usize, transfers:
     let handing = transfers.iter().flat_map(|roll| handing(rolling, *roll));
     let transfers = handing.map(|point| ContactMark {
         is_transfer: true,
-        label: format!("transfer {}", label(members, point.roll, 2)),
+        label: label(members, point.roll, 2),
         position: point.in_members[member],
     });
     middle.into_iter().chain(transfers).collect()
@@ -229,7 +270,7 @@ fn curves(members: &Members<'_, '_>, rolling: &Rolling, compound: f64, transfers
     let transfers = kinks.iter().filter_map(|roll| Some((kink(*roll)?, label(members, *roll, 3))));
     ErrorCurves {
         over: format!("{}, {}", roll.name, units::symbol(roll.dimension)),
-        unit: shown_unit(unit),
+        unit: unit.to_string(),
         pairs: numbers.into_iter().map(pair).collect(),
         transfers: transfers.map(|(at, text)| (at, format!("transfer {text}"))).collect(),
         peaks,

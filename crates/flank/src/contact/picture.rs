@@ -22,28 +22,30 @@ pub(crate) fn about(kind: ContactPicture) -> &'static str {
 /// What a picture of contacts shows, with its title and the sentences below it.
 pub(crate) fn drawing(job: &str, contacts: Vec<DrawnContact>, kind: ContactPicture, header: Header) -> ContactDrawing {
     let title = format!("{job}: {} of {}", about(kind), names(&contacts));
-    let film = contacts.first().map_or(0.0, |contact| contact.film);
-    let path = "red the path of contact, dashed where an edge touches";
+    let film = contacts.first().map_or(String::new(), |contact| format!("{} \u{b5}m", contact.film));
+    let is_line = contacts.iter().all(|contact| contact.flanks.iter().all(|flank| flank.path.is_empty()));
+    let path = match is_line {
+        true => "thin: the lines along which the flanks touch at one time",
+        false => {
+            "red: the path of contact, dashed where an edge touches; ring: the middle; dots: at this roll position one pair of teeth hands over to the next"
+        }
+    };
+    let ellipses = if is_line { "" } else { "; thin: within the compound at one time" };
+    let grey = "Grey: where the tooth ends.";
     let note = match kind {
-        ContactPicture::Pattern => format!(
-            "Blue: nearer to the mate than {film} um of compound at some time of the mesh; {path}; ring: the middle; dots: one pair of \
-             teeth hands over to the next; thin: where the flanks are within the compound at one time."
-        ),
+        ContactPicture::Pattern => {
+            format!("Blue: nearer than {film} to the mate at some time of the mesh; {path}{ellipses}. {grey}")
+        }
         ContactPicture::Error => {
             "The error is what the contact adds to the wanted law of the driven member, from that of the middle; diamonds: one pair of \
              teeth hands over to the next."
                 .to_string()
         }
-        ContactPicture::Gap | ContactPicture::Overview => format!(
-            "Least gap to the mate over the whole mesh of a pair of teeth, up to {FILMS} films of {film} um; thick line: the edge of the \
-             compound; {path}."
-        ),
-        ContactPicture::Path => format!(
-            "{}{}; thin: where the flanks are within {film} um of each other at the roll position that stands there; ring: the middle; \
-             dots: one pair of teeth hands over to the next.",
-            path[..1].to_uppercase(),
-            &path[1..]
-        ),
+        ContactPicture::Gap | ContactPicture::Overview => {
+            let path = if is_line { String::new() } else { format!("; {path}") };
+            format!("Least gap over the mesh of a pair of teeth, up to {FILMS} films of {film}; white: the edge of the film{path}. {grey}")
+        }
+        ContactPicture::Path => format!("At round roll positions, for a film of {film}; {path}{ellipses}. {grey}"),
     };
     let note = match contacts.len().saturating_sub(MOST_CONTACTS) {
         0 => note,

@@ -1,6 +1,6 @@
 //! The error of the pairs of teeth over the roll.
 
-use flank_export::text::one_line;
+use flank_export::text::{one_line, shown_unit};
 
 use crate::picture::calls::{self, Call};
 use crate::picture::chart::{self, Chart, Title};
@@ -55,7 +55,7 @@ impl ErrorCurves {
         let composite = places(&self.composite);
         take(&composite);
         sheet.line(&composite, INK, 3.2);
-        let titles = [&self.over, &format!("error, {}", self.unit)].map(|text| one_line(text));
+        let titles = [&self.over, &format!("error, {}", shown_unit(&self.unit))].map(|text| one_line(text));
         chart.draw_axes(titles.each_ref().map(|text| Title { text, numbered: true }), sheet);
         let mut calls = self.draw_peaks(&chart, &mut taken, sheet);
         calls.extend(self.draw_transfers(&chart, &mut taken, sheet));

@@ -10,7 +10,7 @@ use crate::picture::font;
 use crate::picture::levels::Levels;
 use crate::picture::maps::{self, Panel, Style};
 use crate::picture::occupancy::Occupancy;
-use crate::picture::paint::{Anchor, Colour, Place, Rect, Sheet};
+use crate::picture::paint::{Anchor, Colour, Place, Rect, Sheet, clipped};
 use crate::picture::palette::{self, GREY, INK, PALE, WHITE};
 
 /// Above a flank: what it is, and how it is laid flat.
@@ -55,12 +55,17 @@ pub(super) fn draw(contact: &DrawnContact, flank: &DrawnFlank, kind: ContactPict
     let titles = map.panel.projection.titles.each_ref();
     let numbered = map.panel.projection.is_in_mm();
     map.chart.draw_axes(titles.map(|text| Title { text, numbered }), sheet);
+    let mut taken = Occupancy::new(rect.right, rect.bottom);
+    map.draw_outline(&mut taken, sheet);
     map.ground.silhouette(PALE, sheet);
     let gaps = map.panel.grid(&map.chart);
     match (kind, &map.panel.levels) {
         (ContactPicture::Gap | ContactPicture::Overview, Some(levels)) => {
             map.panel.draw_bands(&gaps, levels, sheet);
-            gaps.lines(contact.film).iter().for_each(|line| sheet.line(line, INK, 2.6));
+            // seen on light and on dark bands
+            for (colour, width) in [(INK, 4.0), (WHITE, 1.8)] {
+                gaps.lines(contact.film).iter().for_each(|line| sheet.line(line, colour, width));
+            }
             map.draw_key(levels, rect, sheet);
         }
         (ContactPicture::Pattern, _) => {
@@ -71,11 +76,18 @@ pub(super) fn draw(contact: &DrawnContact, flank: &DrawnFlank, kind: ContactPict
     }
     map.panel.draw_border(&map.ground, 1.2, sheet);
     if !is_gap {
-        map.draw_stations(sheet);
+        map.draw_stations(&mut taken, sheet);
     }
-    map.draw_path(sheet);
-    map.panel.draw_words(&map.chart, sheet);
-    map.draw_marks(kind, sheet);
+    map.draw_path(&mut taken, sheet);
+    for side in map.ground.borders() {
+        take(&mut taken, &side);
+    }
+    map.panel.draw_words(&map.chart, &mut taken, sheet);
+    map.draw_marks(kind, &mut taken, sheet);
+}
+
+fn take(taken: &mut Occupancy, line: &[Place]) {
+    line.windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
 }
 
 impl FlankMap<'_> {
@@ -102,18 +114,41 @@ impl FlankMap<'_> {
         line.iter().filter_map(|position| self.place(*position)).collect()
     }
 
+    /// Where the tooth ends, as far as the chart shows it.
+    fn draw_outline(&self, taken: &mut Occupancy, sheet: &mut Sheet) {
+        if !self.panel.projection.is_axial() {
+            return;
+        }
+        for line in &self.flank.outline {
+            for pair in self.places(line).windows(2) {
+                let [from, to] = [pair[0], pair[1]];
+                let Some((start, end)) = clipped(from, to, self.chart.rect) else { continue };
+                let at = |share: f64| [0, 1].map(|k| from[k] + share * (to[k] - from[k]));
+                let part = [at(start), at(end)];
+                sheet.line(&part, GREY, 1.0);
+                take(taken, &part);
+            }
+        }
+    }
+
     /// Ellipses and lines of contact, as far as they lie on the flank.
-    fn draw_stations(&self, sheet: &mut Sheet) {
+    fn draw_stations(&self, taken: &mut Occupancy, sheet: &mut Sheet) {
         let sides = self.ground.borders();
         for station in &self.flank.stations {
             match &station.shape {
                 StationShape::Point { ellipse, .. } => {
                     let places = self.places(ellipse);
                     let parts = places.split(|place| !is_within(&sides, *place)).filter(|part| part.len() > 1);
-                    parts.for_each(|part| sheet.line(part, INK, 0.8));
+                    for part in parts {
+                        sheet.line(part, INK, 0.8);
+                        take(taken, part);
+                    }
                 }
                 StationShape::Line(roll) => {
-                    self.lines_of_contact(*roll).iter().for_each(|line| sheet.line(line, INK, 0.8));
+                    for line in self.lines_of_contact(*roll) {
+                        sheet.line(&line, INK, 0.8);
+                        take(taken, &line);
+                    }
                 }
             }
         }
@@ -126,23 +161,16 @@ impl FlankMap<'_> {
         self.panel.grid_of(&self.chart, value).lines(roll)
     }
 
-    fn draw_path(&self, sheet: &mut Sheet) {
+    fn draw_path(&self, taken: &mut Occupancy, sheet: &mut Sheet) {
         for (is_edge, line) in &self.flank.path {
             let places = self.places(line);
+            take(taken, &places);
             if *is_edge { sheet.dashes(&places, DASHES, PATH, 1.8) } else { sheet.line(&places, PATH, 2.4) }
         }
     }
 
     /// The middle as a ring, transfers as dots, and round roll positions on the path, each with its label.
-    fn draw_marks(&self, kind: ContactPicture, sheet: &mut Sheet) {
-        let Rect { right, bottom, .. } = self.chart.rect;
-        let mut taken = Occupancy::new(right, bottom);
-        for (_, line) in &self.flank.path {
-            self.places(line).windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
-        }
-        for side in self.ground.borders() {
-            side.windows(2).for_each(|pair| taken.take_line([pair[0], pair[1]]));
-        }
+    fn draw_marks(&self, kind: ContactPicture, taken: &mut Occupancy, sheet: &mut Sheet) {
         let mut calls = Vec::new();
         let mut call = |at: Place, text: &str, rank: u8| {
             calls.push(Call { at, text: one_line(text), size: 13.0, colour: INK, rank, farthest: FARTHEST });
@@ -160,14 +188,14 @@ impl FlankMap<'_> {
         }
         for mark in &self.flank.marks {
             let Some(at) = self.place(mark.position) else { continue };
-            let fill = if mark.is_transfer { INK } else { WHITE };
-            sheet.polygon(&around(at, MARK), fill, INK, 1.6);
+            let (fill, outline) = if mark.is_transfer { (INK, WHITE) } else { (WHITE, INK) };
+            sheet.polygon(&around(at, MARK), fill, outline, 1.6);
             taken.take(&Rect { left: at[0], top: at[1], right: at[0], bottom: at[1] }.shrunk(-MARK - 2.0));
             if matches!(kind, ContactPicture::Pattern | ContactPicture::Path) {
                 call(at, &mark.label, u8::from(mark.is_transfer));
             }
         }
-        calls::write(calls, self.chart.rect, &mut taken, sheet);
+        calls::write(calls, self.chart.rect, taken, sheet);
     }
 }
 

@@ -60,7 +60,9 @@ pub struct DrawnContact {
 pub struct DrawnFlank {
     /// Its points, with the least gap to the mate as the first field and the roll position of that as the second.
     pub patch: Patch,
-    /// The path of contact in its frame as pieces, and whether an edge touches along each.
+    /// Where its tooth ends, in its frame; nothing where that is not known.
+    pub outline: Vec<Vec<[f64; 3]>>,
+    /// The path of contact in its frame as pieces, and whether an edge touches along each; nothing for contact along lines.
     pub path: Vec<(bool, Vec<[f64; 3]>)>,
     /// Where the contact is at round roll positions.
     pub stations: Vec<Station>,
