@@ -26,7 +26,7 @@ fn each_kind_says_what_the_tester_shows() {
     let of = |kind: &str| std::fs::read_to_string(out.join(format!("bevel_19x62.{kind}.svg"))).expect("drawn");
     // the same bytes each time
     assert_eq!(of("pattern"), pattern);
-    for word in ["toe", "heel", "root", "tip", "middle", "6.35 um"] {
+    for word in ["toe", "heel", "root", "tip", "middle", "6.35 \u{b5}m"] {
         assert!(pattern.contains(word), "{word}");
     }
     // the numbers of `flank contact`
@@ -35,10 +35,10 @@ fn each_kind_says_what_the_tester_shows() {
     let result: serde_json::Value =
         serde_json::Deserializer::from_str(&contact).into_iter().next().expect("a document").expect("JSON");
     let peak = result["error"]["peak_to_peak"].as_f64().expect("a number");
-    assert!(of("error").contains(&format!("peak to peak {peak:.3} urad")), "{peak}");
+    assert!(of("error").contains(&format!("peak to peak {peak:.3} \u{b5}rad")), "{peak}");
     let transfer = result["error"]["transfers"][0].as_f64().expect("a number");
     assert!(of("error").contains(&format!("{:.3}", transfer.abs())), "{transfer}");
-    assert!(of("gap").contains("thick line: the edge of the compound"));
+    assert!(of("gap").contains("white: the edge of the film"));
     assert!(of("path").contains("path of contact of drive_side"));
 }
 
