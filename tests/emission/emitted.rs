@@ -1,7 +1,8 @@
 //! Emitted functions, compiled by the compilers of their languages, against the interpreter.
 
 use flank_expr::{
-    Binary, Curve, CurveId, Expr, Graph, Language, Polynomial, Signature, Unary, emit_function, emit_polynomials,
+    Binary, Curve, CurveId, Expr, Graph, Interval, Language, Polynomial, Signature, Unary, Unknown, emit_function,
+    emit_polynomials, roots,
 };
 use flank_tests::compiled::values_at;
 use flank_tests::{Dice, job};
@@ -90,6 +91,16 @@ fn wavy_curve(graph: &Graph) -> CurveId {
     graph.curve(Curve::through("wave", &knots).expect("x increases"))
 }
 
+/// The root of x + sin(x) / 2 = a.
+fn root_at(a: Expr<'_>) -> Expr<'_> {
+    let graph = a.graph();
+    let [unknown, given] = ["unknown", "given"].map(|name| graph.variable(name));
+    let equation = unknown + unknown.sin() / 2.0 - given;
+    let unknown = Unknown { variable: unknown, range: Interval::new(-2.0, 2.0) };
+    let root = roots(&[equation], &[unknown], &[(given, Interval::new(-1.0, 1.0))]).expect("it rises")[0];
+    graph.substitute(&[root], &[(given, a)])[0]
+}
+
 /// Each operation alone, then combinations of combinations; the sine brings each back to [−1, 1], so that rounding stays
 /// rounding: no slope is beyond 10, and three of them lie behind each other.
 #[test]
@@ -105,6 +116,7 @@ fn random_expressions_meet_the_interpreter() {
         let mut made: Vec<Expr<'_>> = Unary::ALL.map(|op| unary_of(op, pick())).to_vec();
         made.extend(Binary::ALL.map(|op| binary_of(op, pick(), pick())));
         made.extend((0..4).map(|order| pick().on_curve(curve, order)));
+        made.push(root_at(pick()));
         layer = made.iter().map(|part| part.sin()).collect();
         outputs.extend(made);
     }

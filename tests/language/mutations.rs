@@ -79,13 +79,23 @@ fn spur_gear() {
 #[test]
 fn helical_gear() {
     let tools = ["tools/involute.chain", "tools/hob_zi.chain"];
-    storm(&["machines/hobbing_6axis.chain", tools[0], tools[1], "hobbing/helical_gear.chain"], 400, 2);
+    storm(
+        &["machines/hobbing_6axis.chain", tools[0], tools[1], "functions/hobbing.chain", "hobbing/helical_gear.chain"],
+        400,
+        2,
+    );
 }
 
 #[test]
 fn pinion() {
     storm(
-        &["functions/bevel.chain", "machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"],
+        &[
+            "functions/bevel.chain",
+            "machines/cradle.chain",
+            "tools/face_mill.chain",
+            "functions/blanks_19x62.chain",
+            "bevel/pinion_19x62.chain",
+        ],
         300,
         3,
     );

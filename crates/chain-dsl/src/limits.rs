@@ -83,6 +83,8 @@ limits! {
     CALL_DEPTH = 64, Pieces, "functions that call each other in a line",
         "functions call each other more than {} deep",
         "a function cannot call itself, nor others that lead back to it";
+    LOOP = 6, Pieces, "axes that one closed loop gives",
+        "more than {} axes are given by one loop", "close it in parts: loops that share no unknown axis are solved apart";
     EVALUATION_STEPS = 1_000_000, Pieces, "steps to evaluate a text",
         "the text takes more than {} steps to evaluate",
         "look for functions that call others many times over, and give repeated parts names with `let`";
@@ -107,6 +109,8 @@ limits! {
         "samples of more than {} points", "`by` is followed by a number of points, not by a distance";
     TABLE_BYTES = 16 << 20, Bytes, "size of all tables that curves are read from, each reading counted",
         "the tables are more than {} together", "keep only the columns and rows that are needed";
+    GRID_POINTS = 2_000, Pieces, "points of a grid",
+        "a grid of more than {} points", "a spline needs only as many points as the surface has bends: thin it out";
     TABLE_ROWS = 100_000, Pieces, "rows of a table",
         "a table of more than {} rows", "a curve needs only as many points as it has bends: thin the table out";
 }

@@ -244,6 +244,8 @@ pub enum LawSource {
     Fixed,
     /// `couple` in the machine.
     Coupled,
+    /// `close` in the machine: a closed loop gives it.
+    Closed,
     /// Nowhere: it stands where it is put ([`compile_with_machine`](crate::compile_with_machine)); its law is its own variable.
     Free,
 }

@@ -25,12 +25,14 @@ mod symbolic;
 mod tape;
 
 pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
+pub use enclosure::implicit::{NoRoot, Unknown, roots};
 pub use enclosure::interval::{Interval, IntervalEvaluator};
 pub use enclosure::quadrature::{End, Unproven, integral};
 pub use enclosure::taylor::{Coefficient, TaylorEvaluator};
 pub use symbolic::curve::{Curve, CurveError};
 pub use symbolic::derivative::Linear;
 pub use symbolic::graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
+pub use symbolic::implicit::RootId;
 pub use symbolic::op::{Binary, Unary};
 pub use symbolic::print::{Definition, Listing, Style};
 pub use tape::cost::Cost;

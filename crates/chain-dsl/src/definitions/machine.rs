@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use flank_expr::{Expr, Interval};
 
+use crate::definitions::closure::{self, Linkage};
 use crate::definitions::instance::{Binder, Overrides, Source};
 use crate::definitions::nc_word;
 use crate::definitions::requirement;
@@ -14,7 +15,9 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Frame, NcWord, Parameter, RangedVariable};
-use crate::syntax::ast::{self, AxisKind, Expression, ExpressionKind, Let, MachineStatement, Param, Requirement};
+use crate::syntax::ast::{
+    self, AxisKind, Close, Expression, ExpressionKind, Let, MachineStatement, Param, Requirement,
+};
 use crate::values::context::{Context, READABLE, Role};
 use crate::values::dimension::Dimension;
 use crate::values::value::{Constant, Scope, Value};
@@ -35,6 +38,7 @@ pub(crate) struct Flat<'a> {
     /// Laws beside the first of their axis: perhaps meant for another one.
     repeated_laws: usize,
     frames: Named<'a, Hung<'a>>,
+    closes: Vec<&'a Close>,
     /// Each with the place of its machine in the line.
     words: Vec<(&'a ast::NcWord, usize)>,
     /// Of all machines of the line: what a variant demands comes on top of what its parents do.
@@ -70,6 +74,7 @@ pub(crate) struct Built<'g> {
     pub(crate) scope: Scope<'g>,
     pub(crate) axes: Vec<BuiltAxis<'g>>,
     pub(crate) frames: Vec<Frame<'g>>,
+    pub(crate) linkages: Vec<Linkage<'g>>,
     /// Names of all frames that the text declares, also those that could not be built.
     pub(crate) declared_frames: Vec<String>,
     /// Laws that belong to no axis (and have been reported).
@@ -85,6 +90,8 @@ pub(crate) struct BuiltAxis<'g> {
     pub(crate) dimension: Option<Dimension>,
     pub(crate) variable: Expr<'g>,
     pub(crate) travel: Option<(f64, f64)>,
+    /// Closed loops give its motion.
+    pub(crate) is_unknown: bool,
     pub(crate) law: Option<(Option<Expr<'g>>, LawKind, Span)>,
     pub(crate) word: NcWord,
 }
@@ -153,7 +160,7 @@ fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
         MachineStatement::Axis(axis) => (&axis.name, "value"),
         MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => (&frame.name, "frame"),
         MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
-        MachineStatement::Nc(_) | MachineStatement::Require(_) => return None,
+        MachineStatement::Close(_) | MachineStatement::Nc(_) | MachineStatement::Require(_) => return None,
     })
 }
 
@@ -212,6 +219,7 @@ impl<'a> Flat<'a> {
             MachineStatement::Frame(frame) => self.frames.put(&frame.name, Hung::written(frame)),
             // it hangs there already
             MachineStatement::Insert(_) => {}
+            MachineStatement::Close(close) => self.closes.push(close),
             MachineStatement::Fix(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Fix)),
             MachineStatement::Couple(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Couple)),
             MachineStatement::Nc(word) => self.words.push((word, place)),
@@ -305,8 +313,10 @@ impl<'a> Flat<'a> {
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         nc_word::settle(context, &self.words, &scope, &mut axes);
         let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
+        let linkages =
+            if lacks_transforms { Vec::new() } else { closure::linkages(context, &self.closes, &frames, &axes) };
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
-        Built { parameters, settings, scope, axes, frames, declared_frames, lost_laws, lacks_transforms }
+        Built { parameters, settings, scope, axes, frames, linkages, declared_frames, lost_laws, lacks_transforms }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {
@@ -328,7 +338,8 @@ impl<'a> Flat<'a> {
                 (None, None) => {}
             }
             let word = NcWord::of_axis(&axis.name.node);
-            axes.push(BuiltAxis { name: axis.name.clone(), dimension, variable, travel, law: None, word });
+            let (name, is_unknown) = (axis.name.clone(), axis.is_unknown);
+            axes.push(BuiltAxis { name, dimension, variable, travel, is_unknown, law: None, word });
         }
         axes
     }

@@ -30,8 +30,13 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
     // machines extend each other and jobs read their parameters: whoever mentions the name may mean it
     let mut by_machines = Used::default();
     machines().for_each(|machine| by_machines.machine(machine));
-    // a machine that others extend may hang frames on one that a variant has replaced
-    let parents: HashSet<&str> = machines().flat_map(written_frames).filter_map(parent).collect();
+    // a machine that others extend may hang frames on one that a variant has replaced; at others a loop closes
+    let closed = machines().flat_map(|machine| &machine.statements).filter_map(|statement| match statement {
+        MachineStatement::Close(close) => Some([close.first.node.as_str(), close.second.node.as_str()]),
+        _ => None,
+    });
+    let parents = machines().flat_map(written_frames).filter_map(parent).chain(closed.flatten());
+    let parents: HashSet<&str> = parents.collect();
     for item in &file.items {
         match item {
             Item::Machine(machine) => {
@@ -163,6 +168,9 @@ impl Used {
                 MachineStatement::Axis(axis) => axis.range.iter().for_each(|range| self.range(range)),
                 MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => {
                     frame.transforms.iter().for_each(|call| self.call(call))
+                }
+                MachineStatement::Close(close) => {
+                    self.words.extend([close.first.node.clone(), close.second.node.clone()]);
                 }
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
                 MachineStatement::Nc(word) => {

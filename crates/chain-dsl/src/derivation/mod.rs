@@ -127,6 +127,7 @@ impl Page {
                 LawSource::Driven => "driven",
                 LawSource::Fixed => "fixed",
                 LawSource::Coupled => "coupled",
+                LawSource::Closed => "closed",
                 LawSource::Free => "free",
             };
             let listing = axis.law.graph().listing(&[axis.variable, axis.law], self.style, "a");

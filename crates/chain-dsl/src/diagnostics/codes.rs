@@ -60,13 +60,14 @@ codes! {
     OutOfRange        = "E0307" Error "a value lies outside its range";
     BrokenProfile     = "E0308" Error "the segments of a profile do not make one run";
     Unmet             = "E0309" Error "a requirement does not hold";
-    Unproven          = "E0310" Error "an integral cannot be proven";
+    Unproven          = "E0310" Error "an integral or a root cannot be proven";
     // 04: machines
     CyclicFrames      = "E0401" Error "frames hang on each other in a circle";
     NotRigid          = "E0402" Error "a matrix is not a rigid motion";
     CyclicExtends     = "E0403" Error "machines extend each other in a circle";
     FrameTree         = "E0404" Error "the frames are not one tree";
     NcWord            = "E0405" Error "an NC word is not one axis";
+    OpenLoop          = "E0406" Error "a loop does not close in one way";
     // 05: jobs
     UndrivenAxis      = "E0501" Error "an axis is not driven";
     DrivenTwice       = "E0502" Error "an axis is driven twice";

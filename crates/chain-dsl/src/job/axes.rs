@@ -46,6 +46,13 @@ impl<'g> Builder<'_, 'g> {
             self.lose_law(machine);
             return;
         }
+        if axis.is_unknown {
+            let message = format!("{what} is unknown to its machine, whose loops give its motion: it cannot be driven");
+            context
+                .report(Diagnostic::new(Code::DrivenTwice, target.span, message).note(axis.name.span, "unknown here"));
+            self.lose_law(machine);
+            return;
+        }
         let value =
             axis.dimension.zip(law).and_then(|(dimension, law)| context.scalar(law, &self.scope, dimension, &what));
         let key = (machine, member.node.clone());
@@ -74,6 +81,7 @@ impl<'g> Builder<'_, 'g> {
                 let (law, source) = match (&axis.law, self.drives.get(&(index, axis.name.node.clone()))) {
                     (Some((law, LawKind::Fix, _)), _) => (*law, LawSource::Fixed),
                     (Some((law, LawKind::Couple, _)), _) => (*law, LawSource::Coupled),
+                    (None, _) if axis.is_unknown => (Some(axis.variable), LawSource::Closed),
                     (None, Some((law, _))) => (*law, LawSource::Driven),
                     (None, None) if self.stands_alone => (Some(axis.variable), LawSource::Free),
                     (None, None) => {
@@ -116,6 +124,7 @@ impl<'g> Builder<'_, 'g> {
         }
         self.report_circles(context, &machines);
         self.write_laws_in_motions(context, &mut machines);
+        self.close_loops(context, &mut machines);
         machines
     }
 

@@ -4,6 +4,7 @@ pub(crate) mod sample;
 
 mod available;
 mod axes;
+mod close;
 mod contact;
 mod cut;
 mod independence;

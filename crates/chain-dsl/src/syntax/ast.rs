@@ -106,6 +106,8 @@ pub enum MachineStatement {
     Frame(Frame),
     /// `insert name in parent = transform …`: a frame between another one and all that hangs on it.
     Insert(Frame),
+    /// `close tip = pin along x, y about z`: frames that are one in these components, whatever moves.
+    Close(Close),
     /// `fix A = …`: an axis that stands still.
     Fix(Assignment),
     /// `couple C = …`: an axis that follows others.
@@ -151,6 +153,21 @@ pub struct Axis {
     pub kind: AxisKind,
     /// Travel.
     pub range: Option<Range>,
+    /// `unknown X : …`: closed loops give its motion.
+    pub is_unknown: bool,
+}
+
+/// `close tip = pin along x, y about z`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Close {
+    /// The frame at the end of one chain.
+    pub first: Name,
+    /// The frame at the end of the other one, which coincides with it.
+    pub second: Name,
+    /// Axes, of the frame that both hang on, along which the origins do not lie apart; all, if neither list is written.
+    pub along: Vec<Name>,
+    /// Axes about which the frames are not turned.
+    pub about: Vec<Name>,
 }
 
 /// How an axis moves.

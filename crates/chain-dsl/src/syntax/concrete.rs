@@ -85,6 +85,8 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         | Rule::job_head
         | Rule::tool_surface_head
         | Rule::profile_head
+        | Rule::closed_along
+        | Rule::closed_about
         | Rule::label
         | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
@@ -95,7 +97,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::function => return parts.push(function(pair)),
         Rule::motion | Rule::unknown => return parts.push(motion(pair)),
         Rule::frame | Rule::insert => return parts.push(frame(pair)),
-        Rule::contact => return parts.push(contact(pair)),
+        Rule::contact | Rule::close => return parts.push(one_row(pair)),
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
@@ -105,7 +107,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         }
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
-        Rule::trim | Rule::cut | Rule::solid => Kind::Statement,
+        Rule::trim | Rule::cut | Rule::solid | Rule::unknown_axis => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::bound | Rule::keep | Rule::sampled | Rule::change => Kind::Element,
@@ -189,8 +191,8 @@ fn function(pair: Pair<'_, Rule>) -> Part<'_> {
     Part::node(Kind::Block, parts)
 }
 
-/// What stands behind the sign of a contact is one row: both flanks, then the arguments, each with the comma behind it.
-fn contact(pair: Pair<'_, Rule>) -> Part<'_> {
+/// What stands behind the sign of a contact or a closed loop is one row, each part with the comma behind it.
+fn one_row(pair: Pair<'_, Rule>) -> Part<'_> {
     let mut parts = inner(pair);
     let equals = parts.iter().position(|part| part.is("=")).map_or(parts.len(), |equals| equals + 1);
     let mut row: Vec<Part> = Vec::new();

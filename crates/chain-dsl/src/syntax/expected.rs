@@ -128,6 +128,8 @@ fn name(before: &Before<'_>) -> String {
         ("surface" | "sample", ",") if !before.in_brackets => "the name of the surface".to_owned(),
         ("frame" | "insert", "in") => "the frame that it hangs on".to_owned(),
         ("frame" | "insert", _) => TRANSFORM.to_owned(),
+        ("close", "along" | "about" | ",") => "`x`, `y` or `z`".to_owned(),
+        ("close", _) => "the name of a frame".to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),
         ("machine", "=") => "the name of a machine".to_owned(),
         ("tool", "=") => "the name of a tool".to_owned(),
@@ -168,7 +170,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
 
 fn assigned(before: &Before<'_>) -> String {
     match before.statement {
-        "frame" | "insert" | "surface" | "solid" => "the name of the frame".to_owned(),
+        "frame" | "insert" | "close" | "surface" | "solid" => "the name of the frame".to_owned(),
         statement => format!("the name of the {}", noun(statement)),
     }
 }
@@ -184,7 +186,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "require" => "condition",
         "fn" => "function",
         "nc" => "NC word",
-        "insert" => "frame",
+        "insert" | "close" => "frame",
         other => other,
     }
 }
@@ -213,6 +215,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_job => "job",
         Rule::kw_on => "on",
         Rule::kw_along => "along",
+        Rule::kw_about => "about",
         Rule::kw_for => "for",
         Rule::kw_as => "as",
         Rule::kw_in | Rule::kw_runs => "in",

@@ -19,13 +19,13 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
     let name = piece.defined()?;
     Some(match word {
         "param" => MachineStatement::Param(piece.param(name)),
-        "axis" => MachineStatement::Axis(piece.axis(name)),
+        "axis" | "unknown" => MachineStatement::Axis(piece.axis(name, word == "unknown")),
         "frame" => MachineStatement::Frame(piece.frame(name)),
         "insert" => MachineStatement::Insert(piece.frame(name)),
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
         "nc" => MachineStatement::Nc(NcWord { address: name, value: piece.error(), increment: None }),
-        "require" => return None,
+        "close" | "require" => return None,
         _ => MachineStatement::Let(piece.let_statement(name)),
     })
 }
@@ -201,11 +201,11 @@ impl Piece<'_> {
         Let { name, value: self.error() }
     }
 
-    fn axis(&self, name: Name) -> Axis {
+    fn axis(&self, name: Name, is_unknown: bool) -> Axis {
         let kinds = [("linear", AxisKind::Linear), ("rotary", AxisKind::Rotary)];
         let kind =
             kinds.into_iter().find(|(word, _)| self.find(word).is_some()).map_or(AxisKind::Unknown, |(_, kind)| kind);
-        Axis { doc: self.doc(), name, kind, range: None }
+        Axis { doc: self.doc(), name, kind, range: None, is_unknown }
     }
 
     /// A frame that hangs on another, be it unknown on which: a second root would be a mistake of its own.

@@ -15,7 +15,8 @@ pub(super) enum Reserved {
 pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
-pub(super) const IN_MACHINE: &[&str] = &["param", "let", "axis", "frame", "insert", "fix", "couple", "nc", "require"];
+pub(super) const IN_MACHINE: &[&str] =
+    &["param", "let", "axis", "unknown", "frame", "insert", "close", "fix", "couple", "nc", "require"];
 
 /// Words that begin a statement in a tool.
 pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
@@ -36,7 +37,7 @@ const DEFINING: &[&str] = &[
 ];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut", "nc", "insert", "unknown", "solid", "contact"];
+const FREE: &[&str] = &["profile", "cut", "nc", "insert", "close", "unknown", "solid", "contact"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

@@ -37,7 +37,7 @@ impl<'g> Context<'g> {
     /// A range with a name that stands where no name is bound.
     pub(super) fn unbound(&mut self, bound: &Bound, span: Span) -> Value<'g> {
         let message = format!("`{} in … : …` is no value by itself", bound.name.node);
-        let help = "it is what a sum or an integral runs over: `sum(k in 1 .. n: …)`";
+        let help = "it is what a sum, an integral or a root runs over: `sum(k in 1 .. n: …)`";
         self.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
         Value::Poison
     }
@@ -263,7 +263,7 @@ impl<'g> Context<'g> {
     }
 
     /// The one argument of a call that binds a name.
-    fn bound<'c>(&mut self, call: &'c Call, example: &str) -> Option<&'c Bound> {
+    pub(super) fn bound<'c>(&mut self, call: &'c Call, example: &str) -> Option<&'c Bound> {
         if let [Argument { name: None, value: Expression { kind: ExpressionKind::Bound(bound), .. } }] =
             call.arguments.as_slice()
         {

@@ -32,6 +32,8 @@ pub(crate) enum Role {
     MovingArgument,
     /// What an integral runs over.
     Integration,
+    /// What an equation gives, in the equation.
+    Unknown,
 }
 
 impl Role {
@@ -47,6 +49,7 @@ impl Role {
             Role::Motion => "motion",
             Role::SurfaceParameter => "surface parameter",
             Role::Integration => "variable of integration",
+            Role::Unknown => "unknown",
             Role::StandingArgument | Role::MovingArgument => "argument",
         }
     }

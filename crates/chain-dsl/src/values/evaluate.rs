@@ -10,6 +10,7 @@ use crate::syntax::ast::{self, BinaryOperator, Expression, ExpressionKind, Range
 use crate::values::context::Context;
 use crate::values::dimension::{self, Dimension};
 use crate::values::functions;
+use crate::values::grids;
 use crate::values::segment::Segment;
 use crate::values::tables;
 use crate::values::value::{Constant, Scope, Value, article};
@@ -406,13 +407,16 @@ impl<'g> Context<'g> {
     fn call(&mut self, call: &ast::Call, scope: &Scope<'g>) -> Value<'g> {
         match call.function.node.as_str() {
             "curve" => return tables::curve(self, call),
+            "grid" => return grids::grid(self, call),
             "sum" => return self.total(call, scope),
             "integral" => return self.integral(call, scope),
+            "root" => return self.root(call, scope),
             "derivative" => return self.derivative(call, scope),
             _ => {}
         }
         match scope.get(&call.function.node) {
             Some(Value::Curve(curve, x, y)) => return self.on_curve(call, (*curve, *x, *y), scope),
+            Some(Value::Grid(grid)) => return self.on_grid(call, &grid.clone(), scope),
             Some(Value::Segment(segment)) => return self.on_segment(call, &segment.clone(), scope),
             Some(Value::Profile(_)) => return self.outside_profile(call),
             Some(Value::Poison) => return Value::Poison,

@@ -67,7 +67,7 @@ const FUNCTIONS: [(&str, usize, Function); 27] = [
 ];
 
 /// Calls of a form of their own.
-const FORMS: [&str; 3] = ["sum", "integral", "derivative"];
+const FORMS: [&str; 4] = ["sum", "integral", "root", "derivative"];
 
 /// Names of the functions that the language brings along.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {

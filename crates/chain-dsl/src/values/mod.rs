@@ -5,6 +5,8 @@ pub(crate) mod context;
 pub(crate) mod dimension;
 pub(crate) mod evaluate;
 pub(crate) mod functions;
+pub(crate) mod grids;
+pub(crate) mod implicit;
 pub(crate) mod segment;
 pub(crate) mod table_files;
 pub(crate) mod tables;

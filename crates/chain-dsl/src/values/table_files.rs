@@ -8,13 +8,18 @@ use std::sync::Arc;
 
 use flank_expr::CurveId;
 
+use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::{FileId, Sources};
+use crate::diagnostics::source::{FileId, Sources, Span};
 use crate::limits::{self, Limit};
 use crate::load::files::Files;
 use crate::load::tidy;
 use crate::values::dimension::{self, Dimension};
+use crate::values::grids::Grids;
 use crate::values::value::article;
+
+/// The column in which flank says how points were solved.
+const STATUS: &str = "status";
 
 /// Two columns of a table.
 pub(crate) type Rows = Vec<(f64, f64)>;
@@ -37,6 +42,7 @@ pub(crate) struct Tables {
     pub(crate) rows: HashMap<Key, Rc<Rows>>,
     /// One table is one curve however often it is named.
     pub(crate) curves: HashMap<Key, CurveId>,
+    pub(crate) grids: Grids,
     /// Size of all tables that have been read.
     bytes: usize,
 }
@@ -54,6 +60,7 @@ impl Tables {
             known: HashMap::new(),
             rows: HashMap::new(),
             curves: HashMap::new(),
+            grids: Grids::new(),
             bytes: 0,
         }
     }
@@ -125,25 +132,56 @@ pub(crate) fn reader(text: &str) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes())
 }
 
-/// Two columns of a text; lines that begin with `#` are remarks, the first other line names the columns.
+impl Reason {
+    /// In words, where a file is named.
+    pub(crate) fn told(self, place: Span, named: &str) -> Diagnostic {
+        match self {
+            Reason::Exceeded(limit) => limit.exceeded(place),
+            Reason::Wrong(code, reason) => Diagnostic::new(code, place, format!("`{named}`: {reason}")),
+        }
+    }
+}
+
+/// Two columns of a text.
 pub(crate) fn rows(text: &str, columns: [(&str, Dimension); 2]) -> Result<Rows, Reason> {
+    Ok(numbers(text, &columns, &[])?.into_iter().map(|row| (row[0], row[1])).collect())
+}
+
+/// Columns of a text with numbers, of those rows whose other columns have the given texts, and which are solved where there is a column
+/// `status`; lines that begin with `#` are remarks, the first other line names the columns.
+pub(crate) fn numbers(
+    text: &str,
+    columns: &[(&str, Dimension)],
+    texts: &[(&str, &str)],
+) -> Result<Vec<Vec<f64>>, Reason> {
     let mut reader = reader(text);
     let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
     let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
-    let mut places = [(0, 1.0); 2];
-    for (place, (name, dimension)) in places.iter_mut().zip(columns) {
-        *place = found(&heads, name, dimension).map_err(wrong)?;
+    let places: Result<Vec<(usize, f64)>, String> =
+        columns.iter().map(|(name, dimension)| found(&heads, name, *dimension)).collect();
+    let places = places.map_err(wrong)?;
+    let place = |name: &str| heads.iter().position(|head| head == name);
+    let mut wanted = Vec::new();
+    for (name, text) in texts {
+        let index = place(name).ok_or_else(|| wrong(missing(&heads, name)))?;
+        wanted.push((index, *text));
+    }
+    if texts.iter().all(|(name, _)| *name != STATUS) {
+        wanted.extend(place(STATUS).map(|index| (index, "solved")));
     }
     let mut points = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| wrong(error.to_string()))?;
+        if wanted.iter().any(|(index, text)| record.get(*index) != Some(*text)) {
+            continue;
+        }
         let line = record.position().map_or(0, csv::Position::line);
         let number = |(column, size): (usize, f64)| {
             let cell = record.get(column).unwrap_or("");
             let value = cell.parse::<f64>().ok().map(|value| value * size).filter(|value| value.is_finite());
             value.ok_or_else(|| wrong(format!("line {line}: `{cell}` is not a finite number")))
         };
-        points.push((number(places[0])?, number(places[1])?));
+        points.push(places.iter().map(|place| number(*place)).collect::<Result<Vec<f64>, Reason>>()?);
         if points.len() > limits::TABLE_ROWS.most {
             return Err(Reason::Exceeded(limits::TABLE_ROWS));
         }
@@ -175,7 +213,11 @@ fn found(heads: &csv::StringRecord, name: &str, dimension: Dimension) -> Result<
             None => Err(format!("column `{name}`: `{unit}` is not a unit")),
         };
     }
+    Err(missing(heads, name))
+}
+
+fn missing(heads: &csv::StringRecord, name: &str) -> String {
     let known: Vec<&str> = heads.iter().collect();
     let commas = if known.len() == 1 && known[0].contains([';', '\t']) { "; columns are parted by commas" } else { "" };
-    Err(format!("there is no column `{name}`; there is: {}{commas}", known.join(", ")))
+    format!("there is no column `{name}`; there is: {}{commas}", known.join(", "))
 }

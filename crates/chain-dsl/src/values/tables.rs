@@ -37,7 +37,7 @@ pub(crate) fn columns<'a>(context: &mut Context<'_>, call: &'a Call) -> Option<C
         return shape(context, function, call.span);
     };
     let ExpressionKind::Text(named) = &path.kind else { return shape(context, function, path.span) };
-    let columns = [column(context, function, x)?, column(context, function, y)?];
+    let columns = [column(context, call, x)?, column(context, call, y)?];
     match context.tables.locate(named, path.span.file) {
         Ok(found) => Some(Columns { named, span: path.span, path: found, columns }),
         Err((code, message)) => {
@@ -100,23 +100,28 @@ impl Columns<'_> {
     }
 
     fn told<T>(&self, context: &mut Context<'_>, found: Result<T, Reason>) -> Option<T> {
-        let tell = |reason| match reason {
-            Reason::Exceeded(limit) => limit.exceeded(self.span),
-            Reason::Wrong(code, reason) => Diagnostic::new(code, self.span, format!("`{}`: {reason}", self.named)),
-        };
-        found.map_err(|reason| context.report(tell(reason))).ok()
+        found.map_err(|reason| context.report(reason.told(self.span, self.named))).ok()
     }
 }
 
-fn shape<T>(context: &mut Context<'_>, function: &str, span: Span) -> Option<T> {
-    let message = format!("`{function}` takes a file and the names and dimensions of two of its columns");
-    let help = format!("for example `{function}(\"profile.csv\", x: length, y: length)`");
+pub(crate) fn shape<T>(context: &mut Context<'_>, function: &str, span: Span) -> Option<T> {
+    let (columns, example) = match function {
+        "grid" => ("of its columns: two that count, one or more with values", "i: number, j: number, z: length"),
+        _ => ("of two of its columns", "x: length, y: length"),
+    };
+    let message = format!("`{function}` takes a file and the names and dimensions {columns}");
+    let help = format!("for example `{function}(\"points.csv\", {example})`");
     context.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
     None
 }
 
 /// `name: dimension`; the dimension is written as an expression of dimension names.
-fn column<'a>(context: &mut Context<'_>, function: &str, argument: &'a Argument) -> Option<(&'a Name, Dimension)> {
+pub(crate) fn column<'a>(
+    context: &mut Context<'_>,
+    call: &Call,
+    argument: &'a Argument,
+) -> Option<(&'a Name, Dimension)> {
+    let function = &call.function.node;
     let (Some(name), ExpressionKind::Path(path)) = (&argument.name, &argument.value.kind) else {
         return shape(context, function, argument.value.span);
     };

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use flank_expr::{CurveId, Expr};
 
 use crate::values::dimension::Dimension;
+use crate::values::grids::Grid;
 use crate::values::segment::{Profile, Segment};
 
 /// A value of the language.
@@ -18,6 +19,8 @@ pub(crate) enum Value<'g> {
     Text,
     /// A curve with the dimensions of its x and y.
     Curve(CurveId, Dimension, Dimension),
+    /// Values on a grid of two parameters, smooth between.
+    Grid(Rc<Grid>),
     /// A profile, outside of the surfaces along it.
     Profile(Rc<Profile<'g>>),
     /// A profile in that piece of a surface which runs along this segment.
@@ -51,6 +54,7 @@ impl Value<'_> {
             Value::Vector(parts) => format!("a vector of {}", parts.len()),
             Value::Truth(_) => "a condition".to_string(),
             Value::Curve(..) => "a curve".to_string(),
+            Value::Grid(_) => "a grid".to_string(),
             Value::Profile(_) | Value::Segment(_) => "a profile".to_string(),
             Value::Text => "a text".to_string(),
             Value::Poison => "an error".to_string(),

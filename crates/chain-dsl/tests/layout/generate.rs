@@ -237,7 +237,7 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(9) {
+        match self.random.below(11) {
             0 => self.param(),
             1 => self.assignment("let"),
             7 => self.requirement(),
@@ -248,6 +248,13 @@ impl Writer {
                     self.value();
                 }
             }
+            9 => {
+                self.put("unknown");
+                self.name();
+                self.all(&[":", "rotary", "in"]);
+                self.range();
+            }
+            10 => self.close(),
             2 => self.assignment("fix"),
             3 => self.assignment("couple"),
             4 => {
@@ -260,6 +267,18 @@ impl Writer {
                 }
             }
             _ => self.frame(),
+        }
+    }
+
+    fn close(&mut self) {
+        self.put("close");
+        self.name();
+        self.put("=");
+        self.name();
+        for word in ["along", "about"] {
+            if self.random.one_in(2) {
+                self.all(&[word, "x", ",", "y"]);
+            }
         }
     }
 

@@ -469,3 +469,74 @@ fn a_decimal_comma_from_outside_is_one_finding() {
     let folder = project("comma", &[("library.chain", LIBRARY), ("jobs/j.chain", JOB)]);
     assert_eq!(codes(&folder.join("jobs/j.chain"), &[("height", "2,5 mm")]), [Code::Syntax]);
 }
+
+/// A grid of points: what is wrong of its rows, and of how it is asked for.
+#[test]
+fn a_grid_is_whole_and_does_not_fold() {
+    let tool = |call: &str, at: &str| {
+        format!(
+            "tool t {{
+                let point = {call}
+                surface s(u: number in 0 .. 2, v: number in 0 .. 1) {{
+                    at = {at}
+                    body towards [0, 0, 1]
+                }}
+            }}"
+        )
+    };
+    let all = "grid(\"p.csv\", i: number, j: number, x: length, y: length, z: length)";
+    let found = |rows: &str, call: &str, at: &str| {
+        let folder = project("grid", &[("p.csv", rows), ("t.chain", &tool(call, at))]);
+        let graph = Graph::new();
+        let findings = compile_file(&graph, &folder.join("t.chain"), &[]).diagnostics;
+        findings.iter().map(|finding| format!("{} {}", finding.code.as_str(), finding.message)).collect::<Vec<_>>()
+    };
+    let head = "surface,i,j,x,y,z,status\n";
+    let row = |i: u32, j: u32, x: f64| format!("a,{i},{j},{x},{j},0.5,solved\n");
+    let rows: Vec<String> = (0..6).map(|k| row(k / 2, k % 2, f64::from(k / 2))).collect();
+    let whole = format!("{head}{}", rows.concat());
+    assert_eq!(found(&whole, all, "point(u, v)"), [""; 0]);
+    // rows of another side, and points that are not solved, are not looked at
+    let others = format!("{whole}b,0,0,1,1,1,solved\na,0,0,9,9,9,undercut\n");
+    let picked = all.replace("i: number", "\"a\", i: number");
+    assert_eq!(found(&others, &picked, "point(u, v)"), [""; 0]);
+    let wrong = [
+        (others, all, "point(u, v)", "E0005 `p.csv`: two rows have `i` = 0 and `j` = 0"),
+        (
+            format!("{head}{}", rows[1..].concat()),
+            all,
+            "point(u, v)",
+            "E0005 `p.csv`: the grid has a hole: no row, or none that is solved, has `i` = 0 and `j` = 0",
+        ),
+        (
+            whole.replace("a,1,1,1,", "a,1,1,-3,"),
+            all,
+            "point(u, v)",
+            "E0005 `p.csv`: the surface folds, or has no area, beside the point with `i` = 1 and `j` = 1",
+        ),
+        (
+            format!("{head}{}", rows[..2].concat()),
+            all,
+            "point(u, v)",
+            "E0005 `p.csv`: a grid needs at least two values of `i`",
+        ),
+        (
+            whole.clone(),
+            "grid(\"p.csv\", flank: \"a\", i: number, j: number, x: length)",
+            "[point(u, v), 0 mm, 0 mm]",
+            "E0005 `p.csv`: there is no column `flank`; there is: surface, i, j, x, y, z, status",
+        ),
+        (
+            whole.clone(),
+            "grid(\"p.csv\", i: number, j: number)",
+            "point(u, v)",
+            "E0302 `grid` takes a file and the names and dimensions of its columns: two that count, one or more with values",
+        ),
+        (whole.clone(), all, "point(u)", "E0302 `point` takes 2 arguments, not 1"),
+        (whole, all, "point", "E0301 the point must be a vector of 3, this is a grid"),
+    ];
+    for (rows, call, at, message) in wrong {
+        let found = found(&rows, call, at);
+        assert_eq!(found, [message], "{call} at {at}");
+    }
+}

@@ -722,3 +722,64 @@ fn values_of_a_machine_may_follow_its_axes() {
     let written = machine("", &format!("2 * (arm * sin(D)) + {swept}"));
     assert_eq!(laws(&named), laws(&written));
 }
+
+#[test]
+fn a_root_is_what_its_equation_gives() {
+    for turn in [-1.5_f64, -0.3, 0.0, 0.7, 1.5] {
+        let near = |value: &str, exact: f64| {
+            let found = law_at("", value, turn);
+            assert!((found - exact).abs() <= 4e-15 * exact.abs().max(1.0), "{value} at {turn}: {found}, not {exact}");
+        };
+        near("root(x in -2 .. 2: sinh(x) - turn) * 1 mm", turn.asinh());
+        near("root(x in -10 mm .. 10 mm: n * x - 1 mm * turn^3)", turn.powi(3) / 3.0);
+        near("root(x in 0 .. 1.5: x^2 - root(y in 0.1 .. 2: ln(y) - cos(turn) / 4)) * 1 mm", (turn.cos() / 8.0).exp());
+        near("derivative(root(x in -2 .. 2: sinh(x) - turn), turn) * 1 mm", 1.0 / (1.0 + turn * turn).sqrt());
+        near("integral(t in 0 deg .. turn: root(x in -5 .. 5: x - 2 * t)) * 1 mm", turn * turn);
+    }
+}
+
+/// A knee of two links, whose slide drives it: both angles by the law of cosines, and what is coupled to one of them.
+#[test]
+fn a_closed_loop_gives_unknown_axes_their_laws() {
+    let text = "machine knee extends lathe {
+            param upper : length = 50 mm
+            param lower : length = 40 mm
+            unknown thigh : rotary in 0 deg .. 89 deg
+            unknown shank : rotary in -89 deg .. 0 deg
+            axis W : linear
+            couple W = 1 mm/rad * thigh
+            frame pin in bed = rotate_y(thigh) translate_z(upper)
+            frame foot in bed = translate_z(Z)
+            frame ankle in foot = rotate_y(shank) translate_z(-lower)
+            frame pushed in bed = translate_x(W)
+            close pin = ankle along x, z
+        }
+        job j {
+            machine m = knee(height: 4 mm)
+            tool b = ball
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C, m.Z = turn, 60 mm + 20 mm * sin(turn)
+            surface s in m.work = envelope(b.face, over: turn)
+        }";
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    let job = &compilation.jobs[0];
+    let law = |name: &str| job.machines[0].axes.iter().find(|axis| axis.name == name).expect("the axis").law;
+    let turn = job.motions[0].variable;
+    for at in [0.0_f64, 0.4, 1.1, 1.5] {
+        let mut values = vec![0.0; graph.variable_count()];
+        for parameter in &job.parameters {
+            values[parameter.variable.as_variable().expect("a variable").index()] = parameter.value;
+        }
+        values[turn.as_variable().expect("a variable").index()] = at;
+        let exprs = [law("thigh"), law("shank"), law("W"), law("thigh").derivative(turn)];
+        let [thigh, shank, pushed, speed] = graph.evaluate(&exprs, &values)[..] else { panic!("four values") };
+        let (slide, slide_speed) = (60.0 + 20.0 * at.sin(), 20.0 * at.cos());
+        let exact = ((50.0_f64.powi(2) + slide * slide - 40.0_f64.powi(2)) / (100.0 * slide)).acos();
+        assert!((thigh - exact).abs() < 1e-14 && pushed == thigh, "{at}: {thigh}, not {exact}");
+        assert!((40.0 * shank.sin() + 50.0 * thigh.sin()).abs() < 1e-13, "{at}: {shank}");
+        let cosine_speed = slide_speed * (0.5 / 50.0 - (2500.0 - 1600.0) / (100.0 * slide * slide));
+        assert!((speed + cosine_speed / thigh.sin()).abs() < 1e-14, "{at}: {speed}");
+    }
+}

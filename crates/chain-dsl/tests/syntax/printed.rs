@@ -58,10 +58,19 @@ fn machine_statement(statement: &MachineStatement) -> String {
         MachineStatement::Param(it) => param(it),
         MachineStatement::Let(it) => let_statement(it),
         MachineStatement::Axis(it) => {
-            format!("{}axis {} {:?}{}", doc(&it.doc), it.name.node, it.kind, optional_range(it.range.as_ref()))
+            let word = if it.is_unknown { "unknown" } else { "axis" };
+            format!("{}{word} {} {:?}{}", doc(&it.doc), it.name.node, it.kind, optional_range(it.range.as_ref()))
         }
         MachineStatement::Frame(it) => frame("frame", it),
         MachineStatement::Insert(it) => frame("insert", it),
+        MachineStatement::Close(it) => {
+            let list = |word: &str, names: &[Name]| {
+                let names: Vec<&str> = names.iter().map(|name| name.node.as_str()).collect();
+                if names.is_empty() { String::new() } else { format!(" {word} {}", names.join(" ")) }
+            };
+            let components = format!("{}{}", list("along", &it.along), list("about", &it.about));
+            format!("close {} {}{components}", it.first.node, it.second.node)
+        }
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),
         MachineStatement::Nc(it) => {

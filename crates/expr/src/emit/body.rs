@@ -56,8 +56,8 @@ fn registers(language: Language, scope: &Scope, tape: &Tape) -> Vec<String> {
 /// Arguments that no instruction and no output reads.
 fn unread<'a>(scope: &'a Scope, tape: &Tape) -> impl Iterator<Item = &'a String> {
     let reads = tape.instructions().iter().flat_map(|step| match step.operation {
-        Operation::Binary(_) => [step.a, step.b],
-        Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => [step.a; 2],
+        Operation::Binary(_) | Operation::Settled => [step.a, step.b],
+        Operation::Middle | Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => [step.a; 2],
     });
     let read: Vec<u32> = reads.chain(tape.outputs().iter().copied()).collect();
     (0u32..).zip(scope.arguments()).filter(move |(register, _)| !read.contains(register)).map(|(_, name)| name)
@@ -107,6 +107,13 @@ impl Writer<'_> {
                     Language::Rust | Language::JavaScript => table,
                 };
                 let text = self.call(Helper::Curve, &[&pieces, &domain, &order.to_string(), &x]);
+                self.define(out, &text);
+            }
+            Operation::Middle => self.registers[out as usize] = x,
+            Operation::Settled => {
+                let size = self.unary(Unary::Abs, &y);
+                let root = self.library("sqrt", &[&format!("{} - {size}", self.language.number(1.0))]);
+                let text = format!("{x} + {} * {root}", self.language.number(0.0));
                 self.define(out, &text);
             }
             Operation::SinCos => {

@@ -243,6 +243,35 @@ impl<'g> Chain<'g> {
         self.steps.iter().fold(Pose::identity(self.graph), |pose, step| pose.then(step.pose(self.graph)))
     }
 
+    /// The origin of the last frame in the first, and the turn from the first to the last. Turns about one axis are one angle here, also
+    /// where translations lie between them: intervals want each angle once.
+    pub fn origin_and_turn(&self) -> (Vector3<'g>, Matrix3<'g>) {
+        let mut turns: Vec<Step<'g>> = Vec::new();
+        let mut origin = Vector3::zero(self.graph);
+        let turned = |turns: &[Step<'g>], by: Vector3<'g>| {
+            turns.iter().rev().fold(by, |by, turn| turn.pose(self.graph).direction(by))
+        };
+        for step in &self.steps {
+            let turn = match *step {
+                Step::Translate(by) => {
+                    origin = origin + turned(&turns, by);
+                    continue;
+                }
+                Step::Rigid(pose) => {
+                    origin = origin + turned(&turns, pose.translation);
+                    Step::Rigid(Pose { translation: Vector3::zero(self.graph), ..pose })
+                }
+                turn => turn,
+            };
+            let merged = turns.last().and_then(|last| last.merged(turn, self.graph));
+            turns.truncate(turns.len() - usize::from(merged.is_some()));
+            turns.extend(Some(merged.unwrap_or(turn)).filter(|turn| !turn.is_identity()));
+        }
+        let identity = Matrix3::identity(self.graph);
+        let turn = turns.iter().fold(identity, |turn, step| turn.product(step.pose(self.graph).rotation));
+        (origin, turn)
+    }
+
     /// A point of the last frame in the first: the steps are applied to the vector one by one.
     pub fn point(&self, p_child: Vector3<'g>) -> Vector3<'g> {
         self.steps.iter().rev().fold(p_child, |p, step| match *step {

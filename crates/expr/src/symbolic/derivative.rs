@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::symbolic::curve::Curve;
-use crate::symbolic::graph::{CurveId, Expr, Graph, Node, NodeId, Placed, VariableId};
+use crate::symbolic::graph::{CurveId, Expr, Graph, Node, NodeId, Placed, VariableId, Way};
 use crate::symbolic::hash::NodeMap;
+use crate::symbolic::implicit;
 use crate::symbolic::op::{Binary, Unary};
 
 impl<'g> Expr<'g> {
@@ -79,6 +80,9 @@ fn rule<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
             let slope = known(graph, a, variable);
             if slope.is_zero() { slope } else { graph.expr(a).on_curve(curve, order + 1) * slope }
         }
+        // it moves as what it is the middle of: a node that is a point
+        Node::Middle(a) => known(graph, a, variable),
+        Node::Root(root, ..) => implicit::slope(graph, root, graph.expr_of(variable)),
         Node::Unary(op, a) => {
             let slope = known(graph, a, variable);
             if slope.is_zero() { slope } else { unary_rule(op, graph.expr(a), y, slope) }
@@ -145,18 +149,35 @@ fn blend<'g>(side: Expr<'g>, positive: Expr<'g>, negative: Expr<'g>) -> Expr<'g>
 
 impl Graph {
     fn reachable_without_derivative(&self, root: NodeId, variable: VariableId) -> Vec<NodeId> {
-        self.reachable_where([root], |id| self.known_derivative(variable, id).is_none())
+        self.reachable_by(Way::Slopes, [root], |id| self.known_derivative(variable, id).is_none())
     }
 
     /// The expressions with variables, or longer parts, replaced wherever they stand as a whole; simplified anew. Shared parts
     /// stay shared.
     pub fn substitute<'g>(&'g self, roots: &[Expr<'g>], replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
-        let table: NodeMap<NodeId, Expr<'g>> = replacements.iter().map(|(part, value)| (part.id, *value)).collect();
+        let mut table: NodeMap<NodeId, Expr<'g>> = replacements.iter().map(|(part, value)| (part.id, *value)).collect();
+        self.substitute_by(roots, &mut table)
+    }
+
+    /// The same by a table, which learns what becomes of unknowns that equations give.
+    pub(crate) fn substitute_by<'g>(
+        &'g self,
+        roots: &[Expr<'g>],
+        table: &mut NodeMap<NodeId, Expr<'g>>,
+    ) -> Vec<Expr<'g>> {
         let order = self.order(roots);
         let mut image: Vec<Expr<'g>> = Vec::with_capacity(order.nodes.len());
         for Placed { id, node, operands: [a, b] } in order.nodes {
             image.push(match node {
                 _ if table.contains_key(&id) => table[&id],
+                Node::Middle(_) => image[a].middle(),
+                Node::Root(root, value, last) if (image[a].id, image[b].id) == (value, last) => {
+                    self.intern(Node::Root(root, value, last))
+                }
+                Node::Root(root, ..) => {
+                    implicit::substitute(self, root, table);
+                    table[&id]
+                }
                 Node::Constant(_) | Node::Variable(_) => self.expr(id),
                 Node::Unary(op, _) => image[a].unary(op),
                 Node::Curve(curve, order, _) => image[a].on_curve(curve, order),

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::symbolic::curve::Curve;
 use crate::symbolic::hash::NodeMap;
+use crate::symbolic::implicit::{Implicit, RootId};
 use crate::symbolic::op::{Binary, Unary};
 use crate::symbolic::rules;
 
@@ -42,6 +43,10 @@ pub enum Node {
     Binary(Binary, NodeId, NodeId),
     /// A derivative of a curve, of an order, at a node.
     Curve(CurveId, u8, NodeId),
+    /// A node as a number; of an interval, its middle.
+    Middle(NodeId),
+    /// An unknown that equations give: its value, and how far the last step went over how far it may go.
+    Root(RootId, NodeId, NodeId),
 }
 
 impl Node {
@@ -60,8 +65,8 @@ impl Node {
     pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
         let (a, b) = match self {
             Node::Constant(_) | Node::Variable(_) => (None, None),
-            Node::Unary(_, a) | Node::Curve(_, _, a) => (Some(a), None),
-            Node::Binary(_, a, b) => (Some(a), Some(b)),
+            Node::Unary(_, a) | Node::Curve(_, _, a) | Node::Middle(a) => (Some(a), None),
+            Node::Binary(_, a, b) | Node::Root(_, a, b) => (Some(a), Some(b)),
         };
         a.into_iter().chain(b)
     }
@@ -73,6 +78,8 @@ impl Node {
             Node::Unary(op, a) => Node::Unary(op, other(a)),
             Node::Binary(op, a, b) => Node::Binary(op, other(a), other(b)),
             Node::Curve(curve, order, a) => Node::Curve(curve, order, other(a)),
+            Node::Middle(a) => Node::Middle(other(a)),
+            Node::Root(root, a, b) => Node::Root(root, other(a), other(b)),
         }
     }
 }
@@ -83,6 +90,7 @@ struct Store {
     index: NodeMap<Node, NodeId>,
     variables: Vec<String>,
     curves: Vec<Arc<Curve>>,
+    implicits: Vec<Arc<Implicit>>,
     /// Operations asked for so far, new or not.
     operations: usize,
     room: Option<usize>,
@@ -150,6 +158,17 @@ impl Visits {
         nodes.clear();
         nodes.extend((first.0..=last.0).map(NodeId).filter(|id| self.last[id.0 as usize].0 == self.walk));
     }
+}
+
+/// What an unknown that equations give is taken for on a walk through the graph.
+#[derive(Clone, Copy)]
+pub(crate) enum Way {
+    /// The steps that compute it.
+    Values,
+    /// A leaf: its derivatives come from the equations.
+    Slopes,
+    /// The equations.
+    Words,
 }
 
 /// Nodes, each after what it is made of.
@@ -229,6 +248,21 @@ impl Graph {
         Arc::clone(&self.store.borrow().curves[id.0 as usize])
     }
 
+    /// Takes in equations; the same ones are kept once.
+    pub(crate) fn implicit(&self, implicit: Implicit) -> u32 {
+        let mut store = self.store.borrow_mut();
+        let known = store.implicits.iter().position(|other| **other == implicit);
+        let place = known.unwrap_or(store.implicits.len());
+        if known.is_none() {
+            store.implicits.push(Arc::new(implicit));
+        }
+        place as u32
+    }
+
+    pub(crate) fn implicit_of(&self, root: RootId) -> Arc<Implicit> {
+        Arc::clone(&self.store.borrow().implicits[root.system as usize])
+    }
+
     /// Number of variables made so far.
     pub fn variable_count(&self) -> usize {
         self.store.borrow().variables.len()
@@ -246,6 +280,11 @@ impl Graph {
 
     pub(crate) fn node(&self, id: NodeId) -> Node {
         self.store.borrow().nodes[id.0 as usize]
+    }
+
+    /// A variable by its number.
+    pub(crate) fn expr_of(&self, variable: VariableId) -> Expr<'_> {
+        self.intern(Node::Variable(variable))
     }
 
     pub(crate) fn expr(&self, id: NodeId) -> Expr<'_> {
@@ -289,6 +328,16 @@ impl Graph {
         roots: impl IntoIterator<Item = NodeId>,
         is_wanted: impl Fn(NodeId) -> bool,
     ) -> Vec<NodeId> {
+        self.reachable_by(Way::Values, roots, is_wanted)
+    }
+
+    /// The same where unknowns that equations give are taken for something else than their values.
+    pub(crate) fn reachable_by(
+        &self,
+        way: Way,
+        roots: impl IntoIterator<Item = NodeId>,
+        is_wanted: impl Fn(NodeId) -> bool,
+    ) -> Vec<NodeId> {
         let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
         visits.begin(store.nodes.len());
         let mut stack: Vec<NodeId> = roots.into_iter().collect();
@@ -299,7 +348,13 @@ impl Graph {
             }
             if is_wanted(id) {
                 found.push(id);
-                stack.extend(store.nodes[id.0 as usize].operands());
+                match (way, store.nodes[id.0 as usize]) {
+                    (Way::Slopes, Node::Root(..)) => {}
+                    (Way::Words, Node::Root(root, ..)) => {
+                        stack.extend(store.implicits[root.system as usize].written());
+                    }
+                    (_, node) => stack.extend(node.operands()),
+                }
             } else {
                 visits.forget(id);
             }
@@ -445,6 +500,11 @@ impl<'g> Expr<'g> {
     pub fn binary(self, op: Binary, other: Expr<'g>) -> Expr<'g> {
         self.graph.assert_owns(other);
         rules::binary(op, self, other)
+    }
+
+    /// The same number; of an interval, its middle.
+    pub(crate) fn middle(self) -> Expr<'g> {
+        if self.as_constant().is_some() { self } else { self.graph.intern(Node::Middle(self.id)) }
     }
 
     /// A derivative of a curve (order 0: its value) here.

@@ -4,6 +4,7 @@ pub(crate) mod curve;
 pub(crate) mod derivative;
 pub(crate) mod graph;
 pub(crate) mod hash;
+pub(crate) mod implicit;
 pub(crate) mod op;
 pub(crate) mod print;
 pub(crate) mod rules;

@@ -28,7 +28,8 @@ impl Cost {
             Operation::Binary(Binary::Div) => &mut self.divisions,
             Operation::Unary(Unary::Sqrt) => &mut self.roots,
             Operation::SinCos | Operation::Unary(Unary::Sin | Unary::Cos) => &mut self.sincos,
-            Operation::Unary(_) | Operation::Binary(_) | Operation::Curve(_) => &mut self.others,
+            Operation::Middle => return,
+            Operation::Unary(_) | Operation::Binary(_) | Operation::Curve(_) | Operation::Settled => &mut self.others,
         };
         *counter += 1;
     }
@@ -57,8 +58,8 @@ impl Tape {
         for step in self.instructions() {
             let a = stage_of[step.a as usize];
             let stage = match step.operation {
-                Operation::Binary(_) => a.max(stage_of[step.b as usize]),
-                Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => a,
+                Operation::Binary(_) | Operation::Settled => a.max(stage_of[step.b as usize]),
+                Operation::Unary(_) | Operation::Curve(_) | Operation::Middle | Operation::SinCos => a,
             };
             costs[stage].count(step.operation);
             stage_of[step.out as usize] = stage;

@@ -37,6 +37,13 @@ impl<'t> ScalarEvaluator<'t> {
     }
 }
 
+/// Out of the way of what tapes mostly consist of.
+#[cold]
+#[inline(never)]
+fn seldom_settled(value: f64, last: f64) -> f64 {
+    kernel::settled(value, last)
+}
+
 pub(crate) fn execute(instructions: &[Instruction], curves: &[Arc<Curve>], registers: &mut [f64]) {
     for step in instructions {
         let a = registers[step.a as usize];
@@ -49,6 +56,8 @@ pub(crate) fn execute(instructions: &[Instruction], curves: &[Arc<Curve>], regis
             Operation::Binary(Binary::Mul) => a * registers[step.b as usize],
             Operation::Binary(Binary::Div) => a / registers[step.b as usize],
             Operation::Binary(op) => op.apply(a, registers[step.b as usize]),
+            Operation::Middle => a,
+            Operation::Settled => seldom_settled(a, registers[step.b as usize]),
             Operation::SinCos => {
                 let (sine, cosine) = kernel::sin_cos(a);
                 registers[step.b as usize] = cosine;

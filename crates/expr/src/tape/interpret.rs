@@ -1,6 +1,7 @@
 //! The oracle: evaluation node by node, slow and plain.
 
 use crate::symbolic::graph::{Expr, Graph, Node, Placed};
+use crate::tape::kernel;
 
 impl Graph {
     /// Values of the expressions; `values` holds one number per variable of the graph, in order of creation.
@@ -18,6 +19,8 @@ impl Graph {
                 Node::Variable(variable) => values[variable.index()],
                 Node::Unary(op, _) => op.apply(known[a]),
                 Node::Curve(curve, order, _) => self.curve_of(curve).value(order, known[a]),
+                Node::Middle(_) => known[a],
+                Node::Root(..) => kernel::settled(known[a], known[b]),
                 Node::Binary(op, ..) => op.apply(known[a], known[b]),
             });
         }

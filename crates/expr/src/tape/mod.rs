@@ -24,6 +24,10 @@ pub enum Operation {
     Binary(Binary),
     /// `out` = the derivative of this order of the tape's curve number `b`, at `a`.
     Curve(u8),
+    /// `out = a`; of an interval, its middle.
+    Middle,
+    /// `out = a` where |b| ≤ 1, else NaN.
+    Settled,
     /// `out = sin(a)` and register `b` = `cos(a)`, together at little more than the cost of one.
     SinCos,
 }
@@ -257,6 +261,8 @@ impl Registers {
             }
             Node::Unary(op, a) => (Operation::Unary(op), a, a),
             Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
+            Node::Middle(a) => (Operation::Middle, a, a),
+            Node::Root(_, a, b) => (Operation::Settled, a, b),
             Node::Curve(curve, order, a) => return Some(self.curve_step(id, curve, order, a)),
             Node::Constant(_) | Node::Variable(_) => return None,
         };

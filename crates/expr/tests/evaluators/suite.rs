@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use flank_expr::{Binary, Curve, Expr, Graph, Tape, TapeError, Unary};
+use flank_expr::{Binary, Curve, Expr, Graph, Interval, Tape, TapeError, Unary, Unknown, roots};
 
 use crate::support::{Program, Random, reference_point};
 
@@ -23,7 +23,7 @@ pub(crate) trait Subject {
 macro_rules! evaluator_suite {
     ($name:ident, $subject:ident) => {
         $crate::evaluator_suite!($name, $subject:
-            every_unary_alone every_binary_alone curves combinations constants_only outputs_that_are_inputs
+            every_unary_alone every_binary_alone curves roots_of_equations combinations constants_only outputs_that_are_inputs
             one_output_twice outputs_used_later no_outputs unused_inputs unbound_variable random_programs
             random_tame_programs many_points);
     };
@@ -131,6 +131,20 @@ pub(crate) fn curves<S: Subject>() {
     outputs.push((x * 0.5).on_curve(root, 0) * x.on_curve(sine, 1));
     let points: Vec<Vec<f64>> = (-4..40).map(|k| vec![0.25 * f64::from(k)]).chain([vec![f64::NAN]]).collect();
     check::<S>(&outputs, &[x], &points);
+}
+
+pub(crate) fn roots_of_equations<S: Subject>() {
+    let graph = Graph::new();
+    let (a, x, y) = (graph.variable("a"), graph.variable("x"), graph.variable("y"));
+    let given = [(a, Interval::new(-1.0, 2.0))];
+    let unknown = |variable| Unknown { variable, range: Interval::new(-4.0, 4.0) };
+    let one = roots(&[x + 0.7 * x.sin() - a], &[unknown(x)], &given).expect("it rises")[0];
+    let [first, second] = [x + 0.2 * y.sin() - a, y - 0.3 * x * x];
+    let two = roots(&[first, second], &[unknown(x), unknown(y)], &given).expect("nearly linear");
+    let outputs = [one, one.derivative(a), two[0], two[1], two[1].derivative(a).derivative(a), one * two[0]];
+    let beyond = [vec![f64::NAN], vec![25.0], vec![-1e9]];
+    let points: Vec<Vec<f64>> = (-5..=10).map(|k| vec![0.2 * f64::from(k)]).chain(beyond).collect();
+    check::<S>(&outputs, &[a], &points);
 }
 
 pub(crate) fn combinations<S: Subject>() {

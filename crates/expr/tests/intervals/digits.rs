@@ -41,7 +41,9 @@ impl Digits {
                     registers[step.b as usize] = a.as_ref().and_then(|a| a.unary(Unary::Cos));
                     a.and_then(|a| a.unary(Unary::Sin))
                 }
-                Operation::Curve(_) => unreachable!("the tapes that are tested here have no curves"),
+                Operation::Curve(_) | Operation::Middle | Operation::Settled => {
+                    unreachable!("the tapes that are tested here have no curves and no roots")
+                }
             };
         }
         tape.outputs().iter().map(|&register| registers[register as usize].clone()).collect()

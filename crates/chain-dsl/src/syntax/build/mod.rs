@@ -158,6 +158,8 @@ fn is_mark(rule: Rule) -> bool {
             | kw_axis
             | kw_frame
             | kw_insert
+            | kw_close
+            | kw_about
             | kw_fix
             | kw_couple
             | kw_nc

@@ -7,9 +7,9 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
-    Argument, Assignment, Axis, AxisKind, Contact, Drive, Expression, Frame, GeneratedSurface, Instance, JobStatement,
-    Keep, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement, Sample,
-    SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
+    Argument, Assignment, Axis, AxisKind, Close, Contact, Drive, Expression, Frame, GeneratedSurface, Instance,
+    JobStatement, Keep, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement,
+    Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -20,7 +20,8 @@ impl Build<'_> {
         Some(match pair.as_rule() {
             Rule::param => MachineStatement::Param(self.param(pair)),
             Rule::let_statement => MachineStatement::Let(self.let_statement(pair)),
-            Rule::axis => MachineStatement::Axis(self.axis(pair)),
+            Rule::axis | Rule::unknown_axis => MachineStatement::Axis(self.axis(pair)),
+            Rule::close => MachineStatement::Close(self.close(pair)),
             Rule::frame => MachineStatement::Frame(self.frame(pair)),
             Rule::insert => MachineStatement::Insert(self.frame(pair)),
             Rule::fix => MachineStatement::Fix(self.assignment(pair)),
@@ -95,15 +96,28 @@ impl Build<'_> {
         Requirement { condition, message: self.text(parts.required(Rule::string)).node }
     }
 
+    fn close(&mut self, pair: Pair<'_, Rule>) -> Close {
+        let mut parts = Parts::of(pair);
+        let (first, second) = (self.name(parts.required(Rule::name)), self.name(parts.required(Rule::name)));
+        let mut listed = |rule: Rule| -> Vec<Name> {
+            let list = parts.optional(rule).map(Parts::of);
+            let names = list.map_or_else(Vec::new, |mut list| list.all(Rule::name));
+            names.into_iter().map(|name| self.name(name)).collect()
+        };
+        Close { first, second, along: listed(Rule::closed_along), about: listed(Rule::closed_about) }
+    }
+
     fn axis(&mut self, pair: Pair<'_, Rule>) -> Axis {
         let doc = self.doc(&pair);
+        let is_unknown = pair.as_rule() == Rule::unknown_axis;
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
         let kind = match parts.required(Rule::axis_kind).as_str() {
             "rotary" => AxisKind::Rotary,
             _ => AxisKind::Linear,
         };
-        Axis { doc, name, kind, range: parts.optional(Rule::range).map(|range| self.range(range)) }
+        let range = parts.optional(Rule::range).map(|range| self.range(range));
+        Axis { doc, name, kind, range, is_unknown }
     }
 
     fn nc_word(&mut self, pair: Pair<'_, Rule>) -> NcWord {

@@ -56,7 +56,7 @@ impl<'t> IntervalEvaluator<'t> {
         let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
         let (mut done, mut left) = (Vec::new(), Vec::new());
         for step in tape.instructions() {
-            let is_binary = matches!(step.operation, Operation::Binary(_));
+            let is_binary = matches!(step.operation, Operation::Binary(_) | Operation::Settled);
             let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
             if is_binary {
                 moved.b = register_of[step.b as usize];
@@ -101,6 +101,8 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
             Operation::Unary(op) => op.apply_interval(a),
             Operation::Curve(order) => tape.curves()[step.b as usize].enclosure(order, a),
             Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
+            Operation::Middle => Interval::point(a.middle()),
+            Operation::Settled => a.settled(registers[step.b as usize]),
             Operation::SinCos => {
                 registers[step.b as usize] = a.cos();
                 a.sin()
@@ -113,6 +115,20 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
 #[inline]
 fn binary(op: Binary, step: &Instruction, a: Interval, b: Interval) -> Interval {
     if step.a == step.b && op == Binary::Mul { a.squared() } else { op.apply_interval(a, b) }
+}
+
+impl Interval {
+    /// The value of a root after its last step. A step of Newton's method from one middle encloses the solution; floats come to it from
+    /// another place, and differ by as much as the rounding in the equations makes the enclosure wide: not more than 1e-11 mm where
+    /// they make sense.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn settled(self, last: Interval) -> Interval {
+        let width = if self.is_empty() { 0.0 } else { self.width().min(1e-11) };
+        let value = self + Interval::new(-width, width);
+        let settles = !last.intersection(Interval::new(-1.0, 1.0)).is_empty();
+        if settles { value } else { value.partial() }
+    }
 }
 
 impl Unary {

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use crate::enclosure::interval::Interval;
 use crate::symbolic::curve::Curve;
 use crate::symbolic::op::{Binary, Unary};
-use crate::tape::{Operation, Tape};
+use crate::tape::{Operation, Tape, kernel};
 
 /// A coefficient of a power series: a float, or an interval that encloses it.
 pub trait Coefficient:
@@ -22,6 +22,8 @@ pub trait Coefficient:
     fn binary(self, op: Binary, other: Self) -> Self;
     /// A derivative of a curve at the value.
     fn on_curve(self, curve: &Curve, order: u8) -> Self;
+    /// The value of a root, if the last step to it was short enough.
+    fn settled(self, last: Self) -> Self;
     /// The value if it is a single number.
     fn single(self) -> Option<f64>;
 }
@@ -41,6 +43,10 @@ impl Coefficient for f64 {
 
     fn on_curve(self, curve: &Curve, order: u8) -> f64 {
         curve.value(order, self)
+    }
+
+    fn settled(self, last: f64) -> f64 {
+        kernel::settled(self, last)
     }
 
     fn single(self) -> Option<f64> {
@@ -63,6 +69,10 @@ impl Coefficient for Interval {
 
     fn on_curve(self, curve: &Curve, order: u8) -> Interval {
         curve.enclosure(order, self)
+    }
+
+    fn settled(self, last: Interval) -> Interval {
+        Interval::settled(self, last)
     }
 
     fn single(self) -> Option<f64> {
@@ -138,6 +148,11 @@ impl<'t, N: Coefficient> TaylorEvaluator<'t, N> {
                 Operation::Binary(op) => {
                     b.copy_from_slice(&self.registers[place(step.b)]);
                     series::binary(op, a, b, out, other, room);
+                }
+                Operation::Middle => out.copy_from_slice(a),
+                Operation::Settled => {
+                    out.copy_from_slice(a);
+                    out[0] = a[0].settled(self.registers[place(step.b)][0]);
                 }
                 Operation::SinCos => {
                     series::sin_cos(a, out, other);

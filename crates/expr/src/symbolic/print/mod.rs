@@ -7,7 +7,7 @@ mod write;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-use crate::symbolic::graph::{Expr, Graph, Node, NodeId};
+use crate::symbolic::graph::{Expr, Graph, Node, NodeId, Way};
 pub(crate) use name::GREEK;
 use write::Writer;
 
@@ -45,7 +45,7 @@ impl Graph {
     /// Writes expressions; parts used more than once and too long to repeat become definitions, named `prefix1`,
     /// `prefix2`, … (a number that would give the name of a variable is left out).
     pub fn listing(&self, roots: &[Expr<'_>], style: Style, prefix: &str) -> Listing {
-        let order = self.reachable(roots.iter().map(|root| root.id));
+        let order = self.reachable_by(Way::Words, roots.iter().map(|root| root.id), |_| true);
         let named: Vec<(NodeId, String)> =
             self.worth_naming(&order, roots).into_iter().zip(self.free_names(&order, style, prefix)).collect();
         let writer = Writer::new(self, style, &order, named.iter().cloned().collect());
@@ -58,16 +58,24 @@ impl Graph {
         }
     }
 
+    /// What a node is written with.
+    fn words(&self, id: NodeId) -> Vec<NodeId> {
+        match self.node(id) {
+            Node::Root(root, ..) => self.implicit_of(root).written().collect(),
+            node => node.operands().collect(),
+        }
+    }
+
     /// Nodes used more than once and long, even with the parts before them named.
     fn worth_naming(&self, order: &[NodeId], roots: &[Expr<'_>]) -> Vec<NodeId> {
         let mut uses: HashMap<NodeId, u32> = HashMap::new();
-        for operand in order.iter().flat_map(|&id| self.node(id).operands()).chain(roots.iter().map(|root| root.id)) {
+        for operand in order.iter().flat_map(|&id| self.words(id)).chain(roots.iter().map(|root| root.id)) {
             *uses.entry(operand).or_insert(0) += 1;
         }
         let mut sizes: HashMap<NodeId, f64> = HashMap::new();
         let mut worth = Vec::new();
         for &id in order {
-            let below: f64 = self.node(id).operands().map(|part| sizes[&part]).sum();
+            let below: f64 = self.words(id).iter().map(|part| sizes[part]).sum();
             let size = below + 1.0;
             let is_named = uses[&id] > 1 && size >= NAMED_FROM_NODES;
             if is_named {
@@ -101,7 +109,7 @@ impl fmt::Display for Expr<'_> {
         if count.written_out > TOO_LONG {
             return write!(f, "(an expression of {} nodes)", count.shared);
         }
-        let order = self.graph.reachable([self.id]);
+        let order = self.graph.reachable_by(Way::Words, [self.id], |_| true);
         f.write_str(&Writer::new(self.graph, Style::Text, &order, HashMap::new()).text(self.id))
     }
 }

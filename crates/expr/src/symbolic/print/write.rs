@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use crate::symbolic::graph::{Graph, Node, NodeId};
+use crate::symbolic::implicit::RootId;
 use crate::symbolic::op::{Binary, Unary};
 use crate::symbolic::print::Style;
 use crate::symbolic::print::name;
@@ -95,6 +96,8 @@ impl<'g> Writer<'g> {
             }
             Node::Unary(op, a) => self.call(op.name(), &[a]),
             Node::Curve(curve, order, a) => self.on_curve(self.graph.curve_of(curve).name(), order, a),
+            Node::Middle(a) => vec![Part::Node(a, Binding::Atom)],
+            Node::Root(root, ..) => self.root(root),
             Node::Binary(Binary::Add, a, b) => {
                 let (a, b) = terms(self.graph, a, b);
                 let mut parts = vec![first(a, Binding::Sum)];
@@ -191,6 +194,30 @@ impl<'g> Writer<'g> {
         let (open, close) = self.parentheses();
         let function = format!("{}{primes}{open}", name::variable(curve, self.style));
         vec![function.into(), Part::Node(argument, Binding::Sum), close.into()]
+    }
+
+    /// The unknowns with their ranges, and what is zero: `root(x in 0 .. 1: x^2 - a)`.
+    fn root(&self, root: RootId) -> Vec<Part> {
+        let system = self.graph.implicit_of(root);
+        let (open, close) = self.parentheses();
+        let (function, within) = match self.style {
+            Style::Text => ("root", [" in ", " .. "]),
+            Style::Latex => ("\\operatorname{root}", [" \\in ", " \\ldots "]),
+        };
+        let mut parts = vec![function.into(), open.into()];
+        for (k, (unknown, (low, high))) in system.unknowns.iter().zip(&system.ranges).enumerate() {
+            let [low, high] = [low, high].map(|end| name::number(*end, self.style));
+            parts.extend([if k > 0 { ", " } else { "" }.into(), Part::Node(*unknown, Binding::Sum)]);
+            parts.push(format!("{}{low}{}{high}", within[0], within[1]).into());
+        }
+        for (k, residual) in system.residuals.iter().enumerate() {
+            parts.extend([if k > 0 { ", " } else { ": " }.into(), Part::Node(*residual, Binding::Sum)]);
+        }
+        parts.push(close.into());
+        if system.unknowns.len() > 1 {
+            parts.push(format!("[{}]", root.component).into());
+        }
+        parts
     }
 
     fn call(&self, function: &'static str, arguments: &[NodeId]) -> Vec<Part> {

@@ -17,6 +17,12 @@ pub(crate) use inverse::{acos, asin, atan, atan2};
 pub(crate) use trigonometric::{cos, sin, sin_cos, tan};
 pub(crate) use trigonometric::{is_far, sin_cos_near, tan_near};
 
+/// `value` where |last| ≤ 1, else NaN.
+#[inline(always)]
+pub(crate) fn settled(value: f64, last: f64) -> f64 {
+    value + 0.0 * (1.0 - last.abs()).sqrt()
+}
+
 /// Σ cₖ xᵏ.
 #[inline(always)]
 fn polynomial<const N: usize>(x: f64, coefficients: [f64; N]) -> f64 {

@@ -81,6 +81,8 @@ pub(super) fn run(instructions: &[LaneInstruction], curves: &[Arc<Curve>], scala
                 let curve = &curves[b];
                 blocks[out].0 = blocks[a].0.map(|x| curve.value(order, x));
             }
+            LaneOperation::Copy => blocks[out] = blocks[a],
+            LaneOperation::Settled => combine(blocks, out, (Block::group, a), (Block::group, b), kernel::settled),
             LaneOperation::Spread => blocks[out].0 = [scalars[a]; LANES],
         }
     }

@@ -16,6 +16,10 @@ pub(super) enum LaneOperation {
     SinCos,
     /// `out` = the derivative of this order of curve number `b`, at `a`
     Curve(u8),
+    /// `out = a`
+    Copy,
+    /// `out = a` where |b| ≤ 1, else NaN
+    Settled,
     /// `out = op(a, b)`
     Binary(Binary),
     /// `out = op(scalar a, b)`
@@ -238,6 +242,8 @@ impl Division {
         let Place { varies, index: a } = self.places[step.a as usize];
         let operation = match step.operation {
             Operation::Binary(op) => return self.binary(op, step.out, step.a, step.b),
+            Operation::Settled => return self.settled(step),
+            Operation::Middle => LaneOperation::Copy,
             Operation::SinCos => LaneOperation::SinCos,
             Operation::Unary(op) => LaneOperation::Unary(op),
             Operation::Curve(order) => LaneOperation::Curve(order),
@@ -269,6 +275,28 @@ impl Division {
             (false, false) => LaneOperation::Binary(op),
         };
         self.push(varies, LaneInstruction { operation, out, a: a.index, b: b.index });
+    }
+
+    /// Uniform operands get lanes of their own: seldom is only one of the two uniform.
+    fn settled(&mut self, step: &Instruction) {
+        let [a, b] = [step.a, step.b].map(|register| self.places[register as usize]);
+        let varies = a.varies.and(b.varies);
+        if varies.is_uniform() {
+            let out = self.place(step.out, varies);
+            self.once.push(Instruction { operation: Operation::Settled, out, a: a.index, b: b.index });
+            return;
+        }
+        let [a, b] = [a, b].map(|operand| {
+            if !operand.varies.is_uniform() {
+                return operand.index;
+            }
+            let out = self.fresh_block();
+            let spread = LaneInstruction { operation: LaneOperation::Spread, out, a: operand.index, b: operand.index };
+            self.push(varies, spread);
+            out
+        });
+        let out = self.place(step.out, varies);
+        self.push(varies, LaneInstruction { operation: LaneOperation::Settled, out, a, b });
     }
 
     fn output(&mut self, register: u32) -> u32 {

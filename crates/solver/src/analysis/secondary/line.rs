@@ -89,16 +89,22 @@ impl<'c> Poses<'c> {
         let mut count = FEWEST;
         loop {
             let values: Vec<f64> = (0..=count).map(|k| range.at(k as f64 / count as f64)).collect();
-            let velocities: Vec<Vector3<f64>> = values
+            let places: Vec<Place> = values
                 .iter()
                 .map(|value| {
                     at[running] = *value;
-                    self.at(&at, running).velocity(point)
+                    self.at(&at, running).place(*value, point)
                 })
                 .collect();
-            let fastest = velocities.iter().map(|velocity| velocity.norm()).fold(0.0, f64::max);
-            let bends = |pair: &[Vector3<f64>]| (pair[1] - pair[0]).norm() > BEND * fastest;
-            if count >= MOST || !velocities.windows(2).any(bends) {
+            let most = BEND * places.iter().map(|place| place.speed).fold(0.0, f64::max);
+            // places whole turns apart have one velocity, but lie not where it leads
+            let bends = |pair: &[Place]| {
+                let span = pair[1].motion - pair[0].motion;
+                let led = 0.5 * span * (pair[0].velocity + pair[1].velocity);
+                (pair[1].velocity - pair[0].velocity).norm() > most
+                    || (pair[1].point - pair[0].point - led).norm() > most * span
+            };
+            if count >= MOST || !places.windows(2).any(bends) {
                 return values;
             }
             count *= 2;
@@ -107,12 +113,8 @@ impl<'c> Poses<'c> {
 }
 
 impl Pose {
-    fn velocity(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        self.rotation[1] * point + self.translation[1]
-    }
-
     pub(super) fn place(&self, motion: f64, point: &Vector3<f64>) -> Place {
-        let velocity = self.velocity(point);
+        let velocity = self.rotation[1] * point + self.translation[1];
         Place { motion, point: self.rotation[0] * point + self.translation[0], velocity, speed: velocity.norm() }
     }
 }

@@ -203,6 +203,11 @@ impl Lowering {
                 self.call(Call::Curve(order, curve), a, a)
             }
             LaneOperation::Spread => self.scalar(a),
+            LaneOperation::Copy => self.block(a),
+            LaneOperation::Settled => {
+                let (a, b) = (self.block(a), self.block(b));
+                self.settled(a, b)
+            }
         };
         self.blocks[out as usize] = Some(value);
     }
@@ -234,6 +239,16 @@ impl Lowering {
             Binary::Max => self.extreme(Packed::Maximum, a, b),
             Binary::Atan2 | Binary::Pow => self.call(Call::Binary(op), a, b),
         }
+    }
+
+    /// What `kernel::settled` does, operation by operation.
+    fn settled(&mut self, a: Value, b: Value) -> Value {
+        let [one, zero] = [1.0, 0.0].map(|number| self.constant(number));
+        let size = self.magnitude(b);
+        let left = self.subtract(one, size);
+        let root = self.push(Step::SquareRoot(left));
+        let nothing = self.multiply(zero, root);
+        self.add(a, nothing)
     }
 
     fn magnitude(&mut self, a: Value) -> Value {

@@ -1,0 +1,116 @@
+//! Unknowns that equations give, as functions of what else is in the equations.
+
+mod start;
+mod unique;
+
+use super::interval::Interval;
+use crate::symbolic::graph::Expr;
+use crate::symbolic::implicit;
+use crate::tape::Tape;
+
+/// How far beyond its range an unknown may lie, over the width of the range: a root at an end is one, rounding or not.
+const MARGIN: f64 = 1e-6;
+/// How far the last step of Newton's method may go, over the width of the range. What is left then is some ten times its square.
+const REACH: f64 = 1e-8;
+
+/// Something that equations give.
+#[derive(Clone, Copy, Debug)]
+pub struct Unknown<'g> {
+    /// The variable that stands for it in the equations, and nowhere else.
+    pub variable: Expr<'g>,
+    /// Where it lies.
+    pub range: Interval,
+}
+
+/// Why equations do not give their unknowns. What moves has the values told, in the order of the ranges that are no points.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoRoot {
+    /// There is none in the range.
+    #[error("there is no root in the range")]
+    None(Vec<f64>),
+    /// There is more than one.
+    #[error("there is more than one root in the range")]
+    Several(Vec<f64>),
+    /// Neither is proven.
+    #[error("it is not proven that there is one root in the range")]
+    Unproven(Vec<f64>),
+    /// No polynomial in what moves comes so near that two steps of Newton's method settle.
+    #[error("the root changes too fast with what moves")]
+    TooFast,
+}
+
+/// The equations as tapes over unknowns and what else is in them.
+struct System {
+    unknowns: Vec<Interval>,
+    /// Where the other inputs lie.
+    others: Vec<Interval>,
+    /// Residuals.
+    values: Tape,
+    /// Their derivatives by the unknowns, row by row.
+    slopes: Tape,
+}
+
+impl System {
+    /// Numbers of the other inputs that move.
+    fn moving(&self) -> Vec<usize> {
+        (0..self.others.len()).filter(|k| self.others[*k].lo < self.others[*k].hi).collect()
+    }
+}
+
+/// The unknowns of as many equations, as functions of what else is in these.
+///
+/// That there is one solution in the ranges, whatever the `others` are within theirs, is proven: by interval Newton (Krawczyk's operator)
+/// over parts of the ranges. A polynomial in what moves comes near it, two steps of Newton's method written out do the rest, and
+/// derivatives come from the equations. Where a value is asked for so far beyond the ranges, or with so different numbers for what stands
+/// still, that these two steps do not settle, it is NaN.
+///
+/// `others` has what the residuals depend on beside the unknowns; what stands still as points.
+///
+/// ```
+/// use flank_expr::{Graph, Interval, Unknown, roots};
+///
+/// let graph = Graph::new();
+/// let (x, a) = (graph.variable("x"), graph.variable("a"));
+/// let unknown = Unknown { variable: x, range: Interval::new(0.0, 3.0) };
+/// let [root] = roots(&[x * x - a], &[unknown], &[(a, Interval::new(1.0, 4.0))]).expect("it is the square root")[..] else { panic!() };
+/// let values = graph.evaluate(&[root, root.derivative(a)], &[0.0, 2.0]);
+/// assert!((values[0] - 2.0_f64.sqrt()).abs() < 1e-15 && (values[1] - 0.125_f64.sqrt()).abs() < 1e-15);
+/// ```
+///
+/// # Errors
+/// If it is not proven that there is one solution, or no polynomial comes near it.
+///
+/// # Panics
+/// If there are not as many residuals as unknowns, none at all, more than 255, or if a residual depends on what is neither an unknown nor
+/// among the `others`.
+pub fn roots<'g>(
+    residuals: &[Expr<'g>],
+    unknowns: &[Unknown<'g>],
+    others: &[(Expr<'g>, Interval)],
+) -> Result<Vec<Expr<'g>>, NoRoot> {
+    assert!(residuals.len() == unknowns.len() && !unknowns.is_empty(), "as many equations as unknowns");
+    let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
+    let inputs: Vec<Expr<'g>> = variables.iter().copied().chain(others.iter().map(|other| other.0)).collect();
+    let slopes: Vec<Expr<'g>> =
+        residuals.iter().flat_map(|residual| variables.iter().map(|variable| residual.derivative(*variable))).collect();
+    let tape = |outputs: &[Expr<'g>]| Tape::new(outputs, &inputs).expect("every variable of the equations has a range");
+    let widened = |range: Interval| {
+        let margin = MARGIN * (range.hi - range.lo);
+        Interval::new(range.lo - margin, range.hi + margin)
+    };
+    let system = System {
+        unknowns: unknowns.iter().map(|unknown| widened(unknown.range)).collect(),
+        others: others.iter().map(|other| other.1).collect(),
+        values: tape(residuals),
+        slopes: tape(&slopes),
+    };
+    unique::prove(&system)?;
+    let moving: Vec<Expr<'g>> = system.moving().into_iter().map(|k| others[k].0).collect();
+    let starts = start::polynomials(&system).ok_or(NoRoot::TooFast)?;
+    let starts = starts.into_iter().map(|polynomial| polynomial.written(residuals[0].graph(), &moving)).collect();
+    let ends = |range: &Interval| (range.lo, range.hi);
+    let limits: Vec<(f64, f64)> = system.unknowns.iter().map(ends).collect();
+    let ranges: Vec<(f64, f64)> = unknowns.iter().map(|unknown| ends(&unknown.range)).collect();
+    let reach: Vec<f64> = limits.iter().map(|(low, high)| REACH * (high - low)).collect();
+    Ok(implicit::roots(residuals, &variables, [&ranges, &limits], starts, &reach))
+}
