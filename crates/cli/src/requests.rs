@@ -1,11 +1,13 @@
 //! From arguments to what is asked of the library.
 
 use flank::{
-    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, JobSelection, MeasureRequest, PlotRequest,
-    ReportRequest, SolveRequest, ViewRequest,
+    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
+    PlotRequest, ReportRequest, SolveRequest, ViewRequest,
 };
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, JobArguments, Measure, Onto, Plot, Report, Solve, View};
+use crate::arguments::{
+    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Onto, Plot, Report, Solve, View,
+};
 use crate::failure::Failure;
 use crate::spec;
 
@@ -89,6 +91,30 @@ impl Deviation {
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Fit {
+    pub(crate) fn request(&self) -> Result<FitRequest, Failure> {
+        Ok(FitRequest {
+            jobs: self.which.jobs()?,
+            surface: self.surface.clone(),
+            measured: self.measured.clone(),
+            and: self.and.clone(),
+            rows: self.rows,
+            columns: self.columns,
+            margin: self.margin.margin,
+            ease_off: self.ease_off,
+            from: self.from.clone(),
+            vary: self.vary.clone(),
+            as_it_lies: self.as_it_lies,
+            share: self.share,
+            within: self.within,
+            resolution: self.resolution,
+            write: self.write.clone(),
+            dry: self.dry,
             evaluator: self.evaluator.evaluator(),
         })
     }

@@ -39,13 +39,14 @@ fn check_says_where_and_why() {
 
 #[test]
 fn every_spec_of_the_library_is_right() {
-    let mut files = Vec::new();
-    for folder in ["functions", "machines", "tools", "hobbing", "bevel", "double_envelope", "grinding"] {
-        for entry in std::fs::read_dir(top().join("specs").join(folder)).unwrap() {
-            files.push(format!("specs/{folder}/{}", entry.unwrap().file_name().into_string().unwrap()));
-        }
-    }
-    assert!(files.len() >= 9);
+    let entries = |folder: &str| {
+        let entries = std::fs::read_dir(top().join(folder)).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.map(|name| format!("{folder}/{name}")).collect::<Vec<_>>()
+    };
+    let files: Vec<String> = entries("specs").iter().flat_map(|folder| entries(folder)).collect();
+    let files: Vec<String> = files.into_iter().filter(|file| file.ends_with(".chain")).collect();
+    assert!(files.len() >= 90, "{}", files.len());
     let arguments: Vec<&str> = std::iter::once("check").chain(files.iter().map(String::as_str)).collect();
     let run = flank(&arguments);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -296,6 +297,7 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
         &["report", SPUR, "--out", "spur.csv"],
         &["report", "nosuch.chain", "--out", "spur.md", "--format", "html"],
         &["deviation", SPUR, "flank_plus"],
+        &["fit", SPUR, "flank_plus"],
         &["deviation", "nosuch.chain", "flank_plus"],
         &["convert", "nosuch.chain", "--to", MACHINE, "--fit", "work_offset", "--tolerance", "1um"],
         &["solve", SPUR, "--out", &called_like_a_file],
@@ -328,6 +330,7 @@ fn exit_codes_tell_the_command_line_from_what_it_names() {
         &["report", &wrong],
         &["deviation", SPUR, "nosuch", "--reference", "flank_plus"],
         &["measure", SPUR, "--surface", "nosuch"],
+        &["fit", SPUR, "nosuch", "--measured", "nosuch.csv"],
         &["import", &rexs, "--signs", "frames", "--outside", "nosuch"],
         &["fmt", "nosuch.chain"],
         &["view", MACHINE],

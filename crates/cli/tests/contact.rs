@@ -287,6 +287,7 @@ fn points_beyond_the_blank_are_trimmed() {
     let out = folder("contact_blank");
     let text = std::fs::read_to_string(top().join(SPUR_PAIR)).expect("the spec");
     for library in [
+        "functions/hobbing.chain",
         "machines/parallel_pair.chain",
         "machines/rack_generating.chain",
         "machines/hobbing_6axis.chain",

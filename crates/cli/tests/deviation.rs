@@ -185,7 +185,7 @@ fn several_branches_are_listed() {
             sample original { rho: 48 mm .. 55 mm by 5, z: -15 mm .. 15 mm by 5 }
             sample again { rho: 48 mm .. 55 mm by 5, z: -15 mm .. 15 mm by 5 KEEP }
         }";
-    let library = self_contained(&["grinding/thread_wheel"]);
+    let library = self_contained(&["machines/thread_grinder", "grinding/thread_wheel"]);
     let run = |keep: &str| {
         let spec = written(&out, "round_trip.chain", &format!("{library}{}", job.replace("KEEP", keep)));
         flank(&[

@@ -54,7 +54,13 @@ fn used_files_are_not_written_over() {
 fn a_target_machine_and_its_job_are_not_written_over() {
     let out = folder("inputs_convert");
     let machine = self_contained(&["machines/free_form"]);
-    let pinion = self_contained(&["functions/bevel", "machines/cradle", "tools/face_mill", "bevel/pinion_19x62"]);
+    let pinion = self_contained(&[
+        "functions/bevel",
+        "machines/cradle",
+        "tools/face_mill",
+        "functions/blanks_19x62",
+        "bevel/pinion_19x62",
+    ]);
     let job = written(&out, "job.chain", &pinion);
     for (name, arguments) in [
         ("pinion_19x62_on_free_form.csv", &[][..]),

@@ -199,7 +199,8 @@ fn linuxcnc_takes_no_orders_from_a_path() {
         return;
     }
     let out = folder("rs274_path");
-    let specs = ["functions/bevel", "machines/cradle_tilt", "tools/face_mill", "bevel/thesis_gear"];
+    let specs =
+        ["functions/bevel", "machines/cradle_tilt", "tools/face_mill", "functions/blanks_19x62", "bevel/thesis_gear"];
     let job = support::self_contained(&specs);
     let mut told = Vec::new();
     for words in ["plain ".repeat(12), "LOGOPEN,opened.txt ".repeat(12), "ABORT,no ".repeat(20), "PY,1 ".repeat(40)] {

@@ -87,7 +87,13 @@ fn solved_surfaces() {
     let cut = judge.run(&solve("specs/hobbing/real_hob.chain", &["--set", "points=5"]), 0);
     assert!(cut[0]["surfaces"][0]["cut"].is_object());
     // several branches, none of which is kept
-    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let spec = self_contained(&[
+        "machines/hobbing_6axis",
+        "tools/involute",
+        "tools/hob_zi",
+        "functions/hobbing",
+        "hobbing/helical_gear",
+    ]);
     let unsaid: String = spec.lines().filter(|line| !line.contains("keep ")).map(|line| format!("{line}\n")).collect();
     let unsaid = written(&out, "unsaid.chain", &unsaid);
     let told = judge.run(&["solve", &unsaid, "--json", "--no-picture", at, to], 3);
@@ -142,12 +148,17 @@ fn comparisons_and_pictures() {
     let measured = out.join("pinion_19x62.grid.csv");
     let back = ["deviation", PINION, "concave", "--no-picture", "--measured", measured.to_str().unwrap()];
     judge.run(&[&back[..], &at].concat(), 0);
+    let fit = ["fit", PINION, "concave", "--json", "--measured", measured.to_str().unwrap()];
+    judge.run(&[&fit[..], &["--vary", "radial_distance,cradle_angle,blade_angle"]].concat(), 0);
+    judge.run(&fit, 0);
+    judge.run(&[&fit[..], &["--vary", "nosuch"]].concat(), 1);
     judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
     judge.has_met(&[
         "flank.contact/1",
         "flank.deviation/1",
+        "flank.fit/1",
         "flank.plot/2",
         "flank.view/2",
         "flank.measure/1",
@@ -193,6 +204,7 @@ fn failures_of_all_commands() {
         &["convert", &wrong, "--to", FREE_FORM],
         &["derive", &wrong],
         &["deviation", &wrong, "a", "--reference", "b"],
+        &["fit", &wrong, "a", "--measured", "b.csv"],
         &["plot", &wrong],
         &["view", &wrong],
     ] {
@@ -224,7 +236,7 @@ fn failures_of_all_commands() {
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
     let shipped = schemas();
-    assert_eq!(shipped.len(), 24, "no document comes or goes unseen");
+    assert_eq!(shipped.len(), 25, "no document comes or goes unseen");
     for (name, schema) in &shipped {
         assert!(jsonschema::meta::is_valid(schema), "{name} is no schema");
         let (kind, version) =

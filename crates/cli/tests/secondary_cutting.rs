@@ -233,6 +233,20 @@ fn a_rack_cuts_flanks_by_its_rounding_and_fillets_by_its_flank() {
     }
 }
 
+/// The worm of a wheel with 50 teeth meshes over eight whole turns. Places whole turns apart have the same velocity and lie beside
+/// neighbouring threads; the way from one to the other leads around the worm, not through a thread.
+#[test]
+fn whole_turns_between_places_are_no_way_through_the_steel() {
+    let rows = solved(
+        "secondary_turns",
+        "specs/globoid/hindley_worm_wheel.chain",
+        "hindley_worm_wheel",
+        &["--set", "teeth=50"],
+    );
+    let told: Vec<&Row> = rows.iter().filter(|row| row.surface == "plus" || row.surface == "minus").collect();
+    assert!(told.len() > 500 && told.iter().all(|row| row.status == "solved"), "{}", told.len());
+}
+
 /// What was not looked at is said, and only then.
 #[test]
 fn what_was_not_looked_at_is_said() {

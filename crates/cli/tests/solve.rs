@@ -48,7 +48,13 @@ fn columns(out: &Path, surface: &str, names: [&str; 3]) -> Vec<[f64; 3]> {
 #[test]
 fn points_of_a_table_are_those_of_the_grid() {
     let at = folder("solve-table");
-    let spec = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"]);
+    let spec = self_contained(&[
+        "machines/hobbing_6axis",
+        "tools/involute",
+        "tools/hob_zi",
+        "functions/hobbing",
+        "hobbing/helical_gear",
+    ]);
     let run = |name: &str, text: &str| {
         let out = at.join(name);
         let run =
@@ -362,6 +368,7 @@ fn branches_are_listed_as_json() {
         "machines/hobbing_6axis",
         "tools/involute",
         "tools/hob_zi",
+        "functions/hobbing",
         "hobbing/helical_gear",
     ]);
     let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();
@@ -553,6 +560,7 @@ fn why_a_surface_has_no_point_is_told_in_its_row() {
         "machines/hobbing_6axis",
         "tools/involute",
         "tools/hob_zi",
+        "functions/hobbing",
         "hobbing/helical_gear",
     ]);
     let unsaid: Vec<&str> = spec.lines().filter(|line| !line.contains("keep ")).collect();

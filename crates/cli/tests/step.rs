@@ -7,7 +7,8 @@ use std::process::Command;
 use serde_json::Value;
 use support::{flank, folder, self_contained, text, top, written};
 
-const PINION: [&str; 4] = ["functions/bevel", "machines/cradle", "tools/face_mill", "bevel/pinion_19x62"];
+const PINION: [&str; 5] =
+    ["functions/bevel", "machines/cradle", "tools/face_mill", "functions/blanks_19x62", "bevel/pinion_19x62"];
 
 /// Each face against exact points that it was not made of, by a reader of others: `gmsh`, which brings OpenCASCADE. `FLANK_READERS` names
 /// the Python that has it.
@@ -100,8 +101,14 @@ fn a_face_that_cannot_be_exact_enough_is_told() {
     assert_eq!(run.status.code(), Some(3));
     assert!(text(&run.stderr).contains("face of `lower_flank` is not shown to be within"), "{}", text(&run.stderr));
     let rows = "rho: form_radius + 0.05 * normal_module .. tip_radius by 21";
-    let row = self_contained(&["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "hobbing/helical_gear"])
-        .replace(rows, "rho: 50 mm");
+    let row = self_contained(&[
+        "machines/hobbing_6axis",
+        "tools/involute",
+        "tools/hob_zi",
+        "functions/hobbing",
+        "hobbing/helical_gear",
+    ])
+    .replace(rows, "rho: 50 mm");
     let row = written(&out, "row.chain", &row);
     let run = flank(&["solve", &row, "--step", "--out", folder, "--no-picture"]);
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));

@@ -258,7 +258,13 @@ job wheel {
 #[test]
 fn a_search_without_prospect_ends() {
     let folder = folder("prospect");
-    let library = ["machines/hobbing_6axis", "machines/hobbing_edges", "tools/involute", "tools/hob_zi_edges"];
+    let library = [
+        "functions/hobbing",
+        "machines/hobbing_6axis",
+        "machines/hobbing_edges",
+        "tools/involute",
+        "tools/hob_zi_edges",
+    ];
     let hob = self_contained(&[&library[..], &["hobbing/real_hob"]].concat());
     let turning = hob.lines().find(|line| line.trim_start().starts_with("drive r.C =")).expect("the table turns");
     let spec = written(&folder, "still.chain", &hob.replace(turning, "    drive r.C = 0 rad"));

@@ -312,6 +312,7 @@ fn a_pair_without_solids_and_one_that_never_touches() {
         "machines/parallel_pair",
         "machines/rack_generating",
         "tools/rack",
+        "functions/hobbing",
         "pairs/spur_pair",
     ]);
     let (solids, samples) =

@@ -23,11 +23,14 @@ mod newton;
 mod roots;
 mod surface;
 
+pub use analysis::adjustment::choice::{linear_rest, most_effective};
+pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
+pub use analysis::adjustment::{AdjustableSurface, Foot, NearFoot};
 pub use analysis::cutting::{CuttingEdges, ScallopHeight};
 pub use analysis::deviation::{Deviation, EaseOff};
 pub use analysis::extent::extent;
 pub use analysis::geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
-pub use analysis::inspection::{Inspection, beside};
+pub use analysis::inspection::{Inspection, beside, mean_turn};
 pub use analysis::intersection::{Intersection, Line, Meeting};
 pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
@@ -50,6 +53,9 @@ pub use conversion::tube::{Tube, Unproven};
 pub use equations::solution::{CutBy, Outcome, Range, Solution};
 pub use equations::system::System;
 pub use equations::tolerance::TOLERANCE;
+pub use newton::least_squares::{
+    LeastSquares, LeastSquaresFit, Linearized, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
+};
 pub use newton::scalar::solve;
 pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
 pub use surface::bands::Band;

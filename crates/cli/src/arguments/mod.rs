@@ -3,6 +3,7 @@
 mod choice;
 mod contact;
 mod convert;
+mod fit;
 mod measuring;
 mod plot;
 mod report;
@@ -19,6 +20,7 @@ use choice::{described, names};
 
 pub(crate) use contact::Contact;
 pub(crate) use convert::{Convert, Onto};
+pub(crate) use fit::Fit;
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
@@ -64,6 +66,8 @@ pub(crate) enum Command {
     Report(Report),
     /// How far one surface lies off another one of the same body (ease-off, tooth-space width), or measured points off a surface
     Deviation(Deviation),
+    /// Which settings make a measured flank, which correct it, and which give a wanted ease-off
+    Fit(Fit),
     /// Where two flanks touch while a pair rolls, how evenly they turn each other, what the marking compound shows
     Contact(Contact),
     /// Write nominal points and normals for a gear measuring machine
@@ -98,6 +102,7 @@ impl Command {
             Command::Plot(arguments) => arguments.json,
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
+            Command::Fit(arguments) => arguments.json,
             Command::Contact(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
             Command::Import(arguments) => arguments.json,
@@ -121,6 +126,7 @@ impl Command {
             Command::Plot(arguments) => Some(arguments.evaluator),
             Command::Report(arguments) => Some(arguments.evaluator),
             Command::Deviation(arguments) => Some(arguments.evaluator),
+            Command::Fit(arguments) => Some(arguments.evaluator),
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),

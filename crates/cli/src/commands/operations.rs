@@ -2,7 +2,7 @@
 
 use flank::{Answer, Failure as Refused, Monitor};
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, Measure, Plot, Report, Solve, View};
+use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Plot, Report, Solve, View};
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -54,6 +54,11 @@ pub(crate) fn measure(arguments: &Measure) -> Result<Ending, Failure> {
 pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::deviation(&request, monitor).map(each))
+}
+
+pub(crate) fn fit(arguments: &Fit) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, |monitor, each| flank::fit(&request, monitor).map(each))
 }
 
 pub(crate) fn contact(arguments: &Contact) -> Result<Ending, Failure> {

@@ -160,7 +160,7 @@ pub(crate) fn measure<'j, 'g>(
 }
 
 /// The points of a surface at values of two coordinates, and its branches where several qualify.
-fn solved<'g>(
+pub(crate) fn solved<'g>(
     of: Named<'_, 'g>,
     (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),
     session: Session,

@@ -126,6 +126,12 @@ impl<'j, 'g> Placed<'j, 'g> {
         [0, 1].map(|k| within(self.margins[k], counts[k]))
     }
 
+    /// So many rows and columns as the sample has.
+    pub(crate) fn counts(&self) -> [usize; 2] {
+        let [rows, columns] = self.sample.counts;
+        if self.ends.rows_are_profile { [rows, columns] } else { [columns, rows] }
+    }
+
     /// # Errors
     /// If the work is cancelled.
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Result<Vec<SurfacePoint>, Failure> {

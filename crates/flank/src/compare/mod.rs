@@ -2,6 +2,8 @@
 
 pub(crate) mod deviation;
 pub(crate) mod deviation_result;
+pub(crate) mod fit;
+pub(crate) mod gauged;
 pub(crate) mod inspect;
 pub(crate) mod map;
 pub(crate) mod measure;

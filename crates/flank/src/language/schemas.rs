@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::compare::deviation_result::DeviationResult;
+use crate::compare::fit::result::FitResult;
 use crate::compare::measure_result::MeasureResult;
 use crate::contact::result::ContactResult;
 use crate::convert::result::{AxisMotion, FoundSettings};
@@ -41,6 +42,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<SolveResult>(),
         schema_of::<DeviationResult>(),
         schema_of::<ContactResult>(),
+        schema_of::<FitResult>(),
         schema_of::<MeasureResult>(),
         schema_of::<AxisMotion>(),
         schema_of::<FoundSettings>(),

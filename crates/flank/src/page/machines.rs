@@ -46,6 +46,7 @@ fn axis(axis: &Axis<'_>) -> PageAxis {
             LawSource::Driven => "driven",
             LawSource::Fixed => "fixed",
             LawSource::Coupled => "coupled",
+            LawSource::Closed => "closed",
             LawSource::Free => "free",
         }
         .to_string(),

@@ -61,6 +61,8 @@ pub enum NotDoneKind {
     NoContact,
     /// Two flanks reach into each other.
     Penetration,
+    /// No settings make a flank as it was wanted.
+    NotMet,
 }
 
 /// Kinds of remarks.
@@ -105,6 +107,12 @@ pub enum RemarkKind {
     RollTooShort,
     /// A surface of a tooth space was not held against the mate.
     NotLookedAt,
+    /// A setting does not move the surface.
+    MovesNothing,
+    /// A measured point does not go with the others.
+    Outlier,
+    /// What settings take away of a deviation is not more than it scatters.
+    NotShown,
 }
 
 impl<Kind> Message<Kind> {

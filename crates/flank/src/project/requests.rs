@@ -270,6 +270,87 @@ impl DeviationRequest {
     }
 }
 
+/// Which settings make a measured flank, or one with a wanted ease-off.
+#[derive(Clone, Debug)]
+pub struct FitRequest {
+    /// The jobs that the surfaces are looked for in.
+    pub jobs: JobSelection,
+    /// The surface whose settings are looked for.
+    pub surface: String,
+    /// Measured points of the surface.
+    pub measured: Option<PathBuf>,
+    /// A further surface of the same job that was measured in the same position, with its file.
+    pub and: Option<(String, PathBuf)>,
+    /// Rows of the grid that was measured; the largest that the file names otherwise.
+    pub rows: Option<u32>,
+    /// Columns of that grid, the same way.
+    pub columns: Option<u32>,
+    /// What a measuring grid leaves out at each end, as shares from root to tip and along the tooth.
+    pub margin: Option<[f64; 2]>,
+    /// How the surface shall lie off another one, which `from` names.
+    pub ease_off: Option<WantedEaseOff>,
+    /// The surface that the ease-off is one from; it is sampled in the spec.
+    pub from: Option<String>,
+    /// The parameters and settings that may change; some of those that the job gives a value, if none is named.
+    pub vary: Vec<String>,
+    /// Whether the points are not turned about z.
+    pub as_it_lies: bool,
+    /// The share of the deviation that the corrected settings take away.
+    pub share: f64,
+    /// Root of the mean square, mm, up to which a flank is as it was wanted.
+    pub within: f64,
+    /// A change of the settings that moves the flank by less, mm, is made only where it takes nearly all away that is left of a measured
+    /// flank.
+    pub resolution: f64,
+    /// A file for a spec with the corrected settings.
+    pub write: Option<PathBuf>,
+    /// Whether that spec is told and not written.
+    pub dry: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl FitRequest {
+    /// The settings of a surface: all of the deviation is taken away, to 1 um, by changes that move the flank by 0.1 um at least.
+    pub fn new(jobs: impl Into<JobSelection>, surface: &str) -> FitRequest {
+        FitRequest {
+            jobs: jobs.into(),
+            surface: surface.to_string(),
+            measured: None,
+            and: None,
+            rows: None,
+            columns: None,
+            margin: None,
+            ease_off: None,
+            from: None,
+            vary: Vec::new(),
+            as_it_lies: false,
+            share: 1.0,
+            within: 1e-3,
+            resolution: 1e-4,
+            write: None,
+            dry: false,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+
+    pub(crate) fn margins(&self) -> [f64; 2] {
+        self.margin.unwrap_or([MARGIN; 2])
+    }
+}
+
+/// How far a flank shall lie off another one over a sampled area: a parabola in both directions, um, plus is material. The first number of
+/// each pair is from root to tip, the second along the tooth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WantedEaseOff {
+    /// Rise from end to end.
+    pub slopes: [f64; 2],
+    /// Drop from the middle to both ends.
+    pub crownings: [f64; 2],
+    /// Rise along the tip, less that along the root.
+    pub bias: f64,
+}
+
 /// How far a member is mounted from where it should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MountingError {

@@ -111,6 +111,7 @@ fn source(axis: &Axis<'_>) -> &'static str {
         LawSource::Driven => "driven",
         LawSource::Fixed => "fixed",
         LawSource::Coupled => "coupled",
+        LawSource::Closed => "closed",
         LawSource::Free => "free",
     }
 }
@@ -180,6 +181,7 @@ fn axis_told(findings: &Findings<'_, '_>, run: &Run<'_, '_>) -> BuiltAxis {
             LawSource::Driven => AxisSource::Driven,
             LawSource::Fixed => AxisSource::Fixed,
             LawSource::Coupled => AxisSource::Coupled,
+            LawSource::Closed => AxisSource::Closed,
             LawSource::Free => AxisSource::Free,
         },
         law: text(axis.law),

@@ -220,6 +220,8 @@ pub enum AxisSource {
     Fixed,
     /// Other axes.
     Coupled,
+    /// A closed loop.
+    Closed,
     /// Nothing yet: it can be moved.
     Free,
 }

@@ -67,7 +67,7 @@ impl Inspection {
     /// If there are not as many points of the one as of the other.
     #[must_use]
     pub fn best_turn(&self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
-        let mut turn = apart(measured, nominal)?;
+        let mut turn = mean_turn(measured, nominal)?;
         for _ in 0..MOST_STEPS {
             let deviations = self.deviations(measured, nominal, turn);
             let known = deviations.iter().zip(nominal).filter_map(|(off, point)| Some(((*off)?, point)));
@@ -127,8 +127,9 @@ fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
     [x * cosine - y * sine, x * sine + y * cosine, z]
 }
 
-/// The mean turn about z from measured points to nominal ones; `None` where no place has both.
-fn apart(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
+/// The mean turn about z, radians, from measured points to nominal ones; `None` where no place has both.
+#[must_use]
+pub fn mean_turn(measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
     let pairs = measured.iter().zip(nominal).filter(|(_, point)| point.outcome == Outcome::Solved);
     let (sine, cosine) = pairs
         .filter_map(|(measured, point)| Some(((*measured)?, point.position)))

@@ -1,0 +1,347 @@
+//! `flank fit`: settings that made a flank, settings that correct it.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use support::{flank, folder, text, top, written};
+
+const PINION: &str = "specs/bevel/pinion_19x62.chain";
+const CHANGED: [(&str, &str, f64); 3] = [
+    ("m.radial_distance", "98.05 mm", 98.05),
+    ("m.work_offset", "0.1 mm", 0.1),
+    ("m.machine_root_angle", "15.74 deg", 15.74),
+];
+
+/// The grid of both flanks of a pinion with other settings, as a machine would measure it.
+fn gauged(name: &str) -> PathBuf {
+    let out = folder(name);
+    let set: Vec<String> = CHANGED.iter().map(|(name, value, _)| format!("{name}={value}")).collect();
+    let mut arguments =
+        vec!["measure", PINION, "--surface", "concave,convex", "--out", out.to_str().expect("a plain path")];
+    set.iter().for_each(|value| arguments.extend(["--set", value]));
+    assert_eq!(flank(&arguments).status.code(), Some(0));
+    out.join("pinion_19x62.grid.csv")
+}
+
+fn fit(code: i32, arguments: &[&str]) -> (Value, String) {
+    let run = flank(&[&["fit"], arguments, &["--json"]].concat());
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(code), "{arguments:?}: {told}");
+    (serde_json::from_slice(&run.stdout).expect("JSON"), told)
+}
+
+fn path(of: &Path) -> &str {
+    of.to_str().expect("a plain path")
+}
+
+/// The lines of the concave flank's grid, each changed: row, column, position, normal.
+fn rewritten(file: &Path, name: &str, line: impl Fn([usize; 2], [f64; 3], [f64; 3]) -> Option<String>) -> String {
+    let content = std::fs::read_to_string(file).expect("written");
+    let mut out = "row,column,x,y,z\n".to_string();
+    for one in content.lines().filter(|line| line.starts_with("concave,")) {
+        let cells: Vec<&str> = one.split(',').collect();
+        let number = |k: usize| cells[k].parse::<f64>().expect("a number");
+        let place = [3, 4].map(|k: usize| cells[k].parse::<usize>().expect("an index"));
+        if cells[2] == "grid" {
+            out += &line(place, [5, 6, 7].map(number), [8, 9, 10].map(number)).unwrap_or_default();
+        }
+    }
+    written(file.parent().expect("a folder"), name, &out)
+}
+
+fn plain([row, column]: [usize; 2], [x, y, z]: [f64; 3]) -> Option<String> {
+    Some(format!("{row},{column},{x:?},{y:?},{z:?}\n"))
+}
+
+fn number(of: &Value) -> f64 {
+    of.as_f64().expect("a number")
+}
+
+fn names(of: &Value) -> Vec<&str> {
+    of.as_array().expect("settings").iter().map(|of| of["name"].as_str().expect("a name")).collect()
+}
+
+const VARIED: &str = "radial_distance,m.machine_root_angle,work_offset";
+
+#[test]
+fn settings_of_a_measured_flank_come_back() {
+    let file = gauged("fit_back");
+    for more in [&[][..], &["--as-it-lies"]] {
+        let (told, _) = fit(0, &[&[PINION, "concave", "--measured", path(&file), "--vary", VARIED], more].concat());
+        let found = told["identification"]["settings"].as_array().expect("settings");
+        for ((name, _, value), setting) in CHANGED.iter().zip(found) {
+            assert_eq!(setting["name"], *name, "in the order of the job");
+            assert!((number(&setting["new"]) - value).abs() < 1e-9, "{setting}");
+            assert!(setting["at_bound"].is_null() && number(&setting["uncertain_by"]) < 1e-6);
+        }
+        assert!(number(&told["identification"]["left_um"]) < 1e-6);
+        // to first order the correction is the other way; what is left is of the second
+        for (found, set) in found.iter().zip(told["correction"]["settings"].as_array().expect("settings")) {
+            let [there, back] = [found, set].map(|of| number(&of["change"]));
+            assert!((there + back).abs() < 0.05 * there.abs(), "{there} {back}");
+        }
+        assert_eq!(told["turn_deg"].is_null(), !more.is_empty());
+    }
+}
+
+/// Both flanks, one turn: nothing less makes the space as wide.
+#[test]
+fn both_flanks_are_fitted_with_one_turn() {
+    let file = gauged("fit_both");
+    let and = format!("convex={}", path(&file));
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", path(&file), "--and", &and, "--vary", VARIED]);
+    assert_eq!(told["flanks"].as_array().expect("flanks").len(), 2);
+    assert!(number(&told["identification"]["left_um"]) < 1e-6);
+    for ((.., value), setting) in CHANGED.iter().zip(told["identification"]["settings"].as_array().expect("settings")) {
+        assert!((number(&setting["new"]) - value).abs() < 1e-9, "{setting}");
+    }
+}
+
+/// What was corrected is a spec; measured again, the flank is what the prediction says.
+#[test]
+fn the_corrected_spec_cuts_the_predicted_flank() {
+    let file = gauged("fit_corrected");
+    let project = folder("fit_corrected_project");
+    let copied = std::process::Command::new("cp").args(["-r", "specs", path(&project)]).current_dir(top()).status();
+    assert!(copied.expect("cp runs").success());
+    written(&project, "flank.toml", "");
+    let spec = project.join("specs/bevel/pinion_19x62.chain");
+    let corrected = project.join("corrected.chain");
+    let asked = [path(&spec), "concave", "--measured", path(&file), "--vary", VARIED, "--share", "0.7"];
+    let (dry, _) = fit(0, &[&asked[..], &["--write", path(&corrected), "--dry"]].concat());
+    assert!(!corrected.exists(), "told, not written");
+    let (told, _) = fit(0, &[&asked[..], &["--write", path(&corrected)]].concat());
+    let content = std::fs::read_to_string(&corrected).expect("written");
+    assert_eq!(dry["corrected"], content.as_str());
+    assert!(content.contains("job pinion_19x62_corrected = pinion_19x62(\n"), "{content}");
+    assert_eq!(flank(&["fmt", "--check", path(&corrected)]).status.code(), Some(0));
+    // 30 % of the deviation stay
+    let [before, after] = ["before_um", "predicted_um"].map(|key| number(&told[key]));
+    assert!((after - 0.3 * before).abs() < 0.01 * before, "{before} {after}");
+    // the machine's error is the same for the corrected settings: the flank that it cuts now
+    let out = folder("fit_corrected_again");
+    let correction = told["correction"]["settings"].as_array().expect("settings");
+    let set: Vec<String> = CHANGED
+        .iter()
+        .zip(correction)
+        .map(|((name, _, value), of)| {
+            format!("{name}={} {}", value + number(&of["change"]), of["unit"].as_str().expect("a unit"))
+        })
+        .collect();
+    let mut arguments = vec!["measure", PINION, "--surface", "concave", "--out", path(&out)];
+    set.iter().for_each(|value| arguments.extend(["--set", value]));
+    assert_eq!(flank(&arguments).status.code(), Some(0));
+    let again = out.join("pinion_19x62.grid.csv");
+    let (again, _) = fit(3, &[PINION, "concave", "--measured", path(&again), "--vary", "c.edge_radius"]);
+    assert!((number(&again["before_um"]) - after).abs() < 0.01 * before, "{} {after}", again["before_um"]);
+    // neither over what is read, nor where it could not be used
+    let refused = flank(&["fit", path(&spec), "concave", "--measured", path(&file), "--write", path(&spec)]);
+    assert_eq!(refused.status.code(), Some(1), "{}", text(&refused.stderr));
+    let elsewhere = format!("{}/nowhere/corrected.chain", path(&project));
+    let refused = flank(&["fit", path(&spec), "concave", "--measured", path(&file), "--write", &elsewhere]);
+    assert!(text(&refused.stderr).contains("there is no folder"), "{}", text(&refused.stderr));
+}
+
+/// Without names, settings are taken until the next would do next to nothing; of two that do the same one is.
+#[test]
+fn settings_are_chosen() {
+    let file = gauged("fit_chosen");
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", path(&file)]);
+    let chosen = names(&told["correction"]["settings"]);
+    let candidates: Vec<&str> =
+        told["choice"]["candidates"].as_array().expect("names").iter().filter_map(Value::as_str).collect();
+    assert!(chosen.len() < candidates.len() && chosen.iter().all(|name| candidates.contains(name)), "{told}");
+    assert!(!candidates.contains(&"c.inside_point_radius"), "the inside blades do not touch this flank");
+    assert!(number(&told["identification"]["left_um"]) < 0.5);
+    assert!(number(&told["choice"]["all_leave_um"]) < number(&told["identification"]["left_um"]));
+}
+
+#[test]
+fn what_the_points_do_not_tell_is_said() {
+    let file = gauged("fit_untold");
+    let varied = "cradle_angle,sliding_base,outside_point_radius,radial_distance,work_offset,machine_root_angle,inside_point_radius";
+    let (told, stderr) = fit(0, &[PINION, "concave", "--measured", path(&file), "--vary", varied]);
+    let untold: Vec<&str> = told["untold"].as_array().expect("sentences").iter().filter_map(Value::as_str).collect();
+    assert_eq!(untold.len(), 2, "{untold:?}");
+    let says = |part: &str| untold.iter().any(|told| told.contains(part));
+    assert!(says("`m.sliding_base` and `c.outside_point_radius`: only their sum shows"), "{untold:?}");
+    assert!(says("`m.cradle_angle` and the turn about z: only their sum shows"), "{untold:?}");
+    let settings = told["identification"]["settings"].as_array().expect("settings");
+    let is_told = |name: &str| settings.iter().any(|of| of["name"] == name && !of["uncertain_by"].is_null());
+    assert!(is_told("m.radial_distance") && !is_told("m.sliding_base") && !is_told("m.cradle_angle"), "{told}");
+    assert!(stderr.contains("`c.inside_point_radius` does not move concave"), "{stderr}");
+    assert!(!names(&told["correction"]["settings"]).contains(&"c.inside_point_radius"));
+}
+
+#[test]
+fn a_point_that_does_not_go_with_the_others_is_named() {
+    let file = gauged("fit_outlier");
+    let one = rewritten(&file, "one.csv", |place, at, normal| {
+        let off = if place == [2, 3] { 0.05 } else { 0.0 };
+        plain(place, std::array::from_fn(|k| at[k] + off * normal[k]))
+    });
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &one, "--vary", VARIED]);
+    let outliers = told["outliers"].as_array().expect("points");
+    assert_eq!(outliers.len(), 1, "{outliers:?}");
+    assert_eq!((&outliers[0]["row"], &outliers[0]["column"]), (&Value::from(2), &Value::from(3)));
+    assert!((number(&outliers[0]["off_um"]) - 50.0).abs() < 0.1, "{outliers:?}");
+    assert!(stderr.contains("row 2, column 3 of concave lies 50."), "{stderr}");
+    // without it the settings are found
+    let without = rewritten(&file, "without.csv", |place, at, _| (place != [2, 3]).then(|| plain(place, at)).flatten());
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &without, "--vary", VARIED]);
+    assert!(number(&told["identification"]["left_um"]) < 1e-6);
+    assert!(stderr.contains("not measured: 1 of 45 points of concave"), "{stderr}");
+}
+
+/// Turned by a tooth, it is the same flank, if it may be turned; another flank, too few points, a reversed grid are told.
+#[test]
+fn grids_that_are_not_those_of_the_flank_are_told() {
+    let file = gauged("fit_wrong");
+    let (sin, cos) = (360f64 / 19.0).to_radians().sin_cos();
+    let next =
+        rewritten(&file, "next.csv", |place, [x, y, z], _| plain(place, [x * cos - y * sin, x * sin + y * cos, z]));
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", &next, "--vary", VARIED]);
+    assert!((number(&told["turn_deg"]) + 360.0 / 19.0).abs() < 0.1, "{}", told["turn_deg"]);
+    assert!(number(&told["identification"]["left_um"]) < 1e-6);
+    let (_, stderr) = fit(1, &[PINION, "concave", "--measured", &next, "--vary", VARIED, "--as-it-lies"]);
+    assert!(stderr.contains("mm beside its nominal point"), "{stderr}");
+
+    let mirrored = rewritten(&file, "mirrored.csv", |place, [x, y, z], _| plain(place, [x, -y, z]));
+    let (_, stderr) = fit(1, &[PINION, "concave", "--measured", &mirrored, "--vary", VARIED]);
+    assert!(stderr.contains("mm beside its nominal point"), "{stderr}");
+
+    let few = rewritten(&file, "few.csv", |[row, column], at, _| {
+        (row < 2 && column < 4).then(|| plain([row, column], at)).flatten()
+    });
+    let (_, stderr) =
+        fit(1, &[PINION, "concave", "--measured", &few, "--rows", "5", "--columns", "9", "--vary", VARIED]);
+    assert!(stderr.contains("3 points do not tell 4 unknowns, the turn about z among them"), "{stderr}");
+
+    // from the heel to the toe: deviations alone do not show that, but settings do
+    let out = folder("fit_wrong_map");
+    let set = ["--set", "m.modified_roll_2c=0.01", "--set", "m.machine_root_angle=15.75 deg"];
+    let measured = flank(&[&["measure", PINION, "--surface", "concave", "--out", path(&out)][..], &set].concat());
+    assert_eq!(measured.status.code(), Some(0));
+    let map = ["deviation", PINION, "concave", "--no-picture", "--measured"];
+    let grid = out.join("pinion_19x62.grid.csv");
+    assert_eq!(flank(&[&map[..], &[path(&grid), "--out", path(&out)]].concat()).status.code(), Some(0));
+    let content = std::fs::read_to_string(out.join("pinion_19x62.concave.measured.deviation.csv")).expect("written");
+    let off: Vec<&str> = content
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .filter_map(|line| line.rsplit(',').next())
+        .collect();
+    let line = |at: usize, column: usize| format!("{},{column},{}\n", at / 9 + 1, off[at]);
+    let there: String = (0..45).map(|at| line(at, at % 9 + 1)).collect();
+    let back: String = (0..45).map(|at| line(at, 9 - at % 9)).collect();
+    let varied = "modified_roll_2c,machine_root_angle,ratio_of_roll";
+    let there = written(&out, "there.csv", &format!("row,column,deviation_um\n{there}"));
+    fit(0, &[PINION, "concave", "--measured", &there, "--vary", varied]);
+    let back = written(&out, "back.csv", &format!("row,column,deviation_um\n{back}"));
+    let (_, stderr) = fit(3, &[PINION, "concave", "--measured", &back, "--vary", varied, "--within", "0.1um"]);
+    assert!(stderr.contains("with the columns in the other order"), "{stderr}");
+}
+
+/// Noise without a deviation: no setting is worth a change, or the numbers say that they mean nothing.
+#[test]
+fn noise_is_not_taken_for_settings() {
+    let out = folder("fit_noise");
+    assert_eq!(flank(&["measure", PINION, "--surface", "concave", "--out", path(&out)]).status.code(), Some(0));
+    let noise = |at: usize| 0.6 * ((at * 7919 % 97) as f64 / 48.0 - 1.0);
+    let lines: String = (0..45).map(|at| format!("{},{},{}\n", at / 9 + 1, at % 9 + 1, noise(at))).collect();
+    let file = written(&out, "noise.csv", &format!("row,column,deviation_um\n{lines}"));
+    let (_, stderr) = fit(0, &[PINION, "concave", "--measured", &file, "--vary", VARIED]);
+    assert!(stderr.contains("the changes may mean nothing"), "{stderr}");
+    let (told, stderr) = fit(0, &[PINION, "concave", "--measured", &file]);
+    let is_told = names(&told["correction"]["settings"]).is_empty() || stderr.contains("the changes may mean nothing");
+    assert!(is_told, "{stderr}");
+}
+
+/// A range that ends before the flank is reached: the setting stands at its end, and that is the reason.
+#[test]
+fn a_setting_stays_within_its_range() {
+    let project = folder("fit_range");
+    let spec = std::fs::read_to_string(top().join(PINION)).expect("it is shipped");
+    let machine = "machine narrow extends cradle_generator { param radial_distance : length in 97.9 mm .. 98 mm }\n";
+    let spec = format!("{}\n{machine}", spec.replace("cradle_generator(", "narrow(").replace("../", "specs/"));
+    std::os::unix::fs::symlink(top().canonicalize().expect("the repository").join("specs"), project.join("specs"))
+        .expect("a link");
+    let spec = written(&project, "narrow.chain", &spec);
+    let file = gauged("fit_range_grid");
+    let (told, stderr) = fit(3, &[&spec, "concave", "--measured", path(&file), "--vary", VARIED, "--within", "0.01um"]);
+    let first = &told["identification"]["settings"][0];
+    assert_eq!((&first["at_bound"], &first["uncertain_by"]), (&Value::from("high"), &Value::Null));
+    assert!((number(&first["new"]) - 98.0).abs() < 1e-12);
+    assert!(stderr.contains("not met") && number(&told["identification"]["left_um"]) > 0.01, "{stderr}");
+}
+
+const EASE_OFF: &str = "specs/bevel/ease_off_19x62.chain";
+
+/// No ease-off from another job: its settings. And a flank that lies off by a parabola lies off by these numbers.
+#[test]
+fn a_wanted_ease_off_is_reached_where_settings_make_it() {
+    let project = folder("fit_ease_off");
+    std::os::unix::fs::symlink(top().canonicalize().expect("the repository").join("specs"), project.join("specs"))
+        .expect("a link");
+    let jobs = std::fs::read_to_string(top().join(EASE_OFF)).expect("it is shipped").replace("../", "specs/");
+    let off = "job off = basic(m.radial_distance: 98.05 mm, m.machine_root_angle: 15.7 deg, m.ratio_of_roll: 3.345)\n";
+    let spec = written(&project, "off.chain", &format!("{jobs}\n{off}"));
+    let varied = "radial_distance,machine_root_angle,ratio_of_roll";
+    let asked = [&spec, "off.concave", "--from", "basic.concave", "--vary", varied];
+    let (told, _) = fit(0, &[&asked[..], &["--ease-off", "bias: 0"]].concat());
+    assert!(told["identification"].is_null());
+    assert!(number(&told["correction"]["left_um"]) < 1e-6, "{}", told["correction"]);
+    let settings = told["correction"]["settings"].as_array().expect("settings");
+    for (setting, value) in settings.iter().zip([97.95940290780507, 15.64096727073747, 3.339685914944047]) {
+        assert!((number(&setting["new"]) - value).abs() < 1e-8, "{setting}");
+    }
+    // 20 um of pressure angle: three settings do most of it
+    let (told, _) = fit(0, &[&asked[..], &["--ease-off", "slope: 20 profilewise", "--within", "2um"]].concat());
+    let reached = &told["ease_off"]["reached"];
+    assert!((number(&reached["slopes_um"][0]) - 20.0).abs() < 2.0, "{reached}");
+}
+
+/// The published settings lie 5 um off the parabola that they were after; these settings come nearer, none on it.
+#[test]
+fn the_published_ease_off_is_no_parabola() {
+    let varied = "radial_distance,cradle_angle,work_offset,sliding_base,machine_center_to_crossing_point,ratio_of_roll,modified_roll_2c,\
+                  modified_roll_6d,outside_point_radius,blade_angle,blade_radius";
+    let wish = ["--ease-off", "crowning: 50, 25; slope: 0, 0; bias: 0", "--from", "basic.concave", "--within", "0.1um"];
+    let (told, stderr) = fit(3, &[&[EASE_OFF, "pinion.concave", "--vary", varied][..], &wish].concat());
+    let [before, left] = [number(&told["before_um"]), number(&told["correction"]["left_um"])];
+    assert!((before - 4.93).abs() < 0.01 && left < before && left > 1.0, "{before} {left}");
+    assert!(
+        stderr.contains("not met") && stderr.contains("directions in which the settings move the flank"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let usage = [
+        &["fit", PINION, "concave"][..],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--from", "convex"],
+        &["fit", PINION, "concave", "--ease-off", "bias: 3"],
+        &["fit", PINION, "concave", "--ease-off", "twist: 3", "--from", "convex"],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--share", "1.5"],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--dry"],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--and", "convex"],
+    ];
+    for arguments in usage {
+        let run = flank(arguments);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}: {}", text(&run.stderr));
+    }
+    let file = gauged("fit_refused");
+    for (more, says) in [
+        (&["--vary", "nosuch"][..], "has no setting `nosuch`"),
+        (&["--vary", "theta_from,c.theta_from"], "names `c.theta_from` twice"),
+        (&["--and", "nosuch=a.csv"], "has no surface `nosuch`"),
+    ] {
+        let run = flank(&[&["fit", PINION, "concave", "--measured", path(&file)], more].concat());
+        assert!(matches!(run.status.code(), Some(1 | 2)), "{more:?}");
+        assert!(text(&run.stderr).contains(says), "{more:?}: {}", text(&run.stderr));
+    }
+}

@@ -1,0 +1,317 @@
+//! What a fit comes to: the settings that are chosen, and what is known of them.
+
+use flank_chain_dsl::Parameter;
+use flank_solver::{AdjustedSurfaces, EaseOff, RangeEnd, SearchEnd, SingularDirection, linear_rest, most_effective};
+
+use super::aim::Aim;
+use super::corrected;
+use super::problem::{self, Problem};
+use super::result::{
+    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
+    RangeBound, SettingChange, SettingsChoice, SettingsDirection,
+};
+use super::words::{self, SHARE, Unknown};
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::remark::{Remark, RemarkKind};
+use crate::project::requests::{FitRequest, WantedEaseOff};
+use crate::project::{shown_path, units};
+
+/// A setting whose scale moves the flank by less, mm, moves nothing: a thousandth of what points are solved to.
+const NOTHING: f64 = 1e-12;
+/// Settings are chosen among those whose scale moves the flank by so much, mm, ...
+const CANDIDATE: f64 = 1e-3;
+/// ... until the next would lower what is left by less than this, mm.
+const LEAST: f64 = 1e-4;
+
+/// Points farther off what the others predict, in standard deviations, do not go with them: of 45 that scatter as Gauss has it one in
+/// three hundred grids shows one.
+const OUTLYING: f64 = 4.0;
+/// No machine measures to this, mm: what is nearer goes with the others.
+const NEAR: f64 = 1e-5;
+/// The turn about z, radians.
+pub(super) fn turn_of(of: &AdjustedSurfaces) -> f64 {
+    of.fit.values.last().copied().unwrap_or_default()
+}
+
+/// Which settings are looked for and what comes of it.
+pub(super) struct Fitting<'a, 'g> {
+    pub(super) aims: &'a [Aim<'a, 'g>],
+    pub(super) problem: &'a Problem<'a, 'g>,
+    /// The surfaces as they are.
+    pub(super) now: &'a AdjustedSurfaces,
+}
+
+impl<'a, 'g> Fitting<'a, 'g> {
+    /// The settings that are looked for, by their places among the open ones, and of which they were chosen.
+    ///
+    /// # Errors
+    /// If there are fewer points than unknowns.
+    pub(super) fn chosen(&self, request: &FitRequest) -> Result<(Vec<usize>, Option<SettingsChoice>), Failure> {
+        let effects = self.effects(self.now);
+        let all = 0..self.problem.settings.len();
+        let (free, choice) = if request.vary.is_empty() {
+            let candidates: Vec<usize> = all.filter(|k| rms(&effects[*k]) >= CANDIDATE).collect();
+            let mut own: Vec<Vec<f64>> = candidates.iter().map(|k| effects[*k].clone()).collect();
+            let (off, turn) = (&self.now.fit.residuals, self.turn_effect(self.now));
+            let mut free: Vec<usize> =
+                most_effective(off, &own, &turn, LEAST).into_iter().map(|k| candidates[k]).collect();
+            free.sort_unstable();
+            own.push(turn);
+            let choice = SettingsChoice {
+                candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
+                all_leave_um: 1e3 * linear_rest(off, &own, request.resolution),
+            };
+            (free, Some(choice))
+        } else {
+            (all.filter(|k| rms(&effects[*k]) > NOTHING).collect(), None)
+        };
+        let unknowns = free.len() + usize::from(!request.as_it_lies);
+        let points = self.problem.count();
+        if points < unknowns {
+            return Err(Failure::Input(format!(
+                "{} do not tell {}, the turn about z among them: measure more points, or name fewer settings with option `vary`",
+                units::counted(points, "point"),
+                units::counted(unknowns, "unknown")
+            )));
+        }
+        Ok((free, choice))
+    }
+
+    /// What each setting does to the distances for its scale, mm.
+    fn effects(&self, of: &AdjustedSurfaces) -> Vec<Vec<f64>> {
+        let unknowns = self.problem.unknowns.iter().enumerate();
+        unknowns.map(|(k, unknown)| scaled(of.effect(k), unknown.scale)).collect()
+    }
+
+    /// The same of the turn; nothing where it is held.
+    pub(super) fn turn_effect(&self, of: &AdjustedSurfaces) -> Vec<f64> {
+        let turn = self.problem.turn;
+        let scale = if turn.range.low < turn.range.high { turn.scale } else { 0.0 };
+        scaled(of.effect(self.problem.settings.len()), scale)
+    }
+
+    /// The value of a setting as a spec has it.
+    pub(super) fn new_value(&self, k: usize, of: &AdjustedSurfaces) -> (String, String) {
+        let setting = self.problem.settings[k];
+        (setting.name.clone(), corrected::value(setting.dimension, of.fit.values[k]))
+    }
+
+    pub(super) fn result(
+        &self,
+        request: &FitRequest,
+        (free, choice): (&[usize], Option<SettingsChoice>),
+        (identification, correction): (Option<&AdjustedSurfaces>, &AdjustedSurfaces),
+    ) -> FitResult {
+        let main = identification.unwrap_or(correction);
+        let unknowns = self.unknowns();
+        let predicted = self.predicted(request, correction);
+        let turn = (!request.as_it_lies).then(|| turn_of(self.now));
+        let radius = self.problem.turn.scale.recip() * problem::TURN;
+        let is_wish = request.ease_off.is_some();
+        FitResult {
+            job: self.aims[0].of.job.name.clone(),
+            spec: shown_path(request.jobs.file()),
+            flanks: self.flanks(main, &predicted, is_wish),
+            turn_deg: turn.map(f64::to_degrees),
+            turn_mm: turn.map(|turn| radius * turn),
+            before_um: 1e3 * self.now.rms(),
+            identification: identification.map(|of| self.adjusted(of, free)),
+            correction: self.adjusted(correction, free),
+            ease_off: request.ease_off.map(|wish| self.ease_off(wish, &predicted)),
+            share: request.share,
+            predicted_um: 1e3 * rms(&predicted),
+            within_um: 1e3 * request.within,
+            directions: main
+                .fit
+                .directions
+                .iter()
+                .filter(|of| of.size > 0.0 || !of.is_used)
+                .map(|of| told(of, &unknowns))
+                .collect(),
+            untold: words::untold(&main.fit.directions, &unknowns),
+            choice,
+            scatter_um: main.fit.variance().map(|variance| 1e3 * variance.sqrt()),
+            leave_out_um: self.leave_out(main).map(|error| 1e3 * error),
+            outliers: if is_wish { vec![] } else { self.outliers(main) },
+            corrected: None,
+            files: Vec::new(),
+            not_done: self.aims.iter().flat_map(|aim| aim.missing.clone()).collect(),
+            remarks: self.idle(request),
+            timing: Timing::default(),
+        }
+    }
+
+    /// What is wanted, and what comes of it: what is predicted is off from what was wanted.
+    fn ease_off(&self, wish: WantedEaseOff, predicted: &[f64]) -> FittedEaseOff {
+        let aim = &self.aims[0];
+        let mut reached = vec![None; aim.points.len()];
+        for (at, off) in self.problem.places[0].iter().zip(predicted) {
+            let place = [at / aim.counts[1], at % aim.counts[1]];
+            reached[*at] = Some(wish.at(place, aim.counts) + 1e3 * off);
+        }
+        let reached = EaseOff::of_deviations(&reached, aim.counts);
+        FittedEaseOff {
+            wanted: EaseOffNumbers { slopes_um: wish.slopes, crownings_um: wish.crownings, bias_um: wish.bias },
+            reached: reached.map(|of| EaseOffNumbers {
+                slopes_um: of.slopes,
+                crownings_um: of.crownings,
+                bias_um: of.bias,
+            }),
+        }
+    }
+
+    /// Settings that were named and move nothing.
+    fn idle(&self, request: &FitRequest) -> Vec<Remark> {
+        if request.vary.is_empty() {
+            return Vec::new();
+        }
+        let (effects, surface) = (self.effects(self.now), &self.aims[0].of.surface.name);
+        let idle = self.problem.settings.iter().zip(effects).filter(|(_, effect)| rms(effect) <= NOTHING);
+        let remark = |of: &Parameter<'_>| {
+            Remark::new(
+                RemarkKind::MovesNothing,
+                &of.name,
+                format!("`{}` does not move {surface}: it stays as it is", of.name),
+            )
+        };
+        idle.map(|(of, _)| remark(of)).collect()
+    }
+
+    fn unknowns(&self) -> Vec<Unknown<'a, 'g>> {
+        let settings = self.problem.settings.iter().zip(&self.problem.unknowns);
+        let settings = settings.map(|(of, unknown)| Unknown { setting: Some(*of), scale: unknown.scale });
+        settings.chain([Unknown { setting: None, scale: self.problem.turn.scale }]).collect()
+    }
+
+    fn adjusted(&self, of: &AdjustedSurfaces, free: &[usize]) -> AdjustedSettings {
+        let variance = of.fit.variance();
+        let setting = |&k: &usize| {
+            let setting = self.problem.settings[k];
+            let shown = |value: f64| units::shown(setting.dimension, value);
+            let (change, held) = (of.fit.values[k] - setting.value, of.fit.held[k]);
+            let is_told = of.fit.directions.iter().filter(|of| !of.is_used).all(|of| of.shares[k].abs() <= SHARE);
+            let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).sqrt());
+            AdjustedSetting {
+                name: setting.name.clone(),
+                unit: units::whole_symbol(setting.dimension),
+                now: shown(setting.value),
+                change: shown(change),
+                new: shown(of.fit.values[k]),
+                at_bound: held.map(|end| match end {
+                    RangeEnd::Low => RangeBound::Low,
+                    RangeEnd::High => RangeBound::High,
+                }),
+                moves_um: 1e3 * change.abs() * rms(&of.effect(k)),
+                uncertain_by: uncertain.filter(|_| held.is_none() && is_told).map(shown),
+            }
+        };
+        AdjustedSettings {
+            settings: free.iter().map(setting).collect(),
+            left_um: 1e3 * of.rms(),
+            steps: of.fit.steps,
+            is_settled: of.fit.end == SearchEnd::Settled,
+        }
+    }
+
+    /// The deviations to be expected after the correction, mm.
+    fn predicted(&self, request: &FitRequest, correction: &AdjustedSurfaces) -> Vec<f64> {
+        let left = &correction.fit.residuals;
+        match request.ease_off {
+            Some(_) => left.iter().map(|off| -off).collect(),
+            None => {
+                self.now.fit.residuals.iter().zip(left).map(|(off, left)| (1.0 - request.share) * off - left).collect()
+            }
+        }
+    }
+
+    /// Distances of points are deviations of what was measured; of a wish they are those of the surface, the other way round.
+    fn flanks(&self, main: &AdjustedSurfaces, predicted: &[f64], is_wish: bool) -> Vec<FittedFlank> {
+        let sign = if is_wish { -1e3 } else { 1e3 };
+        let mut from = 0;
+        let flank = |(aim, places): (&Aim<'_, '_>, &Vec<usize>)| {
+            let own = from..from + places.len();
+            from = own.end;
+            let on_grid = |values: &[f64], size: f64| {
+                let mut grid = vec![None; aim.points.len()];
+                places.iter().zip(&values[own.clone()]).for_each(|(at, off)| grid[*at] = Some(size * off));
+                grid
+            };
+            FittedFlank {
+                surface: aim.of.surface.name.clone(),
+                frame: aim.of.surface.frame.clone(),
+                wanted: aim.wanted.clone(),
+                counts: aim.counts,
+                known: places.len(),
+                before_um: on_grid(&self.now.fit.residuals, sign),
+                left_um: on_grid(&main.fit.residuals, sign),
+                predicted_um: on_grid(predicted, 1e3),
+            }
+        };
+        self.aims.iter().zip(&self.problem.places).map(flank).collect()
+    }
+
+    /// The error with which rows and columns are predicted, mm.
+    fn leave_out(&self, of: &AdjustedSurfaces) -> Option<f64> {
+        let (mut errors, mut from) = (Vec::new(), 0);
+        for (aim, places) in self.aims.iter().zip(&self.problem.places) {
+            let columns = aim.counts[1].max(1);
+            let line = |is_in: &dyn Fn(usize) -> bool| -> Vec<usize> {
+                places.iter().enumerate().filter(|(_, at)| is_in(**at)).map(|(k, _)| from + k).collect()
+            };
+            let rows = (0..aim.counts[0]).map(|row| line(&|at| at / columns == row));
+            let lines: Vec<Vec<usize>> =
+                rows.chain((0..columns).map(|column| line(&|at| at % columns == column))).collect();
+            errors.extend(
+                lines.iter().filter(|line| !line.is_empty()).filter_map(|line| of.fit.left_out(line)).flatten(),
+            );
+            from += places.len();
+        }
+        (!errors.is_empty()).then(|| rms(&errors))
+    }
+
+    /// Points that the others predict elsewhere.
+    fn outliers(&self, of: &AdjustedSurfaces) -> Vec<OutlyingPoint> {
+        let free = of.fit.residuals.len().saturating_sub(of.fit.rank() + 1);
+        let squares: f64 = of.fit.residuals.iter().map(|off| off * off).sum();
+        let own = self
+            .aims
+            .iter()
+            .zip(&self.problem.places)
+            .flat_map(|(aim, places)| places.iter().map(move |at| (aim, *at)));
+        let outlier = |(k, (aim, at)): (usize, (&Aim<'_, '_>, usize))| {
+            let (off, left) = (of.fit.residuals[k], 1.0 - of.fit.leverage(k));
+            // the scatter of the others, without this one
+            let variance = (squares - off * off / left) / free as f64;
+            let sigmas = off / (variance.max(0.0) * left).sqrt();
+            let is_outlying = free > 0 && left > 0.0 && (off / left).abs() > NEAR && sigmas.abs() > OUTLYING;
+            is_outlying.then(|| OutlyingPoint {
+                surface: aim.of.surface.name.clone(),
+                row: at / aim.counts[1] + 1,
+                column: at % aim.counts[1] + 1,
+                off_um: 1e3 * off / left,
+                sigmas: sigmas.abs(),
+            })
+        };
+        own.enumerate().filter_map(outlier).collect()
+    }
+}
+
+fn told(of: &SingularDirection, unknowns: &[Unknown<'_, '_>]) -> SettingsDirection {
+    let parts = unknowns.iter().zip(&of.shares).filter(|(_, share)| share.abs() > SHARE);
+    let changes = parts.map(|(unknown, share)| SettingChange {
+        name: unknown.name().to_string(),
+        unit: units::whole_symbol(unknown.dimension()),
+        by: units::shown(unknown.dimension(), share * unknown.scale),
+        share: share.abs(),
+    });
+    SettingsDirection { moves_um: 1e3 * of.size, is_used: of.is_used, changes: changes.collect() }
+}
+
+fn rms(of: &[f64]) -> f64 {
+    (of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64).sqrt()
+}
+
+fn scaled(of: Vec<f64>, by: f64) -> Vec<f64> {
+    of.into_iter().map(|x| x * by).collect()
+}

@@ -1,0 +1,207 @@
+//! The settings of surfaces, and points that these shall go through, as least squares.
+
+use std::f64::consts::TAU;
+
+use flank_chain_dsl::{GeneratedSurface, Parameter};
+use flank_solver::{
+    AdjustableSurface, AdjustedSurfaces, BoundSurface, Foot, NearFoot, Range, ScaledUnknown, SettingsAdjustment,
+    WantedPoints,
+};
+
+use super::aim::{Aim, Aimed};
+use super::settings::{held, unknown};
+use crate::project::failure::Failure;
+use crate::project::requests::FitRequest;
+use crate::project::units;
+use crate::solve;
+
+/// What is beyond an end by this share of a range stands on it: points are asked for at ends.
+const ON_THE_END: f64 = 1e-9;
+/// The turn's scale is what moves the points by so much, mm: as much as the scale of a length.
+pub(super) const TURN: f64 = 0.1;
+
+/// Surfaces in open settings, with the points that have a foot on them.
+pub(super) struct Problem<'p, 'g> {
+    pub(super) settings: Vec<&'p Parameter<'g>>,
+    /// The settings as unknowns.
+    pub(super) unknowns: Vec<ScaledUnknown>,
+    surfaces: Vec<AdjustableSurface>,
+    /// Of each surface, of each of its unknowns.
+    ends: Vec<Vec<End>>,
+    /// Of each surface the places of its points in the grid.
+    pub(super) places: Vec<Vec<usize>>,
+    points: Vec<Vec<Aimed>>,
+    pub(super) turn: ScaledUnknown,
+    resolution: f64,
+    /// A measured flank comes from settings, a wanted one need not.
+    is_measured: bool,
+}
+
+impl<'p, 'g> Problem<'p, 'g> {
+    /// # Errors
+    /// If no point has a foot.
+    pub(super) fn new(
+        aims: &[Aim<'_, 'g>],
+        settings: Vec<&'p Parameter<'g>>,
+        request: &FitRequest,
+    ) -> Result<Problem<'p, 'g>, Failure> {
+        let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim, &settings)).collect();
+        let (as_it_lies, resolution) = (request.as_it_lies, request.resolution);
+        let start = if as_it_lies { 0.0 } else { Aim::first_turn(aims) };
+        let now: Vec<f64> = settings.iter().map(|of| of.value).collect();
+        let (mut places, mut points) = (Vec::new(), Vec::new());
+        let (mut squares, mut count) = (vec![0.0; settings.len()], 0.0);
+        for (aim, surface) in aims.iter().zip(&surfaces) {
+            let known: Vec<(usize, &Aimed)> =
+                aim.points.iter().enumerate().filter_map(|(at, point)| Some((at, point.as_ref()?))).collect();
+            let positions: Vec<[f64; 3]> = known.iter().map(|(_, point)| turned(point.position, start)).collect();
+            let near: Vec<NearFoot> = known.iter().map(|(_, point)| point.near.clone()).collect();
+            let feet = surface.feet(&now, &positions, &near);
+            for foot in feet.iter().flatten() {
+                squares.iter_mut().zip(&foot.moved).for_each(|(sum, moved)| *sum += moved * moved);
+                count += 1.0;
+            }
+            let met = known.into_iter().zip(feet).filter(|(_, foot)| foot.is_some());
+            let (own, aimed): (Vec<usize>, Vec<Aimed>) = met.map(|((at, point), _)| (at, point.clone())).unzip();
+            places.push(own);
+            points.push(aimed);
+        }
+        let radii: Vec<f64> = points.iter().flatten().map(|of| of.position[0].hypot(of.position[1])).collect();
+        if radii.is_empty() {
+            let name = aims.first().map_or("", |aim| &aim.of.surface.name);
+            return Err(Failure::Unsolved(format!(
+                "no normal of `{name}` within its ranges goes through any of the points"
+            )));
+        }
+        let radius = radii.iter().sum::<f64>() / radii.len() as f64;
+        let range = if as_it_lies { Range { low: 0.0, high: 0.0 } } else { Range { low: -2.0 * TAU, high: 2.0 * TAU } };
+        let turn = ScaledUnknown { start, scale: TURN / radius.max(TURN), range };
+        let moved = squares.iter().map(|sum: &f64| (sum / count).sqrt());
+        let unknowns = settings.iter().zip(moved).map(|(of, moved)| unknown(of, moved)).collect();
+        let ends = aims.iter().map(|aim| ends(aim.of.surface)).collect();
+        Ok(Problem {
+            settings,
+            unknowns,
+            surfaces,
+            ends,
+            places,
+            points,
+            turn,
+            resolution,
+            is_measured: request.ease_off.is_none(),
+        })
+    }
+
+    /// How many points there are.
+    pub(super) fn count(&self) -> usize {
+        self.points.iter().map(Vec::len).sum()
+    }
+
+    /// How many feet lie beyond the ends of their surfaces, and by which of their unknowns.
+    pub(super) fn beyond(&self, of: &AdjustedSurfaces) -> (usize, Vec<&str>) {
+        let (mut count, mut names) = (0, Vec::new());
+        for (feet, ends) in of.feet.iter().zip(&self.ends) {
+            let is_off = |foot: &Foot, k: usize| ends[k].range.is_some_and(|range| !is_in(range, foot.unknowns[k]));
+            let places = 0..ends.len();
+            count += feet.iter().filter(|foot| places.clone().any(|k| is_off(foot, k))).count();
+            let off = places.filter(|k| feet.iter().any(|foot| is_off(foot, *k)));
+            names.extend(off.map(|k| ends[k].name.as_str()));
+        }
+        names.dedup();
+        (count, names)
+    }
+
+    /// The settings as they are: only the turn is looked for.
+    ///
+    /// # Errors
+    /// If a point loses its foot.
+    pub(super) fn as_it_is(&self) -> Result<AdjustedSurfaces, Failure> {
+        self.fitted(&self.points, self.turn, &[])
+    }
+
+    /// With some settings free, from where the points lie nearest to the surface as it is.
+    ///
+    /// # Errors
+    /// If a point loses its foot.
+    pub(super) fn identified(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+        let turn = now.fit.values.last().copied().unwrap_or_default();
+        self.fitted(&self.points, ScaledUnknown { start: turn, ..self.turn }, free)
+    }
+
+    /// The same for points that lie on the other side of the surface by a share of the way.
+    ///
+    /// # Errors
+    /// If a point loses its foot.
+    pub(super) fn corrected(
+        &self,
+        now: &AdjustedSurfaces,
+        free: &[usize],
+        share: f64,
+    ) -> Result<AdjustedSurfaces, Failure> {
+        let mirrored = now.feet.iter().map(|feet| {
+            let point = |foot: &Foot| {
+                let off = -share * foot.distance;
+                let position = std::array::from_fn(|k| foot.position[k] + off * foot.normal[k]);
+                Aimed { position, near: NearFoot { unknowns: foot.unknowns.clone(), distance: off } }
+            };
+            feet.iter().map(point).collect()
+        });
+        let mirrored: Vec<Vec<Aimed>> = mirrored.collect();
+        self.fitted(&mirrored, ScaledUnknown { start: 0.0, ..self.turn }, free)
+    }
+
+    fn fitted(&self, points: &[Vec<Aimed>], turn: ScaledUnknown, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+        let wanted = self.surfaces.iter().zip(points).map(|(surface, points)| WantedPoints {
+            surface,
+            points: points.iter().map(|point| point.position).collect(),
+            near: points.iter().map(|point| point.near.clone()).collect(),
+        });
+        let settings = self.unknowns.iter().enumerate();
+        let settings = settings.map(|(k, of)| if free.contains(&k) { *of } else { held(*of) });
+        let adjustment = SettingsAdjustment {
+            wanted: wanted.collect(),
+            settings: settings.collect(),
+            turn,
+            resolution: self.resolution,
+            uses_weak: self.is_measured,
+        };
+        let lost =
+            "the points have no feet on the surface where they lie nearest to it: are they points of this flank?";
+        let solved = if self.count() > 0 { adjustment.solve() } else { None };
+        solved.ok_or(Failure::Unsolved(lost.to_string()))
+    }
+}
+
+/// Where a surface ends in one of its unknowns.
+struct End {
+    name: String,
+    /// None of an angle that goes all around, and comes back to where it was.
+    range: Option<Range>,
+}
+
+fn ends(surface: &GeneratedSurface<'_>) -> Vec<End> {
+    let ranges = solve::ranges(surface).into_iter().zip(&surface.unknowns);
+    let end = ranges.map(|(range, of)| {
+        let has_ends = !units::is_angle(of.dimension) || range.high - range.low < TAU - ON_THE_END;
+        End { name: of.name.clone(), range: has_ends.then_some(range) }
+    });
+    end.collect()
+}
+
+fn is_in(range: Range, value: f64) -> bool {
+    let margin = ON_THE_END * (range.high - range.low);
+    value >= range.low - margin && value <= range.high + margin
+}
+
+/// A surface with these settings open; what follows them does so. Feet are looked for beyond its ranges, which may move with the settings.
+fn adjustable<'g>(aim: &Aim<'_, 'g>, settings: &[&Parameter<'g>]) -> AdjustableSurface {
+    let open: Vec<_> = settings.iter().map(|of| of.variable).collect();
+    let (job, surface) = (aim.of.job, aim.of.surface);
+    let bound = BoundSurface::new(&surface.surface, solve::followed(surface), &job.bindings_beside(&open));
+    AdjustableSurface::new(&bound, &open).expect("a job without errors leaves nothing unbound")
+}
+
+fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
+    let (sine, cosine) = turn.sin_cos();
+    [x * cosine - y * sine, x * sine + y * cosine, z]
+}

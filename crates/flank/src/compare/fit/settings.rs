@@ -1,0 +1,81 @@
+//! The settings that a fit may change.
+
+use flank_chain_dsl::{Dimension, Job, Parameter, ValueSource};
+use flank_solver::{Range, ScaledUnknown};
+
+use crate::project::failure::Failure;
+use crate::project::units;
+use crate::solve::sensitivity::usual_change;
+
+/// The scale of a setting in changes that are usual: 0.1 mm, 10 arcminutes, a hundredth of the value.
+const USUAL_CHANGES: f64 = 10.0;
+/// The share of the value ...
+const SHARE: f64 = 0.01;
+/// ... of what moves the flank by less than this with usual changes, mm.
+const HARDLY: f64 = 1e-4;
+
+/// The settings that are named, or all that the job gives a value; in the order of the job.
+///
+/// # Errors
+/// If there is none of a name, it is a count, or named twice.
+pub(super) fn open<'j, 'g>(job: &'j Job<'g>, vary: &[String]) -> Result<Vec<&'j Parameter<'g>>, Failure> {
+    if vary.is_empty() {
+        let is_given = |of: &&Parameter<'_>| !of.is_count && !matches!(of.given_by, ValueSource::Definition(_));
+        return Ok(job.parameters.iter().filter(is_given).collect());
+    }
+    let named = vary.iter().map(|name| find(job, name)).collect::<Result<Vec<usize>, Failure>>()?;
+    if let Some(k) = (1..named.len()).find(|k| named[..*k].contains(&named[*k])) {
+        let name = &vary[k];
+        return Err(Failure::Request(format!("option `vary` names `{name}` twice: leave one of them out")));
+    }
+    Ok(job.parameters.iter().enumerate().filter(|(k, _)| named.contains(k)).map(|(_, of)| of).collect())
+}
+
+/// By its whole name, or by its last part where no other setting has that.
+fn find(job: &Job<'_>, name: &str) -> Result<usize, Failure> {
+    let own = name.strip_prefix(&format!("{}.", job.name)).unwrap_or(name);
+    let all = || job.parameters.iter().enumerate();
+    let whole = all().find(|(_, of)| of.name == own);
+    let is_last = |of: &Parameter<'_>| of.name.rsplit('.').next() == Some(own);
+    let found: Vec<(usize, &Parameter<'_>)> = match whole {
+        Some(one) => vec![one],
+        None => all().filter(|(_, of)| is_last(of)).collect(),
+    };
+    match found[..] {
+        [(_, of)] if of.is_count => Err(Failure::Input(format!(
+            "`{}` is a whole number: a fit changes only what may change by a little",
+            of.name
+        ))),
+        [(k, _)] => Ok(k),
+        [] => {
+            let known: Vec<String> =
+                all().filter(|(_, of)| !of.is_count).map(|(_, of)| format!("`{}`", of.name)).collect();
+            Err(Failure::Input(format!("job `{}` has no setting `{name}`; there is: {}", job.name, known.join(", "))))
+        }
+        _ => {
+            let known: Vec<String> = found.iter().map(|(_, of)| format!("`{}`", of.name)).collect();
+            Err(Failure::Input(format!("several settings end with `{name}`; say which: {}", known.join(", "))))
+        }
+    }
+}
+
+/// A setting as an unknown, within the range that it is said to have. `moved` is what one mm, radian or 1 of it moves the flank by, mm.
+/// What hardly moves the flank, as the radius of a blade that is almost straight, has a share of its value as scale.
+pub(super) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnknown {
+    let (low, high) = of.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let (usual, share) = (USUAL_CHANGES * usual_change(of), SHARE * of.value.abs());
+    let scale = if usual * moved < HARDLY { usual.max(share) } else { usual };
+    ScaledUnknown { start: of.value, scale, range: Range { low, high } }
+}
+
+/// A setting that stays as it is.
+pub(super) fn held(of: ScaledUnknown) -> ScaledUnknown {
+    ScaledUnknown { range: Range { low: of.start, high: of.start }, ..of }
+}
+
+/// A change with its unit, to three digits: `0.1 mm`.
+pub(super) fn change(dimension: Dimension, value: f64) -> String {
+    let shown = units::shown(dimension, value);
+    let rounded: f64 = format!("{shown:.2e}").parse().unwrap_or(shown);
+    format!("{rounded} {}", units::whole_symbol(dimension)).trim_end().to_string()
+}

@@ -1,0 +1,141 @@
+//! Whether a fit is what was asked for, and what speaks against it.
+
+use flank_solver::{AdjustedSurfaces, linear_rest};
+
+use super::fitting::Fitting;
+use super::result::{FitResult, OutlyingPoint};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::project::requests::FitRequest;
+
+/// Of a reversed grid that leaves less than this share it is asked whether it was meant.
+const REVERSED: f64 = 0.5;
+/// Settings that leave more than this share of what chance leaves to as many unknowns explain nothing: one in a hundred times chance does
+/// as much, over 45 points and 5 unknowns.
+const CHANCE: f64 = 0.7;
+
+/// The result with what speaks against it.
+pub(super) fn judged(
+    mut result: FitResult,
+    fitting: &Fitting<'_, '_>,
+    (request, main, correction): (&FitRequest, &AdjustedSurfaces, &AdjustedSurfaces),
+) -> FitResult {
+    let surface = &fitting.aims[0].of.surface.name;
+    let left = result.identification.as_ref().unwrap_or(&result.correction).left_um.max(result.correction.left_um);
+    if left > result.within_um {
+        let message = format!("not met: {left:.3} um rms is left of {surface}, more than {} um", result.within_um);
+        let reasons = reasons(&result, fitting, (request, main));
+        result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message).with(reasons));
+    }
+    let unmet: usize =
+        fitting.aims.iter().zip(&result.flanks).map(|(aim, of)| aim.points.iter().flatten().count() - of.known).sum();
+    if unmet > 0 {
+        let message =
+            format!("no deviation at {unmet} points: no normal of {surface} within its ranges goes through them");
+        result.not_done.push(NotDone::new(NotDoneKind::NoDeviation, surface, message));
+    }
+    let (beyond, ends) = fitting.problem.beyond(correction);
+    if beyond > 0 {
+        let message = format!(
+            "with the corrected settings {surface} ends before {beyond} of {} points: they lie beyond the range of {}; the fit takes the \
+             surface to go on there",
+            fitting.problem.count(),
+            ends.join(", ")
+        );
+        result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message));
+    }
+    result.remarks.extend(result.outliers.iter().map(|point| {
+        let OutlyingPoint { surface, row, column, off_um, sigmas } = point;
+        let message = format!(
+            "row {row}, column {column} of {surface} lies {off_um:.3} um off what the others predict, {sigmas:.1} standard deviations; it \
+             counts as all do: leave its numbers empty if it was measured wrong"
+        );
+        Remark::new(RemarkKind::Outlier, surface, message)
+    }));
+    if let Some(remark) = not_shown(&result, fitting, main) {
+        result.remarks.push(remark);
+    }
+    result
+}
+
+/// Settings that take no more away than chance would.
+fn not_shown(result: &FitResult, fitting: &Fitting<'_, '_>, main: &AdjustedSurfaces) -> Option<Remark> {
+    let surface = &fitting.aims[0].of.surface.name;
+    if result.correction.settings.is_empty() {
+        let message =
+            format!("no setting takes as much as 0.1 um of the {:.3} um rms away: none is changed", result.before_um);
+        return Some(Remark::new(RemarkKind::NotShown, surface, message));
+    }
+    result.identification.as_ref()?;
+    let (count, rank) = (main.fit.residuals.len(), main.fit.rank());
+    // of scatter alone, unknowns take away their share
+    let scatter = (count.saturating_sub(rank).max(1) as f64 / count.max(1) as f64).sqrt();
+    let is_chance = count > rank && main.rms() > CHANCE.sqrt() * scatter * fitting.now.rms();
+    is_chance.then(|| {
+        let message = format!(
+            "the settings take {:.3} of {:.3} um rms away, not much more than they would of measuring noise alone: the changes may mean nothing",
+            result.before_um - 1e3 * main.rms(),
+            result.before_um
+        );
+        Remark::new(RemarkKind::NotShown, surface, message)
+    })
+}
+
+/// Why no settings do it.
+fn reasons(
+    result: &FitResult,
+    fitting: &Fitting<'_, '_>,
+    (request, main): (&FitRequest, &AdjustedSurfaces),
+) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let bound: Vec<&str> =
+        result.correction.settings.iter().filter(|of| of.at_bound.is_some()).map(|of| of.name.as_str()).collect();
+    if !bound.is_empty() {
+        reasons.push(format!("bounds: {} stands at the end of its range", bound.join(", ")));
+    }
+    let of_all = result.identification.iter().chain([&result.correction]);
+    if of_all.clone().any(|of| !of.is_settled) {
+        reasons.push("the search came to no end: the points may lie too far off to be reached".to_string());
+    }
+    let unused = main.fit.directions.iter().filter(|of| !of.is_used).count();
+    let all = main.fit.directions.len();
+    if bound.is_empty() {
+        reasons.push(format!(
+            "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{}",
+            all - unused,
+            if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" }
+        ));
+    }
+    reasons.extend(fitting.reversed(request, main));
+    reasons
+}
+
+impl Fitting<'_, '_> {
+    /// Whether the same deviations from the other end, or upside down, go with the settings.
+    fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<String> {
+        let [aim] = self.aims else { return None };
+        let is_whole = self.problem.places[0].len() == aim.points.len() && request.ease_off.is_none();
+        let [rows, columns] = aim.counts;
+        let mut effects: Vec<Vec<f64>> = (0..self.problem.settings.len())
+            .filter(|k| main.fit.values[*k] != self.problem.settings[*k].value)
+            .map(|k| self.now.effect(k))
+            .collect();
+        effects.push(self.turn_effect(self.now));
+        let off = &self.now.fit.residuals;
+        let from = |at: usize, [is_up, is_back]: [bool; 2]| {
+            let (row, column) = (at / columns, at % columns);
+            let row = if is_up { rows - 1 - row } else { row };
+            off[row * columns + if is_back { columns - 1 - column } else { column }]
+        };
+        let ways = [([false, true], "columns"), ([true, false], "rows"), ([true, true], "rows and columns")];
+        let rest = |way: [bool; 2]| {
+            let reversed: Vec<f64> = (0..off.len()).map(|at| from(at, way)).collect();
+            1e3 * linear_rest(&reversed, &effects, 0.0)
+        };
+        let found = ways.into_iter().filter(|_| is_whole).map(|(way, what)| (rest(way), what));
+        let found = found.filter(|(rest, _)| *rest < REVERSED * 1e3 * main.rms());
+        let (rest, what) = found.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
+        Some(format!(
+            "with the {what} in the other order {rest:.3} um would be left: is the grid that of this flank, from the same end?"
+        ))
+    }
+}

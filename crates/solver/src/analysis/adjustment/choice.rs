@@ -1,0 +1,96 @@
+//! Which settings take most of a deviation away, few of them.
+
+use faer::{Col, ColRef, Mat};
+
+use crate::equations::solution::Range;
+use crate::newton::least_squares::{LeastSquares, Linearized, ScaledUnknown};
+
+/// A setting that does something of its own by less than this share of all that it does is made up by others.
+const OWN: f64 = 1e-6;
+
+/// Residuals that change by less, mm, have settled.
+const SETTLED: f64 = 1e-10;
+
+/// Settings in the order in which they lower what the linear model leaves most, until the next would lower its root of the mean square by
+/// less than `least`, or does less than `least` of its own for its scale. An entry of `effects` for each setting says what it does
+/// to the residuals for its scale; what `always` holds is fitted first. Of two that do as much the first one is taken.
+///
+/// # Panics
+/// If entries are not as long as the residuals.
+#[must_use]
+pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], least: f64) -> Vec<usize> {
+    let root = (residuals.len().max(1) as f64).sqrt();
+    let column = |of: &[f64]| Col::from_fn(residuals.len(), |row| of[row]);
+    let mut left = column(residuals);
+    let mut own: Vec<Col<f64>> = effects.iter().map(|of| column(of)).collect();
+    let whole: Vec<f64> = own.iter().map(Col::norm_l2).collect();
+    let mut taken = Vec::new();
+    let mut next = Some(column(always));
+    while let Some(column) = next {
+        let length = column.norm_l2();
+        if length > 0.0 {
+            let unit = &column * (1.0 / length);
+            without(&mut left, unit.as_ref());
+            own.iter_mut().for_each(|of| without(of, unit.as_ref()));
+        }
+        let rms = left.norm_l2() / root;
+        let falls = |k: usize| -> Option<f64> {
+            let (length, along) = (own[k].norm_l2(), product(own[k].as_ref(), left.as_ref()));
+            let is_own = length > OWN * whole[k] && length >= least * root && !taken.contains(&k);
+            is_own.then(|| rms - (left.squared_norm_l2() - (along / length).powi(2)).max(0.0).sqrt() / root)
+        };
+        let better = |best: Option<(usize, f64)>, (k, fall): (usize, f64)| match best {
+            Some((_, most)) if fall <= most => best,
+            _ => Some((k, fall)),
+        };
+        let best = (0..own.len()).filter_map(|k| Some((k, falls(k)?))).fold(None, better);
+        next = best.filter(|(_, fall)| *fall >= least).map(|(k, _)| {
+            taken.push(k);
+            own[k].clone()
+        });
+    }
+    taken
+}
+
+/// What the linear model leaves of residuals, root of the mean square, when settings take away as much as they can; entries of `effects`
+/// as for [`most_effective`], directions as for [`LeastSquares::resolution`].
+///
+/// # Panics
+/// If entries are not as long as the residuals.
+#[must_use]
+pub fn linear_rest(residuals: &[f64], effects: &[Vec<f64>], resolution: f64) -> f64 {
+    let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    let unknowns = vec![ScaledUnknown { start: 0.0, scale: 1.0, range: everywhere }; effects.len()];
+    let fit = LeastSquares { unknowns, resolution, uses_weak: false, settled: SETTLED }.solve(|at| {
+        let left = residuals.iter().enumerate();
+        let left = left.map(|(row, off)| off + effects.iter().zip(at).map(|(of, x)| of[row] * x).sum::<f64>());
+        let jacobian = Mat::from_fn(residuals.len(), effects.len(), |row, k| effects[k][row]);
+        Some(Linearized { residuals: left.collect(), jacobian })
+    });
+    let left = fit.map_or_else(|| residuals.to_vec(), |fit| fit.residuals);
+    (left.iter().map(|x| x * x).sum::<f64>() / left.len().max(1) as f64).sqrt()
+}
+
+fn product(a: ColRef<'_, f64>, b: ColRef<'_, f64>) -> f64 {
+    a.iter().zip(b.iter()).map(|(a, b)| a * b).sum()
+}
+
+fn without(of: &mut Col<f64>, unit: ColRef<'_, f64>) {
+    let along = product(of.as_ref(), unit);
+    of.iter_mut().zip(unit.iter()).for_each(|(of, unit)| *of -= along * unit);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn those_that_do_most_come_first_and_copies_do_not_come() {
+        let first = vec![1.0, 0.0, 0.0, 0.0];
+        // the third setting does what the first one does, the last one next to nothing
+        let effects = [first.clone(), vec![0.0, 1.0, 0.0, 0.0], first, vec![0.0, 0.0, 1e-4, 0.0]];
+        let found = most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3);
+        assert_eq!(found, [1, 0]);
+        assert_eq!(most_effective(&[0.0; 4], &effects, &[0.0; 4], 1e-3), []);
+    }
+}

@@ -1,0 +1,113 @@
+//! Settings with which a surface comes nearest to measured points.
+
+use faer::Mat;
+
+use super::{AdjustableSurface, Foot, NearFoot};
+use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown};
+
+/// A search ends where no point moves by more, mm: a hundredth of what points are solved to, and far above rounding.
+const SETTLED: f64 = 1e-10;
+
+/// Points that a surface shall go through.
+#[derive(Clone, Debug)]
+pub struct WantedPoints<'s> {
+    /// The surface.
+    pub surface: &'s AdjustableSurface,
+    /// mm
+    pub points: Vec<[f64; 3]>,
+    /// For each point where its foot is looked for.
+    pub near: Vec<NearFoot>,
+}
+
+/// Settings that bring surfaces to points, and a turn of all points about the z axis.
+#[derive(Clone, Debug)]
+pub struct SettingsAdjustment<'s> {
+    /// Surfaces of one body, all in the same settings.
+    pub wanted: Vec<WantedPoints<'s>>,
+    /// The settings; of those that are held both ends of the range are the start.
+    pub settings: Vec<ScaledUnknown>,
+    /// About z, radians.
+    pub turn: ScaledUnknown,
+    /// As [`LeastSquares::resolution`], mm.
+    pub resolution: f64,
+    /// As [`LeastSquares::uses_weak`].
+    pub uses_weak: bool,
+}
+
+/// Surfaces that are as near to points as their settings bring them.
+#[derive(Clone, Debug)]
+pub struct AdjustedSurfaces {
+    /// Residuals are the distances of the points, mm; unknowns the settings, then the turn.
+    pub fit: LeastSquaresFit,
+    /// Of each surface, for each point.
+    pub feet: Vec<Vec<Foot>>,
+}
+
+impl AdjustedSurfaces {
+    /// Root of the mean square of the distances, mm.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        let squares: f64 = self.fit.residuals.iter().map(|off| off * off).sum();
+        (squares / self.fit.residuals.len().max(1) as f64).sqrt()
+    }
+
+    /// What the distances change by per unit of an unknown: a setting, or behind them the turn. One for each point.
+    ///
+    /// # Panics
+    /// If there is no such unknown.
+    #[must_use]
+    pub fn effect(&self, unknown: usize) -> Vec<f64> {
+        self.feet.iter().flatten().map(|foot| slope(foot, unknown)).collect()
+    }
+}
+
+impl SettingsAdjustment<'_> {
+    /// Settings and turn with the least sum of squared distances. `None` if a point has no foot with the settings of the start.
+    ///
+    /// # Panics
+    /// If a surface has not as many settings.
+    #[must_use]
+    pub fn solve(&self) -> Option<AdjustedSurfaces> {
+        let unknowns = self.settings.iter().copied().chain([self.turn]).collect();
+        let problem =
+            LeastSquares { unknowns, resolution: self.resolution, uses_weak: self.uses_weak, settled: SETTLED };
+        let mut near: Vec<Vec<NearFoot>> = self.wanted.iter().map(|wanted| wanted.near.clone()).collect();
+        let fit = problem.solve(|values| {
+            let feet = self.feet(values, &near)?;
+            near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
+            Some(linearized(&feet))
+        })?;
+        let feet = self.feet(&fit.values, &near)?;
+        Some(AdjustedSurfaces { fit, feet })
+    }
+
+    /// All feet with these settings and this turn; `None` if one is missing.
+    fn feet(&self, values: &[f64], near: &[Vec<NearFoot>]) -> Option<Vec<Vec<Foot>>> {
+        let (turn, settings) = values.split_last()?;
+        let of = |(wanted, near): (&WantedPoints<'_>, &Vec<NearFoot>)| {
+            let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, *turn)).collect();
+            wanted.surface.feet(settings, &points, near).into_iter().collect::<Option<Vec<Foot>>>()
+        };
+        self.wanted.iter().zip(near).map(of).collect()
+    }
+}
+
+fn linearized(feet: &[Vec<Foot>]) -> Linearized {
+    let all: Vec<&Foot> = feet.iter().flatten().collect();
+    let settings = all.first().map_or(0, |foot| foot.moved.len());
+    Linearized {
+        residuals: all.iter().map(|foot| foot.distance).collect(),
+        jacobian: Mat::from_fn(all.len(), settings + 1, |row, k| slope(all[row], k)),
+    }
+}
+
+/// Along the normal at its foot a point recedes as the surface comes, and comes as it is turned; where the foot goes is square to that.
+fn slope(foot: &Foot, unknown: usize) -> f64 {
+    let ([x, y, _], [nx, ny, _]) = (foot.position, foot.normal);
+    foot.moved.get(unknown).map_or(x * ny - y * nx, |moved| -moved)
+}
+
+fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
+    let (sine, cosine) = turn.sin_cos();
+    [x * cosine - y * sine, x * sine + y * cosine, z]
+}

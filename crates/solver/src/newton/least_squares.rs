@@ -1,0 +1,448 @@
+//! Nonlinear least squares with bounds: Levenberg and Marquardt, each step from the singular values of the Jacobian.
+
+use faer::Mat;
+use faer::linalg::solvers::Svd;
+
+use crate::equations::solution::Range;
+
+/// Steps at the most, with those that are tried and not taken.
+const MOST_STEPS: usize = 200;
+/// A step that leaves more than this share of the sum of squares has nearly come to what the directions that are used can do.
+const SLOW: f64 = 0.5;
+/// Sums of squares that differ by less than this share are the same.
+const ROUNDING: f64 = 1e-13;
+/// Residuals of which less than this share is not fitted say nothing of how well others predict them.
+const OWN: f64 = 1e-9;
+/// A value nearer to an end of its range than this share of its scale stands on it: rounding of the step that led there.
+const ON_THE_END: f64 = 1e-13;
+/// A direction in the unknowns that changes the residuals by less than this share of what the strongest does is lost in the rounding of
+/// an exact Jacobian.
+const UNSEEN: f64 = 1e-9;
+/// Directions weaker than the resolution are used where they leave less than this share of what is left without them: they make the model
+/// true, and do not follow noise or what no unknown explains.
+const SHOWN: f64 = 0.1;
+/// With more damping than so many squares of the largest singular value no step is tried.
+const LARGEST_DAMPING: f64 = 1e8;
+/// What damping grows by after a step that failed, the second time by its square, and so on.
+const GROWTH: f64 = 2.0;
+/// What a step that did all that was promised leaves of it.
+const LEAST_DAMPED: f64 = 0.1;
+/// Residuals are known to this share of the change that settles them.
+const KNOWN: f64 = 0.1;
+
+/// An unknown of a [`LeastSquares`] problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaledUnknown {
+    /// Where the search begins; brought into the range.
+    pub start: f64,
+    /// A change that counts as much as the scales of the other unknowns.
+    pub scale: f64,
+    /// It is never left; endless ends are allowed.
+    pub range: Range,
+}
+
+impl ScaledUnknown {
+    /// A value, or the end of the range that it lies at or beyond.
+    fn within(&self, value: f64) -> f64 {
+        let Range { low, high } = self.range;
+        let near = ON_THE_END * self.scale;
+        if value >= high - near {
+            high
+        } else if value <= low + near {
+            low
+        } else {
+            value
+        }
+    }
+}
+
+/// Residuals, and their exact derivatives: a row for each residual, a column for each unknown.
+#[derive(Clone, Debug)]
+pub struct Linearized {
+    /// As many for all values of the unknowns.
+    pub residuals: Vec<f64>,
+    /// By the unknowns as they are, not by their scales.
+    pub jacobian: Mat<f64>,
+}
+
+/// What is to be minimised: the sum of the squares of residuals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeastSquares {
+    /// In this order.
+    pub unknowns: Vec<ScaledUnknown>,
+    /// A direction in the unknowns, a scale long, that changes the residuals by less than this (root of the mean square) is weak.
+    pub resolution: f64,
+    /// Whether weak directions are used where they leave next to nothing of the residuals: these come from such values of the unknowns.
+    pub uses_weak: bool,
+    /// The search ends with a step that changes no residual by more than this; residuals are known to a tenth of it.
+    pub settled: f64,
+}
+
+/// A direction in the unknowns, with what it does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingularDirection {
+    /// What the residuals change by for a step one scale long, root of the mean square.
+    pub size: f64,
+    /// The step, of length one: a share of each unknown's scale; zero for unknowns at a bound.
+    pub shares: Vec<f64>,
+    /// Whether the search took steps along it.
+    pub is_used: bool,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchEnd {
+    /// At a minimum, within the bounds and the directions that are used.
+    Settled,
+    /// No step made the sum of squares smaller, and the last one tried was not small.
+    Stuck,
+    /// After as many steps as are taken at the most.
+    Unfinished,
+}
+
+/// The end of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RangeEnd {
+    /// The lower one.
+    Low,
+    /// The upper one.
+    High,
+}
+
+/// Values with the least sum of squares.
+#[derive(Clone, Debug)]
+pub struct LeastSquaresFit {
+    /// Of the unknowns.
+    pub values: Vec<f64>,
+    /// What is left.
+    pub residuals: Vec<f64>,
+    /// The derivative of half the sum of squares by each unknown, one scale of it: zero within the bounds, at a bound such that it
+    /// pushes outwards.
+    pub gradient: Vec<f64>,
+    /// Which unknowns are held at an end of their range.
+    pub held: Vec<Option<RangeEnd>>,
+    /// As many as unknowns are free, the strongest first.
+    pub directions: Vec<SingularDirection>,
+    /// Of the unknowns, row by row, for independent residuals that scatter with a variance of one. What directions that are not used
+    /// leave open is not in it.
+    pub covariance: Vec<Vec<f64>>,
+    /// An orthonormal basis of what the directions that are used do to the residuals.
+    basis: Mat<f64>,
+    /// Steps taken.
+    pub steps: usize,
+    /// How it ended.
+    pub end: SearchEnd,
+}
+
+/// Where a search stands. All is by the scales of the unknowns.
+struct State {
+    values: Vec<f64>,
+    residuals: Mat<f64>,
+    jacobian: Mat<f64>,
+    cost: f64,
+}
+
+/// A step with what the linear model says of it.
+struct Step {
+    /// The squares of the smallest and the largest singular value that are used.
+    squares: [f64; 2],
+    values: Vec<f64>,
+    /// The largest change of a residual.
+    change: f64,
+    /// By how much the sum of squares falls.
+    fall: f64,
+}
+
+impl LeastSquares {
+    /// The values from which no step, in the directions that the residuals tell apart and within the bounds, lowers the sum of squares.
+    /// `linearized` gives residuals and their derivatives; `None` where there are none, which no step leads to. `None` if that is
+    /// so at the start.
+    ///
+    /// # Panics
+    /// If the sizes of residuals and derivatives do not fit.
+    pub fn solve(&self, mut linearized: impl FnMut(&[f64]) -> Option<Linearized>) -> Option<LeastSquaresFit> {
+        let start: Vec<f64> = self.unknowns.iter().map(|of| of.within(of.start)).collect();
+        let mut state = self.state(start, &mut linearized)?;
+        let (mut rank, mut steps, mut tried) = (0, 0, 0);
+        let (mut damping, mut growth) = (0.0, GROWTH);
+        let end = loop {
+            if tried == MOST_STEPS {
+                break SearchEnd::Unfinished;
+            }
+            tried += 1;
+            let step = self.step(&state, rank, damping);
+            let trial = self.state(step.values.clone(), &mut linearized);
+            let is_small = step.change <= self.settled;
+            let error = KNOWN * self.settled * (state.residuals.nrows() as f64).sqrt();
+            let rounding = ROUNDING * state.cost + 2.0 * error * state.cost.sqrt();
+            // a fall that rounding hides is believed
+            let mut is_slow = false;
+            let most = if step.fall < rounding { state.cost + rounding } else { state.cost };
+            match trial.filter(|trial| trial.cost < most) {
+                Some(trial) => {
+                    steps += 1;
+                    let gain = (state.cost - trial.cost + rounding) / (step.fall + rounding);
+                    (damping, growth) = (step.after(damping, gain), GROWTH);
+                    is_slow = trial.cost > SLOW * state.cost;
+                    state = trial;
+                }
+                None if is_small => {}
+                None if damping >= LARGEST_DAMPING * step.squares[1] => break SearchEnd::Stuck,
+                None => {
+                    (damping, growth) = (step.raised(damping, growth), growth * GROWTH);
+                    continue;
+                }
+            }
+            // a damped step is small for its damping alone
+            let shown = if is_small || is_slow { self.shown(&state) } else { rank };
+            if is_small && damping == 0.0 && shown <= rank {
+                break SearchEnd::Settled;
+            }
+            rank = rank.max(shown);
+            damping = if is_small { 0.0 } else { damping };
+        };
+        Some(self.told(&state, (rank, steps, end)))
+    }
+
+    fn state(&self, values: Vec<f64>, linearized: &mut impl FnMut(&[f64]) -> Option<Linearized>) -> Option<State> {
+        let Linearized { residuals, mut jacobian } = linearized(&values)?;
+        assert_eq!((jacobian.nrows(), jacobian.ncols()), (residuals.len(), values.len()), "a row for each residual");
+        for (k, unknown) in self.unknowns.iter().enumerate() {
+            jacobian.col_mut(k).iter_mut().for_each(|slope| *slope *= unknown.scale);
+        }
+        let cost = residuals.iter().map(|x| x * x).sum::<f64>();
+        let residuals = Mat::from_fn(residuals.len(), 1, |row, _| residuals[row]);
+        let is_finite = cost.is_finite() && jacobian.col_iter().all(|of| of.iter().all(|slope| slope.is_finite()));
+        is_finite.then_some(State { values, residuals, jacobian, cost })
+    }
+
+    /// The unknowns that stand at an end of their range and would leave it.
+    fn held(&self, state: &State) -> Vec<Option<RangeEnd>> {
+        let gradient = state.jacobian.transpose() * &state.residuals;
+        let of = |(k, unknown): (usize, &ScaledUnknown)| {
+            let (value, slope) = (state.values[k], gradient[(k, 0)]);
+            match unknown.range {
+                Range { low, .. } if value <= low && slope >= 0.0 => Some(RangeEnd::Low),
+                Range { high, .. } if value >= high && slope <= 0.0 => Some(RangeEnd::High),
+                _ => None,
+            }
+        };
+        self.unknowns.iter().enumerate().map(of).collect()
+    }
+
+    /// The step to the least sum of squares of the linear model within the bounds.
+    fn step(&self, state: &State, rank: usize, damping: f64) -> Step {
+        let mut fixed: Vec<Option<f64>> = self.held(state).iter().map(|held| held.map(|_| 0.0)).collect();
+        loop {
+            let taken = Mat::from_fn(fixed.len(), 1, |k, _| fixed[k].unwrap_or(0.0));
+            let left = &state.residuals + &state.jacobian * &taken;
+            let decomposed = Decomposed::new(state, |k| fixed[k].is_none());
+            let used = self.count_used(&decomposed, rank);
+            let free = decomposed.step(&left, used, damping);
+            let step: Vec<f64> = (0..fixed.len()).map(|k| fixed[k].unwrap_or(free[k])).collect();
+            let beyond = |k: usize| {
+                let ScaledUnknown { scale, range, .. } = self.unknowns[k];
+                let (from, to) = (state.values[k], state.values[k] + scale * step[k]);
+                let end = if to > range.high { range.high } else { range.low };
+                (range.excess(to) > 0.0 && fixed[k].is_none()).then(|| ((end - from) / scale, k))
+            };
+            let share = |(reach, k): &(f64, usize)| reach / step[*k];
+            let first = (0..fixed.len()).filter_map(beyond).min_by(|a, b| share(a).total_cmp(&share(b)));
+            match first {
+                Some((reach, k)) => fixed[k] = Some(reach),
+                None => return self.stepped(state, &step, decomposed.squares(used)),
+            }
+        }
+    }
+
+    fn stepped(&self, state: &State, step: &[f64], squares: [f64; 2]) -> Step {
+        let taken = Mat::from_fn(step.len(), 1, |k, _| step[k]);
+        let by = &state.jacobian * &taken;
+        let after = (&state.residuals + &by).squared_norm_l2();
+        let values = self.unknowns.iter().zip(step).zip(&state.values);
+        let values = values.map(|((of, step), from)| of.within(from + of.scale * step));
+        let change = by.col(0).iter().fold(0.0, |most: f64, by| most.max(by.abs()));
+        Step { squares, values: values.collect(), change, fall: state.cost - after }
+    }
+
+    /// How many directions are used: those above the resolution, and at least `rank` of them that are more than rounding.
+    fn count_used(&self, of: &Decomposed, rank: usize) -> usize {
+        let least = self.resolution * of.root();
+        let is_used = |(k, size): (usize, &f64)| *size > UNSEEN * of.sizes[0] && (*size >= least || k < rank);
+        of.sizes.iter().enumerate().take_while(|of| is_used(*of)).count()
+    }
+
+    /// How many directions leave next to nothing; none where not even all of them do.
+    fn shown(&self, state: &State) -> usize {
+        if !self.uses_weak {
+            return 0;
+        }
+        let held = self.held(state);
+        let of = Decomposed::new(state, |k| held[k].is_none());
+        let seen = of.sizes.iter().take_while(|size| **size > UNSEEN * of.sizes[0]).count();
+        let mut left = state.cost;
+        let mut is_enough = |k: &usize| {
+            left -= of.part(&state.residuals, *k).powi(2);
+            left < SHOWN.powi(2) * state.cost
+        };
+        let is_known = state.cost > self.settled.powi(2) * of.rows as f64 && of.rows > seen;
+        (0..seen).filter(|_| is_known).find(|k| is_enough(k)).map_or(0, |last| last + 1)
+    }
+
+    fn told(&self, state: &State, (rank, steps, end): (usize, usize, SearchEnd)) -> LeastSquaresFit {
+        let held = self.held(state);
+        let of = Decomposed::new(state, |k| held[k].is_none());
+        let used = self.count_used(&of, rank);
+        let shares = |k: usize| (0..held.len()).map(|unknown| of.share(k, unknown)).collect::<Vec<f64>>();
+        let directions: Vec<SingularDirection> = (0..of.sizes.len())
+            .map(|k| SingularDirection { size: of.sizes[k] / of.root(), shares: shares(k), is_used: k < used })
+            .collect();
+        let scale = |k: usize| self.unknowns[k].scale;
+        let covariance = |i: usize, j: usize| {
+            let terms = (0..used).map(|k| of.share(k, i) * of.share(k, j) / of.sizes[k].powi(2));
+            scale(i) * scale(j) * terms.sum::<f64>()
+        };
+        let all = 0..held.len();
+        let gradient = state.jacobian.transpose() * &state.residuals;
+        LeastSquaresFit {
+            values: state.values.clone(),
+            residuals: state.residuals.col(0).iter().copied().collect(),
+            gradient: gradient.col(0).iter().copied().collect(),
+            directions,
+            covariance: all.clone().map(|i| all.clone().map(|j| covariance(i, j)).collect()).collect(),
+            basis: Mat::from_fn(of.rows, used, |row, k| of.left[(row, k)]),
+            held,
+            steps,
+            end,
+        }
+    }
+}
+
+impl LeastSquaresFit {
+    /// How many directions are used.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.basis.ncols()
+    }
+
+    /// Of a residual the share that fitting takes of it, from 0 to 1.
+    ///
+    /// # Panics
+    /// If there is no such residual.
+    #[must_use]
+    pub fn leverage(&self, row: usize) -> f64 {
+        self.basis.row(row).iter().map(|x| x * x).sum()
+    }
+
+    /// What some residuals would be if the fit did not know of them, by the linear model: how well the others predict them. `None`
+    /// where the others do not determine that.
+    ///
+    /// # Panics
+    /// If there is no such residual.
+    #[must_use]
+    pub fn left_out(&self, rows: &[usize]) -> Option<Vec<f64>> {
+        let shared = |i: usize, j: usize| -> f64 {
+            self.basis.row(rows[i]).iter().zip(self.basis.row(rows[j]).iter()).map(|(a, b)| a * b).sum()
+        };
+        let count = rows.len();
+        let own = nalgebra::DMatrix::from_fn(count, count, |i, j| f64::from(i == j) - shared(i, j));
+        let residuals = nalgebra::DVector::from_fn(count, |i, _| self.residuals[rows[i]]);
+        // the smallest eigenvalue is the share of a combination of these that the others leave to it
+        let factors = own.cholesky()?;
+        let is_determined = factors.l_dirty().diagonal().min().powi(2) > OWN;
+        is_determined.then(|| factors.solve(&residuals).iter().copied().collect())
+    }
+
+    /// The variance of the residuals that the fit leaves; `None` where as many directions are used as there are residuals.
+    #[must_use]
+    pub fn variance(&self) -> Option<f64> {
+        let free = self.residuals.len().checked_sub(self.rank()).filter(|free| *free > 0)?;
+        Some(self.residuals.iter().map(|x| x * x).sum::<f64>() / free as f64)
+    }
+}
+
+impl Step {
+    /// After a step that failed. The first damping is felt by the weakest direction alone.
+    fn raised(&self, damping: f64, growth: f64) -> f64 {
+        let [weakest, strongest] = self.squares;
+        if damping == 0.0 { weakest.max(f64::EPSILON * strongest) } else { growth * damping }
+    }
+
+    /// After a step that did so much of what the linear model promised, as Nielsen has it: little changes where it did half.
+    fn after(&self, damping: f64, gain: f64) -> f64 {
+        let lowered = damping * (1.0 - (2.0 * gain.min(1.0) - 1.0).powi(3)).clamp(LEAST_DAMPED, GROWTH);
+        if lowered > self.squares[0] { lowered } else { 0.0 }
+    }
+}
+
+/// The singular values of the Jacobian by the free unknowns.
+struct Decomposed {
+    rows: usize,
+    /// The place of each unknown among the free ones.
+    columns: Vec<Option<usize>>,
+    left: Mat<f64>,
+    /// Falling.
+    sizes: Vec<f64>,
+    right: Mat<f64>,
+}
+
+impl Decomposed {
+    fn new(state: &State, is_free: impl Fn(usize) -> bool) -> Decomposed {
+        let count = state.values.len();
+        let free: Vec<usize> = (0..count).filter(|k| is_free(*k)).collect();
+        let columns = (0..count).map(|k| free.iter().position(|of| *of == k)).collect();
+        let rows = state.jacobian.nrows();
+        let jacobian = Mat::from_fn(rows, free.len(), |row, k| state.jacobian[(row, free[k])]);
+        let none =
+            || Decomposed { rows, columns: vec![None; count], left: Mat::new(), sizes: vec![], right: Mat::new() };
+        if free.is_empty() {
+            return none();
+        }
+        // all is finite, so that the values converge
+        let Ok(svd) = Svd::new_thin(jacobian.as_ref()) else { return none() };
+        let sizes: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+        let mut right = svd.V().to_owned();
+        let mut left = svd.U().to_owned();
+        // a direction and its opposite are the same: the one whose largest share is positive is told
+        for k in 0..sizes.len() {
+            let largest = right.col(k).iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
+            if largest < 0.0 {
+                right.col_mut(k).iter_mut().for_each(|x| *x = -*x);
+                left.col_mut(k).iter_mut().for_each(|x| *x = -*x);
+            }
+        }
+        Decomposed { rows, columns, left, sizes, right }
+    }
+
+    /// From a root of the mean square to a length.
+    fn root(&self) -> f64 {
+        (self.rows.max(1) as f64).sqrt()
+    }
+
+    /// Of the weakest and the strongest of so many singular values.
+    fn squares(&self, used: usize) -> [f64; 2] {
+        let square = |k: usize| self.sizes.get(k).map_or(0.0, |size| size.powi(2));
+        [square(used.saturating_sub(1)), square(0)]
+    }
+
+    /// Of residuals in the direction of one singular value.
+    fn part(&self, residuals: &Mat<f64>, k: usize) -> f64 {
+        self.left.col(k).iter().zip(residuals.col(0).iter()).map(|(a, b)| a * b).sum()
+    }
+
+    /// Of an unknown in a direction.
+    fn share(&self, k: usize, unknown: usize) -> f64 {
+        self.columns[unknown].map_or(0.0, |column| self.right[(column, k)])
+    }
+
+    /// Against residuals, along the first so many directions; zero for unknowns that are not free.
+    fn step(&self, residuals: &Mat<f64>, used: usize, damping: f64) -> Vec<f64> {
+        let mut step = vec![0.0; self.columns.len()];
+        for k in 0..used {
+            let size = self.sizes[k];
+            let along = -self.part(residuals, k) * size / (size.powi(2) + damping);
+            step.iter_mut().enumerate().for_each(|(unknown, step)| *step += along * self.share(k, unknown));
+        }
+        step
+    }
+}

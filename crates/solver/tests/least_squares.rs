@@ -1,0 +1,141 @@
+//! Least squares with bounds, against closed forms.
+
+use faer::Mat;
+use flank_solver::{LeastSquares, LeastSquaresFit, Linearized, Range, RangeEnd, ScaledUnknown, SearchEnd};
+
+const EVERYWHERE: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+fn unknown(start: f64, range: Range) -> ScaledUnknown {
+    ScaledUnknown { start, scale: 1.0, range }
+}
+
+fn problem(unknowns: Vec<ScaledUnknown>) -> LeastSquares {
+    LeastSquares { unknowns, resolution: 1e-6, uses_weak: true, settled: 1e-13 }
+}
+
+fn rows(residuals: Vec<f64>, slopes: &[&[f64]]) -> Option<Linearized> {
+    let jacobian = Mat::from_fn(slopes.len(), slopes[0].len(), |row, column| slopes[row][column]);
+    Some(Linearized { residuals, jacobian })
+}
+
+/// The valley of Rosenbrock: least at (1, 1).
+fn valley(at: &[f64]) -> Option<Linearized> {
+    let [x, y] = [at[0], at[1]];
+    rows(vec![1.0 - x, 10.0 * (y - x * x)], &[&[-1.0, 0.0], &[-20.0 * x, 10.0]])
+}
+
+/// A straight line `a + b t` through values at -2, -1, 0, 1, 2.
+fn line(values: [f64; 5]) -> impl Fn(&[f64]) -> Option<Linearized> {
+    move |at| {
+        let t = |k: usize| k as f64 - 2.0;
+        let residuals = (0..5).map(|k| at[0] + at[1] * t(k) - values[k]).collect();
+        let slopes: Vec<[f64; 2]> = (0..5).map(|k| [1.0, t(k)]).collect();
+        rows(residuals, &slopes.iter().map(|row| &row[..]).collect::<Vec<&[f64]>>())
+    }
+}
+
+fn near(a: f64, b: f64, by: f64) {
+    assert!((a - b).abs() < by, "{a} instead of {b}");
+}
+
+#[test]
+fn the_end_of_a_curved_valley_is_found() {
+    let fit = problem(vec![unknown(-1.2, EVERYWHERE), unknown(1.0, EVERYWHERE)]).solve(valley).expect("finite");
+    assert_eq!(fit.end, SearchEnd::Settled);
+    fit.values.iter().for_each(|value| near(*value, 1.0, 1e-12));
+    assert_eq!(fit.held, [None, None]);
+}
+
+/// At x = 0.5 the valley's floor is y = 0.25, and the slope along x is -(1 - x).
+#[test]
+fn at_a_bound_the_gradient_pushes_outwards() {
+    let range = Range { low: -3.0, high: 0.5 };
+    let fit = problem(vec![unknown(-1.2, range), unknown(1.0, EVERYWHERE)]).solve(valley).expect("finite");
+    assert_eq!((fit.end, &fit.held[..]), (SearchEnd::Settled, &[Some(RangeEnd::High), None][..]));
+    assert_eq!(fit.values[0], 0.5, "on the bound, not beside it");
+    near(fit.values[1], 0.25, 1e-9);
+    near(fit.gradient[0], -0.5, 1e-9);
+    near(fit.gradient[1], 0.0, 1e-9);
+}
+
+/// A start at the wrong bound is left again, whatever the order in which bounds are met.
+#[test]
+fn bounds_are_held_no_longer_than_they_push() {
+    let [low, high] = [Range { low: 0.0, high: 10.0 }, Range { low: -10.0, high: 1.0 }];
+    // the line 1 + 2 t with a and b in boxes: b is best at 1, and a, square to it, at 1
+    let found = problem(vec![unknown(0.0, low), unknown(-10.0, high)]).solve(line([-3.0, -1.0, 1.0, 3.0, 5.0]));
+    let fit = found.expect("finite");
+    near(fit.values[0], 1.0, 1e-12);
+    assert_eq!(fit.values[1], 1.0);
+    assert_eq!(fit.held, [None, Some(RangeEnd::High)]);
+    // residuals -t: their sum with the slopes t is -10
+    near(fit.gradient[1], -10.0, 1e-9);
+}
+
+/// Two unknowns of which only the sum shows: the direction is named, and the sum is shared between them.
+#[test]
+fn a_direction_that_shows_nothing_is_named() {
+    let sum = |at: &[f64]| rows(vec![at[0] + at[1] - 3.0, 2.0 * (at[0] + at[1]) - 6.0], &[&[1.0, 1.0], &[2.0, 2.0]]);
+    let fit = problem(vec![unknown(0.0, EVERYWHERE), unknown(0.0, EVERYWHERE)]).solve(sum).expect("finite");
+    fit.values.iter().for_each(|value| near(*value, 1.5, 1e-13));
+    let used: Vec<bool> = fit.directions.iter().map(|of| of.is_used).collect();
+    assert_eq!(used, [true, false]);
+    // sqrt(1 + 1 + 4 + 4) over the root of two residuals
+    near(fit.directions[0].size, 5f64.sqrt(), 1e-14);
+    let null = &fit.directions[1];
+    near(null.shares[0] + null.shares[1], 0.0, 1e-14);
+    near(null.shares[0].abs(), 0.5f64.sqrt(), 1e-14);
+}
+
+/// Of a straight line through five values the variances are 1/5 and 1/10, the leverages 1/5 + t²/10.
+#[test]
+fn covariance_and_leverages_are_those_of_a_straight_line() {
+    let found = problem(vec![unknown(0.0, EVERYWHERE); 2]).solve(line([1.0, -2.0, 0.5, 4.0, 2.0]));
+    let fit = found.expect("finite");
+    let LeastSquaresFit { values, covariance, residuals, .. } = &fit;
+    near(values[0], 1.1, 1e-13);
+    near(values[1], 0.8, 1e-13);
+    near(covariance[0][0], 0.2, 1e-14);
+    near(covariance[1][1], 0.1, 1e-14);
+    near(covariance[0][1], 0.0, 1e-14);
+    for (k, residual) in residuals.iter().enumerate() {
+        let leverage = 0.2 + (k as f64 - 2.0).powi(2) / 10.0;
+        near(fit.leverage(k), leverage, 1e-14);
+        near(fit.left_out(&[k]).expect("determined")[0], residual / (1.0 - leverage), 1e-13);
+    }
+    assert_eq!(fit.left_out(&[0, 1, 2, 3]), None, "one value makes no line");
+    // the line through the first three values, 1, -2, 0.5, has -0.1667 in their middle and falls by 0.25
+    let predicted = fit.left_out(&[3, 4]).expect("determined");
+    near(predicted[0], -2.0 / 3.0 - 4.0, 1e-12);
+    near(predicted[1], -11.0 / 12.0 - 2.0, 1e-12);
+}
+
+/// A direction below the resolution is left alone in noise, and used where the residuals show it.
+#[test]
+fn a_weak_direction_is_used_where_it_shows() {
+    let weak = |noise: f64| {
+        move |at: &[f64]| {
+            let wanted =
+                |k: usize| 1.0 + 2e-3 * (k as f64 - 3.5) + noise * [1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0][k];
+            let slopes: Vec<[f64; 2]> = (0..8).map(|k| [1.0, 1e-3 * (k as f64 - 3.5)]).collect();
+            let residuals = slopes.iter().enumerate().map(|(k, s)| at[0] * s[0] + at[1] * s[1] - wanted(k)).collect();
+            rows(residuals, &slopes.iter().map(|row| &row[..]).collect::<Vec<&[f64]>>())
+        }
+    };
+    let problem =
+        LeastSquares { unknowns: vec![unknown(0.0, EVERYWHERE); 2], resolution: 0.1, uses_weak: true, settled: 1e-13 };
+    let fit = problem.solve(weak(1e-6)).expect("finite");
+    near(fit.values[1], 2.0, 1e-9);
+    assert!(fit.directions[1].is_used);
+    let fit = problem.solve(weak(0.5)).expect("finite");
+    near(fit.values[1], 0.0, 1e-12);
+    assert!(!fit.directions[1].is_used);
+}
+
+#[test]
+fn where_there_are_no_residuals_no_step_leads() {
+    let root = |at: &[f64]| (at[0] > 0.0).then(|| rows(vec![at[0].ln()], &[&[1.0 / at[0]]])).flatten();
+    let fit = problem(vec![unknown(20.0, EVERYWHERE)]).solve(root).expect("finite");
+    near(fit.values[0], 1.0, 1e-12);
+    assert!(problem(vec![unknown(-1.0, EVERYWHERE)]).solve(root).is_none());
+}
