@@ -68,7 +68,13 @@ fn the_machine_of_the_thesis_leaves_the_same_surface() {
 /// The right-hand machine shows the left-hand job in the mirror.
 #[test]
 fn the_mirrored_generator_cuts_the_other_hand() {
-    let parts = ["functions/bevel.chain", "machines/cradle.chain", "tools/face_mill.chain", "bevel/pinion_19x62.chain"];
+    let parts = [
+        "functions/bevel.chain",
+        "machines/cradle.chain",
+        "tools/face_mill.chain",
+        "functions/blanks_19x62.chain",
+        "bevel/pinion_19x62.chain",
+    ];
     let [left, right] = [Graph::new(), Graph::new()];
     let left = job_of_text(&left, &library(&parts));
     let other = library(&parts).replace("machine m = cradle_generator(", "machine m = cradle_generator_mirrored(");

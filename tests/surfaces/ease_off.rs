@@ -123,7 +123,13 @@ fn the_numbers_follow_from_the_tables() {
 /// and the way along the normal is shorter than the arc.
 #[test]
 fn the_width_of_a_tooth_space() {
-    let text = library(&["functions/bevel.chain", MACHINES[0], MACHINES[1], "bevel/gear_19x62.chain"]);
+    let text = library(&[
+        "functions/bevel.chain",
+        MACHINES[0],
+        MACHINES[1],
+        "functions/blanks_19x62.chain",
+        "bevel/gear_19x62.chain",
+    ]);
     let graph = Graph::new();
     let gear = job_of_text(&graph, &text);
     let target = [26.0, 111.0];

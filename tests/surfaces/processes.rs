@@ -118,6 +118,7 @@ fn a_mirrored_work_is_the_other_hand() {
         "machines/hobbing_6axis.chain",
         "tools/involute.chain",
         "tools/hob_zi.chain",
+        "functions/hobbing.chain",
         "hobbing/helical_gear.chain",
     ])
     .replace("machine m = hobbing_6axis", "machine m = left")

@@ -98,6 +98,16 @@ fn conjugate_pinion_19x62() {
 }
 
 #[test]
+fn rocker_cam() {
+    insta::assert_snapshot!(described("specs/linkages/rocker_cam.chain"));
+}
+
+#[test]
+fn hexapod_gear() {
+    insta::assert_snapshot!(described("specs/hexapod/hexapod_gear.chain"));
+}
+
+#[test]
 fn tilted_pinion() {
     insta::assert_snapshot!(described("specs/bevel/tilted_pinion.chain"));
 }
@@ -150,4 +160,29 @@ fn thesis_gear() {
 #[test]
 fn pair_from_blank() {
     insta::assert_snapshot!(described("specs/bevel/pair_from_blank.chain"));
+}
+
+#[test]
+fn female_rotor() {
+    insta::assert_snapshot!(described("specs/rotors/female_rotor.chain"));
+}
+
+#[test]
+fn rotor_grinding() {
+    insta::assert_snapshot!(described("specs/rotors/rotor_grinding.chain"));
+}
+
+#[test]
+fn hindley_worm_wheel() {
+    insta::assert_snapshot!(described("specs/globoid/hindley_worm_wheel.chain"));
+}
+
+#[test]
+fn curvic_coupling() {
+    insta::assert_snapshot!(described("specs/curvic/curvic_coupling.chain"));
+}
+
+#[test]
+fn helicon_wheel() {
+    insta::assert_snapshot!(described("specs/face_worm/helicon_wheel.chain"));
 }
