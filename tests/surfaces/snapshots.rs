@@ -173,6 +173,11 @@ fn rotor_grinding() {
 }
 
 #[test]
+fn dressed_wheel() {
+    insta::assert_snapshot!(described("specs/grinding/dressed_wheel.chain"));
+}
+
+#[test]
 fn hindley_worm_wheel() {
     insta::assert_snapshot!(described("specs/globoid/hindley_worm_wheel.chain"));
 }

@@ -107,6 +107,8 @@ limits! {
         "a surface of more than {} unknowns", "let some axes follow one motion: `drive m.X = 2 mm/rad * roll`";
     SAMPLE_POINTS = 20_000_000, Pieces, "points of all samples together",
         "samples of more than {} points", "`by` is followed by a number of points, not by a distance";
+    SPLINE_POINTS = 256, Pieces, "points of a sample that a spline goes through",
+        "a spline through more than {} points of a sample", "a wheel is dressed by fewer: ask for fewer points";
     TABLE_BYTES = 16 << 20, Bytes, "size of all tables that curves are read from, each reading counted",
         "the tables are more than {} together", "keep only the columns and rows that are needed";
     GRID_POINTS = 2_000, Pieces, "points of a grid",

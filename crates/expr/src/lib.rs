@@ -25,7 +25,7 @@ mod symbolic;
 mod tape;
 
 pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
-pub use enclosure::implicit::{NoRoot, Unknown, roots};
+pub use enclosure::implicit::{NoRoot, OnlyRoots, Unknown, roots};
 pub use enclosure::interval::{Interval, IntervalEvaluator};
 pub use enclosure::quadrature::{End, Unproven, integral};
 pub use enclosure::taylor::{Coefficient, TaylorEvaluator};

@@ -1,9 +1,11 @@
 //! Parameters of machines and tools get their values.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use flank_expr::Expr;
 
+use crate::definitions::profile;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
@@ -12,6 +14,7 @@ use crate::syntax::ast::{Argument, Dimension, Expression, Param};
 use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::shown;
 use crate::values::functions::plural;
+use crate::values::segment::Profile;
 use crate::values::value::{Constant, Scope, Value};
 
 /// Values from outside the text, by full name (`ratio`, `m.swivel`): they win over what the text says.
@@ -96,6 +99,13 @@ impl<'a, 'g> Binder<'a, 'g> {
 
     /// One parameter.
     pub(crate) fn bind(&mut self, context: &mut Context<'g>, param: &Param, scope: &mut Scope<'g>) {
+        if is_profile(&param.dimension) {
+            match self.profile(context, param) {
+                Some(profile) => profile::insert(scope, &param.name.node, profile),
+                None => drop(scope.insert(param.name.node.clone(), Value::Poison)),
+            }
+            return;
+        }
         let value = self.bound(context, param, scope).unwrap_or(Value::Poison);
         scope.insert(param.name.node.clone(), value);
     }
@@ -151,6 +161,43 @@ impl<'a, 'g> Binder<'a, 'g> {
             });
         }
         Some(Value::Scalar(variable, dimension))
+    }
+
+    /// The profile that a parameter is set to; nothing if something is wrong (and reported).
+    fn profile(&mut self, context: &mut Context<'g>, param: &Param) -> Option<Rc<Profile<'g>>> {
+        let name = &param.name;
+        if let Some(place) =
+            param.default.as_ref().map(|value| value.span).or(param.range.as_ref().map(|range| range.span))
+        {
+            let message = format!("{} is a profile: it has no range, and no value by default", shown_name(param));
+            let help = format!("write `param {} : profile`; the job gives the profile", name.node);
+            context.report(Diagnostic::new(Code::WrongKind, place, message).help(help));
+            return None;
+        }
+        let job = match self.source {
+            Source::Instance { job, .. } => job,
+            Source::Definition | Source::Standing { .. } => return Some(profile::standing(context, name)),
+            Source::Job => {
+                let message = format!("{} is a profile: a job writes its own", shown_name(param));
+                let help = format!("write `profile {} {{ … }}`", name.node);
+                context.report(Diagnostic::new(Code::WrongKind, param.dimension.span, message).help(help));
+                return None;
+            }
+        };
+        let Some(setting) = self.settings.get(name.node.as_str()).copied() else {
+            self.missing.push(name.clone());
+            return None;
+        };
+        match context.evaluate(setting, job) {
+            Value::Profile(profile) => Some(profile),
+            Value::Poison => None,
+            other => {
+                let message = format!("{} must be a profile, this is {}", shown_name(param), other.described());
+                let help = "give it the name of a `profile` of the job";
+                context.report(Diagnostic::new(Code::WrongKind, setting.span, message).help(help));
+                None
+            }
+        }
     }
 
     /// What a parameter is set to, and who says so: the caller before the job before the definition.
@@ -258,6 +305,11 @@ struct Refused;
 /// Whether a dimension is that of something that is counted.
 pub(crate) fn is_count(dimension: &Dimension) -> bool {
     dimension.factors.iter().any(|(name, _)| name.node == "count")
+}
+
+/// Whether a parameter is a profile.
+pub(crate) fn is_profile(dimension: &Dimension) -> bool {
+    matches!(dimension.factors.as_slice(), [(name, _)] if name.node == "profile")
 }
 
 fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &HashSet<&str>) {

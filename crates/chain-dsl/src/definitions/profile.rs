@@ -6,7 +6,8 @@ use flank_expr::{Curve, CurveError, Expr};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Span;
+use crate::diagnostics::source::{Name, Span};
+use crate::job::sampled::{self, SampledPoints};
 use crate::syntax::ast::{self, Call, Expression, ExpressionKind};
 use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::{Dimension, shown};
@@ -22,23 +23,53 @@ const JOINT: f64 = 1e-9;
 const SHAPES: [&str; 3] = ["line", "arc", "spline"];
 
 /// Builds a profile and puts it into the scope, with the runs at its segments' ends as `profile.segment.from` and `.to`.
-pub(crate) fn build<'g>(context: &mut Context<'g>, written: &ast::Profile, scope: &mut Scope<'g>) {
+///
+/// In a job its splines may go through points of samples.
+pub(crate) fn build<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Profile,
+    scope: &mut Scope<'g>,
+    sampled: Option<&mut SampledPoints>,
+) {
     let findings = context.findings();
-    let profile = segments(context, written, scope).filter(|_| context.findings() == findings && !written.broken);
+    let profile =
+        segments(context, written, scope, sampled).filter(|_| context.findings() == findings && !written.broken);
     let name = &written.name.node;
     let Some(profile) = profile else {
         scope.insert(name.clone(), Value::Poison);
         return;
     };
+    insert(scope, name, Rc::new(profile));
+}
+
+/// Puts a profile into a scope, with the runs at its segments' ends.
+pub(crate) fn insert<'g>(scope: &mut Scope<'g>, name: &str, profile: Rc<Profile<'g>>) {
     for segment in &profile.segments {
         for (end, run) in [("from", segment.from), ("to", segment.to)] {
             scope.insert(format!("{name}.{}.{end}", segment.name), Value::Scalar(run, Dimension::LENGTH));
         }
     }
-    scope.insert(name.clone(), Value::Profile(Rc::new(profile)));
+    scope.insert(name.to_string(), Value::Profile(profile));
 }
 
-fn segments<'g>(context: &mut Context<'g>, written: &ast::Profile, scope: &Scope<'g>) -> Option<Profile<'g>> {
+/// A profile of one segment that has no values yet.
+pub(crate) fn standing<'g>(context: &mut Context<'g>, name: &Name) -> Rc<Profile<'g>> {
+    let shape = unknown(context, &name.node);
+    let (from, to) = (context.graph.constant(0.0), context.variable(name.node.clone(), Role::Parameter, f64::NAN));
+    let segment = Segment { name: name.node.clone(), span: name.span, shape, from, to };
+    Rc::new(Profile { segments: vec![Rc::new(segment)] })
+}
+
+fn unknown<'g>(context: &mut Context<'g>, name: &str) -> Shape<'g> {
+    Shape::Unknown([(); 2].map(|()| context.variable(name, Role::Parameter, f64::NAN)))
+}
+
+fn segments<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Profile,
+    scope: &Scope<'g>,
+    mut sampled: Option<&mut SampledPoints>,
+) -> Option<Profile<'g>> {
     if written.segments.is_empty() && !written.broken {
         let message = format!("`{}` has no segments", written.name.node);
         let help = "add one: `flank = line(from: [x, y], to: [x, y])`";
@@ -52,10 +83,11 @@ fn segments<'g>(context: &mut Context<'g>, written: &ast::Profile, scope: &Scope
     let mut run = context.graph.constant(0.0);
     let mut built: Vec<Option<Rc<Segment<'g>>>> = Vec::new();
     for segment in &written.segments {
-        let next = shape(context, &segment.value, &segment.name.node, scope).map(|(shape, length)| {
-            let (name, span) = (segment.name.node.clone(), segment.value.span);
-            Rc::new(Segment { name, span, shape, from: run, to: run + length })
-        });
+        let next =
+            shape(context, &segment.value, &segment.name.node, scope, sampled.as_deref_mut()).map(|(shape, length)| {
+                let (name, span) = (segment.name.node.clone(), segment.value.span);
+                Rc::new(Segment { name, span, shape, from: run, to: run + length })
+            });
         run = next.as_ref().map_or(run, |segment| segment.to);
         built.push(next);
     }
@@ -73,6 +105,7 @@ fn shape<'g>(
     written: &Expression,
     name: &str,
     scope: &Scope<'g>,
+    sampled: Option<&mut SampledPoints>,
 ) -> Option<(Shape<'g>, Expr<'g>)> {
     let call = match &written.kind {
         ExpressionKind::Call(call) => call,
@@ -87,7 +120,7 @@ fn shape<'g>(
     match call.function.node.as_str() {
         "line" => line(context, call, scope),
         "arc" => arc(context, call, scope),
-        "spline" => spline(context, call, name, scope),
+        "spline" => spline(context, call, name, scope, sampled),
         _ => {
             context.unknown(&call.function, "kind of segment", SHAPES.into_iter());
             None
@@ -161,8 +194,23 @@ fn bow<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option<
     Some((Shape::Bow { from, direction, radius }, (radius + radius) * half_turn))
 }
 
-fn spline<'g>(context: &mut Context<'g>, call: &Call, name: &str, scope: &Scope<'g>) -> Option<(Shape<'g>, Expr<'g>)> {
+fn spline<'g>(
+    context: &mut Context<'g>,
+    call: &Call,
+    name: &str,
+    scope: &Scope<'g>,
+    sampled: Option<&mut SampledPoints>,
+) -> Option<(Shape<'g>, Expr<'g>)> {
     let (points, places) = match call.arguments.as_slice() {
+        _ if sampled::named(call).is_some() => {
+            let Some(sampled) = sampled else {
+                let message = "a tool by itself has no samples whose points a spline goes through";
+                let help = "write the profile into the job, and give it to the tool: `param section : profile`";
+                context.report(Diagnostic::new(Code::WrongKind, call.span, message).help(help));
+                return None;
+            };
+            (sampled.of(call)?.to_vec(), vec![call.span])
+        }
         [ast::Argument { name: None, value: listed }] if !matches!(listed.kind, ExpressionKind::Text(_)) => {
             listed_points(context, listed, scope)?
         }
@@ -183,8 +231,8 @@ fn spline<'g>(context: &mut Context<'g>, call: &Call, name: &str, scope: &Scope<
         over_run[1].push((run, y));
     }
     if points.iter().any(|(x, y)| x.is_nan() || y.is_nan()) {
-        let unknown = [(); 2].map(|()| context.variable(name, Role::Parameter, f64::NAN));
-        return Some((Shape::Unknown(unknown), unknown[0]));
+        let length = context.variable(name, Role::Parameter, f64::NAN);
+        return Some((unknown(context, name), length));
     }
     let [x, y] = [0, 1].map(|k| Curve::through(format!("{name}_{}", ["x", "y"][k]), &over_run[k]));
     let (x, y) = match (x, y) {

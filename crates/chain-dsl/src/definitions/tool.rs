@@ -6,7 +6,7 @@ use std::rc::Rc;
 use flank_expr::geometry::{Edge, Surface, Vector3};
 use flank_expr::{Expr, Interval};
 
-use crate::definitions::instance::{Binder, Overrides, Source, is_count};
+use crate::definitions::instance::{Binder, Overrides, Source, is_count, is_profile};
 use crate::definitions::material_side::{self, Places};
 use crate::definitions::profile;
 use crate::definitions::requirement;
@@ -93,7 +93,7 @@ pub(crate) fn build<'g>(
                 let value = context.evaluate(&binding.value, &scope);
                 scope.insert(binding.name.node.clone(), value);
             }
-            ToolStatement::Profile(written) => profile::build(context, written, &mut scope),
+            ToolStatement::Profile(written) => profile::build(context, written, &mut scope, None),
             ToolStatement::Require(required) => requirement::check(context, required, &scope, user),
             ToolStatement::Surface(_) => {}
         }
@@ -118,6 +118,15 @@ pub(crate) fn build<'g>(
         }
     }
     BuiltTool { parameters, scope, surfaces }
+}
+
+/// The parameters of a tool that are profiles, as a job calls them: `w.section`.
+pub(crate) fn profiles(tool: &ast::Tool, name: &str) -> Vec<String> {
+    let profile = |statement: &ToolStatement| match statement {
+        ToolStatement::Param(param) if is_profile(&param.dimension) => Some(format!("{name}.{}", param.name.node)),
+        _ => None,
+    };
+    tool.statements.iter().filter_map(profile).collect()
 }
 
 /// One of the surfaces of a statement: its name, and the value that is its own.

@@ -60,7 +60,7 @@ codes! {
     OutOfRange        = "E0307" Error "a value lies outside its range";
     BrokenProfile     = "E0308" Error "the segments of a profile do not make one run";
     Unmet             = "E0309" Error "a requirement does not hold";
-    Unproven          = "E0310" Error "an integral or a root cannot be proven";
+    Unproven          = "E0310" Error "an integral, a root or a point cannot be proven";
     // 04: machines
     CyclicFrames      = "E0401" Error "frames hang on each other in a circle";
     NotRigid          = "E0402" Error "a matrix is not a rigid motion";

@@ -1,6 +1,7 @@
 //! Jobs: machines and tools get values, axes their laws, tools leave surfaces.
 
 pub(crate) mod sample;
+pub(crate) mod sampled;
 
 mod available;
 mod axes;
@@ -27,6 +28,7 @@ use crate::definitions::tool::{self, BuiltTool, Tools};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
+use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
     Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, within,
@@ -47,6 +49,8 @@ struct Original<'b, 'g> {
     name: &'b Name,
     definition: &'b String,
     parameters: &'b [Parameter<'g>],
+    /// Those of its parameters that are profiles.
+    profiles: Vec<String>,
 }
 
 /// A frame of a machine of the job.
@@ -83,6 +87,8 @@ struct Builder<'a, 'g> {
     user: Option<Span>,
     /// Whether axes without a law are free.
     stands_alone: bool,
+    /// What splines of the job go through.
+    sampled: SampledPoints,
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
@@ -109,6 +115,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             named: Vec::new(),
             user: None,
             stands_alone,
+            sampled: SampledPoints::default(),
         }
     }
 }
@@ -128,6 +135,9 @@ pub(crate) fn standing<'g>(
 }
 
 /// A job with all its names resolved; what is wrong in it is reported and left out.
+///
+/// Where splines go through points of samples, it is built without these splines first, then again with their points: what hangs on a
+/// profile that is not known yet is silently left out.
 pub(crate) fn build<'g>(
     context: &mut Context<'g>,
     job: &ast::Job,
@@ -135,7 +145,29 @@ pub(crate) fn build<'g>(
     definitions: &Definitions<'_>,
     file: &Path,
 ) -> Job<'g> {
+    let points_before = context.sample_points;
+    let mut sampled = SampledPoints::default();
+    loop {
+        let (built, mut asked) = with_points(context, job, is_variant, definitions, file, sampled);
+        if !asked.find(context, &built, job) {
+            return built;
+        }
+        sampled = asked;
+        context.sample_points = points_before;
+    }
+}
+
+/// A job whose splines go through these points of samples, and for which points they ask.
+fn with_points<'g>(
+    context: &mut Context<'g>,
+    job: &ast::Job,
+    is_variant: bool,
+    definitions: &Definitions<'_>,
+    file: &Path,
+    sampled: SampledPoints,
+) -> (Job<'g>, SampledPoints) {
     let mut builder = Builder::new(definitions, false);
+    builder.sampled = sampled;
     builder.user = is_variant.then_some(job.name.span);
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {
@@ -185,7 +217,8 @@ pub(crate) fn build<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
-    builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file)
+    let sampled = std::mem::take(&mut builder.sampled);
+    (builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file), sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -258,7 +291,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Require(required) => requirement::check(context, required, &self.scope, self.user),
             JobStatement::Profile(written) => {
                 self.define(context, &written.name);
-                profile::build(context, written, &mut self.scope);
+                profile::build(context, written, &mut self.scope, Some(&mut self.sampled));
             }
             JobStatement::Solid(solid) => self.define(context, &solid.name),
             JobStatement::Contact(contact) => self.define(context, &contact.name),
@@ -280,7 +313,12 @@ impl<'g> Builder<'_, 'g> {
         self.define(context, &instance.name);
         let machines = self.definitions.machines;
         let own = self.machines.iter().find(|(name, ..)| name.node == instance.definition.node);
-        let own = own.map(|(name, definition, built)| Original { name, definition, parameters: &built.parameters });
+        let own = own.map(|(name, definition, built)| Original {
+            name,
+            definition,
+            parameters: &built.parameters,
+            profiles: Vec::new(),
+        });
         let Some(instance) = self.resolved(context, instance, own) else { return };
         let instance = instance.as_ref();
         let Some(definition) = machines.get(&instance.definition.node) else {
@@ -309,7 +347,10 @@ impl<'g> Builder<'_, 'g> {
         self.define(context, &instance.name);
         let tools = self.definitions.tools;
         let own = self.tools.iter().find(|(name, ..)| name.node == instance.definition.node);
-        let own = own.map(|(name, definition, built)| Original { name, definition, parameters: &built.parameters });
+        let own = own.map(|(name, definition, built)| {
+            let profiles = tools.get(definition).map(|tool| tool::profiles(tool, &name.node)).unwrap_or_default();
+            Original { name, definition, parameters: &built.parameters, profiles }
+        });
         let Some(instance) = self.resolved(context, instance, own) else { return };
         let instance = instance.as_ref();
         let Some(definition) = tools.get(&instance.definition.node) else {
@@ -360,8 +401,9 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let is_given = |parameter: &&Parameter<'g>| !matches!(parameter.given_by, ValueSource::Definition(_));
-        for parameter in original.parameters.iter().filter(is_given) {
-            let Some(inner) = within(&parameter.name, &original.name.node).filter(|inner| !own.contains(inner)) else {
+        let given = original.parameters.iter().filter(is_given).map(|parameter| parameter.name.as_str());
+        for name in given.chain(original.profiles.iter().map(String::as_str)) {
+            let Some(inner) = within(name, &original.name.node).filter(|inner| !own.contains(inner)) else {
                 continue;
             };
             let named = |node: &str| Name { node: node.to_string(), span: place };

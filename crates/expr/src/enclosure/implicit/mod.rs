@@ -51,6 +51,28 @@ struct System {
 }
 
 impl System {
+    fn new<'g>(residuals: &[Expr<'g>], unknowns: &[Unknown<'g>], others: &[(Expr<'g>, Interval)]) -> System {
+        assert!(residuals.len() == unknowns.len() && !unknowns.is_empty(), "as many equations as unknowns");
+        let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
+        let inputs: Vec<Expr<'g>> = variables.iter().copied().chain(others.iter().map(|other| other.0)).collect();
+        let slopes: Vec<Expr<'g>> = residuals
+            .iter()
+            .flat_map(|residual| variables.iter().map(|variable| residual.derivative(*variable)))
+            .collect();
+        let tape =
+            |outputs: &[Expr<'g>]| Tape::new(outputs, &inputs).expect("every variable of the equations has a range");
+        let widened = |range: Interval| {
+            let margin = MARGIN * (range.hi - range.lo);
+            Interval::new(range.lo - margin, range.hi + margin)
+        };
+        System {
+            unknowns: unknowns.iter().map(|unknown| widened(unknown.range)).collect(),
+            others: others.iter().map(|other| other.1).collect(),
+            values: tape(residuals),
+            slopes: tape(&slopes),
+        }
+    }
+
     /// Numbers of the other inputs that move.
     fn moving(&self) -> Vec<usize> {
         (0..self.others.len()).filter(|k| self.others[*k].lo < self.others[*k].hi).collect()
@@ -88,23 +110,9 @@ pub fn roots<'g>(
     unknowns: &[Unknown<'g>],
     others: &[(Expr<'g>, Interval)],
 ) -> Result<Vec<Expr<'g>>, NoRoot> {
-    assert!(residuals.len() == unknowns.len() && !unknowns.is_empty(), "as many equations as unknowns");
-    let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
-    let inputs: Vec<Expr<'g>> = variables.iter().copied().chain(others.iter().map(|other| other.0)).collect();
-    let slopes: Vec<Expr<'g>> =
-        residuals.iter().flat_map(|residual| variables.iter().map(|variable| residual.derivative(*variable))).collect();
-    let tape = |outputs: &[Expr<'g>]| Tape::new(outputs, &inputs).expect("every variable of the equations has a range");
-    let widened = |range: Interval| {
-        let margin = MARGIN * (range.hi - range.lo);
-        Interval::new(range.lo - margin, range.hi + margin)
-    };
-    let system = System {
-        unknowns: unknowns.iter().map(|unknown| widened(unknown.range)).collect(),
-        others: others.iter().map(|other| other.1).collect(),
-        values: tape(residuals),
-        slopes: tape(&slopes),
-    };
+    let system = System::new(residuals, unknowns, others);
     unique::prove(&system)?;
+    let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
     let moving: Vec<Expr<'g>> = system.moving().into_iter().map(|k| others[k].0).collect();
     let starts = start::polynomials(&system).ok_or(NoRoot::TooFast)?;
     let starts = starts.into_iter().map(|polynomial| polynomial.written(residuals[0].graph(), &moving)).collect();
@@ -113,4 +121,46 @@ pub fn roots<'g>(
     let ranges: Vec<(f64, f64)> = unknowns.iter().map(|unknown| ends(&unknown.range)).collect();
     let reach: Vec<f64> = limits.iter().map(|(low, high)| REACH * (high - low)).collect();
     Ok(implicit::roots(residuals, &variables, [&ranges, &limits], starts, &reach))
+}
+
+/// The only solutions of equations in ranges, for one set of numbers after another. All together look at no more boxes than a proof for
+/// what moves.
+pub struct OnlyRoots {
+    system: System,
+    boxes_left: usize,
+}
+
+impl OnlyRoots {
+    /// The equations; the `others` are what they depend on beside the unknowns.
+    ///
+    /// ```
+    /// use flank_expr::{Graph, Interval, OnlyRoots, Unknown};
+    ///
+    /// let graph = Graph::new();
+    /// let (x, a) = (graph.variable("x"), graph.variable("a"));
+    /// let unknown = Unknown { variable: x, range: Interval::new(0.0, 3.0) };
+    /// let mut roots = OnlyRoots::new(&[x * x - a], &[unknown], &[a]);
+    /// assert!((roots.at(&[2.0]).expect("it is the square root")[0] - 2.0_f64.sqrt()).abs() < 1e-15);
+    /// assert!(roots.at(&[-2.0]).is_err());
+    /// ```
+    ///
+    /// # Panics
+    /// As [`roots`].
+    pub fn new<'g>(residuals: &[Expr<'g>], unknowns: &[Unknown<'g>], others: &[Expr<'g>]) -> OnlyRoots {
+        let others: Vec<(Expr<'g>, Interval)> = others.iter().map(|other| (*other, Interval::WHOLE)).collect();
+        OnlyRoots { system: System::new(residuals, unknowns, &others), boxes_left: unique::MOST_IN_ALL }
+    }
+
+    /// The unknowns for these values of the others, to rounding.
+    ///
+    /// # Errors
+    /// If it is not proven that there is one solution in the ranges; without the places that a [`NoRoot`] otherwise tells.
+    ///
+    /// # Panics
+    /// If there is not a value for each of the others.
+    pub fn at(&mut self, others: &[f64]) -> Result<Vec<f64>, NoRoot> {
+        assert_eq!(others.len(), self.system.others.len(), "a value for each");
+        let place = unique::solution(&self.system, others, &mut self.boxes_left)?;
+        start::settled(&self.system, place, others).ok_or(NoRoot::Unproven(Vec::new()))
+    }
 }

@@ -1,6 +1,6 @@
 //! Polynomials that come near the solution of equations, as functions of what moves.
 
-use super::unique::{inverse, solution};
+use super::unique::{MOST_IN_ALL, inverse, solution};
 use super::{REACH, System};
 use crate::enclosure::interval::Interval;
 use crate::symbolic::graph::{Expr, Graph};
@@ -11,6 +11,8 @@ use crate::tape::evaluate::ScalarEvaluator;
 const DEGREES: [usize; 14] = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 /// Coefficients of a polynomial, at most.
 const MOST_COEFFICIENTS: usize = 300;
+/// Steps from a place that holds one solution, at most.
+const MOST_STEPS: usize = 20;
 /// A start is good where the second step from it goes a tenth as far as it may.
 const GOOD: f64 = 0.1 * REACH;
 
@@ -71,7 +73,7 @@ fn fitted(system: &System, moving: &[usize], degree: usize, newton: &mut Newton<
         .iter()
         .map(|node| {
             let others = system.others_at(moving, node);
-            let start = solution(system, &others.iter().map(|other| Interval::point(*other)).collect::<Vec<_>>())?;
+            let start = solution(system, &others, &mut { MOST_IN_ALL }).ok()?;
             Some(newton.from(start, &others, 3).0)
         })
         .collect();
@@ -130,6 +132,22 @@ impl System {
         moving.iter().zip(values).for_each(|(place, value)| others[*place] = *value);
         others
     }
+}
+
+/// The solution near a place that is known to hold it alone, to rounding; `None` if Newton's method does not settle.
+pub(super) fn settled(system: &System, start: Vec<f64>, others: &[f64]) -> Option<Vec<f64>> {
+    let mut newton = Newton::new(system);
+    let mut at = start;
+    for _ in 0..MOST_STEPS {
+        let (next, last) = newton.from(at, others, 1);
+        let is_near = |(step, range): (&f64, &Interval)| step.abs() <= REACH * (range.hi - range.lo);
+        if last.iter().zip(&system.unknowns).all(is_near) {
+            // what is left is some ten times the square of the last step
+            return Some(newton.from(next, others, 1).0);
+        }
+        at = next;
+    }
+    None
 }
 
 /// Newton's method in numbers, within the ranges.

@@ -7,7 +7,7 @@ use crate::enclosure::interval::{Interval, IntervalEvaluator};
 /// halved, and in all. What is undecided mostly is so because the part is too large.
 const FIRST_BOXES: usize = 32;
 const MORE_BOXES: usize = 16;
-const MOST_IN_ALL: usize = 40_000;
+pub(super) const MOST_IN_ALL: usize = 40_000;
 /// Steps that narrow the place of a solution, at most.
 const MOST_REFINED: usize = 16;
 /// A box of unknowns is so narrow, over the widths of the ranges, that its border is no reason to divide it again.
@@ -76,11 +76,17 @@ pub(super) fn prove(system: &System) -> Result<(), NoRoot> {
     Ok(())
 }
 
-/// Where the one solution lies for numbers of the other inputs; `None` if it is not found.
-pub(super) fn solution(system: &System, others: &[Interval]) -> Option<Vec<f64>> {
-    match Search::new(system).solutions(others, MOST_IN_ALL) {
-        Known::One(place) => Some(place.iter().map(|place| place.middle()).collect()),
-        _ => None,
+/// Where the one solution lies for numbers of the other inputs; `boxes` are how many may be looked at, and how many of them are left then.
+pub(super) fn solution(system: &System, others: &[f64], boxes: &mut usize) -> Result<Vec<f64>, NoRoot> {
+    let others: Vec<Interval> = others.iter().map(|other| Interval::point(*other)).collect();
+    let mut search = Search::new(system);
+    let known = search.solutions(&others, *boxes);
+    *boxes = boxes.saturating_sub(search.looked_at);
+    match known {
+        Known::One(place) => Ok(place.iter().map(|place| place.middle()).collect()),
+        Known::None => Err(NoRoot::None(Vec::new())),
+        Known::Several => Err(NoRoot::Several(Vec::new())),
+        Known::Nothing => Err(NoRoot::Unproven(Vec::new())),
     }
 }
 
