@@ -167,7 +167,7 @@ fn compile<'g>(
     check_definitions(&mut context, &items);
     let main = files.last().map(|(id, _)| *id);
     let mut jobs = Vec::new();
-    for JobItem { file, job: written, is_variant } in &items.jobs {
+    for JobItem { file, job: written, made_from } in &items.jobs {
         context.begin_item();
         let found = context.findings();
         if written.statements.iter().map(ast::JobStatement::size).sum::<usize>() > limits::JOB_STATEMENTS.most {
@@ -179,12 +179,10 @@ fn compile<'g>(
         let is_meant = Some(*file) == main && wanted.is_none_or(|wanted| wanted == name);
         let own = if is_meant { overrides.of_job(name) } else { Overrides::new() };
         let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
-        let job = job::build(&mut context, written, *is_variant, &definitions, &sources.file(*file).path);
+        let job = job::build(&mut context, written, !made_from.is_empty(), &definitions, &sources.file(*file).path);
         context.step(written.name.span);
-        if *is_variant {
-            let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
-            context.note_since(found, written.span, &note);
-        }
+        let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
+        made_from.iter().for_each(|parent| context.note_since(found, *parent, &note));
         if Some(*file) == main {
             jobs.push(job);
         }
@@ -250,8 +248,8 @@ struct Items {
 struct JobItem {
     file: FileId,
     job: ast::Job,
-    /// Whether it is made from another one.
-    is_variant: bool,
+    /// The jobs above it that it is made from.
+    made_from: Vec<Span>,
 }
 
 impl Items {
@@ -291,29 +289,49 @@ impl Items {
             Item::Tool(tool) => {
                 self.tools.insert(tool.name.node.clone(), tool.clone());
             }
-            Item::Job(job) => self.jobs.push(JobItem { file, job: job.clone(), is_variant: false }),
-            Item::Variant(variant) => self.add_variant(context, file, variant),
+            Item::Job(job) => {
+                let Some(parent) = &job.extends else {
+                    return self.jobs.push(JobItem { file, job: job.clone(), made_from: Vec::new() });
+                };
+                self.add_made(context, file, (&job.name, parent), |_, parent| variant::extended(job, parent));
+            }
+            Item::Variant(variant) => {
+                self.add_made(context, file, (&variant.name, &variant.parent), |context, parent| {
+                    variant::expanded(context, variant, parent)
+                });
+            }
         }
     }
-}
 
-impl Items {
-    fn add_variant(&mut self, context: &mut Context<'_>, file: FileId, variant: &ast::Variant) {
+    /// Adds a job that is made from one above it.
+    fn add_made<'g>(
+        &mut self,
+        context: &mut Context<'g>,
+        file: FileId,
+        (name, parent): (&Name, &Name),
+        make: impl FnOnce(&mut Context<'g>, &ast::Job) -> ast::Job,
+    ) {
+        /// Bytes of a job that cost as much as a step of evaluation: what is made of it is a copy.
+        const BYTES_A_STEP: usize = 2;
         context.begin_item();
-        let parent = self.jobs.iter().find(|item| item.job.name.node == variant.parent.node);
-        let Some(parent) = parent else {
+        let Some(JobItem { job: found, made_from, .. }) =
+            self.jobs.iter().find(|item| item.job.name.node == parent.node)
+        else {
             // the parser has reported a missing name, and a file that is not there may hold the job
-            if !variant.parent.node.is_empty() && !context.lacks_files && context.tells_more() {
+            if !parent.node.is_empty() && !context.lacks_files && context.tells_more() {
                 let above = self.jobs.iter().map(|item| item.job.name.node.as_str());
-                let message = format!("there is no job `{}` above this one", variant.parent.node);
-                let mut diagnostic = Diagnostic::new(Code::UnknownName, variant.parent.span, message);
-                diagnostic.help = did_you_mean(&variant.parent.node, above);
+                let message = format!("there is no job `{}` above this one", parent.node);
+                let mut diagnostic = Diagnostic::new(Code::UnknownName, parent.span, message);
+                diagnostic.help = did_you_mean(&parent.node, above);
                 context.report(diagnostic);
             }
             return;
         };
-        if let Some(job) = variant::expanded(context, variant, &parent.job) {
-            self.jobs.push(JobItem { file, job, is_variant: true });
+        let made_from: Vec<Span> = made_from.iter().copied().chain([found.span]).collect();
+        let bytes: usize = made_from.iter().map(|span| (span.end - span.start) as usize).sum();
+        if context.spend(bytes / BYTES_A_STEP, name.span) {
+            let job = make(context, found);
+            self.jobs.push(JobItem { file, job, made_from });
         }
     }
 }

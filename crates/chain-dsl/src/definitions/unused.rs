@@ -63,6 +63,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
             Item::Job(job) => {
                 let mut used = Used::default();
                 used.job(job);
+                used.inherited(job, all);
                 for statement in &job.statements {
                     match statement {
                         JobStatement::Param(param) if !used.has(&param.name) => parameter(context, &param.name),
@@ -214,6 +215,26 @@ impl Used {
         let Item::Variant(variant) = item else { return };
         for change in &variant.changes {
             self.expression(&change.value);
+        }
+    }
+
+    /// What the jobs use that a job is made from. Of a text without mistakes each stands above it.
+    fn inherited(&mut self, job: &ast::Job, all: &[&Item]) {
+        let mut parent = job.extends.as_ref();
+        while let Some(name) = parent {
+            let found = all.iter().find_map(|item| match item {
+                Item::Job(above) if above.name.node == name.node => {
+                    self.job(above);
+                    Some(above.extends.as_ref())
+                }
+                Item::Variant(above) if above.name.node == name.node => {
+                    self.variant(item);
+                    Some(Some(&above.parent))
+                }
+                _ => None,
+            });
+            let Some(above) = found else { return };
+            parent = above;
         }
     }
 

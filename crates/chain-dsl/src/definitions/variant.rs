@@ -1,19 +1,15 @@
-//! A job that is another one with values or parts changed: `job plain = crowned(infeed: 0 mm, m.swivel: 3 deg, h: worn_hob)`.
+//! A job that is another one with values or parts changed, `job plain = crowned(infeed: 0 mm, m.swivel: 3 deg, h: worn_hob)`, or with
+//! statements of its own, `job pair extends gear { … }`.
+
+use std::collections::HashMap;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::syntax::ast::{Argument, Change, ExpressionKind, Instance, Job, JobStatement, Variant};
+use crate::syntax::ast::{Argument, Change, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
 use crate::values::context::{Context, did_you_mean};
 
-/// Bytes of a job that cost as much as a step of evaluation: a variant is a copy.
-const BYTES_A_STEP: u32 = 2;
-
-/// The job that a variant of an earlier one stands for; nothing if that would be too much, which is reported.
-pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Option<Job> {
-    let length = (parent.span.end - parent.span.start) / BYTES_A_STEP;
-    if !context.spend(length as usize, variant.name.span) {
-        return None;
-    }
+/// The job that a variant of an earlier one stands for.
+pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Job {
     let mut job = parent.clone();
     job.name = variant.name.clone();
     if !variant.doc.is_empty() {
@@ -30,7 +26,35 @@ pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Jo
             None => drop(made(context, &mut job, change, &parent.name.node)),
         }
     }
-    Some(job)
+    job
+}
+
+/// A job with the statements of the earlier one that it extends: one of its own that is about the same takes the place of one of those.
+/// Others come before the next one that does, or at the end.
+pub(crate) fn extended(job: &Job, parent: &Job) -> Job {
+    let mut places: HashMap<(Subject, String), usize> = HashMap::new();
+    for (place, statement) in parent.statements.iter().enumerate() {
+        places.extend(statement.about().into_iter().map(|about| (about, place)));
+    }
+    // what stands in the place of each of the parent's statements
+    let mut inherited: Vec<Vec<JobStatement>> =
+        parent.statements.iter().map(|statement| vec![statement.clone()]).collect();
+    let mut added = Vec::new();
+    for own in &job.statements {
+        let about = own.about();
+        // what the job itself says twice is reported where it is built
+        let replaced: Vec<usize> = about.iter().filter_map(|about| places.remove(about)).collect();
+        added.push(own.clone());
+        for place in &replaced {
+            inherited[*place] = inherited[*place].drain(..).filter_map(|there| there.without(&about)).collect();
+        }
+        if let Some(first) = replaced.iter().min() {
+            inherited[*first].append(&mut added);
+        }
+    }
+    let doc = if job.doc.is_empty() { &parent.doc } else { &job.doc };
+    let statements = inherited.into_iter().flatten().chain(added).collect();
+    Job { doc: doc.clone(), statements, ..job.clone() }
 }
 
 fn names(change: &Change) -> impl Iterator<Item = &str> {

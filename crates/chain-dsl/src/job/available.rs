@@ -22,11 +22,6 @@ pub(super) struct Available<'g> {
     pub(super) named: Span,
 }
 
-/// A path as one name.
-pub(super) fn joined(path: &ast::Path) -> String {
-    path.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".")
-}
-
 /// Whether a surface is the one with a name, or a piece of it.
 pub(super) fn is_of(surface: &str, name: &str) -> bool {
     surface.split_once('.').map_or(surface, |(whole, _)| whole) == name
@@ -82,7 +77,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// A surface that the job made before, with all its pieces or one of them.
     fn earlier(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<Vec<Available<'g>>> {
-        let (owner, wanted) = (&path.segments[0], joined(path));
+        let (owner, wanted) = (&path.segments[0], path.joined());
         let mounted = self.mounts.get(&owner.node).copied();
         let mut found = Vec::new();
         for (surface, frame) in &self.surfaces {
@@ -141,7 +136,7 @@ impl<'g> Builder<'_, 'g> {
             let (shape, unknowns) = piece.surface?;
             let of_piece = piece.name.iter().filter(|_| !is_single).map(|name| format!(".{name}"));
             Some(Available {
-                name: joined(path) + &of_piece.collect::<String>(),
+                name: path.joined() + &of_piece.collect::<String>(),
                 piece: piece.name.filter(|_| !is_single),
                 shape,
                 unknowns,

@@ -12,7 +12,6 @@ use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::Dimension;
 use crate::values::value::Constant;
 
-use super::available::joined;
 use super::{Builder, FrameRef};
 
 /// The arguments of a contact.
@@ -40,7 +39,7 @@ impl<'g> Builder<'_, 'g> {
         if surfaces[0] == surfaces[1] {
             let help =
                 "name the flank of the mate: `contact drive_side = pinion_flank with gear_flank, over: turn, for: lag`";
-            context.report(wrong(second.span, format!("`{}` cannot touch itself", joined(second)), help));
+            context.report(wrong(second.span, format!("`{}` cannot touch itself", second.joined()), help));
             return None;
         }
         let mounted = [first, second].map(|path| self.mounted(context, path));
@@ -48,7 +47,7 @@ impl<'g> Builder<'_, 'g> {
         if frames[0].0 != frames[1].0 {
             let [a, b] = frames.map(|frame| self.frame_name(frame));
             let message =
-                format!("`{}` is mounted on `{a}`, `{}` on `{b}`: two machines", joined(first), joined(second));
+                format!("`{}` is mounted on `{a}`, `{}` on `{b}`: two machines", first.joined(), second.joined());
             context.report(wrong(second.span, message, "mount both on frames of the machine that is the pair"));
             return None;
         }

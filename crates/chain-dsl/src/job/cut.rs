@@ -7,7 +7,6 @@ use crate::syntax::ast;
 use crate::values::context::Context;
 
 use super::Builder;
-use super::available::joined;
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn cut(&mut self, context: &mut Context<'g>, surface: &ast::Path, by: &ast::Path, job: &ast::Job) {
@@ -16,12 +15,12 @@ impl<'g> Builder<'_, 'g> {
         let wrong = |message: String, help: &str| Diagnostic::new(Code::Cut, by.span, message).help(help);
         let [ideal, cutting] = [index, edges].map(|k| &self.surfaces[k].0);
         if !has_numbered_edges(cutting) {
-            let message = format!("`{}` is no sweep of numbered edges", joined(by));
+            let message = format!("`{}` is no sweep of numbered edges", by.joined());
             let help = "sweep an edge over its motion, then over counts such as `motion gash : count in -20 .. 20`";
             return context.report(wrong(message, help));
         }
         if ideal.generation.process != Process::Sweep || ideal.generation.motions != cutting.generation.motions {
-            let message = format!("`{}` is not swept over the motions of `{}`", joined(surface), joined(by));
+            let message = format!("`{}` is not swept over the motions of `{}`", surface.joined(), by.joined());
             let help = "the ideal surface is the sweep of the ideal edge over the same motions";
             return context.report(wrong(message, help));
         }
@@ -29,7 +28,7 @@ impl<'g> Builder<'_, 'g> {
             return context.report(wrong(message, "give both in the frame of the work"));
         }
         if ideal.cut_by.is_some() {
-            let message = format!("`{}` is cut twice", joined(surface));
+            let message = format!("`{}` is cut twice", surface.joined());
             return context.report(wrong(message, "take one of them away"));
         }
         self.surfaces[index].0.cut_by = Some(edges);

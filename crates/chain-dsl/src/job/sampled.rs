@@ -7,7 +7,6 @@ use flank_expr::{Expr, Interval, NoRoot, OnlyRoots, Unknown};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
-use crate::job::available::joined;
 use crate::limits;
 use crate::model::{GeneratedSurface, Job, Sample};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
@@ -57,7 +56,7 @@ impl SampledPoints {
     pub(super) fn find<'g>(&mut self, context: &mut Context<'g>, built: &Job<'g>, written: &ast::Job) -> bool {
         let mut is_new = false;
         for asked in self.asked.iter_mut().filter(|asked| matches!(asked.found, Found::Not)) {
-            let wanted = joined(&asked.sample);
+            let wanted = asked.sample.joined();
             let there = built.surfaces.iter().find(|surface| surface.name == wanted);
             let Some((surface, sample)) = there.and_then(|it| Some((it, it.sample.as_ref()?))) else {
                 continue;
@@ -87,17 +86,17 @@ pub(crate) fn named(call: &ast::Call) -> Option<[&ast::Path; 3]> {
 }
 
 fn last(path: &ast::Path) -> Name {
-    Name { node: joined(path), span: path.span }
+    Name { node: path.joined(), span: path.span }
 }
 
 /// Reports that there is no such sample, or that it hangs on what it is to make.
 fn missing(context: &mut Context<'_>, asked: &Asked, built: &Job<'_>, written: &ast::Job) {
-    let wanted = joined(&asked.sample);
+    let wanted = asked.sample.joined();
     let sampled = |statement: &JobStatement| match statement {
         JobStatement::Sample(sample) => sample
             .surfaces
             .iter()
-            .map(|of| of.name.as_ref().map_or_else(|| joined(&of.surface), |name| name.node.clone()))
+            .map(|of| of.name.as_ref().map_or_else(|| of.surface.joined(), |name| name.node.clone()))
             .collect(),
         _ => Vec::new(),
     };

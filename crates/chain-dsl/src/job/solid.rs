@@ -14,7 +14,6 @@ use crate::values::dimension::{Dimension, shown};
 use crate::values::segment::{Profile, Segment, Shape};
 use crate::values::value::{Constant, Value};
 
-use super::available::joined;
 use super::{Builder, FrameRef};
 
 /// How far the ends of an outline may lie apart, mm: rounding.
@@ -132,13 +131,13 @@ impl<'g> Builder<'_, 'g> {
             let (its, own) = &self.surfaces[index];
             let wrong = |message: String, help: &str| Diagnostic::new(Code::Solid, path.span, message).help(help);
             if found.contains(&index) {
-                context.report(wrong(format!("`{}` is in the space twice", joined(path)), "take one of them away"));
+                context.report(wrong(format!("`{}` is in the space twice", path.joined()), "take one of them away"));
                 return None;
             }
             if own.0 == frame.0 && own.1 != frame.1 {
                 let message = format!(
                     "`{}` is given in `{}`, the solid in `{}`",
-                    joined(path),
+                    path.joined(),
                     its.frame,
                     self.frame_name(frame)
                 );
@@ -146,7 +145,7 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             }
             if let Some(other) = self.solids.iter().find(|solid| solid.space.contains(&index)) {
-                let message = format!("`{}` bounds the spaces of `{}` already", joined(path), other.name);
+                let message = format!("`{}` bounds the spaces of `{}` already", path.joined(), other.name);
                 context.report(wrong(message, "a surface is one of one body"));
                 return None;
             }
@@ -169,11 +168,11 @@ impl<'g> Builder<'_, 'g> {
             context.report(Diagnostic::new(Code::WrongKind, written.span, message).help(EXAMPLE));
             return None;
         };
-        let profile: Rc<Profile<'g>> = match self.scope.get(&joined(path)) {
+        let profile: Rc<Profile<'g>> = match self.scope.get(&path.joined()) {
             Some(Value::Profile(profile)) => Rc::clone(profile),
             Some(Value::Poison) => return None,
             Some(_) => {
-                let message = format!("`{}` is no profile", joined(path));
+                let message = format!("`{}` is no profile", path.joined());
                 context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(EXAMPLE));
                 return None;
             }

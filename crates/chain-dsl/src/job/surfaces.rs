@@ -14,7 +14,7 @@ use crate::values::context::{Context, quoted};
 use crate::values::dimension::shown;
 use crate::values::value::Value;
 
-use super::available::{Available, joined, which_piece};
+use super::available::{Available, which_piece};
 use super::independence::check_independence;
 use super::{Builder, FrameRef, are_even, declared, sweep};
 
@@ -281,13 +281,13 @@ impl<'g> Builder<'_, 'g> {
         let wrong = |message: String, help: &str| Diagnostic::new(Code::Trim, by.span, message).help(help);
         if index == other {
             let help = "name the surface that cuts into it: `trim flank by fillet`";
-            return context.report(wrong(format!("`{}` cannot trim itself", joined(by)), help));
+            return context.report(wrong(format!("`{}` cannot trim itself", by.joined()), help));
         }
         if let Some(message) = self.two_frames([surface, by], [index, other]) {
             return context.report(wrong(message, "give both in the frame of the work"));
         }
         if self.surfaces[index].0.trimmed_by.contains(&other) {
-            let message = format!("`{}` is trimmed by `{}` twice", joined(surface), joined(by));
+            let message = format!("`{}` is trimmed by `{}` twice", surface.joined(), by.joined());
             return context.report(wrong(message, "take one of them away"));
         }
         self.surfaces[index].0.trimmed_by.push(other);
@@ -297,7 +297,7 @@ impl<'g> Builder<'_, 'g> {
     /// both the work.
     pub(super) fn two_frames(&self, paths: [&ast::Path; 2], surfaces: [usize; 2]) -> Option<String> {
         let [(one, own), (other, its)] = surfaces.map(|k| &self.surfaces[k]);
-        let [named, by] = paths.map(joined);
+        let [named, by] = paths.map(ast::Path::joined);
         (own.0 == its.0 && own.1 != its.1)
             .then(|| format!("`{named}` is given in `{}`, `{by}` in `{}`", one.frame, other.frame))
     }
@@ -318,7 +318,7 @@ impl<'g> Builder<'_, 'g> {
         let Some(index) = self.finished(context, path, job) else { return };
         if of.name.is_none() && self.surfaces[index].0.sample.is_some() {
             let message = format!("`{}` is sampled twice", self.surfaces[index].0.name);
-            let help = format!("give one of the samples a name of its own: `sample {} as name {{ … }}`", joined(path));
+            let help = format!("give one of the samples a name of its own: `sample {} as name {{ … }}`", path.joined());
             context.report(Diagnostic::new(Code::DuplicateName, path.span, message).help(help));
             return;
         }
@@ -405,7 +405,7 @@ impl<'g> Builder<'_, 'g> {
     /// A surface of the job that came out right, or a piece of one.
     pub(super) fn finished(&self, context: &mut Context<'g>, path: &ast::Path, job: &ast::Job) -> Option<usize> {
         let (name, rest) = path.segments.split_first()?;
-        let wanted = joined(path);
+        let wanted = path.joined();
         let found = self.surfaces.iter().position(|(surface, _)| surface.name == wanted);
         if found.is_some() {
             return found;

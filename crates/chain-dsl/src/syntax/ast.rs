@@ -7,6 +7,7 @@ mod job;
 
 use crate::diagnostics::source::{Name, Span, Spanned};
 
+pub(crate) use job::Subject;
 pub use job::{
     Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
     SampleValues, Sampled, Solid, Variant,
@@ -383,6 +384,13 @@ pub struct Path {
     pub segments: Vec<Name>,
     /// From the first to the last.
     pub span: Span,
+}
+
+impl Path {
+    /// With its dots: `m.swivel`.
+    pub(crate) fn joined(&self) -> String {
+        self.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".")
+    }
 }
 
 /// `name(…)`

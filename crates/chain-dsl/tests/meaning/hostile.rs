@@ -276,6 +276,21 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
                 + &lines(10_000, |k| format!("job j{k} = j()")),
             limits::EVALUATION_STEPS,
         ),
+        (
+            "thousands of jobs that extend each other",
+            small_job(&lines(3_000, |k| format!("let a{k} = {k}")))
+                + "\n"
+                + &lines(10_000, |k| {
+                    format!(
+                        "job j{k} extends {} {{ let b{k} = {k} }}",
+                        match k {
+                            0 => "j".to_owned(),
+                            _ => format!("j{}", k - 1),
+                        }
+                    )
+                }),
+            limits::EVALUATION_STEPS,
+        ),
         ("a power of a length by name", format!("fn f(x: {}) = x", ["length^99"; 1_000].join(" * ")), limits::POWER),
         ("a long job", small_job(&lines(20_000, |k| format!("let a{k} = {k}"))), limits::JOB_STATEMENTS),
         ("thousands of jobs' errors", lines(20_000, |k| format!("job j{k} {{ machine m = m{k} }}")), limits::MISTAKES),

@@ -591,6 +591,68 @@ fn a_job_may_be_another_one_with_values_and_parts_changed() {
     assert!(compilation.jobs.iter().all(|job| job.surfaces[0].sample.is_some()));
 }
 
+/// A job that extends another one is the job written out: what it says again takes the place of what was said, also of one axis or surface
+/// of several.
+#[test]
+fn a_job_that_extends_another_is_the_job_written_out() {
+    let first = "
+        job first {
+            param reach : length = 4 mm
+            let height = reach / 2
+            machine m = lathe(height: height)
+            tool b = ball(radius: 3 mm)
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C, m.Z = turn, 0 mm
+            surface s, t in m.work = envelope(b.face, b.face, over: turn)
+            sample s, t { turn: 10 deg .. 80 deg by 3, u: 1 deg .. 2 deg by 3 }
+        }";
+    let made = "
+        job plain = first(reach: 5 mm)
+        /// The second.
+        job second extends plain {
+            param lead : length / angle = 3 mm/rev
+            let height = reach + lead * 1 rev
+            drive m.Z = lead * turn
+            tool c = b(radius: 2 mm)
+            mount c on m.slide
+            surface t in m.work = envelope(c.face, over: turn)
+            sample t { turn: 20 deg .. 80 deg by 4, u: 1 deg .. 2 deg by 3 }
+            sample t as middle { turn: 20 deg .. 80 deg by 4, u: 0 deg }
+        }";
+    let written = "
+        /// The second.
+        job second {
+            param reach : length = 5 mm
+            param lead : length / angle = 3 mm/rev
+            let height = reach + lead * 1 rev
+            machine m = lathe(height: height)
+            tool b = ball(radius: 3 mm)
+            mount b on m.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C, m.Z = turn, lead * turn
+            tool c = ball(radius: 2 mm)
+            mount c on m.slide
+            surface s in m.work = envelope(b.face, over: turn)
+            surface t in m.work = envelope(c.face, over: turn)
+            sample s { turn: 10 deg .. 80 deg by 3, u: 1 deg .. 2 deg by 3 }
+            sample t { turn: 20 deg .. 80 deg by 4, u: 1 deg .. 2 deg by 3 }
+            sample t as middle { turn: 20 deg .. 80 deg by 4, u: 0 deg }
+        }";
+    let graphs = [Graph::new(), Graph::new()];
+    let made = compiled(&graphs[0], &format!("{first}{made}"));
+    let written = compiled(&graphs[1], written);
+    let told = |compilation: &Compilation<'_>| {
+        let job = compilation.jobs.last().expect("a job");
+        let samples = job.surfaces.iter().map(|of| format!("{} {:?}", of.name, of.sample.as_ref().map(|it| &it.grid)));
+        (derivation(job, Style::Text), job.doc.clone(), samples.collect::<Vec<_>>())
+    };
+    assert_eq!(told(&made), told(&written));
+    assert_eq!(made.jobs.len(), 3);
+    // what only an extension uses of its own is not unused
+    assert!(made.diagnostics.is_empty(), "{}", render(&made.diagnostics, &made.sources, false));
+}
+
 /// The law of the work's axis, driven by a value that a text works out from `turn`.
 fn law(functions: &str, value: &str) -> String {
     laws(&format!(

@@ -1,6 +1,6 @@
 //! What a job says, and its variants.
 
-use super::{Argument, Expression, Let, Param, Parameter, Path, Profile, Range, Requirement};
+use super::{Argument, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range, Requirement};
 use crate::diagnostics::source::{Name, Span};
 
 /// A job: machine, tool, motions, the surfaces asked for.
@@ -10,6 +10,8 @@ pub struct Job {
     pub doc: Vec<String>,
     /// Its name.
     pub name: Name,
+    /// The job that it is a variant of.
+    pub extends: Option<Name>,
     /// Statements in order.
     pub statements: Vec<JobStatement>,
     /// From `job` to the closing brace.
@@ -90,6 +92,12 @@ pub enum JobStatement {
     Require(Requirement),
 }
 
+/// Keeps those that stay; there may be more, or fewer, in a text with mistakes.
+fn retain<T>(all: &mut Vec<T>, is_left: &[bool]) {
+    let mut left = is_left.iter();
+    all.retain(|_| left.next().copied().unwrap_or(true));
+}
+
 /// `name = definition(setting: value, …)`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
@@ -102,6 +110,53 @@ pub struct Instance {
 }
 
 impl JobStatement {
+    /// What it is about, each in one statement of a job: names, axes, surfaces. Nothing of those that a job may have any number of.
+    pub(crate) fn about(&self) -> Vec<(Subject, String)> {
+        let defined = |name: &Name| vec![(Subject::Name, name.node.clone())];
+        match self {
+            JobStatement::Param(param) => defined(&param.name),
+            JobStatement::Let(binding) => defined(&binding.name),
+            JobStatement::Machine(instance) | JobStatement::Tool(instance) => defined(&instance.name),
+            JobStatement::Motion(motion) | JobStatement::Unknown(motion) => defined(&motion.name),
+            JobStatement::Profile(profile) => defined(&profile.name),
+            JobStatement::Solid(solid) => defined(&solid.name),
+            JobStatement::Contact(contact) => defined(&contact.name),
+            JobStatement::Surface(surface) => surface.names.iter().flat_map(defined).collect(),
+            JobStatement::Mount { names, .. } => {
+                names.iter().map(|name| (Subject::Mounted, name.node.clone())).collect()
+            }
+            JobStatement::Drive(drive) => drive.targets.iter().map(|axis| (Subject::Axis, axis.joined())).collect(),
+            JobStatement::Sample(sample) => sample.surfaces.iter().map(Sampled::about).collect(),
+            JobStatement::Trim { .. } | JobStatement::Cut { .. } | JobStatement::Require(_) => Vec::new(),
+        }
+    }
+
+    /// What is left of it where it is not about these; nothing if it was about nothing else.
+    pub(crate) fn without(mut self, others: &[(Subject, String)]) -> Option<JobStatement> {
+        let is_left: Vec<bool> = self.about().iter().map(|about| !others.contains(about)).collect();
+        if !is_left.is_empty() && !is_left.contains(&true) {
+            return None;
+        }
+        match &mut self {
+            JobStatement::Surface(surface) => {
+                if let ExpressionKind::Call(call) = &mut surface.value.kind {
+                    let mut left = is_left.iter();
+                    call.arguments.retain(|argument| argument.name.is_some() || left.next().copied().unwrap_or(true));
+                }
+                retain(&mut surface.names, &is_left);
+            }
+            JobStatement::Mount { names, .. } => retain(names, &is_left),
+            JobStatement::Drive(drive) => {
+                retain(&mut drive.targets, &is_left);
+                retain(&mut drive.values, &is_left);
+            }
+            JobStatement::Sample(sample) => retain(&mut sample.surfaces, &is_left),
+            // about one thing, or none
+            _ => {}
+        }
+        Some(self)
+    }
+
     /// How many statements about one thing each it stands for.
     pub(crate) fn size(&self) -> usize {
         match self {
@@ -183,6 +238,28 @@ pub struct Sampled {
     pub surface: Path,
     /// What it is called with this sample.
     pub name: Option<Name>,
+}
+
+impl Sampled {
+    fn about(&self) -> (Subject, String) {
+        match &self.name {
+            Some(name) => (Subject::Name, name.node.clone()),
+            None => (Subject::Sampled, self.surface.joined()),
+        }
+    }
+}
+
+/// What a statement says something about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Subject {
+    /// What it gives a name to.
+    Name,
+    /// What it mounts.
+    Mounted,
+    /// What it drives.
+    Axis,
+    /// What it asks for points of.
+    Sampled,
 }
 
 /// `key: a .. b by n`, `key: [a, b]`, or `key: value`

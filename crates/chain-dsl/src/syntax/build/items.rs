@@ -105,8 +105,8 @@ impl Build<'_> {
     fn job(&mut self, pair: Pair<'_, Rule>) -> Job {
         let span = self.span(&pair);
         let mut parts = pair.into_inner();
-        let Head { doc, name, .. } = self.first_head(&mut parts);
-        Job { doc, name, statements: parts.filter_map(|part| self.job_statement(part)).collect(), span }
+        let Head { doc, name, extends } = self.first_head(&mut parts);
+        Job { doc, name, extends, statements: parts.filter_map(|part| self.job_statement(part)).collect(), span }
     }
 
     fn variant(&mut self, pair: Pair<'_, Rule>) -> Variant {

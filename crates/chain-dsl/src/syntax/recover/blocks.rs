@@ -36,7 +36,7 @@ impl<'s> Recover<'s> {
         let span = self.span_since(first);
         self.items.push(match block {
             Block::Machine(statements) => Item::Machine(Machine { doc, name, extends, statements, span }),
-            Block::Job(statements) => Item::Job(Job { doc, name, statements, span }),
+            Block::Job(statements) => Item::Job(Job { doc, name, extends, statements, span }),
             Block::Tool(statements) => Item::Tool(Tool { doc, name, statements }),
             Block::Surface(_) => return,
         });
