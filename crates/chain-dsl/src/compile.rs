@@ -293,7 +293,9 @@ impl Items {
                 let Some(parent) = &job.extends else {
                     return self.jobs.push(JobItem { file, job: job.clone(), made_from: Vec::new() });
                 };
-                self.add_made(context, file, (&job.name, parent), |_, parent| variant::extended(job, parent));
+                self.add_made(context, file, (&job.name, parent), |context, parent| {
+                    variant::extended(context, job, parent)
+                });
             }
             Item::Variant(variant) => {
                 self.add_made(context, file, (&variant.name, &variant.parent), |context, parent| {

@@ -212,8 +212,12 @@ impl Used {
 
     /// What a variant of a job puts in the place of something.
     fn variant(&mut self, item: &Item) {
-        let Item::Variant(variant) = item else { return };
-        for change in &variant.changes {
+        let changes = match item {
+            Item::Variant(variant) => &variant.changes,
+            Item::Job(job) => &job.changes,
+            _ => return,
+        };
+        for change in changes {
             self.expression(&change.value);
         }
     }
@@ -225,6 +229,7 @@ impl Used {
             let found = all.iter().find_map(|item| match item {
                 Item::Job(above) if above.name.node == name.node => {
                     self.job(above);
+                    self.variant(item);
                     Some(above.extends.as_ref())
                 }
                 Item::Variant(above) if above.name.node == name.node => {

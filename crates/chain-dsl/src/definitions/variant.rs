@@ -10,14 +10,19 @@ use crate::values::context::{Context, did_you_mean};
 
 /// The job that a variant of an earlier one stands for.
 pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Job {
-    let mut job = parent.clone();
+    let mut job = changed(context, &variant.changes, parent);
     job.name = variant.name.clone();
     if !variant.doc.is_empty() {
         job.doc = variant.doc.clone();
     }
-    for (k, change) in variant.changes.iter().enumerate() {
+    job
+}
+
+fn changed(context: &mut Context<'_>, changes: &[Change], parent: &Job) -> Job {
+    let mut job = parent.clone();
+    for (k, change) in changes.iter().enumerate() {
         let same = |earlier: &&Change| names(earlier).eq(names(change));
-        match variant.changes[..k].iter().find(same) {
+        match changes[..k].iter().find(same) {
             Some(first) => {
                 let message = format!("`{}` is changed twice", names(change).collect::<Vec<_>>().join("."));
                 let twice = Diagnostic::new(Code::DuplicateName, change.target.span, message);
@@ -29,16 +34,17 @@ pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Jo
     job
 }
 
-/// A job with the statements of the earlier one that it extends: one of its own that is about the same takes the place of one of those.
-/// Others come before the next one that does, or at the end.
-pub(crate) fn extended(job: &Job, parent: &Job) -> Job {
+/// A job with the statements of the earlier one that it extends, in which values and parts may be changed: one of its own that is about the
+/// same takes the place of one of those. Others come before the next one that does, or at the end.
+pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Job {
+    let parent = changed(context, &job.changes, parent);
     let mut places: HashMap<(Subject, String), usize> = HashMap::new();
     for (place, statement) in parent.statements.iter().enumerate() {
         places.extend(statement.about().into_iter().map(|about| (about, place)));
     }
     // what stands in the place of each of the parent's statements
     let mut inherited: Vec<Vec<JobStatement>> =
-        parent.statements.iter().map(|statement| vec![statement.clone()]).collect();
+        parent.statements.into_iter().map(|statement| vec![statement]).collect();
     let mut added = Vec::new();
     for own in &job.statements {
         let about = own.about();
@@ -52,9 +58,8 @@ pub(crate) fn extended(job: &Job, parent: &Job) -> Job {
             inherited[*first].append(&mut added);
         }
     }
-    let doc = if job.doc.is_empty() { &parent.doc } else { &job.doc };
-    let statements = inherited.into_iter().flatten().chain(added).collect();
-    Job { doc: doc.clone(), statements, ..job.clone() }
+    let doc = if job.doc.is_empty() { parent.doc } else { job.doc.clone() };
+    Job { doc, statements: inherited.into_iter().flatten().chain(added).collect(), ..job.clone() }
 }
 
 fn names(change: &Change) -> impl Iterator<Item = &str> {

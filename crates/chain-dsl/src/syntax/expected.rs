@@ -130,6 +130,7 @@ fn name(before: &Before<'_>) -> String {
         ("frame" | "insert", _) => TRANSFORM.to_owned(),
         ("close", "along" | "about" | ",") => "`x`, `y` or `z`".to_owned(),
         ("close", _) => "the name of a frame".to_owned(),
+        ("job", "extends") => "the job that it extends".to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),
         ("machine", "=") => "the name of a machine".to_owned(),
         ("tool", "=") => "the name of a tool".to_owned(),

@@ -92,6 +92,7 @@ pub(super) fn head(scan: &Scan, first: usize) -> Head {
         doc: piece.doc(),
         name: piece.defined().unwrap_or_else(|| piece.nameless()),
         extends: extends.then(|| piece.name(first + 3)),
+        changes: Vec::new(),
     }
 }
 

@@ -12,6 +12,8 @@ pub struct Job {
     pub name: Name,
     /// The job that it is a variant of.
     pub extends: Option<Name>,
+    /// What it changes of that one before it says more.
+    pub changes: Vec<Change>,
     /// Statements in order.
     pub statements: Vec<JobStatement>,
     /// From `job` to the closing brace.

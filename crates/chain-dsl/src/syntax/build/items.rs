@@ -13,6 +13,8 @@ pub(in super::super) struct Head {
     pub(in super::super) doc: Vec<String>,
     pub(in super::super) name: Name,
     pub(in super::super) extends: Option<Name>,
+    /// Of a job that extends another one, what it changes of that.
+    pub(in super::super) changes: Vec<Change>,
 }
 
 impl Build<'_> {
@@ -76,17 +78,21 @@ impl Build<'_> {
     pub(in super::super) fn head(&mut self, pair: Pair<'_, Rule>) -> Head {
         let doc = self.doc(&pair);
         let mut parts = Parts::of(pair);
-        Head {
-            doc,
-            name: self.name(parts.required(Rule::name)),
-            extends: parts.optional(Rule::name).map(|name| self.name(name)),
-        }
+        let name = self.name(parts.required(Rule::name));
+        let (extends, changes) = match parts.optional(Rule::variant_of) {
+            Some(parent) => {
+                let (parent, changes) = self.variant_of(parent);
+                (Some(parent), changes)
+            }
+            None => (parts.optional(Rule::name).map(|name| self.name(name)), Vec::new()),
+        };
+        Head { doc, name, extends, changes }
     }
 
     fn machine(&mut self, pair: Pair<'_, Rule>) -> Machine {
         let span = self.span(&pair);
         let mut parts = pair.into_inner();
-        let Head { doc, name, extends } = self.first_head(&mut parts);
+        let Head { doc, name, extends, .. } = self.first_head(&mut parts);
         Machine {
             doc,
             name,
@@ -105,20 +111,26 @@ impl Build<'_> {
     fn job(&mut self, pair: Pair<'_, Rule>) -> Job {
         let span = self.span(&pair);
         let mut parts = pair.into_inner();
-        let Head { doc, name, extends } = self.first_head(&mut parts);
-        Job { doc, name, extends, statements: parts.filter_map(|part| self.job_statement(part)).collect(), span }
+        let Head { doc, name, extends, changes } = self.first_head(&mut parts);
+        let statements = parts.filter_map(|part| self.job_statement(part)).collect();
+        Job { doc, name, extends, changes, statements, span }
     }
 
     fn variant(&mut self, pair: Pair<'_, Rule>) -> Variant {
         let doc = self.doc(&pair);
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
-        let mut parts = Parts::of(parts.required(Rule::variant_of));
+        let (parent, changes) = self.variant_of(parts.required(Rule::variant_of));
+        Variant { doc, name, parent, changes }
+    }
+
+    fn variant_of(&mut self, pair: Pair<'_, Rule>) -> (Name, Vec<Change>) {
+        let mut parts = Parts::of(pair);
         let parent = self.name(parts.required(Rule::name));
         let changes = parts.optional(Rule::changes).map_or_else(Vec::new, |changes| {
             Parts::of(changes).all(Rule::change).into_iter().map(|change| self.change(change)).collect()
         });
-        Variant { doc, name, parent, changes }
+        (parent, changes)
     }
 
     fn change(&mut self, pair: Pair<'_, Rule>) -> Change {

@@ -23,7 +23,7 @@ impl<'s> Recover<'s> {
     pub(super) fn block_item(&mut self, word: &'s str, strict: bool) {
         let first = self.at;
         let (head, opened) = self.head(strict);
-        let Head { doc, name, extends } = match head {
+        let Head { doc, name, extends, changes } = match head {
             Some(pair) => self.build.head(pair),
             None => salvage::head(self.scan, first),
         };
@@ -36,7 +36,7 @@ impl<'s> Recover<'s> {
         let span = self.span_since(first);
         self.items.push(match block {
             Block::Machine(statements) => Item::Machine(Machine { doc, name, extends, statements, span }),
-            Block::Job(statements) => Item::Job(Job { doc, name, extends, statements, span }),
+            Block::Job(statements) => Item::Job(Job { doc, name, extends, changes, statements, span }),
             Block::Tool(statements) => Item::Tool(Tool { doc, name, statements }),
             Block::Surface(_) => return,
         });
