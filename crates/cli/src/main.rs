@@ -87,6 +87,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Report(arguments) => operations::report(arguments),
         Command::Deviation(arguments) => operations::deviation(arguments),
         Command::Fit(arguments) => operations::fit(arguments),
+        Command::Tolerance(arguments) => operations::tolerance(arguments),
         Command::Contact(arguments) => operations::contact(arguments),
         Command::Measure(arguments) => operations::measure(arguments),
         Command::Plot(arguments) => operations::plot(arguments),

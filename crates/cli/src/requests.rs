@@ -2,11 +2,11 @@
 
 use flank::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
-    PlotRequest, ReportRequest, SolveRequest, ViewRequest,
+    PlotRequest, ReportRequest, SolveRequest, ToleranceRequest, ViewRequest,
 };
 
 use crate::arguments::{
-    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Onto, Plot, Report, Solve, View,
+    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Onto, Plot, Report, Solve, Tolerance, View,
 };
 use crate::failure::Failure;
 use crate::spec;
@@ -115,6 +115,22 @@ impl Fit {
             resolution: self.resolution,
             write: self.write.clone(),
             dry: self.dry,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Tolerance {
+    pub(crate) fn request(&self) -> Result<ToleranceRequest, Failure> {
+        Ok(ToleranceRequest {
+            jobs: self.which.jobs()?,
+            surface: self.surface.clone(),
+            scatter: self.scatter.clone(),
+            correlations: self.correlations.clone(),
+            budget: self.budget.clone(),
+            limits: self.limits,
+            no_align: self.no_align,
+            sweep: self.sweep,
             evaluator: self.evaluator.evaluator(),
         })
     }

@@ -152,6 +152,10 @@ fn comparisons_and_pictures() {
     judge.run(&[&fit[..], &["--vary", "radial_distance,cradle_angle,blade_angle"]].concat(), 0);
     judge.run(&fit, 0);
     judge.run(&[&fit[..], &["--vary", "nosuch"]].concat(), 1);
+    let tolerance = ["tolerance", PINION, "concave", "--json", "--scatter", "radial_distance=5um,ratio_of_roll=0.01%"];
+    judge.run(&[&tolerance[..], &["--sweep", "20"]].concat(), 0);
+    judge.run(&[&tolerance[..], &["--budget", "bias=1nm"]].concat(), 2);
+    judge.run(&[&tolerance[..], &["--budget", "bias=0.001um"]].concat(), 3);
     judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
@@ -159,6 +163,7 @@ fn comparisons_and_pictures() {
         "flank.contact/1",
         "flank.deviation/1",
         "flank.fit/1",
+        "flank.tolerance/1",
         "flank.plot/2",
         "flank.view/2",
         "flank.measure/1",
@@ -205,6 +210,7 @@ fn failures_of_all_commands() {
         &["derive", &wrong],
         &["deviation", &wrong, "a", "--reference", "b"],
         &["fit", &wrong, "a", "--measured", "b.csv"],
+        &["tolerance", &wrong, "a"],
         &["plot", &wrong],
         &["view", &wrong],
     ] {
@@ -236,7 +242,7 @@ fn failures_of_all_commands() {
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
     let shipped = schemas();
-    assert_eq!(shipped.len(), 25, "no document comes or goes unseen");
+    assert_eq!(shipped.len(), 26, "no document comes or goes unseen");
     for (name, schema) in &shipped {
         assert!(jsonschema::meta::is_valid(schema), "{name} is no schema");
         let (kind, version) =

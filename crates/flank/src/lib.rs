@@ -2,7 +2,7 @@
 //!
 //! A [`Project`] is a spec with the files that it uses, a [`Job`] one job of it with its values and all its texts ([`Project::job`]). What
 //! works on the text alone takes a project: [`check`], [`lay_out`]. What works on jobs takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`],
-//! [`deviation`], [`fit`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
+//! [`deviation`], [`fit`], [`tolerance`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
 //! whose schema [`schemas`] has, its `Display` a text for people, and what was not done ([`Answer::not_done`]) and what else is to be known
 //! ([`Answer::remarks`]) stand in it as data: a code, what it is about, its place in the spec. What is wrong
 //! with a spec comes as [`Findings`], data with a code and a place. Messages name the fields of requests as "option `no_align`", or with a
@@ -60,6 +60,10 @@ pub use compare::fit::result::{
 };
 pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
+pub use compare::tolerance::result::{
+    CauseKind, ScatteringCause, SweptCases, SweptResult, ToleranceResult, ToleratedResult,
+};
+pub use compare::tolerance::tolerance;
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
@@ -104,8 +108,8 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, MeasureRequest, MountingError, Onto, PlotRequest, ReportRequest, SolveRequest, ViewRequest,
-    WantedEaseOff,
+    JobSelection, MeasureRequest, MountingError, Onto, PlotRequest, ReportRequest, SolveRequest, ToleranceRequest,
+    ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
@@ -133,6 +137,7 @@ const _: () = {
     is_shared::<ViewRequest>();
     is_shared::<DeviationRequest>();
     is_shared::<FitRequest>();
+    is_shared::<ToleranceRequest>();
     is_shared::<ContactRequest>();
     is_shared::<MeasureRequest>();
     is_shared::<ConvertRequest>();
@@ -140,6 +145,7 @@ const _: () = {
     is_shared::<SolveResult>();
     is_shared::<DeviationResult>();
     is_shared::<FitResult>();
+    is_shared::<ToleranceResult>();
     is_shared::<ContactResult>();
     is_shared::<MeasureResult>();
     is_shared::<ConvertResult>();

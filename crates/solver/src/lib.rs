@@ -32,6 +32,7 @@ pub use analysis::extent::extent;
 pub use analysis::geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use analysis::inspection::{Inspection, beside, mean_turn};
 pub use analysis::intersection::{Intersection, Line, Meeting};
+pub use analysis::scatter::{GaussianDraw, Scatter};
 pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter, total_derivatives};

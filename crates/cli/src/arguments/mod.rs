@@ -7,6 +7,7 @@ mod fit;
 mod measuring;
 mod plot;
 mod report;
+mod tolerance;
 
 use std::num::NonZero;
 use std::ops::RangeInclusive;
@@ -24,6 +25,7 @@ pub(crate) use fit::Fit;
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
+pub(crate) use tolerance::Tolerance;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
 #[derive(Parser, Debug)]
@@ -68,6 +70,8 @@ pub(crate) enum Command {
     Deviation(Deviation),
     /// Which settings make a measured flank, which correct it, and which give a wanted ease-off
     Fit(Fit),
+    /// How a surface's ease-off and its contacts scatter with settings and mounting errors, and how far these may
+    Tolerance(Tolerance),
     /// Where two flanks touch while a pair rolls, how evenly they turn each other, what the marking compound shows
     Contact(Contact),
     /// Write nominal points and normals for a gear measuring machine
@@ -103,6 +107,7 @@ impl Command {
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
             Command::Fit(arguments) => arguments.json,
+            Command::Tolerance(arguments) => arguments.json,
             Command::Contact(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
             Command::Import(arguments) => arguments.json,
@@ -127,6 +132,7 @@ impl Command {
             Command::Report(arguments) => Some(arguments.evaluator),
             Command::Deviation(arguments) => Some(arguments.evaluator),
             Command::Fit(arguments) => Some(arguments.evaluator),
+            Command::Tolerance(arguments) => Some(arguments.evaluator),
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),

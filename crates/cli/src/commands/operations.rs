@@ -2,7 +2,7 @@
 
 use flank::{Answer, Failure as Refused, Monitor};
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Plot, Report, Solve, View};
+use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Plot, Report, Solve, Tolerance, View};
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -59,6 +59,11 @@ pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
 pub(crate) fn fit(arguments: &Fit) -> Result<Ending, Failure> {
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::fit(&request, monitor).map(each))
+}
+
+pub(crate) fn tolerance(arguments: &Tolerance) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, |monitor, each| flank::tolerance(&request, monitor).map(each))
 }
 
 pub(crate) fn contact(arguments: &Contact) -> Result<Ending, Failure> {

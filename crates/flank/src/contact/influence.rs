@@ -117,6 +117,23 @@ fn axes(contact: &Contact<'_>) -> Vec<Cause> {
 
 /// Of machines, tools and the job: what is defined by one that changes follows it.
 fn settings(job: &Job<'_>, first: usize) -> Vec<Cause> {
+    let cause = |(parameter, of): (&Parameter<'_>, Vec<(usize, f64)>)| {
+        let step = usual_change(parameter);
+        let per = match parameter.dimension {
+            Dimension::LENGTH => "0.01 mm".to_string(),
+            Dimension::ANGLE => "1 arcmin".to_string(),
+            _ if parameter.value != 0.0 => "0.1 %".to_string(),
+            other => units::as_given(other, step),
+        };
+        Cause { name: parameter.name.clone(), kind: InfluenceKind::Setting, of, step, per }
+    };
+    let all = job.parameters.iter().zip(following(job, first));
+    all.filter(|(parameter, _)| !parameter.is_count).map(cause).collect()
+}
+
+/// For each parameter of a job the symbols of [`Members::open_problem`] that change with it, each with its share: itself, and what is
+/// defined by it. Its settings begin at the symbol `first`, behind the axes.
+pub(crate) fn following(job: &Job<'_>, first: usize) -> Vec<Vec<(usize, f64)>> {
     let known: Vec<flank_solver::Parameter<'_>> = job
         .parameters
         .iter()
@@ -125,22 +142,9 @@ fn settings(job: &Job<'_>, first: usize) -> Vec<Cause> {
     let following = flank_solver::total_derivatives(&known).expect("a job without errors leaves nothing unbound");
     // symbols are those that are no counts
     let number = |at: usize| first + job.parameters[..at].iter().filter(|parameter| !parameter.is_count).count();
-    let cause = |(parameter, following): (&Parameter<'_>, Vec<(usize, f64)>)| {
-        let following = following.into_iter().filter(|(at, _)| !job.parameters[*at].is_count);
-        let step = usual_change(parameter);
-        let per = match parameter.dimension {
-            Dimension::LENGTH => "0.01 mm".to_string(),
-            Dimension::ANGLE => "1 arcmin".to_string(),
-            _ if parameter.value != 0.0 => "0.1 %".to_string(),
-            other => units::as_given(other, step),
-        };
-        Cause {
-            name: parameter.name.clone(),
-            kind: InfluenceKind::Setting,
-            of: following.map(|(at, share)| (number(at), share)).collect(),
-            step,
-            per,
-        }
+    let symbols = |of: Vec<(usize, f64)>| {
+        let continuous = of.into_iter().filter(|(at, _)| !job.parameters[*at].is_count);
+        continuous.map(|(at, share)| (number(at), share)).collect()
     };
-    job.parameters.iter().zip(following).filter(|(parameter, _)| !parameter.is_count).map(cause).collect()
+    following.into_iter().map(symbols).collect()
 }

@@ -113,6 +113,8 @@ pub enum RemarkKind {
     Outlier,
     /// What settings take away of a deviation is not more than it scatters.
     NotShown,
+    /// Over tolerances a result is not proportional to them.
+    NotLinear,
 }
 
 impl<Kind> Message<Kind> {

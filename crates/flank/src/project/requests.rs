@@ -351,6 +351,60 @@ pub struct WantedEaseOff {
     pub bias: f64,
 }
 
+/// How what follows from settings and mounting errors scatters with them.
+#[derive(Clone, Debug)]
+pub struct ToleranceRequest {
+    /// The jobs that the surface is looked for in.
+    pub jobs: JobSelection,
+    /// The surface; of contacts of its job those that it takes part in are looked at too.
+    pub surface: String,
+    /// Settings, and axes of the machine of a contact, with the standard deviation of each; if none is named, all that do something scatter
+    /// by a usual change.
+    pub scatter: Vec<(String, ToleratedAmount)>,
+    /// Pairs of them with their correlation, above −1 and below 1.
+    pub correlations: Vec<([String; 2], f64)>,
+    /// Results, with the standard deviation that each may have.
+    pub budget: Vec<(String, ToleratedAmount)>,
+    /// In the worst case each is off by so many standard deviations.
+    pub limits: f64,
+    /// Whether the surface is not turned about z.
+    pub no_align: bool,
+    /// Random cases that the linear numbers are held against.
+    pub sweep: Option<u32>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl ToleranceRequest {
+    /// All that does something by a usual change, three standard deviations in the worst case.
+    pub fn new(jobs: impl Into<JobSelection>, surface: &str) -> ToleranceRequest {
+        ToleranceRequest {
+            jobs: jobs.into(),
+            surface: surface.to_string(),
+            scatter: Vec::new(),
+            correlations: Vec::new(),
+            budget: Vec::new(),
+            limits: 3.0,
+            no_align: false,
+            sweep: None,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+}
+
+/// How much something may scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ToleratedAmount {
+    /// mm
+    Length(f64),
+    /// Radians.
+    Angle(f64),
+    /// Of a plain number, or what has neither a length nor an angle as unit: in mm and radians.
+    Number(f64),
+    /// A share of the value.
+    Share(f64),
+}
+
 /// How far a member is mounted from where it should be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MountingError {

@@ -5,7 +5,7 @@ mod corrected;
 mod fitting;
 mod problem;
 pub(crate) mod result;
-mod settings;
+pub(super) mod settings;
 mod text;
 mod verdict;
 mod words;

@@ -32,7 +32,10 @@ pub(super) fn open<'j, 'g>(job: &'j Job<'g>, vary: &[String]) -> Result<Vec<&'j 
 }
 
 /// By its whole name, or by its last part where no other setting has that.
-fn find(job: &Job<'_>, name: &str) -> Result<usize, Failure> {
+///
+/// # Errors
+/// If there is none of that name, several end with it, or it is a count.
+pub(in crate::compare) fn find(job: &Job<'_>, name: &str) -> Result<usize, Failure> {
     let own = name.strip_prefix(&format!("{}.", job.name)).unwrap_or(name);
     let all = || job.parameters.iter().enumerate();
     let whole = all().find(|(_, of)| of.name == own);
@@ -42,10 +45,9 @@ fn find(job: &Job<'_>, name: &str) -> Result<usize, Failure> {
         None => all().filter(|(_, of)| is_last(of)).collect(),
     };
     match found[..] {
-        [(_, of)] if of.is_count => Err(Failure::Input(format!(
-            "`{}` is a whole number: a fit changes only what may change by a little",
-            of.name
-        ))),
+        [(_, of)] if of.is_count => {
+            Err(Failure::Input(format!("`{}` is a whole number: it does not change by a little", of.name)))
+        }
         [(k, _)] => Ok(k),
         [] => {
             let known: Vec<String> =

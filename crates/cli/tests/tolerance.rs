@@ -1,0 +1,69 @@
+//! `flank tolerance`: what it prints, and what it refuses.
+
+mod support;
+
+use support::{flank, text};
+
+const PINION: &str = "specs/bevel/pinion_19x62.chain";
+const PAIR: &str = "specs/pairs/bevel_19x62.chain";
+
+#[test]
+fn tolerances_are_told_with_random_cases() {
+    let run = flank(&["tolerance", PAIR, "pinion_concave", "--scatter", "m.E=10um,m.S=1arcmin", "--sweep", "40"]);
+    let (out, told) = (text(&run.stdout), text(&run.stderr));
+    assert_eq!(run.status.code(), Some(0), "{told}");
+    for line in ["drive_side.lengthwise", "drive_side.transmission_error", "40 of 40 random cases solved"] {
+        assert!(out.contains(line), "{line}: {out}");
+    }
+    // mounting does not move a flank by itself
+    assert!(
+        out.contains("  bias  ") && out.lines().any(|line| line.starts_with("  bias") && line.contains(" 0 ")),
+        "{out}"
+    );
+}
+
+#[test]
+fn a_budget_that_is_not_met_ends_with_3() {
+    let asked = ["tolerance", PINION, "concave", "--scatter", "machine_root_angle=10arcmin", "--budget", "bias=1um"];
+    let run = flank(&asked);
+    assert_eq!(run.status.code(), Some(3));
+    assert!(text(&run.stderr).contains("not met: bias scatters by"), "{}", text(&run.stderr));
+    // far beyond what is linear: the cases say so
+    let run = flank(&["tolerance", PINION, "concave", "--scatter", "radial_distance=5mm", "--sweep", "60"]);
+    assert!(text(&run.stderr).contains("it is not proportional to them"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let refused: [(&[&str], i32, &str); 13] = [
+        (&["--scatter", "nosuch=1um"], 1, "has no setting `nosuch`"),
+        (&["--scatter", "radial_distance=1arcmin"], 1, "this takes a length above zero"),
+        (&["--scatter", "machine_root_angle=5"], 1, "this takes an angle above zero"),
+        (&["--scatter", "ratio_of_roll=5um"], 1, "a plain number above zero, or a share of its value"),
+        (&["--scatter", "work_offset=1%"], 1, "a share of a value that is zero is nothing"),
+        (&["--scatter", "radial_distance=-1um"], 2, "an amount is above zero"),
+        (&["--scatter", "radial_distance"], 2, "write NAME=AMOUNT"),
+        (&["--scatter", "radial_distance=1um,m.radial_distance=2um"], 2, "twice"),
+        (&["--budget", "twist=1um"], 1, "there is no result `twist`; there is: `slope_profilewise`"),
+        (&["--budget", "bias=1arcmin"], 1, "this takes a length above zero"),
+        (&["--correlation", "radial_distance,radial_distance=0.5"], 2, "two different settings"),
+        (&["--correlation", "nosuch,radial_distance=0.5"], 1, "does not scatter"),
+        (
+            &[
+                "--correlation",
+                "radial_distance,ratio_of_roll=0.9",
+                "--correlation",
+                "radial_distance,machine_root_angle=0.9",
+                "--correlation",
+                "ratio_of_roll,machine_root_angle=-0.9",
+            ],
+            2,
+            "these correlations contradict each other",
+        ),
+    ];
+    for (more, code, says) in refused {
+        let run = flank(&[&["tolerance", PINION, "concave"], more].concat());
+        assert_eq!(run.status.code(), Some(code), "{more:?}: {}", text(&run.stderr));
+        assert!(text(&run.stderr).contains(says), "{more:?}: {}", text(&run.stderr));
+    }
+}

@@ -1,0 +1,157 @@
+//! The ease-off of a surface from itself when settings change.
+
+use flank_chain_dsl::Parameter;
+use flank_solver::{AdjustableSurface, BoundSurface, EaseOff, Foot, NearFoot, Outcome};
+
+use super::quantity::Quantity;
+use crate::compare::map::Named;
+use crate::compare::measure::Placed;
+use crate::project::failure::Failure;
+use crate::project::requests::Session;
+use crate::solve;
+use crate::solve::starts;
+
+/// Numbers of an ease-off, in the order of [`numbers`].
+const NAMES: [&str; 6] =
+    ["slope_profilewise", "slope_lengthwise", "crowning_profilewise", "crowning_lengthwise", "bias", "position"];
+/// A turn about z moves the middle along its normal by at least this share of the way.
+const TURNS: f64 = 1e-3;
+/// Steps until the middle is met.
+const MOST_STEPS: usize = 20;
+/// It is met within this distance, mm: what points are solved to.
+const MET: f64 = 1e-9;
+
+/// A surface in open settings over the grid of its sample, rows from root to tip.
+pub(super) struct Flank {
+    surface: AdjustableSurface,
+    pub(super) counts: [usize; 2],
+    /// The points as they are.
+    feet: Vec<Option<Foot>>,
+    is_turned: bool,
+}
+
+impl Flank {
+    /// # Errors
+    /// If the surface has no grid, several branches, or no middle.
+    pub(super) fn new<'g>(
+        of: Named<'_, 'g>,
+        settings: &[&Parameter<'g>],
+        (is_turned, session): (bool, Session<'_>),
+    ) -> Result<Flank, Failure> {
+        let placed = Placed::new(of.job, of.surface, [0.0; 2], session)?;
+        let counts = placed.counts();
+        let [profile, length] = placed.shares(counts);
+        let points = placed.solved(&placed.sample(&profile, &length))?;
+        let open: Vec<_> = settings.iter().map(|setting| setting.variable).collect();
+        let bindings = of.job.bindings_beside(&open);
+        let bound = BoundSurface::new(&of.surface.surface, solve::followed(of.surface), &bindings);
+        let surface = AdjustableSurface::new(&bound, &open).expect("a job without errors leaves nothing unbound");
+        let values: Vec<f64> = settings.iter().map(|setting| setting.value).collect();
+        let near = |unknowns: &[f64]| NearFoot { unknowns: unknowns.to_vec(), distance: 0.0 };
+        let feet = points.iter().map(|point| {
+            let is_solved = point.outcome == Outcome::Solved;
+            let feet = is_solved.then(|| surface.feet(&values, &[point.position], &[near(&point.unknowns)]));
+            feet?.pop()?
+        });
+        let flank = Flank { feet: feet.collect(), surface, counts, is_turned };
+        flank.check_middle(&of.surface.name)?;
+        Ok(flank)
+    }
+
+    fn check_middle(&self, name: &str) -> Result<(), Failure> {
+        let way_out = "the option `no_align` does without the turn that brings both to meet there";
+        let refused = |why: &str| Err(Failure::Unsolved(format!("`{name}` {why}; {way_out}")));
+        match self.middle() {
+            _ if !self.is_turned => Ok(()),
+            None => refused("has no point in the middle of its grid"),
+            Some(middle) if turning(middle).abs() < TURNS * radius(middle) => {
+                refused("does not move along its normal in the middle of its grid when it is turned about z")
+            }
+            Some(_) => Ok(()),
+        }
+    }
+
+    fn middle(&self) -> Option<&Foot> {
+        self.feet.get(starts::middle(self.counts))?.as_ref()
+    }
+
+    /// Points at which it is known.
+    pub(super) fn known(&self) -> usize {
+        self.feet.iter().flatten().count()
+    }
+
+    /// What scatters, each with its change by a unit of each setting; `None` if the points are too few for a parabola.
+    pub(super) fn quantities(&self, settings: usize) -> Option<Vec<Quantity>> {
+        let by_setting = (0..settings).map(|k| {
+            let turn = match self.middle() {
+                Some(middle) if self.is_turned => -middle.moved[k] / turning(middle),
+                _ => 0.0,
+            };
+            let off = self.feet.iter().map(|foot| foot.as_ref().map(|foot| foot.moved[k] + turn * turning(foot)));
+            self.numbers(&off.collect::<Vec<_>>(), turn)
+        });
+        let by_setting = by_setting.collect::<Option<Vec<[f64; 6]>>>()?;
+        let count = if self.is_turned { NAMES.len() } else { NAMES.len() - 1 };
+        let quantity = |(at, name): (usize, &&str)| {
+            let gradient = by_setting.iter().map(|numbers| numbers[at]).collect();
+            Quantity { name: (*name).to_string(), unit: "um", size: 1e-3, gradient }
+        };
+        Some(NAMES[..count].iter().enumerate().map(quantity).collect())
+    }
+
+    /// The same numbers with other values of the settings, um; `None` if a point has no foot then, or the middle is not met.
+    pub(super) fn with(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let (positions, near): (Vec<[f64; 3]>, Vec<NearFoot>) = self.feet.iter().flatten().map(beside).unzip();
+        let turn = if self.is_turned { self.met(values)? } else { 0.0 };
+        let turned: Vec<[f64; 3]> = positions.into_iter().map(|point| about_z(point, -turn)).collect();
+        let mut feet = self.surface.feet(values, &turned, &near).into_iter();
+        // a point lies off the changed surface the other way than that lies off the point
+        let off = self.feet.iter().map(|foot| match foot {
+            Some(_) => feet.next().flatten().map(|foot| Some(-foot.distance)),
+            None => Some(None),
+        });
+        let numbers = self.numbers(&off.collect::<Option<Vec<_>>>()?, turn)?;
+        Some(numbers.iter().take(if self.is_turned { 6 } else { 5 }).map(|number| 1e3 * number).collect())
+    }
+
+    /// The turn of the surface that brings it through the middle.
+    fn met(&self, values: &[f64]) -> Option<f64> {
+        let (position, mut near) = beside(self.middle()?);
+        let mut turn = 0.0;
+        for _ in 0..MOST_STEPS {
+            let foot = self.surface.feet(values, &[about_z(position, -turn)], std::slice::from_ref(&near)).pop()??;
+            if foot.distance.abs() < MET {
+                return Some(turn);
+            }
+            turn += foot.distance / turning(&foot);
+            near = NearFoot { unknowns: foot.unknowns, distance: 0.0 };
+        }
+        None
+    }
+
+    /// Of deviations, mm, and the turn that they take.
+    fn numbers(&self, off: &[Option<f64>], turn: f64) -> Option<[f64; 6]> {
+        let EaseOff { slopes, crownings, bias } = EaseOff::of_deviations(off, self.counts)?;
+        let way = self.middle().map_or(0.0, |middle| -turn * radius(middle));
+        Some([slopes[0], slopes[1], crownings[0], crownings[1], bias, way])
+    }
+}
+
+/// How far a surface moves along its normal for a turn about z, mm.
+fn turning(foot: &Foot) -> f64 {
+    let ([x, y, _], [nx, ny, _]) = (foot.position, foot.normal);
+    x * ny - y * nx
+}
+
+fn radius(foot: &Foot) -> f64 {
+    foot.position[0].hypot(foot.position[1])
+}
+
+fn beside(foot: &Foot) -> ([f64; 3], NearFoot) {
+    (foot.position, NearFoot { unknowns: foot.unknowns.clone(), distance: 0.0 })
+}
+
+fn about_z([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
+    let (sine, cosine) = turn.sin_cos();
+    [x * cosine - y * sine, x * sine + y * cosine, z]
+}
