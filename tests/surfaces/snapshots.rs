@@ -191,3 +191,8 @@ fn curvic_coupling() {
 fn helicon_wheel() {
     insta::assert_snapshot!(described("specs/face_worm/helicon_wheel.chain"));
 }
+
+#[test]
+fn honed_gear() {
+    insta::assert_snapshot!(described("specs/honing/honed_gear.chain"));
+}
