@@ -134,6 +134,8 @@ pub struct Parameter<'g> {
     pub value: f64,
     /// Whether it counts something: then it is a whole number and has no derivative.
     pub is_count: bool,
+    /// Whether it says how a machine differs from the nominal one, in which it is zero.
+    pub is_error: bool,
     /// Between which values it must lie, if that is stated.
     pub range: Option<(f64, f64)>,
     /// Its doc comment.

@@ -113,6 +113,12 @@ impl<'a, 'g> Binder<'a, 'g> {
     /// The variable that stands for it; nothing if something is wrong (and reported).
     fn bound(&mut self, context: &mut Context<'g>, param: &Param, scope: &Scope<'g>) -> Option<Value<'g>> {
         let dimension = context.dimension(&param.dimension)?;
+        if param.is_error && is_count(&param.dimension) {
+            let message = format!("{} is a count: an error may be as small as it likes", shown_name(param));
+            let help = "a whole number that may differ is a parameter: `param name : count = 0`";
+            context.report(Diagnostic::new(Code::WrongDimension, param.dimension.span, message).help(help));
+            return None;
+        }
         let name = match &self.source {
             Source::Instance { name, .. } | Source::Standing { name } => format!("{}.{}", name.node, param.name.node),
             Source::Definition | Source::Job => param.name.node.clone(),
@@ -121,6 +127,10 @@ impl<'a, 'g> Binder<'a, 'g> {
             Some((expression, value, by)) => {
                 let definition = context.require(&value, dimension, expression.span, &shown_name(param))?;
                 Some(Given { definition, written: expression.span, by })
+            }
+            None if param.is_error => {
+                let definition = context.graph.constant(0.0);
+                Some(Given { definition, written: param.name.span, by: self.source.by_default() })
             }
             None => None,
         };
@@ -154,6 +164,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                 definition,
                 value,
                 is_count,
+                is_error: param.is_error,
                 range,
                 doc,
                 given_by,

@@ -97,7 +97,7 @@ pub struct Machine {
 /// A statement in a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MachineStatement {
-    /// `param name : dimension …`
+    /// `param name : dimension …`, or `error name : dimension …`
     Param(Param),
     /// `let name = …`
     Let(Let),
@@ -132,6 +132,8 @@ pub struct Param {
     pub range: Option<Range>,
     /// Value where none is given.
     pub default: Option<Expression>,
+    /// Whether it is an error of a machine: zero where none is given.
+    pub is_error: bool,
 }
 
 /// `let name = value`

@@ -18,7 +18,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
     let piece = Piece { scan, range };
     let name = piece.defined()?;
     Some(match word {
-        "param" => MachineStatement::Param(piece.param(name)),
+        "param" | "error" => MachineStatement::Param(piece.param(name)),
         "axis" | "unknown" => MachineStatement::Axis(piece.axis(name, word == "unknown")),
         "frame" => MachineStatement::Frame(piece.frame(name)),
         "insert" => MachineStatement::Insert(piece.frame(name)),
@@ -182,7 +182,7 @@ impl Piece<'_> {
 
     fn param(&self, name: Name) -> Param {
         let dimension = self.dimension(self.range.start);
-        Param { doc: self.doc(), name, dimension, range: None, default: Some(self.error()) }
+        Param { doc: self.doc(), name, dimension, range: None, default: Some(self.error()), is_error: false }
     }
 
     fn parameter(&self, index: usize, name: Name) -> Parameter {

@@ -16,7 +16,7 @@ pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
 pub(super) const IN_MACHINE: &[&str] =
-    &["param", "let", "axis", "unknown", "frame", "insert", "close", "fix", "couple", "nc", "require"];
+    &["param", "let", "axis", "unknown", "error", "frame", "insert", "close", "fix", "couple", "nc", "require"];
 
 /// Words that begin a statement in a tool.
 pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
@@ -32,12 +32,12 @@ pub(super) const IN_JOB: &[&str] = &[
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] = &[
-    "fn", "machine", "tool", "job", "param", "let", "axis", "frame", "insert", "profile", "surface", "motion",
+    "fn", "machine", "tool", "job", "param", "let", "axis", "error", "frame", "insert", "profile", "surface", "motion",
     "unknown", "solid", "contact",
 ];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut", "nc", "insert", "close", "unknown", "solid", "contact"];
+const FREE: &[&str] = &["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

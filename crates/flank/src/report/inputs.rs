@@ -39,14 +39,23 @@ fn groups<'j, 'g>(findings: &Findings<'j, 'g>) -> Vec<Vec<&'j Parameter<'g>>> {
     owners.into_iter().map(|of| all.iter().filter(|parameter| owner(parameter) == of).collect()).collect()
 }
 
-/// A table, and the names of those that are zero by default and of which there is nothing to say.
+/// A table of settings and one of errors, and the names of those that are zero by default and of which there is nothing to say.
 fn blocks(findings: &Findings<'_, '_>, parameters: &[&Parameter<'_>]) -> Vec<Block> {
+    let (errors, parameters): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) =
+        parameters.iter().partition(|parameter| parameter.is_error);
+    let owner = owner_text(findings, if parameters.is_empty() { &errors } else { &parameters });
+    let caption = format!("{owner}: errors, zero in the nominal machine");
+    let table = (!errors.is_empty()).then(|| table(findings, caption, &errors));
+    settings(findings, owner, &parameters).into_iter().chain(table).collect()
+}
+
+fn settings(findings: &Findings<'_, '_>, owner: String, parameters: &[&Parameter<'_>]) -> Vec<Block> {
     let is_idle = |parameter: &&&Parameter<'_>| {
         let is_default = matches!(parameter.given_by, ValueSource::Definition(_));
         is_default && parameter.value == 0.0 && parameter.doc.is_empty()
     };
     let (idle, told): (Vec<&Parameter<'_>>, Vec<&Parameter<'_>>) = parameters.iter().partition(is_idle);
-    let table = (!told.is_empty()).then(|| table(findings, owner_text(findings, parameters), &told));
+    let table = (!told.is_empty()).then(|| table(findings, owner, &told));
     let zero = (!idle.is_empty()).then(|| Block::Facts(by_unit(&idle)));
     table.into_iter().chain(zero).collect()
 }
@@ -174,6 +183,7 @@ pub(super) fn told(findings: &Findings<'_, '_>) -> Vec<Input> {
             low: low.map(shown),
             high: high.map(shown),
             is_count: parameter.is_count,
+            is_error: parameter.is_error,
             given_by,
             definition,
             meaning: joined(&parameter.doc),

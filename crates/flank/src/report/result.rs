@@ -82,6 +82,8 @@ pub struct Input {
     pub high: Option<f64>,
     /// Whether it is a whole number.
     pub is_count: bool,
+    /// Whether it says how a machine differs from the nominal one, in which it is zero.
+    pub is_error: bool,
     /// Who says so.
     pub given_by: InputSource,
     /// The machine or tool whose default it is.

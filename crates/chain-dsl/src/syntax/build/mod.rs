@@ -157,6 +157,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_require
             | kw_axis
             | kw_frame
+            | kw_error
             | kw_insert
             | kw_close
             | kw_about

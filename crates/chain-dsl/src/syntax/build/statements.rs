@@ -18,7 +18,7 @@ impl Build<'_> {
     /// A statement in a machine; nothing for its closing brace and the end of a piece.
     pub(in super::super) fn machine_statement(&mut self, pair: Pair<'_, Rule>) -> Option<MachineStatement> {
         Some(match pair.as_rule() {
-            Rule::param => MachineStatement::Param(self.param(pair)),
+            Rule::param | Rule::error_term => MachineStatement::Param(self.param(pair)),
             Rule::let_statement => MachineStatement::Let(self.let_statement(pair)),
             Rule::axis | Rule::unknown_axis => MachineStatement::Axis(self.axis(pair)),
             Rule::close => MachineStatement::Close(self.close(pair)),
@@ -75,6 +75,7 @@ impl Build<'_> {
 
     fn param(&mut self, pair: Pair<'_, Rule>) -> Param {
         let doc = self.doc(&pair);
+        let is_error = pair.as_rule() == Rule::error_term;
         let mut parts = Parts::of(pair);
         Param {
             doc,
@@ -82,6 +83,7 @@ impl Build<'_> {
             dimension: self.dimension(parts.required(Rule::dimension)),
             range: parts.optional(Rule::range).map(|range| self.range(range)),
             default: parts.optional(Rule::expression).map(|value| self.expression(value)),
+            is_error,
         }
     }
 

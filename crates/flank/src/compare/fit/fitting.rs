@@ -117,7 +117,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             turn_mm: turn.map(|turn| radius * turn),
             before_um: 1e3 * self.now.rms(),
             identification: identification.map(|of| self.adjusted(of, free)),
-            correction: self.adjusted(correction, free),
+            correction: self.adjusted(correction, &self.problem.settable(free)),
             ease_off: request.ease_off.map(|wish| self.ease_off(wish, &predicted)),
             share: request.share,
             predicted_um: 1e3 * rms(&predicted),
@@ -194,6 +194,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).sqrt());
             AdjustedSetting {
                 name: setting.name.clone(),
+                is_error: setting.is_error,
                 unit: units::whole_symbol(setting.dimension),
                 now: shown(setting.value),
                 change: shown(change),

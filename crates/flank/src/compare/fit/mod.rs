@@ -55,6 +55,13 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         _ => return Err(Failure::Request(NO_AIM.to_string())),
     };
     let open = settings::open(of.job, &request.vary)?;
+    if let Some(error) = open.iter().find(|setting| setting.is_error && request.ease_off.is_some()) {
+        let message = format!(
+            "option `vary` names `{}`, an error of the machine: a wanted ease-off is made by what can be set",
+            error.name
+        );
+        return Err(Failure::Input(message));
+    }
     let _working = session.begin(format!("fitting {}", of.surface.name))?;
     let problem = Problem::new(&aims, open, request)?;
     let Found { now, free, choice, identification, correction } = Found::of(&aims, &problem, request)?;
@@ -62,7 +69,8 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let result = fitting.result(request, (&free, choice), (identification.as_ref(), &correction));
     let result =
         verdict::judged(result, &fitting, (request, identification.as_ref().unwrap_or(&correction), &correction));
-    let values: Vec<(String, String)> = free.iter().map(|&k| fitting.new_value(k, &correction)).collect();
+    let values: Vec<(String, String)> =
+        problem.settable(&free).iter().map(|&k| fitting.new_value(k, &correction)).collect();
     let (corrected, files) = match &request.write {
         Some(file) if !values.is_empty() => {
             let text = corrected::text(request, (of.job, &values), file)?;
@@ -96,7 +104,10 @@ impl Found {
         let (free, choice) = Fitting { aims, problem, now: &now }.chosen(request)?;
         let (identification, correction) = match request.ease_off {
             Some(_) => (None, problem.identified(&now, &free)?),
-            None => (Some(problem.identified(&now, &free)?), problem.corrected(&now, &free, request.share)?),
+            None => (
+                Some(problem.identified(&now, &free)?),
+                problem.corrected(&now, &problem.settable(&free), request.share)?,
+            ),
         };
         Ok(Found { now, free, choice, identification, correction })
     }

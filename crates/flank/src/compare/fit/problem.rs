@@ -92,6 +92,11 @@ impl<'p, 'g> Problem<'p, 'g> {
         })
     }
 
+    /// Of settings, by their places, those that somebody can set: an error of the machine stays what it is.
+    pub(super) fn settable(&self, free: &[usize]) -> Vec<usize> {
+        free.iter().copied().filter(|k| !self.settings[*k].is_error).collect()
+    }
+
     /// How many points there are.
     pub(super) fn count(&self) -> usize {
         self.points.iter().map(Vec::len).sum()

@@ -118,6 +118,8 @@ pub struct AdjustedSettings {
 pub struct AdjustedSetting {
     /// Its name, as it is set from outside.
     pub name: String,
+    /// Whether it is an error of the machine, which is identified and not set.
+    pub is_error: bool,
     /// mm, deg, products of mm and rad; empty for a plain number.
     pub unit: String,
     /// As the job has it.

@@ -53,7 +53,12 @@ impl fmt::Display for FitResult {
             }
             None => "correction: the settings that give the wanted ease-off".to_string(),
         };
-        writeln!(f, "\n{head}\n\n{}", table(&self.correction, "new"))?;
+        match self.correction.settings[..] {
+            [] if self.identification.as_ref().is_some_and(|found| !found.settings.is_empty()) => {
+                writeln!(f, "\ncorrection: only errors of the machine were looked for, and nothing is to be set")?;
+            }
+            _ => writeln!(f, "\n{head}\n\n{}", table(&self.correction, "new"))?,
+        }
         if let Some(choice) = &self.choice {
             let all = choice.candidates.len();
             let (chosen, leave) = (self.correction.settings.len(), um(choice.all_leave_um));

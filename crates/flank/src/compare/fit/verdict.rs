@@ -20,7 +20,9 @@ pub(super) fn judged(
     (request, main, correction): (&FitRequest, &AdjustedSurfaces, &AdjustedSurfaces),
 ) -> FitResult {
     let surface = &fitting.aims[0].of.surface.name;
-    let left = result.identification.as_ref().unwrap_or(&result.correction).left_um.max(result.correction.left_um);
+    // errors alone are identified, and nothing is to be set
+    let corrected = if result.correction.settings.is_empty() { 0.0 } else { result.correction.left_um };
+    let left = result.identification.as_ref().unwrap_or(&result.correction).left_um.max(corrected);
     if left > result.within_um {
         let message = format!("not met: {left:.3} um rms is left of {surface}, more than {} um", result.within_um);
         let reasons = reasons(&result, fitting, (request, main));
@@ -60,7 +62,8 @@ pub(super) fn judged(
 /// Settings that take no more away than chance would.
 fn not_shown(result: &FitResult, fitting: &Fitting<'_, '_>, main: &AdjustedSurfaces) -> Option<Remark> {
     let surface = &fitting.aims[0].of.surface.name;
-    if result.correction.settings.is_empty() {
+    let identified = result.identification.as_ref().map_or(0, |of| of.settings.len());
+    if result.correction.settings.is_empty() && identified == 0 {
         let message =
             format!("no setting takes as much as 0.1 um of the {:.3} um rms away: none is changed", result.before_um);
         return Some(Remark::new(RemarkKind::NotShown, surface, message));

@@ -74,8 +74,14 @@ fn setting(job: &Job<'_>, at: usize) -> Cause {
         name: of.name.clone(),
         dimension: of.dimension,
         value: of.value,
-        scatter: usual_change(of),
+        scatter: usual_scatter(of),
     }
+}
+
+/// An error lies within its range with three standard deviations to both sides; all else is off by a usual change.
+fn usual_scatter(of: &Parameter<'_>) -> f64 {
+    let width = of.range.filter(|_| of.is_error).map(|(low, high)| high - low);
+    width.map_or_else(|| usual_change(of), |width| width / 6.0)
 }
 
 /// An axis of one of the contacts.
@@ -91,9 +97,10 @@ fn axis_of(of: &Contact<'_>, (contact, at): (usize, usize)) -> Cause {
     Cause { at: CausePlace::Axis(contact, at), name: axis.name.clone(), dimension: axis.dimension, value: 0.0, scatter }
 }
 
-/// All that the job gives a value, and all axes that are not driven.
+/// All that the job gives a value, errors of its machines, and all axes that are not driven.
 fn usual(job: &Job<'_>, contacts: &[usize]) -> Vec<Cause> {
-    let is_given = |of: &Parameter<'_>| !of.is_count && !matches!(of.given_by, ValueSource::Definition(_));
+    let is_given =
+        |of: &Parameter<'_>| !of.is_count && (of.is_error || !matches!(of.given_by, ValueSource::Definition(_)));
     let settings = (0..job.parameters.len()).filter(|at| is_given(&job.parameters[*at])).map(|at| setting(job, at));
     let mut causes: Vec<Cause> = settings.collect();
     for &contact in contacts {

@@ -100,7 +100,7 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
         known: flank.known(),
         contacts: matings.iter().map(|mating| mating.name().to_string()).collect(),
         limits: request.limits,
-        causes: causes.iter().zip(may).map(|(cause, may)| told(cause, may)).collect(),
+        causes: causes.iter().zip(may).map(|(cause, may)| told(cause, may, of.job)).collect(),
         results,
         sweep,
         not_done: origin.located(&[of.job], not_done),
@@ -223,11 +223,12 @@ fn may_scatter(quantities: &[Quantity], wanted: &[Option<f64>], causes: usize) -
     may
 }
 
-fn told(cause: &Cause, may: Option<f64>) -> ScatteringCause {
+fn told(cause: &Cause, may: Option<f64>, job: &Job<'_>) -> ScatteringCause {
     let shown = |value: f64| units::shown(cause.dimension, value);
     ScatteringCause {
         name: cause.name.clone(),
         kind: match cause.at {
+            CausePlace::Setting(at) if job.parameters[at].is_error => CauseKind::Error,
             CausePlace::Setting(_) => CauseKind::Setting,
             CausePlace::Axis(..) => CauseKind::Mounting,
         },

@@ -47,6 +47,8 @@ pub struct ToleranceResult {
 pub enum CauseKind {
     /// A setting of a machine, a tool or the job; what is defined by it follows.
     Setting,
+    /// An error of a machine, zero in the nominal one.
+    Error,
     /// An axis of the machine of a contact.
     Mounting,
 }
