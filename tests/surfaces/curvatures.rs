@@ -178,7 +178,7 @@ fn spur_gear() {
 /// The tables' radial feeds are those of a gear that is hollow along the face: negative crowning.
 #[test]
 fn hobbed_gears() {
-    let quartic = [("crowning_2", "-0.0512 mm"), ("crowning_4", "-0.0262144 mm")];
+    let quartic = [("crowning", "-0.0512 mm"), ("crowning_4", "-0.0262144 mm")];
     for (spec, set, table) in [
         ("helical_gear", &[][..], "helical_zi_hob"),
         ("crowned_gear", &[("crowning", "-0.064 mm")], "helical_crowned"),

@@ -196,7 +196,13 @@ fn inputs_say_who_gives_them() {
     assert_eq!((&angle["value"], &angle["unit"]), (&20.0.into(), &"deg".into()));
     let html = read(out.join("undercut_gear.report.html"));
     // what is set by hand is among the inputs, and no file
-    let files = ["hobbing/undercut_gear", "machines/rack_generating", "machines/hobbing_6axis", "tools/rack"];
+    let files = [
+        "hobbing/undercut_gear",
+        "hobbing/spur_gear",
+        "machines/rack_generating",
+        "machines/hobbing_6axis",
+        "tools/rack",
+    ];
     let files = files.map(|file| format!("specs/{file}.chain")).join(", ");
     assert!(html.contains(&format!("<dt>files read</dt><dd>{files}</dd>")));
     let rows = rows(&page(&html));
@@ -289,8 +295,13 @@ fn markdown_has_tables_and_pictures() {
 
 /// A spec in which every text of its author tries to get out of its place.
 fn hostile() -> String {
-    let spec =
-        self_contained(&["machines/hobbing_6axis", "machines/rack_generating", "tools/rack", "hobbing/undercut_gear"]);
+    let spec = self_contained(&[
+        "machines/hobbing_6axis",
+        "machines/rack_generating",
+        "tools/rack",
+        "hobbing/spur_gear",
+        "hobbing/undercut_gear",
+    ]);
     let evil = "</table><script>alert(1)</script> ](javascript:alert(1)) | `x` <img src=x onerror=alert(2)> & \u{1}";
     spec.replace("/// The rack's tip", &format!("/// {evil}\n/// The rack's tip"))
         .replace("/// x; from 0.4151", &format!("/// {evil} x; from 0.4151"))
@@ -307,7 +318,8 @@ fn hostile() -> String {
 fn texts_of_a_spec_stay_text() {
     let out = folder("report_hostile");
     let spec = written(&out, "hostile.chain", &hostile());
-    reported(&[&spec, "--format", "html,md", "--date", "<script>alert(3)</script>"], &out, 3);
+    let arguments = ["--job", "undercut_gear", "--format", "html,md", "--date", "<script>alert(3)</script>"];
+    reported(&[&[spec.as_str()][..], &arguments].concat(), &out, 3);
     let html = read(out.join("undercut_gear.report.html"));
     let parsed = page(&html);
     let names: Vec<&str> = parsed.descendants().map(|node| node.tag_name().name()).collect();
@@ -342,10 +354,11 @@ fn one_file_can_be_named() {
             "machines/hobbing_6axis",
             "machines/rack_generating",
             "tools/rack",
+            "hobbing/spur_gear",
             "hobbing/undercut_gear",
         ]) + &self_contained(&["hobbing/undercut_gear"]).replace("job undercut_gear", "job other")),
     );
-    refused(&[&several, "--out", file.to_str().unwrap()], 1, "can hold one job of undercut_gear, other");
+    refused(&[&several, "--out", file.to_str().unwrap()], 1, "can hold one job of spur_gear, undercut_gear, other");
     refused(&["specs/bevel/ease_off_19x62.chain", "--job", "pinion"], 1, "asks for no points");
 }
 

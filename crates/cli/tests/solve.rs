@@ -69,7 +69,7 @@ fn points_of_a_table_are_those_of_the_grid() {
     points = (0..points.len()).map(|k| points[260 * k % 651]).collect();
     let rows = points.iter().map(|[x, y, z]| format!("{z:?},{:?}\n", x.hypot(*y))).collect::<String>();
     written(&at, "gauge.csv", &format!("z [mm],rho [mm]\n{rows}"));
-    let from = spec.find("sample lower_flank {").expect("a sample");
+    let from = spec.find("sample lower_flank, upper_flank for").expect("a sample");
     let (head, rest) = spec.split_at(from);
     let rest = rest.lines().enumerate().map(|(k, line)| match k {
         1 => "points: table(\"gauge.csv\", z: length, rho: length)\n".to_string(),

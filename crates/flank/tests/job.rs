@@ -103,7 +103,7 @@ fn what_is_not_done_is_data() {
     }
     for missing in &result.not_done {
         let place = missing.place.as_ref().expect("surfaces have one");
-        assert!(place.file.ends_with("undercut_gear.chain") && place.line > 1, "{place:?}");
+        assert!(place.file.ends_with("spur_gear.chain") && place.line > 1, "{place:?}");
         assert_eq!(Some(&place.text), missing.of.as_ref());
         assert!(missing.message.starts_with("not solved: ") && !missing.message.contains('\n'), "{missing}");
         assert!(!missing.details.is_empty(), "{missing}");

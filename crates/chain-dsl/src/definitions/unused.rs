@@ -272,6 +272,7 @@ impl Used {
                 }
                 JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
                 JobStatement::Sample(sample) => {
+                    sample.each.iter().flat_map(|each| &each.values).for_each(|value| self.expression(value));
                     for entry in &sample.entries {
                         entry.definition.iter().for_each(|definition| self.expression(definition));
                         match &entry.values {

@@ -303,8 +303,23 @@ impl<'g> Builder<'_, 'g> {
     }
 
     pub(super) fn sample(&mut self, context: &mut Context<'g>, written: &ast::Sample, job: &ast::Job) {
-        for sampled in &written.surfaces {
-            self.sample_surface(context, sampled, written, job);
+        let Some(each) = &written.each else {
+            return written.surfaces.iter().for_each(|of| self.sample_surface(context, of, written, job));
+        };
+        let names = written.surfaces.iter().map(|of| of.surface.span).collect();
+        let values = each.values.iter().map(|value| value.span).collect();
+        let help = "say what is different for each surface: `sample left, right for side in [1, -1] { … }`";
+        if !are_even(context, (["surface", "surfaces"], names), (["value", "values"], values), help) {
+            return;
+        }
+        for (of, value) in written.surfaces.iter().zip(&each.values) {
+            let value = context.evaluate(value, &self.scope);
+            let hidden = self.scope.insert(each.name.node.clone(), value);
+            self.sample_surface(context, of, written, job);
+            match hidden {
+                Some(hidden) => self.scope.insert(each.name.node.clone(), hidden),
+                None => self.scope.remove(&each.name.node),
+            };
         }
     }
 

@@ -73,13 +73,18 @@ pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
     scan.tokens.len()
 }
 
-/// One past the names of a sample that begins at a token: `sample left, right.edge as root_row`.
+/// One past the names of a sample that begins at a token, and what is different for them: `sample left, right.edge as root_row`,
+/// `sample left, right for side in [1, -1]`.
 fn names_end(scan: &Scan, from: usize) -> usize {
     let mut end = from + 2;
     loop {
         match scan.say(end) {
             "." | "," => end += 2,
             "as" if scan.say(end + 1) != ":" => end += 2,
+            "for" if scan.say(end + 2) == "in" => {
+                let behind = (end + 3..scan.tokens.len()).find(|&index| matches!(scan.say(index), "]" | "{" | "}"));
+                return behind.map_or(end, |index| index + usize::from(scan.say(index) == "]"));
+            }
             _ => return end,
         }
     }

@@ -277,6 +277,7 @@ impl Piece<'_> {
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
         Sample {
             surfaces: self.paths().into_iter().map(|surface| Sampled { surface, name: None }).collect(),
+            each: None,
             entries: vec![entry],
             keeps: Vec::new(),
             limits: Vec::new(),

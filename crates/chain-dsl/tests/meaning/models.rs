@@ -356,6 +356,39 @@ fn sides_of_a_surface_are_surfaces_written_one_by_one() {
 }
 
 #[test]
+fn a_sample_of_sides_is_samples_written_one_by_one() {
+    let of = |sample: &str| {
+        let graph = Graph::new();
+        let compilation = compiled(&graph, &of_two_pieces(sample));
+        let surfaces = &compilation.jobs[0].surfaces;
+        let shown = |surface: &GeneratedSurface<'_>| {
+            let sample = surface.sample.as_ref()?;
+            let keep = sample.keep.iter().map(|(of, ends)| (of.value.to_string(), *ends));
+            let limits = sample.limits.iter().map(|limit| (limit.of.value.to_string(), limit.ends));
+            Some((surface.name.clone(), sample.targets(), keep.chain(limits).collect::<Vec<_>>()))
+        };
+        surfaces.iter().filter_map(shown).collect::<Vec<_>>()
+    };
+    let sides = of("sample t.short as near, t.short as far for side in [1, -1] {
+        v: -0.2 mm .. side * 0.4 mm + 0.5 mm by 3, s: 0 mm .. 2 mm by 2
+        keep turned = side * roll: -20 deg .. 10 deg
+        require there = side * x: -90 mm .. 90 mm, \"it is elsewhere\"
+    }");
+    let one = |name: &str, side: &str| {
+        format!(
+            "sample t.short as {name} {{
+                v: -0.2 mm .. {side} * 0.4 mm + 0.5 mm by 3, s: 0 mm .. 2 mm by 2
+                keep turned = {side} * roll: -20 deg .. 10 deg
+                require there = {side} * x: -90 mm .. 90 mm, \"it is elsewhere\"
+            }}\n"
+        )
+    };
+    assert_eq!(sides, of(&(one("near", "1") + &one("far", "(-1)"))));
+    assert_eq!(sides.len(), 2);
+    assert_ne!(sides[0].1, sides[1].1);
+}
+
+#[test]
 fn an_inserted_frame_carries_all_that_hung_on_another_one() {
     let surface = "
             tool b = ball

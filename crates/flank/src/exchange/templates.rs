@@ -1,11 +1,12 @@
 //! A job of the library becomes one of the user's, with the machines and tools that it uses; so does a machine or a tool by itself.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use flank_chain_dsl::syntax::ast::{Item, Job, JobStatement, Param};
+use flank_chain_dsl::syntax::ast::{Change, Item, Job, JobStatement};
 use flank_chain_dsl::syntax::parse;
-use flank_chain_dsl::{FileId, closest};
+use flank_chain_dsl::{FileId, Span, closest};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -98,16 +99,7 @@ pub fn template_parameters(template: &str) -> Result<Vec<TemplateParameter>, Fai
     if parts::find(template).is_some() {
         return Ok(Vec::new());
     }
-    let source = find(template)?;
-    let parameter = |parameter: &&Param| {
-        let span = parameter.default.as_ref()?.span;
-        Some(TemplateParameter {
-            name: parameter.name.node.clone(),
-            about: parameter.doc.first().map_or(String::new(), |line| line.trim().to_string()),
-            default: source.text[span.start as usize..span.end as usize].to_string(),
-        })
-    };
-    Ok(source.parameters().iter().filter_map(parameter).collect())
+    Ok(find(template)?.parameters)
 }
 
 /// Writes a job of the library under a new name, with other values, and all that it uses, as far as it compiles; or a machine or a tool
@@ -132,6 +124,8 @@ struct Source {
     text: &'static str,
     doc: String,
     job: Job,
+    /// Those with a value: of the jobs that it extends, then its own.
+    parameters: Vec<TemplateParameter>,
 }
 
 /// The same with its texts.
@@ -144,8 +138,15 @@ struct Offer {
 
 fn offer() -> Offer {
     let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
-    for (path, text) in texts() {
-        let (file, _) = parse(text, FileId(0));
+    let files: Vec<_> = texts().map(|(path, text)| (path, text, parse(text, FileId(0)).0)).collect();
+    let jobs = files.iter().flat_map(|(_, text, file)| {
+        file.items.iter().filter_map(move |item| match item {
+            Item::Job(job) => Some((job.name.node.clone(), (*text, job.clone()))),
+            _ => None,
+        })
+    });
+    let known: HashMap<String, (&str, Job)> = jobs.collect();
+    for (path, text, file) in files {
         let (mut jobs, mut variants) = (Vec::new(), Vec::new());
         for item in file.items {
             match item {
@@ -159,13 +160,41 @@ fn offer() -> Offer {
         }
         if jobs.len() == 1 && variants.is_empty() {
             let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
-            offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job });
+            let parameters = parameters(text, &job, &known);
+            offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job, parameters });
         } else {
             let names = jobs.into_iter().map(|job| job.name.node).chain(variants);
             offer.together.insert(path, names.collect());
         }
     }
     offer
+}
+
+/// The parameters of a job that have a value, as it says them or as it takes them from the job that it extends.
+fn parameters(text: &str, job: &Job, known: &HashMap<String, (&str, Job)>) -> Vec<TemplateParameter> {
+    let written = |span: Span| text[span.start as usize..span.end as usize].to_string();
+    let parent = job.extends.as_ref().and_then(|parent| known.get(&parent.node));
+    let mut all = parent.map_or_else(Vec::new, |(text, parent)| parameters(text, parent, known));
+    for parameter in &mut all {
+        if let Some(change) = change(job, &parameter.name) {
+            parameter.default = written(change.value.span);
+        }
+    }
+    for statement in &job.statements {
+        let JobStatement::Param(param) = statement else { continue };
+        all.retain(|inherited| inherited.name != param.name.node);
+        all.extend(param.default.as_ref().map(|value| TemplateParameter {
+            name: param.name.node.clone(),
+            about: param.doc.first().map_or(String::new(), |line| line.trim().to_string()),
+            default: written(value.span),
+        }));
+    }
+    all
+}
+
+/// What a job changes of a parameter of the one that it extends.
+fn change<'j>(job: &'j Job, parameter: &str) -> Option<&'j Change> {
+    job.changes.iter().find(|change| matches!(change.target.segments.as_slice(), [name] if name.node == parameter))
 }
 
 /// The lines up to the first that ends with a full stop, as one.
@@ -209,33 +238,56 @@ fn find(name: &str) -> Result<Source, Failure> {
 }
 
 impl Source {
-    fn parameters(&self) -> Vec<&Param> {
-        let statements = self.job.statements.iter();
-        statements.filter_map(|one| if let JobStatement::Param(param) = one { Some(param) } else { None }).collect()
-    }
-
     /// The job with its new name and values, and what it uses.
     fn named(self, request: &NewJob) -> Result<Made, Failure> {
         let own = Words { text: self.job.name.node.clone(), origin: String::new() };
         let name = request.name.as_ref().unwrap_or(&own);
-        let parameters = self.parameters();
-        let mut values = Vec::new();
+        let mut values: Vec<(&str, Given)> = Vec::new();
         for (known, value) in &request.values {
-            let parameter = parameters.iter().find(|parameter| parameter.name.node == *known).ok_or_else(|| {
-                let all: Vec<String> = parameters.iter().map(|known| format!("`{}`", known.name.node)).collect();
+            if !self.parameters.iter().any(|parameter| parameter.name == *known) {
+                let all: Vec<String> = self.parameters.iter().map(|known| format!("`{}`", known.name)).collect();
                 let all = if all.is_empty() { "none".to_owned() } else { all.join(", ") };
-                Failure::Input(format!("`{}` has no parameter `{known}`; it has: {all}", self.job.name.node))
-            })?;
+                let message = format!("`{}` has no parameter `{known}`; it has: {all}", self.job.name.node);
+                return Err(Failure::Input(message));
+            }
             // of several values for one parameter the last one counts
-            values.retain(|(earlier, _): &(&&Param, Given)| earlier.name.node != *known);
-            values.push((parameter, Given::value(known, value)));
+            values.retain(|(earlier, _)| earlier != known);
+            values.push((known, Given::value(known, value)));
         }
         values.iter().try_for_each(|(_, value)| value.check())?;
-        let places =
-            values.into_iter().filter_map(|(parameter, value)| Some((parameter.default.as_ref()?.span, value)));
-        let changes = Changes::new(places.chain([(self.job.name.span, Given::name(name))]).collect());
-        let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), changes.applied(self.text))];
+        let (text, job) = self.with_places(&values.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+        let places = values.into_iter().filter_map(|(parameter, value)| Some((place(&job, parameter)?, value)));
+        let changes = Changes::new(places.chain([(job.name.span, Given::name(name))]).collect());
+        let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), changes.applied(&text))];
         used_by(self.path, self.text, &mut files).map_err(Failure::Input)?;
         Ok(Made { files, changes })
     }
+
+    /// The job with the values of these parameters written in it, also where it takes them from the one that it extends.
+    fn with_places(&self, parameters: &[&str]) -> (Cow<'static, str>, Job) {
+        let lacking = parameters.iter().filter(|name| place(&self.job, name).is_none());
+        let lacking = self.parameters.iter().filter(|known| lacking.clone().any(|name| *name == known.name));
+        let changes: Vec<String> = lacking.map(|known| format!("{}: {}", known.name, known.default)).collect();
+        let (Some(parent), [_, ..]) = (&self.job.extends, &changes[..]) else {
+            return (Cow::Borrowed(self.text), self.job.clone());
+        };
+        let (end, changes) = match self.job.changes.last() {
+            Some(last) => (last.value.span.end, format!(", {}", changes.join(", "))),
+            None => (parent.span.end, format!("({})", changes.join(", "))),
+        };
+        let mut text = self.text.to_owned();
+        text.insert_str(end as usize, &changes);
+        let jobs = parse(&text, FileId(0)).0.items.into_iter();
+        let job = jobs.filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None }).next();
+        (Cow::Owned(text), job.unwrap_or_else(|| self.job.clone()))
+    }
+}
+
+/// Where the value of a parameter stands in a job.
+fn place(job: &Job, parameter: &str) -> Option<Span> {
+    let own = job.statements.iter().find_map(|statement| match statement {
+        JobStatement::Param(param) if param.name.node == parameter => Some(param.default.as_ref()?.span),
+        _ => None,
+    });
+    own.or_else(|| Some(change(job, parameter)?.value.span))
 }

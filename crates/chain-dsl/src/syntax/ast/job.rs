@@ -1,6 +1,6 @@
 //! What a job says, and its variants.
 
-use super::{Argument, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range, Requirement};
+use super::{Argument, EachSide, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range, Requirement};
 use crate::diagnostics::source::{Name, Span};
 
 /// A job: machine, tool, motions, the surfaces asked for.
@@ -152,7 +152,10 @@ impl JobStatement {
                 retain(&mut drive.targets, &is_left);
                 retain(&mut drive.values, &is_left);
             }
-            JobStatement::Sample(sample) => retain(&mut sample.surfaces, &is_left),
+            JobStatement::Sample(sample) => {
+                retain(&mut sample.surfaces, &is_left);
+                sample.each.iter_mut().for_each(|each| retain(&mut each.values, &is_left));
+            }
             // about one thing, or none
             _ => {}
         }
@@ -223,6 +226,8 @@ pub struct GeneratedSurface {
 pub struct Sample {
     /// The surfaces, perhaps pieces of them.
     pub surfaces: Vec<Sampled>,
+    /// `for side in [1, -1]`: what has another value for each of them.
+    pub each: Option<EachSide>,
     /// What is asked for of each, in order.
     pub entries: Vec<SampleEntry>,
     /// Which branch is meant.

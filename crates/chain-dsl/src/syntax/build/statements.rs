@@ -241,6 +241,7 @@ impl Build<'_> {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let surfaces = parts.all(Rule::sampled).into_iter().map(|pair| self.sampled(pair)).collect();
+        let each = parts.optional(Rule::each_side).map(|each| self.each_side(each));
         let (mut entries, mut keeps, mut limits) = (Vec::new(), Vec::new(), Vec::new());
         let mut end = None;
         let asked = [Rule::entry, Rule::keep, Rule::limit];
@@ -254,7 +255,7 @@ impl Build<'_> {
                 _ => entries.push(self.entry(pair)),
             }
         }
-        Sample { surfaces, entries, keeps, limits, span }
+        Sample { surfaces, each, entries, keeps, limits, span }
     }
 
     fn sampled(&mut self, pair: Pair<'_, Rule>) -> Sampled {

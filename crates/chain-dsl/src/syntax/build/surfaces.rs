@@ -34,7 +34,7 @@ impl Build<'_> {
         SurfaceParts { doc, parameters, each, ..SurfaceParts::new(names) }
     }
 
-    fn each_side(&mut self, pair: Pair<'_, Rule>) -> EachSide {
+    pub(super) fn each_side(&mut self, pair: Pair<'_, Rule>) -> EachSide {
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
         let vector = parts.required(Rule::vector);
