@@ -196,3 +196,8 @@ fn helicon_wheel() {
 fn honed_gear() {
     insta::assert_snapshot!(described("specs/honing/honed_gear.chain"));
 }
+
+#[test]
+fn cycloidal_drive() {
+    insta::assert_snapshot!(described("specs/pairs/cycloidal_drive.chain"));
+}
