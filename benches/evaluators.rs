@@ -2,7 +2,10 @@
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flank_chain_dsl::compile_text;
-use flank_expr::{Binary, Graph, InstructionSet, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, Unary};
+use flank_expr::{
+    Binary, End, Graph, InstructionSet, Interval, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, Unary,
+    integral,
+};
 use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
 fn main() {
@@ -75,6 +78,23 @@ fn atan2_in_lanes(bencher: Bencher) {
     let graph = Graph::new();
     let (x, y) = (graph.variable("x"), graph.variable("y"));
     lanes(bencher, &Tape::new(&[y.binary(Binary::Atan2, x)], &[x, y]).expect("x and y are the inputs"));
+}
+
+/// The slope of an ellipse's arc over a quarter turn, and the arc: its integral. A point takes value and slope, `by_itself` the value.
+#[divan::bench(args = [("integrand", "by_itself"), ("integral", "by_itself"), ("integrand", "with_slopes"), ("integral", "with_slopes")])]
+fn arc_in_lanes(bencher: Bencher, (what, how): (&str, &str)) {
+    let graph = Graph::new();
+    let (p, turn) = (graph.variable("p"), graph.variable("turn"));
+    let slope = (p.sin().squared() + 0.64 * p.cos().squared()).sqrt();
+    let end = |expr, low, high| End { expr, range: Interval::new(low, high) };
+    let ends = [end(graph.constant(0.0), 0.0, 0.0), end(turn, 0.0, std::f64::consts::FRAC_PI_2)];
+    let value = match what {
+        "integral" => integral(slope, p, ends, &[]).expect("it is smooth"),
+        _ => graph.substitute(&[slope], &[(p, turn)])[0],
+    };
+    let slopes = [value, value.derivative(turn), value.derivative(turn).derivative(turn)];
+    let outputs = if how == "by_itself" { &slopes[..1] } else { &slopes[..] };
+    lanes(bencher, &Tape::new(outputs, &[turn]).expect("turn is the input"));
 }
 
 fn lanes(bencher: Bencher, tape: &Tape) {

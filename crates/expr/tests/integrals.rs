@@ -1,4 +1,4 @@
-//! Integrals: values against closed forms, slopes against Leibniz's rule, enclosures, series, and what they cost.
+//! Integrals: values against closed forms, slopes by the integrand, enclosures, series, and what they cost.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -24,19 +24,19 @@ fn values_slopes_enclosures_and_series_are_those_of_the_closed_form() {
     ];
     for (integrand, exact) in cases {
         let found = from_zero(integrand, t, x, 1.2).expect("smooth");
-        let exprs = [found, exact, found.derivative(x), graph.substitute(&[integrand], &[(t, x)])[0]];
+        let exprs = [found, exact];
+        assert_eq!(found.derivative(x), graph.substitute(&[integrand], &[(t, x)])[0], "the same node");
         let tape = Tape::new(&exprs, &[x]).expect("x is the input");
         let mut series = TaylorEvaluator::new(&tape, 3);
         for k in -12..=12 {
             let at = f64::from(k) / 10.0;
-            let mut out = [0.0; 4];
+            let mut out = [0.0; 2];
             ScalarEvaluator::new(&tape).run(&[at], &mut out);
             assert!((out[0] - out[1]).abs() < 3e-15, "{exact} at {at}: {out:?}");
-            assert!((out[2] - out[3]).abs() < 3e-14, "slope of {exact} at {at}: {out:?}");
-            let mut boxes = [Interval::WHOLE; 4];
+            let mut boxes = [Interval::WHOLE; 2];
             IntervalEvaluator::new(&tape).run(&[Interval::new(at, at + 1e-3)], &mut boxes);
             assert!(boxes[0].contains(out[0]) && boxes[0].width() < 0.1, "{exact} at {at}: {boxes:?}");
-            let mut terms = [0.0; 16];
+            let mut terms = [0.0; 8];
             series.run(&[at, 1.0, 0.0, 0.0], &mut terms);
             for order in 0..4 {
                 let (own, other) = (terms[order], terms[4 + order]);

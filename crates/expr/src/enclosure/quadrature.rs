@@ -46,6 +46,8 @@ pub enum Unproven {
 /// this is proven to be at most 1e-15 L max |integrand| for all values in the given ranges. Where the integrand stands still but for
 /// the variable, and so does the lower end, the middle of the upper end's range splits the integral: the part up to it is a constant.
 ///
+/// By a variable that moves the ends alone, its derivative is the integrand there: no sum.
+///
 /// `ranges` has the variables that the integrand depends on beside its own; those that stand still as points.
 ///
 /// # Errors
@@ -166,7 +168,21 @@ impl<'g> Integrand<'g> {
                 sum = sum + graph.constant(0.5 * weight / f64::from(pieces)) * value;
             }
         }
-        whole * sum
+        let integral = whole * sum;
+        self.remember_slopes(integral, from, to);
+        integral
+    }
+
+    /// By what moves the ends alone, an integral changes as its integrand there says: no sum over nodes.
+    fn remember_slopes(&self, integral: Expr<'g>, from: Expr<'g>, to: Expr<'g>) {
+        let graph = self.variable.graph();
+        let [at_from, at_to] = [from, to].map(|end| graph.substitute(&[self.expr], &[(self.variable, end)])[0]);
+        let fixed = graph.variables_of(&[self.expr]);
+        for variable in graph.variables_of(&[from, to]).into_iter().filter(|variable| !fixed.contains(variable)) {
+            let by = graph.expr_of(variable);
+            let slope = at_to * to.derivative(by) - at_from * from.derivative(by);
+            graph.remember_derivative(variable, integral.id, slope.id);
+        }
     }
 }
 
