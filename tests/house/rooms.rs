@@ -38,8 +38,11 @@ fn code(path: &Path) -> String {
 
 /// The rooms of a crate, each after all that it uses.
 const ROOMS: [(&str, &[&str]); 3] = [
-    ("solver", &["equations", "newton", "roots", "continuation", "surface", "analysis", "contact", "conversion"]),
-    ("export", &["vector", "text", "schema", "files", "points", "shape", "step", "motion", "measuring"]),
+    (
+        "solver",
+        &["equations", "newton", "roots", "continuation", "surface", "analysis", "contact", "solid", "conversion"],
+    ),
+    ("export", &["vector", "text", "schema", "files", "points", "shape", "solid", "step", "motion", "measuring"]),
     ("flank", &["project", "solve", "compare", "convert", "derive", "draw", "report", "page", "exchange", "language"]),
 ];
 

@@ -1,8 +1,8 @@
 //! From arguments to what is asked of the library.
 
 use flank::{
-    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
-    PlotRequest, ReportRequest, SolveRequest, ToleranceRequest, ViewRequest,
+    Choice, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
+    MeshFormat, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest, ToleranceRequest, ViewRequest,
 };
 
 use crate::arguments::{
@@ -33,6 +33,33 @@ impl Solve {
             certify: self.certify,
             evaluator: self.evaluator.evaluator(),
         })
+    }
+}
+
+impl Solve {
+    /// The bodies, if these are asked for.
+    pub(crate) fn solid_request(&self) -> Result<Option<SolidRequest>, Failure> {
+        let Some(part) = self.body.solid else { return Ok(None) };
+        Ok(Some(SolidRequest {
+            jobs: self.which.jobs()?,
+            part,
+            out: self.out.clone(),
+            format: self.format.iter().map(|format| mesh_format(*format)).collect::<Result<_, _>>()?,
+            deviation: self.body.deviation,
+            density: self.body.density,
+            evaluator: self.evaluator.evaluator(),
+        }))
+    }
+}
+
+fn mesh_format(format: PointFormat) -> Result<MeshFormat, Failure> {
+    match format {
+        PointFormat::Stl => Ok(MeshFormat::Stl),
+        PointFormat::Obj => Ok(MeshFormat::Obj),
+        PointFormat::ThreeMf => Ok(MeshFormat::ThreeMf),
+        PointFormat::Csv | PointFormat::Json | PointFormat::Parquet | PointFormat::Vtp => {
+            Err(Failure::of_usage(format!("a body is written as stl, obj or 3mf, not as {}", format.name())))
+        }
     }
 }
 

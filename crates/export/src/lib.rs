@@ -63,6 +63,7 @@ mod motion;
 mod points;
 mod schema;
 pub mod shape;
+mod solid;
 mod step;
 pub mod text;
 pub mod vector;
@@ -92,6 +93,7 @@ pub use points::tally::Tally;
 pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
 pub use schema::schema_of;
+pub use solid::{BodyMesh, write_body_3mf, write_body_obj, write_body_stl};
 pub use step::{Deviation, Face, write_step};
 pub use text::number::{degrees, fixed};
 

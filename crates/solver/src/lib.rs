@@ -21,6 +21,7 @@ mod conversion;
 mod equations;
 mod newton;
 mod roots;
+mod solid;
 mod surface;
 
 pub use analysis::adjustment::choice::{linear_rest, most_effective};
@@ -59,6 +60,12 @@ pub use newton::least_squares::{
 };
 pub use newton::scalar::solve;
 pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
+pub use solid::blank::Blank;
+pub use solid::body::{Body, BodyFault};
+pub use solid::chart::Chart;
+pub use solid::mass::MassProperties;
+pub use solid::mesh::{BodyPart, ClosedMesh};
+pub use solid::section::Fineness;
 pub use surface::bands::Band;
 pub use surface::body::is_inside_out;
 pub use surface::bound::BoundSurface;

@@ -7,13 +7,14 @@ mod fit;
 mod measuring;
 mod plot;
 mod report;
+mod solid;
 mod tolerance;
 
 use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf, is_separator};
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use flank::{Code, Coefficients, EvaluatorOptions, PointFormat, Signs};
 
@@ -25,6 +26,7 @@ pub(crate) use fit::Fit;
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
+pub(crate) use solid::SolidArguments;
 pub(crate) use tolerance::Tolerance;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
@@ -213,7 +215,8 @@ Examples:
   flank solve specs/bevel/pinion_19x62.chain --out pinion --format csv,json,stl
   flank solve specs/bevel/pinion_19x62.chain --geometry
   flank solve specs/bevel/pinion_19x62.chain --sensitivity
-  flank solve specs/hobbing/spur_gear.chain --json --no-picture")]
+  flank solve specs/hobbing/spur_gear.chain --json --no-picture
+  flank solve specs/bevel/gear_19x62.chain --solid gear --format stl,3mf   the closed body, its volume, mass and inertia")]
 pub(crate) struct Solve {
     #[command(flatten)]
     pub(crate) which: JobArguments,
@@ -221,8 +224,10 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,
     /// Files with the points, several with commas
-    #[arg(long, value_parser = described::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
+    #[arg(long, value_parser = described::<PointFormat>(), value_delimiter = ',', default_value = "csv", default_value_if("solid", ArgPredicate::IsPresent, "stl"))]
     pub(crate) format: Vec<PointFormat>,
+    #[command(flatten)]
+    pub(crate) body: SolidArguments,
     #[command(flatten)]
     pub(crate) faces: Faces,
     /// Also find where each surface turns back (the singular line of undercut) and where the tool's contact ends

@@ -27,6 +27,9 @@ fn told<A: Answer>(
 }
 
 pub(crate) fn solve(arguments: &Solve) -> Result<Ending, Failure> {
+    if let Some(request) = arguments.solid_request()? {
+        return told(arguments.json, |monitor, each| flank::solid(&request, monitor, each));
+    }
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::solve(&request, monitor, each))
 }

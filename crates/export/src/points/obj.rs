@@ -5,7 +5,7 @@ use std::io::Write;
 use crate::files::error::WriteError;
 use crate::points::bands::{Banded, Seen, Surfaces};
 use crate::points::conventions::sentences_of_mesh;
-use crate::points::dataset::Point;
+use crate::points::dataset::{Header, Point};
 use crate::points::facets::each_facet;
 use crate::text::number::push_shortest;
 use crate::text::one_line;
@@ -19,13 +19,7 @@ use crate::text::one_line;
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let (seen, header) = (Seen::of_surfaces(surfaces)?, surfaces.header);
-    let [program, spec, hash, job] =
-        [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
-    let origin = format!("{program}; spec: {spec}, hash {hash}; job: {job}");
-    let sentences = sentences_of_mesh(header);
-    // a backslash at the end of a line would join the next one to it
-    let mut remarks = std::iter::once(&origin).chain(&sentences).map(|text| text.trim_end_matches('\\'));
-    remarks.try_for_each(|text| writeln!(out, "# {text}"))?;
+    remarks(header, &sentences_of_mesh(header), out)?;
     let mut before = 0;
     for (surface, tally) in surfaces.list.iter().zip(&seen.tallies) {
         let outline = surface.outline();
@@ -43,6 +37,27 @@ pub fn write_obj(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wri
     Ok(())
 }
 
+/// Where a mesh comes from and what is said of it, as comments.
+pub(crate) fn remarks(header: &Header, sentences: &[String], out: &mut dyn Write) -> Result<(), WriteError> {
+    let [program, spec, hash, job] =
+        [&header.program, &header.spec, &header.spec_hash, &header.job].map(|text| one_line(text));
+    let origin = format!("{program}; spec: {spec}, hash {hash}; job: {job}");
+    // a backslash at the end of a line would join the next one to it
+    let mut remarks = std::iter::once(&origin).chain(sentences).map(|text| text.trim_end_matches('\\'));
+    Ok(remarks.try_for_each(|text| writeln!(out, "# {text}"))?)
+}
+
+/// The line of a vector, in place of what `line` held.
+pub(crate) fn vector_line(letters: &str, vector: [f64; 3], line: &mut Vec<u8>) {
+    line.clear();
+    line.extend_from_slice(letters.as_bytes());
+    for number in vector {
+        line.push(b' ');
+        push_shortest(number, line);
+    }
+    line.push(b'\n');
+}
+
 /// A vector of each solved point, one a line.
 fn write_vectors(
     surface: &dyn Banded,
@@ -53,13 +68,7 @@ fn write_vectors(
     let mut line = Vec::new();
     surface.bands(&mut |points| {
         for point in points.iter().filter(|point| point.is_solved()) {
-            line.clear();
-            line.extend_from_slice(letters.as_bytes());
-            for number in vector(point) {
-                line.push(b' ');
-                push_shortest(number, &mut line);
-            }
-            line.push(b'\n');
+            vector_line(letters, vector(point), &mut line);
             out.write_all(&line)?;
         }
         Ok(())

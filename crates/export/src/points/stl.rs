@@ -1,6 +1,6 @@
 //! Surfaces as a binary STL mesh.
 
-use std::io::SeekFrom;
+use std::io::{SeekFrom, Write};
 
 use crate::files::error::WriteError;
 use crate::files::regions::Target;
@@ -29,12 +29,8 @@ pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), Wr
     let mut triangles = 0;
     for surface in &surfaces.list {
         each_triangle(*surface, &mut |triangle| {
-            let mut bytes = [0; 50];
-            for (place, number) in bytes.chunks_exact_mut(4).zip(triangle.as_flattened()) {
-                place.copy_from_slice(&number.to_le_bytes());
-            }
             triangles += 1;
-            Ok(out.write_all(&bytes)?)
+            write_normal_and_corners(triangle, out)
         })?;
     }
     let count = u32::try_from(triangles).map_err(|_| WriteError::TooManyTriangles { triangles })?;
@@ -46,7 +42,7 @@ pub fn write_stl(surfaces: &Surfaces<'_>, out: &mut dyn Target) -> Result<(), Wr
 }
 
 /// The 80 free bytes. They must not begin with `solid`, which marks a text file.
-fn head(header: &Header) -> [u8; 80] {
+pub(crate) fn head(header: &Header) -> [u8; 80] {
     let text = one_line(&format!("binary STL in mm; {}; {}; {}", header.program, header.spec, header.job));
     let mut bytes = [b' '; 80];
     for (byte, letter) in bytes.iter_mut().zip(text.chars()) {
@@ -56,6 +52,26 @@ fn head(header: &Header) -> [u8; 80] {
 }
 
 type Triangle = [[f32; 3]; 4];
+
+fn write_normal_and_corners(triangle: &Triangle, out: &mut (impl Write + ?Sized)) -> Result<(), WriteError> {
+    let mut bytes = [0; 50];
+    for (place, number) in bytes.chunks_exact_mut(4).zip(triangle.as_flattened()) {
+        place.copy_from_slice(&number.to_le_bytes());
+    }
+    Ok(out.write_all(&bytes)?)
+}
+
+/// Writes a triangle of a mesh, which has an area or none.
+pub(crate) fn write_triangle(corners: [[f32; 3]; 3], out: &mut (impl Write + ?Sized)) -> Result<(), WriteError> {
+    let normal = normal(corners).unwrap_or_default();
+    write_normal_and_corners(&[normal, corners[0], corners[1], corners[2]], out)
+}
+
+/// Of the triangle in the file.
+fn normal(corners: [[f32; 3]; 3]) -> Option<[f32; 3]> {
+    let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+    Some(unit(cross(sub(b, a), sub(c, a)))?.map(single))
+}
 
 /// The triangles that have an area in the file.
 fn each_triangle(
@@ -67,15 +83,12 @@ fn each_triangle(
 
 /// Normal and corners; nothing where the rounded corners leave no area.
 fn triangle(corners: [Numbered<'_>; 3]) -> Option<Triangle> {
-    // Rounded first: the normal is that of the triangle in the file.
     let corners = corners.map(|(_, point)| point.position.map(single));
-    let [a, b, c] = corners.map(|corner| corner.map(f64::from));
-    let normal = unit(cross(sub(b, a), sub(c, a)))?.map(single);
-    Some([normal, corners[0], corners[1], corners[2]])
+    Some([normal(corners)?, corners[0], corners[1], corners[2]])
 }
 
 /// The format's precision, without negative zeros.
-fn single(value: f64) -> f32 {
+pub(crate) fn single(value: f64) -> f32 {
     let single = value as f32;
     if single == 0.0 { 0.0 } else { single }
 }

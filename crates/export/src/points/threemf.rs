@@ -8,6 +8,7 @@ use zip::{DateTime, ZipWriter};
 use crate::files::error::WriteError;
 use crate::points::bands::{Banded, Seen, Surfaces};
 use crate::points::conventions::sentences_of_mesh;
+use crate::points::dataset::Header;
 use crate::points::facets::{count_facets, each_facet};
 use crate::text::number::push_shortest;
 use crate::text::one_line;
@@ -37,6 +38,14 @@ const FAST: i64 = 1;
 /// When a surface is malformed or cannot hand over its points, or the stream refuses.
 pub fn write_3mf(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     Seen::of_surfaces(surfaces)?;
+    write_package(out, |model| write_model(surfaces, model))
+}
+
+/// A package around a model.
+pub(crate) fn write_package(
+    out: &mut dyn Write,
+    write_model: impl Fn(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
     // one date for all, so that the same surfaces give the same bytes
     let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
     let options = options.compression_level(Some(FAST));
@@ -47,7 +56,7 @@ pub fn write_3mf(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wri
     }
     package.start_file("3D/3dmodel.model", options.large_file(true)).map_err(io::Error::from)?;
     let mut model = io::BufWriter::new(&mut package);
-    write_model(surfaces, &mut model)?;
+    write_model(&mut model)?;
     model.flush()?;
     drop(model);
     package.finish().map_err(io::Error::from)?.into_inner().flush()?;
@@ -55,18 +64,7 @@ pub fn write_3mf(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Wri
 }
 
 fn write_model(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    let header = surfaces.header;
-    let text = |text: &str| escaped(&one_line(text));
-    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
-    writeln!(
-        out,
-        r#"<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">"#
-    )?;
-    writeln!(out, r#"<metadata name="Title">{}</metadata>"#, text(&header.job))?;
-    writeln!(out, r#"<metadata name="Application">{}</metadata>"#, text(&header.program))?;
-    let about = [format!("spec: {}, hash {}", header.spec, header.spec_hash)];
-    let about: Vec<String> = about.into_iter().chain(sentences_of_mesh(header)).collect();
-    writeln!(out, r#"<metadata name="Description">{}</metadata>"#, text(&about.join("; ")))?;
+    write_head(surfaces.header, sentences_of_mesh(surfaces.header), out)?;
     let mut drawn = Vec::new();
     for (k, surface) in surfaces.list.iter().enumerate() {
         if count_facets(*surface)? > 0 {
@@ -81,6 +79,22 @@ fn write_model(surfaces: &Surfaces<'_>, out: &mut dyn Write) -> Result<(), Write
     Ok(())
 }
 
+/// The beginning of a model and its metadata.
+pub(crate) fn write_head(header: &Header, sentences: Vec<String>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let text = |text: &str| escaped(&one_line(text));
+    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
+    writeln!(
+        out,
+        r#"<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">"#
+    )?;
+    writeln!(out, r#"<metadata name="Title">{}</metadata>"#, text(&header.job))?;
+    writeln!(out, r#"<metadata name="Application">{}</metadata>"#, text(&header.program))?;
+    let about = [format!("spec: {}, hash {}", header.spec, header.spec_hash)];
+    let about: Vec<String> = about.into_iter().chain(sentences).collect();
+    writeln!(out, r#"<metadata name="Description">{}</metadata>"#, text(&about.join("; ")))?;
+    Ok(())
+}
+
 fn write_object(id: usize, surface: &dyn Banded, out: &mut dyn Write) -> Result<(), WriteError> {
     let outline = surface.outline();
     let name = escaped(&one_line(&format!("{} in {}", outline.name, outline.frame)));
@@ -89,15 +103,7 @@ fn write_object(id: usize, surface: &dyn Banded, out: &mut dyn Write) -> Result<
     let mut line = Vec::new();
     surface.bands(&mut |points| {
         for point in points.iter().filter(|point| point.is_solved()) {
-            line.clear();
-            line.extend_from_slice(b"<vertex");
-            for (name, number) in [" x=\"", " y=\"", " z=\""].iter().zip(point.position) {
-                line.extend_from_slice(name.as_bytes());
-                push_shortest(number, &mut line);
-                line.push(b'"');
-            }
-            line.extend_from_slice(b"/>\n");
-            out.write_all(&line)?;
+            write_vertex(point.position, &mut line, out)?;
         }
         Ok(())
     })?;
@@ -108,4 +114,17 @@ fn write_object(id: usize, surface: &dyn Banded, out: &mut dyn Write) -> Result<
     })?;
     writeln!(out, "</triangles>\n</mesh></object>")?;
     Ok(())
+}
+
+/// A corner of triangles; `line` lends its memory.
+pub(crate) fn write_vertex(position: [f64; 3], line: &mut Vec<u8>, out: &mut dyn Write) -> Result<(), WriteError> {
+    line.clear();
+    line.extend_from_slice(b"<vertex");
+    for (name, number) in [" x=\"", " y=\"", " z=\""].iter().zip(position) {
+        line.extend_from_slice(name.as_bytes());
+        push_shortest(number, line);
+        line.push(b'"');
+    }
+    line.extend_from_slice(b"/>\n");
+    Ok(out.write_all(line)?)
 }

@@ -20,6 +20,7 @@ use crate::language::check::CheckResult;
 use crate::language::errors::Explanation;
 use crate::page::result::ViewResult;
 use crate::report::result::ReportResult;
+use crate::solve::body::result::SolidResult;
 use crate::solve::result::SolveResult;
 
 /// A schema.
@@ -41,6 +42,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<CheckResult>(),
         schema_of::<Explanation>(),
         schema_of::<SolveResult>(),
+        schema_of::<SolidResult>(),
         schema_of::<DeviationResult>(),
         schema_of::<ContactResult>(),
         schema_of::<FitResult>(),

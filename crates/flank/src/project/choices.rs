@@ -92,6 +92,30 @@ choices! {
 }
 
 choices! {
+    /// A part of a body.
+    SolidPart {
+        /// All of it.
+        Gear = "gear",
+        /// One tooth, from the middle of a space to the middle of the next.
+        Tooth = "tooth",
+        /// One space, from the middle of a tooth to the middle of the next.
+        Space = "space",
+    }
+}
+
+choices! {
+    /// A format of closed meshes.
+    MeshFormat {
+        /// Triangles, single precision.
+        Stl = "stl",
+        /// Triangles that share their corners.
+        Obj = "obj",
+        /// The same with their unit, packed.
+        ThreeMf = "3mf",
+    }
+}
+
+choices! {
     /// A format of pictures.
     PictureFormat {
         /// Pixels.

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
-    Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Surfaces, Target, WriteError, make_folder,
-    write_3mf, write_csv, write_grid_csv, write_grid_json, write_json, write_motion_csv, write_motion_json, write_nc,
-    write_obj, write_parquet, write_step, write_stl, write_vtp,
+    BodyMesh, Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Surfaces, Target, WriteError,
+    make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv, write_grid_csv, write_grid_json,
+    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step, write_stl,
+    write_vtp,
 };
 
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
@@ -84,6 +85,21 @@ impl<'a> Folder<'a> {
         files
             .iter()
             .try_for_each(|(name, faces)| self.write(&format!("{name}.step"), |out| write_step(header, faces, out)))
+    }
+
+    /// The closed surface of a body.
+    pub(crate) fn body_stl(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
+        self.write(&format!("{name}.stl"), |out| write_body_stl(header, body, out))
+    }
+
+    /// The same with shared corners.
+    pub(crate) fn body_obj(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
+        self.write(&format!("{name}.obj"), |out| write_body_obj(header, body, out))
+    }
+
+    /// The same, packed.
+    pub(crate) fn body_3mf(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
+        self.write(&format!("{name}.3mf"), |out| write_body_3mf(header, body, out))
     }
 
     /// A picture as PNG and SVG.

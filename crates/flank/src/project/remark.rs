@@ -63,6 +63,8 @@ pub enum NotDoneKind {
     Penetration,
     /// No settings make a flank as it was wanted.
     NotMet,
+    /// The surfaces of a solid bound no body.
+    NoBody,
 }
 
 /// Kinds of remarks.

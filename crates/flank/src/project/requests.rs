@@ -8,7 +8,8 @@ use flank_solver::MOST_BOXES;
 
 use crate::project::Project;
 use crate::project::choices::{
-    EmitForm, FunctionLanguage, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, TableFormat,
+    EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, SolidPart,
+    TableFormat,
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
@@ -147,6 +148,25 @@ pub struct SolveRequest {
     pub sensitivity: bool,
     /// Also a proof for each point that exactly one root lies near it.
     pub certify: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+/// Closed bodies.
+#[derive(Clone, Debug)]
+pub struct SolidRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// What of each is written.
+    pub part: SolidPart,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with the closed surface.
+    pub format: Vec<MeshFormat>,
+    /// How far the middles of a mesh's edges may lie off the exact surfaces, mm.
+    pub deviation: f64,
+    /// kg/m³
+    pub density: f64,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }

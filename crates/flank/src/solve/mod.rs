@@ -1,6 +1,7 @@
 //! `flank solve`
 
 pub(crate) mod blank;
+pub(crate) mod body;
 pub(crate) mod branches;
 pub(crate) mod certify;
 pub(crate) mod cut;

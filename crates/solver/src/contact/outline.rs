@@ -24,10 +24,10 @@ pub struct OutlineSegment {
 
 /// What is zero on a segment's curve and positive on the side of the material: `n · x + ½ bend x²` with x from a point of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bound {
-    pub(super) origin: [f64; 2],
-    pub(super) inward: [f64; 2],
-    pub(super) bend: f64,
+pub(crate) struct Bound {
+    pub(crate) origin: [f64; 2],
+    pub(crate) inward: [f64; 2],
+    pub(crate) bend: f64,
 }
 
 impl Bound {
@@ -39,7 +39,7 @@ impl Bound {
     }
 
     /// At a point, to first order the distance from the curve, mm.
-    pub(super) fn height(&self, point: [f64; 2]) -> f64 {
+    pub(crate) fn height(&self, point: [f64; 2]) -> f64 {
         let x = minus(point, self.origin);
         dot(self.inward, x) + 0.5 * self.bend * dot(x, x)
     }
@@ -52,7 +52,7 @@ impl Bound {
 }
 
 impl OutlineSegment {
-    pub(super) fn bound(&self) -> Bound {
+    pub(crate) fn bound(&self) -> Bound {
         let Some(center) = self.center else {
             let along = unit(minus(self.to, self.from));
             return Bound { origin: self.from, inward: [-along[1], along[0]], bend: 0.0 };
@@ -69,6 +69,23 @@ impl OutlineSegment {
         let at = |share: f64| [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k]));
         // of an arc those of the chord, brought to it
         (0..count).map(|k| self.nearest(at((k as f64 + 0.5) / count as f64))).collect()
+    }
+
+    /// The place `[z, rho]` at a share of the way from its beginning to its end, by length.
+    pub fn at(&self, share: f64) -> [f64; 2] {
+        let Some(center) = self.center else {
+            return [0, 1].map(|k| (1.0 - share) * self.from[k] + share * self.to[k]);
+        };
+        let [from, to] = [self.from, self.to].map(|end| minus(end, center));
+        let (sin, cos) = (share * cross(from, to).atan2(dot(from, to))).sin_cos();
+        [center[0] + cos * from[0] - sin * from[1], center[1] + sin * from[0] + cos * from[1]]
+    }
+
+    /// How long it is, mm.
+    pub fn length(&self) -> f64 {
+        let Some(center) = self.center else { return norm(minus(self.to, self.from)) };
+        let [from, to] = [self.from, self.to].map(|end| minus(end, center));
+        norm(from) * cross(from, to).atan2(dot(from, to)).abs()
     }
 
     /// The point of the segment that is nearest.

@@ -1,0 +1,56 @@
+//! Where tooth spaces begin, end, and leave the blank, as their sampled points tell.
+
+use flank_chain_dsl::Solid;
+use flank_solver::{Blank, OutlineSegment, SurfacePoint};
+
+use crate::project::failure::Failure;
+use crate::solve::blank;
+use crate::solve::body::piece::Piece;
+
+/// The blank of a solid with the segments that its spaces run between.
+///
+/// # Errors
+/// If the spaces do not run from one segment of the outline to another with one between.
+pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Failure> {
+    let outline = blank::outline(solid);
+    let segments = outline.segments();
+    let count = segments.len();
+    // flank and root both reach the ends of a space; the tip is far from the root, a bore from the flank
+    let both = [&pieces[pieces.len() / 2].known, &pieces[0].known];
+    let off = |k: &usize| both.map(|known| nearest(&segments[*k], known)).into_iter().fold(0.0, f64::max);
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|a, b| off(a).total_cmp(&off(b)));
+    let [a, b, ..] = order[..] else {
+        return Err(format!("the outline of `{}` has one segment: tooth spaces run between two", solid.name).into());
+    };
+    let between = |from: usize, to: usize| {
+        (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
+    };
+    let off =
+        |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0].known)).fold(f64::INFINITY, f64::min);
+    let (there, back) = (between(a, b), between(b, a));
+    let (begin, tip, end) = if off(&there) <= off(&back) { (a, there, b) } else { (b, back, a) };
+    let [tip] = tip[..] else {
+        let names: Vec<String> = tip.iter().map(|k| format!("`{}`", segments[*k].name)).collect();
+        return Err(format!(
+            "the spaces of `{}` run from `{}` to `{}` of its outline, and leave it by {}: one segment between both ends is needed",
+            solid.name,
+            segments[begin].name,
+            segments[end].name,
+            if names.is_empty() { "none".to_string() } else { names.join(", ") }
+        )
+        .into());
+    };
+    Ok(Blank { outline, ends: [begin, tip, end] })
+}
+
+/// How near points come to a segment, mm.
+fn nearest(segment: &OutlineSegment, points: &[SurfacePoint]) -> f64 {
+    let off = |point: &SurfacePoint| {
+        let [x, y, z] = point.position;
+        let rho = x.hypot(y);
+        let [near_z, near_rho] = segment.nearest([z, rho]);
+        (z - near_z).hypot(rho - near_rho)
+    };
+    points.iter().map(off).fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,95 @@
+//! `flank solve` with option `solid`: closed bodies.
+
+pub(crate) mod borders;
+pub(crate) mod ends;
+pub(crate) mod piece;
+pub(crate) mod result;
+pub(crate) mod space;
+
+use flank_chain_dsl::{Job, Solid};
+use flank_export::{BodyMesh, Header};
+use flank_expr::Graph;
+use flank_solver::BodyPart;
+
+use crate::project::choices::{MeshFormat, SolidPart};
+use crate::project::failure::Failure;
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::{Session, SolidRequest};
+use crate::project::shown_path;
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::solve::body::result::{SolidNumbers, SolidResult};
+use crate::solve::dataset::header;
+
+/// Builds the bodies of jobs, measures them and writes their closed surfaces. `each` is given the result of each job.
+///
+/// # Errors
+/// What is wrong with the spec, that it has no solid, or that a file cannot be written.
+pub fn solid(request: &SolidRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(SolidResult)) -> Result<(), Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of_compilation(&compilation);
+    let session = Session::new(request.evaluator, monitor);
+    let meant: Vec<&Job<'_>> = jobs.iter().filter(|job| !job.solids.is_empty()).collect();
+    if meant.is_empty() {
+        let names: Vec<String> = jobs.iter().map(|job| format!("`{}`", job.name)).collect();
+        return Err(format!("no solid in job {}: `solid NAME in FRAME = turned(…)` makes one", names.join(", ")).into());
+    }
+    for job in meant {
+        each(built(job, (request, &origin), session)?);
+    }
+    Ok(())
+}
+
+fn built(
+    job: &Job<'_>,
+    (request, origin): (&SolidRequest, &Origin),
+    session: Session<'_>,
+) -> Result<SolidResult, Failure> {
+    let header = header(&[job], &request.jobs, origin);
+    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let (mut solids, mut not_done) = (Vec::new(), Vec::new());
+    for solid in &job.solids {
+        let _working = session.begin(format!("building {}", solid.name))?;
+        match one(job, solid, (request, &header), (&mut folder, session)) {
+            Ok(numbers) => solids.push(numbers),
+            Err(Failure::Input(reason)) => not_done.push(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
+            Err(other) => return Err(other),
+        }
+    }
+    Ok(SolidResult {
+        job: job.name.clone(),
+        spec: shown_path(request.jobs.file()),
+        solids,
+        files: folder.finish()?,
+        not_done: origin.located(&[job], not_done),
+    })
+}
+
+fn one(
+    job: &Job<'_>,
+    solid: &Solid,
+    (request, header): (&SolidRequest, &Header),
+    (folder, session): (&mut Folder<'_>, Session<'_>),
+) -> Result<SolidNumbers, Failure> {
+    let space::Space { body, names, off } = space::body(job, solid, session)?;
+    let part = match request.part {
+        SolidPart::Gear => BodyPart::Gear,
+        SolidPart::Tooth => BodyPart::Tooth,
+        SolidPart::Space => BodyPart::Space,
+    };
+    let mesh = body.mesh(part, &body.fineness(request.deviation));
+    let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
+    let written =
+        BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
+    for format in &request.format {
+        match format {
+            MeshFormat::Stl => folder.body_stl(&file, header, &written)?,
+            MeshFormat::Obj => folder.body_obj(&file, header, &written)?,
+            MeshFormat::ThreeMf => folder.body_3mf(&file, header, &written)?,
+        }
+    }
+    Ok(SolidNumbers::new((&solid.name, &solid.frame, names), (&body, off), request.density, (&mesh, request.deviation)))
+}

@@ -1,0 +1,143 @@
+//! What `flank solve` says of bodies.
+
+use std::fmt;
+
+use flank_solver::{Body, ClosedMesh, MassProperties};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::project::answer::Answer;
+use crate::project::remark::NotDone;
+
+/// Bodies of a job, of `flank solve` with option `solid`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.solid/1")]
+pub struct SolidResult {
+    /// The job of the spec.
+    pub job: String,
+    /// As it was given, with forward slashes.
+    pub spec: String,
+    /// In the order of the spec; those that could not be built are not among them.
+    pub solids: Vec<SolidNumbers>,
+    /// Files written, in their order.
+    pub files: Vec<String>,
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
+    pub not_done: Vec<NotDone>,
+}
+
+/// A body by its exact surfaces, and its mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SolidNumbers {
+    /// Its name.
+    pub name: String,
+    /// Of all positions.
+    pub frame: String,
+    /// How many.
+    pub teeth: u32,
+    /// The surfaces of one space, in the order of the spec.
+    pub surfaces: Vec<String>,
+    /// How far the polynomials through exact points, by which everything below is measured, are off between these at the most, mm.
+    pub error_mm: f64,
+    /// Of the whole gear, as for all that follows.
+    pub volume_mm3: f64,
+    /// Of the whole surface.
+    pub area_mm2: f64,
+    /// As asked for.
+    pub density_kg_m3: f64,
+    /// Volume times density.
+    pub mass_kg: f64,
+    /// Of mass.
+    pub centre_mm: [f64; 3],
+    /// Inertia tensor about the centre of mass, kg mm².
+    pub inertia_kg_mm2: [[f64; 3]; 3],
+    /// The closed surface of the part that was asked for.
+    pub mesh: MeshNumbers,
+}
+
+/// A closed mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeshNumbers {
+    /// Corners.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// The middles of its edges lie no farther off the exact surfaces, mm.
+    pub deviation_mm: f64,
+    /// What it encloses.
+    pub volume_mm3: f64,
+    /// Of its surface.
+    pub area_mm2: f64,
+}
+
+impl SolidNumbers {
+    pub(crate) fn new(
+        (name, frame, surfaces): (&str, &str, Vec<String>),
+        (body, error): (&Body, f64),
+        density: f64,
+        (mesh, deviation): (&ClosedMesh, f64),
+    ) -> SolidNumbers {
+        let MassProperties { volume, area, centre, inertia } = body.mass_properties();
+        // kg/m³ to kg/mm³
+        let density_mm = 1e-9 * density;
+        SolidNumbers {
+            name: name.to_string(),
+            frame: frame.to_string(),
+            teeth: body.teeth(),
+            surfaces,
+            error_mm: error,
+            volume_mm3: volume,
+            area_mm2: area,
+            density_kg_m3: density,
+            mass_kg: density_mm * volume,
+            centre_mm: centre,
+            inertia_kg_mm2: inertia.map(|row| row.map(|part| density_mm * part)),
+            mesh: MeshNumbers {
+                vertices: mesh.vertices.len(),
+                triangles: mesh.triangles.len(),
+                deviation_mm: deviation,
+                volume_mm3: mesh.volume(),
+                area_mm2: mesh.area(),
+            },
+        }
+    }
+}
+
+impl Answer for SolidResult {
+    fn not_done(&self) -> &[NotDone] {
+        &self.not_done
+    }
+}
+
+impl fmt::Display for SolidResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "job {} ({})", self.job, self.spec)?;
+        self.solids.iter().try_for_each(|solid| write!(f, "\n{solid}"))?;
+        if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
+    }
+}
+
+impl fmt::Display for SolidNumbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SolidNumbers { name, frame, teeth, mesh, .. } = self;
+        writeln!(f, "solid {name} ({frame}): {teeth} spaces of {}", self.surfaces.join(", "))?;
+        writeln!(f, "  volume   {:.4} mm³", self.volume_mm3)?;
+        writeln!(f, "  area     {:.4} mm²", self.area_mm2)?;
+        writeln!(f, "  mass     {:.6} kg at {} kg/m³", self.mass_kg, self.density_kg_m3)?;
+        let [x, y, z] = self.centre_mm.map(rounded);
+        writeln!(f, "  centre   {x:.6}, {y:.6}, {z:.6} mm")?;
+        let [[xx, ..], [_, yy, _], [.., zz]] = self.inertia_kg_mm2;
+        writeln!(f, "  inertia  {xx:.4}, {yy:.4}, {zz:.4} kg mm² about x, y, z through the centre")?;
+        writeln!(
+            f,
+            "  mesh     {} triangles within {:.3} um, {:.4} mm³",
+            mesh.triangles,
+            1e3 * mesh.deviation_mm,
+            mesh.volume_mm3
+        )
+    }
+}
+
+/// Without what rounding leaves of zero.
+fn rounded(mm: f64) -> f64 {
+    if mm.abs() < 5e-7 { 0.0 } else { mm }
+}

@@ -1,0 +1,147 @@
+//! The surfaces of a tooth space as charts whose borders are the lines that they share.
+
+use flank_chain_dsl::{Job, Solid};
+use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, SurfacePoints};
+
+use crate::project::failure::Failure;
+use crate::project::requests::Session;
+use crate::project::units;
+use crate::solve::body::borders::{Border, End, borders, lost, meeting};
+use crate::solve::body::ends;
+use crate::solve::body::piece::{Piece, along_of, positions};
+
+/// How far charts may be off between their points, mm: below what any file or number shows.
+const EXACT: f64 = 1e-8;
+/// Rows and columns of charts that are tried.
+const COUNTS: [usize; 4] = [9, 17, 33, 65];
+
+/// The surfaces of a space, made into charts of a body.
+pub(crate) struct Space {
+    pub(crate) body: Body,
+    /// The names of its charts, in the order of the solid.
+    pub(crate) names: Vec<String>,
+    /// How far the charts are off between their points at the most, mm.
+    pub(crate) off: f64,
+}
+
+/// # Errors
+/// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
+pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>) -> Result<Space, Failure> {
+    if solid.space.len() < 2 {
+        return Err(format!(
+            "the space of `{}` is one surface: its body needs all of them from tip to tip, the root among them",
+            solid.name
+        )
+        .into());
+    }
+    let pieces = solid.space.iter().map(|at| Piece::new(job, &job.surfaces[*at], session));
+    let pieces: Vec<Piece<'_, '_>> = pieces.collect::<Result<_, Failure>>()?;
+    let blank = ends::blank(solid, &pieces)?;
+    let borders = borders(solid, &pieces, &blank)?;
+    let mut made = None;
+    for count in COUNTS {
+        session.check()?;
+        let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces, (&borders[k], &blank), count));
+        let charts: Vec<Chart> = charts.collect::<Result<_, Failure>>()?;
+        let off = charts.iter().map(Chart::tail).fold(0.0, f64::max);
+        made = Some((charts, off));
+        if off <= EXACT {
+            break;
+        }
+    }
+    let (charts, off) = made.expect("some counts are tried");
+    let body = Body::new(blank.clone(), solid.teeth, charts).map_err(|fault| faulty(solid, &blank, fault))?;
+    Ok(Space { body, names: pieces.iter().map(|piece| piece.surface.name.clone()).collect(), off })
+}
+
+/// The chart of a surface between its borders.
+fn chart(
+    (solid, k): (&Solid, usize),
+    pieces: &[Piece<'_, '_>],
+    (border, blank): (&Border, &Blank),
+    count: usize,
+) -> Result<Chart, Failure> {
+    let (piece, shares) = (&pieces[k], Chart::shares(count));
+    let end = |side: usize| match &border.ends[side] {
+        End::Value(value) => Ok(vec![*value; count]),
+        End::Tip => at_tip(solid, piece, (border.unknown, blank), &shares),
+        End::Trimmed => {
+            let [first, second] = if side == 0 { [k - 1, k] } else { [k, k + 1] };
+            let met = meeting([&pieces[first], &pieces[second]], blank, &shares);
+            let values = met.map(|points| points.iter().map(|of| of[1 - side].unknowns[border.unknown]).collect());
+            values.ok_or_else(|| lost(solid, [&pieces[first], &pieces[second]]))
+        }
+    };
+    let ends = [end(0)?, end(1)?];
+    let value = |i: usize, j: usize| (1.0 - shares[i]) * ends[0][j] + shares[i] * ends[1][j];
+    let targets: Vec<[f64; 2]> =
+        (0..count * count).map(|at| [value(at / count, at % count), shares[at % count]]).collect();
+    let middle = value(count / 2, count / 2);
+    let width = (ends[1][count / 2] - ends[0][count / 2]).abs();
+    let far = |point: &SurfacePoint| {
+        (point.unknowns[border.unknown] - middle).abs() / width + (along_of(blank, point) - 0.5).abs()
+    };
+    let points = piece.solved(piece.across(border.unknown, blank), (&targets, [count; 2]), far);
+    all_solved(solid, piece, &points)?;
+    Ok(Chart::through(positions(&points), [count; 2]))
+}
+
+/// The values of an unknown where a surface reaches the tip.
+fn at_tip(
+    solid: &Solid,
+    piece: &Piece<'_, '_>,
+    (unknown, blank): (usize, &Blank),
+    shares: &[f64],
+) -> Result<Vec<f64>, Failure> {
+    let targets: Vec<[f64; 2]> = shares.iter().map(|share| blank.tip(*share)).collect();
+    let middle = targets[targets.len() / 2];
+    let far = |point: &SurfacePoint| {
+        let [x, y, z] = point.position;
+        (z - middle[0]).hypot(x.hypot(y) - middle[1])
+    };
+    let points = piece.solved(piece.section(), (&targets, [1, shares.len()]), far);
+    all_solved(solid, piece, &points)?;
+    Ok((0..points.len()).map(|k| points.unknowns(k)[unknown]).collect())
+}
+
+/// # Errors
+/// With the first point that is not solved.
+fn all_solved(solid: &Solid, piece: &Piece<'_, '_>, points: &SurfacePoints) -> Result<(), Failure> {
+    let open: Vec<usize> = (0..points.len()).filter(|k| points.outcome(*k) != Outcome::Solved).collect();
+    let Some(first) = open.first() else { return Ok(()) };
+    let outcome = match points.outcome(*first) {
+        Outcome::CutAway(_) => "undercut: the tool cuts them away again",
+        Outcome::Outside { .. } => "beyond the ranges of their unknowns",
+        Outcome::Singular => "singular",
+        Outcome::Ambiguous => "on several branches: its sample needs a `keep`",
+        _ => "not found",
+    };
+    Err(format!(
+        "`{}` does not reach its neighbours and the tip in the spaces of `{}`: {} of {} points there are {outcome}",
+        piece.surface.name,
+        solid.name,
+        open.len(),
+        points.len()
+    )
+    .into())
+}
+
+fn faulty(solid: &Solid, blank: &Blank, fault: BodyFault) -> Failure {
+    let length = |mm: f64| units::scientific(mm, 2);
+    let segments = blank.outline.segments();
+    match fault {
+        BodyFault::Pointed { overlap, share } => format!(
+            "the teeth of `{}` are pointed below the tip: their flanks overlap by {} mm at `{}`, {:.0} % of the way from `{}` to `{}`",
+            solid.name, length(overlap), segments[blank.ends[1]].name, 100.0 * share,
+            segments[blank.ends[0]].name, segments[blank.ends[2]].name
+        ),
+        BodyFault::Overlap { overlap, rho } => format!(
+            "the spaces of `{}` run into each other by {} mm at {rho:.3} mm from the axis: fewer teeth, or narrower spaces",
+            solid.name, length(overlap)
+        ),
+        BodyFault::Through { segment, by } => format!(
+            "the spaces of `{}` go {} mm through `{}` of its outline",
+            solid.name, length(by), segments[segment].name
+        ),
+    }.into()
+}

@@ -1,0 +1,311 @@
+//! The closed surface of a body as triangles that share their corners.
+
+use std::collections::BTreeSet;
+
+use crate::solid::body::{Body, Polar, position};
+use crate::solid::section::{Fineness, Layout};
+
+/// Cells along an arc of the rest of the outline.
+const ALONG_ARC: usize = 16;
+/// Cells of a chart in one direction at the most.
+const MOST_CELLS: usize = 256;
+/// A body whose beginning and end are turned by less than this against each other is straight.
+const STRAIGHT: f64 = 1e-9;
+
+/// What of a body is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyPart {
+    /// All of it.
+    Gear,
+    /// One tooth, from the middle of a space to the middle of the next.
+    Tooth,
+    /// One space, from the middle of a tooth to the middle of the next.
+    Space,
+}
+
+/// A closed surface of triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedMesh {
+    /// The corners, mm, each once.
+    pub vertices: Vec<[f64; 3]>,
+    /// Each as three vertices, anticlockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The cells of a part in a section: each with its tooth, and the nodes of all teeth numbered one after the other.
+pub(crate) struct Cells {
+    /// Nodes of one tooth.
+    nodes: usize,
+    /// Teeth that the nodes are of.
+    teeth: usize,
+    pub(crate) cells: Vec<[usize; 4]>,
+}
+
+impl Cells {
+    pub(crate) fn new(body: &Body, part: BodyPart, layout: &Layout) -> Cells {
+        let own = layout.cells();
+        let nodes = layout.nodes();
+        let all = body.teeth() as usize;
+        let teeth = match part {
+            BodyPart::Gear => all,
+            BodyPart::Tooth => 1,
+            BodyPart::Space => 2,
+        };
+        // a node on the far side of a tooth is one of the next tooth
+        let last = layout.width();
+        let next: Vec<(usize, usize)> =
+            (0..=layout.rim).map(|row| (layout.in_rim(row, last), layout.in_rim(row, 0))).collect();
+        let number = |tooth: usize, node: usize| match next.iter().find(|(far, _)| *far == node) {
+            Some((_, near)) if part == BodyPart::Gear || (part == BodyPart::Space && tooth == 0) => {
+                (tooth + 1) % teeth * nodes + near
+            }
+            _ => tooth * nodes + node,
+        };
+        let is_wanted = |tooth: usize, cell: &[usize; 4]| {
+            part != BodyPart::Space || (tooth == 0) != layout.is_before_middle(cell[0])
+        };
+        let cells = (0..teeth).flat_map(|tooth| {
+            let wanted = own.iter().filter(move |cell| is_wanted(tooth, cell));
+            wanted.map(move |cell| cell.map(|node| number(tooth, node)))
+        });
+        Cells { nodes, teeth, cells: cells.collect() }
+    }
+
+    /// The tooth of a node, and which node of it.
+    pub(crate) fn of(&self, node: usize) -> (usize, usize) {
+        (node / self.nodes, node % self.nodes)
+    }
+
+    /// How many numbers nodes have.
+    pub(crate) fn count(&self) -> usize {
+        self.nodes * self.teeth
+    }
+
+    /// The sides of cells that no other cell has, the cell on their left.
+    pub(crate) fn border(&self) -> Vec<[usize; 2]> {
+        let sides = || self.cells.iter().flat_map(|cell| (0..4).map(move |k| [cell[k], cell[(k + 1) % 4]]));
+        let all: BTreeSet<[usize; 2]> = sides().collect();
+        sides().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+    }
+}
+
+/// Where the rest of the outline is cut into cells: its places `[z, rho]` from the end of the spaces round to their beginning, each
+/// with its share of the way.
+fn around_rest(body: &Body, twist: f64, along: usize) -> Vec<([f64; 2], f64)> {
+    let rest = body.blank().rest();
+    let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
+    let mut before = 0.0;
+    let mut places = Vec::new();
+    for segment in rest {
+        let cells = if segment.center.is_some() { ALONG_ARC } else { 1 };
+        let cells = if twist.abs() > STRAIGHT { cells.max(along) } else { cells };
+        let length = segment.length();
+        places.extend((0..cells).map(|k| {
+            let share = k as f64 / cells as f64;
+            (if k == 0 { segment.from } else { segment.at(share) }, (before + share * length) / whole)
+        }));
+        before += length;
+    }
+    places
+}
+
+impl Body {
+    /// The closed surface of a part, its corners on the exact surfaces.
+    pub fn mesh(&self, part: BodyPart, fineness: &Fineness) -> ClosedMesh {
+        let (across, along) = Body::shares_of(fineness);
+        let layout = Layout::new(fineness);
+        let lines = self.lines(&across, &along);
+        let shares = layout.shares(&layout.top(&lines[lines.len() / 2], self.pitch()));
+        let cells = Cells::new(self, part, &layout);
+        let mut surface = Surface::new(self, (&layout, &cells), (&lines, &shares));
+        for cell in &cells.cells {
+            surface.quad(cell.map(|node| (node, lines.len() - 1)));
+            let [a, b, c, d] = cell.map(|node| (node, 0));
+            surface.quad([a, d, c, b]);
+        }
+        for [a, b] in cells.border() {
+            // whole rings have cells of their own; a part has sides, which go on below
+            let is_below = [a, b].iter().all(|node| layout.is_below(cells.of(*node).1));
+            if is_below && part == BodyPart::Gear {
+                surface.around_rest([a, b]);
+            } else {
+                (1..lines.len()).for_each(|j| surface.quad([(a, j - 1), (b, j - 1), (b, j), (a, j)]));
+            }
+        }
+        surface.mesh.turned_outwards()
+    }
+
+    /// So finely that the middles of cells' sides are no farther than `tolerance` (mm) from the exact surfaces.
+    pub fn fineness(&self, tolerance: f64) -> Fineness {
+        let mut charts = vec![2; self.charts.len()];
+        let rest = self.blank().rest();
+        let has_arc = rest.iter().any(|segment| segment.center.is_some());
+        let mut along = if has_arc { ALONG_ARC * rest.len() } else { 2 * rest.len() }.next_power_of_two();
+        for (count, chart) in charts.iter_mut().zip(&self.charts) {
+            let doubled = |cells: usize| (0..=2 * cells).map(|k| k as f64 / (2 * cells) as f64).collect::<Vec<f64>>();
+            while *count < MOST_CELLS
+                && sag(&chart.lattice(&doubled(*count), &[0.0, 0.5, 1.0]), [2 * *count + 1, 3], 0) > tolerance
+            {
+                *count *= 2;
+            }
+            while along < MOST_CELLS
+                && sag(&chart.lattice(&[0.0, 0.5, 1.0], &doubled(along)), [3, 2 * along + 1], 1) > tolerance
+            {
+                along *= 2;
+            }
+        }
+        // the two flanks have as many rows as each other, and so do the fillets beside them
+        let last = charts.len() - 1;
+        for k in 0..=last / 2 {
+            let both = charts[k].max(charts[last - k]);
+            (charts[k], charts[last - k]) = (both, both);
+        }
+        let line = &self.lines(&vec![vec![0.0, 1.0]; self.charts.len()], &[0.5])[0];
+        let (tip, land) = (line[0][1], line[0][2] + self.pitch() - line[line.len() - 1][2]);
+        let steps = |rho: f64, angle: f64| (angle * (rho / (8.0 * tolerance)).sqrt()).ceil() as usize;
+        let widest = rest.iter().flat_map(|segment| [segment.from[1], segment.to[1]]).fold(0.0, f64::max);
+        let of_charts = Layout::new(&Fineness { charts: charts.clone(), tooth: 0, rim: 1, along }).width();
+        // twice as many, since they are not even
+        let below = (2 * steps(widest, self.pitch())).saturating_sub(of_charts);
+        let tooth = steps(tip, land).max(below).max(2).next_multiple_of(2);
+        Fineness { charts, tooth, rim: 1, along }
+    }
+}
+
+/// How far points between two others lie off their chord, in one direction of a lattice of doubled fineness.
+fn sag(points: &[[f64; 3]], [rows, columns]: [usize; 2], direction: usize) -> f64 {
+    let step = if direction == 0 { columns } else { 1 };
+    let mut most: f64 = 0.0;
+    for (i, j) in (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+        let along = if direction == 0 { i } else { j };
+        if along.is_multiple_of(2) {
+            continue;
+        }
+        let at = i * columns + j;
+        let off = [0, 1, 2].map(|k| points[at][k] - 0.5 * (points[at - step][k] + points[at + step][k]));
+        most = most.max(off.iter().map(|x| x * x).sum::<f64>().sqrt());
+    }
+    most
+}
+
+/// Triangles as they are added; a node gets its vertex when it is first asked for.
+struct Surface<'b> {
+    cells: &'b Cells,
+    pitch: f64,
+    /// The nodes of a tooth at each place along.
+    places: Vec<Vec<Polar>>,
+    /// The places of the rest of the outline, below the nodes of one tooth.
+    rest: Vec<Vec<Polar>>,
+    first_below: usize,
+    /// Vertices of nodes at places along, then of nodes at places of the rest.
+    vertices: [Vec<u32>; 2],
+    mesh: ClosedMesh,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'b> Surface<'b> {
+    fn new(
+        body: &Body,
+        (layout, cells): (&Layout, &'b Cells),
+        (lines, shares): (&[Vec<Polar>], &[f64]),
+    ) -> Surface<'b> {
+        let (pitch, last) = (body.pitch(), lines.len() - 1);
+        let places = lines.iter().zip(body.blank().below(last));
+        let places: Vec<Vec<Polar>> = places.map(|(line, below)| layout.places(line, pitch, below, shares)).collect();
+        let middle = |line: &[Polar]| line[layout.middle][2];
+        let (from, to) = (middle(&lines[last]), middle(&lines[0]));
+        let rest = around_rest(body, to - from, last).into_iter().map(|([z, rho], share)| {
+            let start = (1.0 - share) * from + share * to;
+            shares.iter().map(|along| [z, rho, start + along * pitch]).collect()
+        });
+        let rest: Vec<Vec<Polar>> = rest.collect();
+        let vertices = [vec![NONE; cells.count() * lines.len()], vec![NONE; cells.count() * rest.len()]];
+        let mesh = ClosedMesh { vertices: Vec::new(), triangles: Vec::new() };
+        Surface { cells, pitch, places, rest, first_below: layout.in_rim(layout.rim, 0), vertices, mesh }
+    }
+
+    fn vertex(&mut self, (node, j): (usize, usize)) -> u32 {
+        let (tooth, own) = self.cells.of(node);
+        let place = self.places[j][own];
+        let slot = node * self.places.len() + j;
+        self.numbered(0, slot, tooth, place)
+    }
+
+    /// The vertex of a node below at a place of the rest of the outline; the first and what follows the last are those of the ends.
+    fn vertex_of_rest(&mut self, node: usize, k: usize) -> u32 {
+        if k == 0 {
+            return self.vertex((node, self.places.len() - 1));
+        }
+        if k == self.rest.len() {
+            return self.vertex((node, 0));
+        }
+        let (tooth, own) = self.cells.of(node);
+        let place = self.rest[k][own - self.first_below];
+        self.numbered(1, node * self.rest.len() + k, tooth, place)
+    }
+
+    fn numbered(&mut self, kind: usize, slot: usize, tooth: usize, [z, rho, angle]: Polar) -> u32 {
+        if self.vertices[kind][slot] == NONE {
+            self.vertices[kind][slot] = self.mesh.vertices.len() as u32;
+            self.mesh.vertices.push(position([z, rho, angle + tooth as f64 * self.pitch]));
+        }
+        self.vertices[kind][slot]
+    }
+
+    fn quad(&mut self, corners: [(usize, usize); 4]) {
+        let corners = corners.map(|corner| self.vertex(corner));
+        self.split(corners);
+    }
+
+    fn around_rest(&mut self, [a, b]: [usize; 2]) {
+        for k in 0..self.rest.len() {
+            let corners = [(a, k + 1), (b, k + 1), (b, k), (a, k)].map(|(node, k)| self.vertex_of_rest(node, k));
+            self.split(corners);
+        }
+    }
+
+    /// Two triangles along the shorter diagonal.
+    fn split(&mut self, [a, b, c, d]: [u32; 4]) {
+        let at = |vertex: u32| self.mesh.vertices[vertex as usize];
+        let squared = |p: u32, q: u32| [0, 1, 2].map(|k| at(p)[k] - at(q)[k]).iter().map(|x| x * x).sum::<f64>();
+        let triangles = if squared(a, c) <= squared(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        self.mesh.triangles.extend(triangles);
+    }
+}
+
+impl ClosedMesh {
+    /// What it encloses, mm³.
+    pub fn volume(&self) -> f64 {
+        let corners = |triangle: &[u32; 3]| triangle.map(|k| nalgebra::Vector3::from(self.vertices[k as usize]));
+        self.triangles.iter().map(corners).map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0).sum()
+    }
+
+    /// Its area, mm².
+    pub fn area(&self) -> f64 {
+        let corners = |triangle: &[u32; 3]| triangle.map(|k| nalgebra::Vector3::from(self.vertices[k as usize]));
+        self.triangles.iter().map(corners).map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum()
+    }
+
+    /// Vertices less edges plus faces: 2 of a ball, 0 of a ring.
+    pub fn euler_characteristic(&self) -> i64 {
+        let edges = self.triangles.len() * 3 / 2;
+        self.vertices.len() as i64 - edges as i64 + self.triangles.len() as i64
+    }
+
+    /// Whether every edge has two triangles that run along it in opposite senses.
+    pub fn is_closed(&self) -> bool {
+        let sides = self.triangles.iter().flat_map(|t| (0..3).map(move |k| (t[k], t[(k + 1) % 3])));
+        let mut all: Vec<(u32, u32)> = sides.collect();
+        all.sort_unstable();
+        let is_once = all.windows(2).all(|pair| pair[0] != pair[1]);
+        is_once && all.iter().all(|(a, b)| all.binary_search(&(*b, *a)).is_ok())
+    }
+
+    fn turned_outwards(mut self) -> ClosedMesh {
+        if self.volume() < 0.0 {
+            self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        self
+    }
+}

@@ -1,0 +1,8 @@
+//! Bodies: blanks turned about an axis, less their tooth spaces.
+
+pub(crate) mod blank;
+pub(crate) mod body;
+pub(crate) mod chart;
+pub(crate) mod mass;
+pub(crate) mod mesh;
+pub(crate) mod section;

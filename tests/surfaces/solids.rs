@@ -1,0 +1,289 @@
+//! Bodies: closed, on the exact surfaces, with the volume of closed forms.
+
+use std::collections::BTreeSet;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+use std::sync::Arc;
+
+use flank::{
+    Answer, Buffers, Disk, EvaluatorOptions, JobSelection, MeshFormat, Project, SolidNumbers, SolidPart, SolidRequest,
+    SolidResult, Unwatched, solid,
+};
+use flank_tests::repository;
+
+const BODIES: &str = "tests/surfaces/specs/bodies.chain";
+const DEVIATION: f64 = 0.01;
+
+struct Asked<'a> {
+    spec: &'a str,
+    job: &'a str,
+    set: &'a [(&'a str, &'a str)],
+    part: SolidPart,
+    deviation: f64,
+    /// What of the text is replaced by what.
+    changed: Option<(&'a str, &'a str)>,
+}
+
+impl<'a> Asked<'a> {
+    fn new(spec: &'a str, job: &'a str, set: &'a [(&'a str, &'a str)]) -> Asked<'a> {
+        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None }
+    }
+
+    /// The result, and the triangles that were written of each solid, in a folder.
+    fn built(&self, folder: &Path) -> SolidResult {
+        let path = repository(self.spec);
+        let mut text = std::fs::read_to_string(&path).expect("a spec");
+        if let Some((from, to)) = self.changed {
+            assert!(text.contains(from), "{from}");
+            text = text.replace(from, to);
+        }
+        let files = Buffers::over(Arc::new(Disk)).with(&path, &text);
+        let set = self.set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+        let project = Project::open(&path, Arc::new(files));
+        let request = SolidRequest {
+            jobs: JobSelection { project, job: Some(self.job.to_string()), set },
+            part: self.part,
+            out: folder.to_path_buf(),
+            format: vec![MeshFormat::Stl],
+            deviation: self.deviation,
+            density: 7850.0,
+            evaluator: EvaluatorOptions::default(),
+        };
+        let mut results = Vec::new();
+        solid(&request, &Unwatched, &mut |result| results.push(result)).expect("a right spec");
+        results.remove(0)
+    }
+
+    fn only(&self) -> (SolidNumbers, Vec<[[f32; 3]; 3]>) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut result = self.built(folder.path());
+        assert!(result.is_complete(), "{:?}", result.not_done());
+        (result.solids.remove(0), triangles(&folder.path().join(format!("{}.stl", self.job))))
+    }
+
+    fn refused(&self) -> String {
+        let folder = tempfile::tempdir().expect("a folder");
+        let result = self.built(folder.path());
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0, "no broken body in a file");
+        result.not_done()[0].message.clone()
+    }
+}
+
+fn triangles(path: &Path) -> Vec<[[f32; 3]; 3]> {
+    let bytes = std::fs::read(path).expect("written");
+    let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().expect("four"));
+    let corner = |bytes: &[u8]| [0, 4, 8].map(|k| number(&bytes[k..k + 4]));
+    bytes[84..].chunks_exact(50).map(|of| [12, 24, 36].map(|k| corner(&of[k..k + 12]))).collect()
+}
+
+/// Vertices less edges plus faces of a mesh, in which each side of a triangle is one of another that runs along it the other way.
+fn euler_characteristic(triangles: &[[[f32; 3]; 3]]) -> i64 {
+    let bits = |corner: [f32; 3]| corner.map(f32::to_bits);
+    let sides = triangles.iter().flat_map(|t| (0..3).map(move |k| (bits(t[k]), bits(t[(k + 1) % 3]))));
+    let all: Vec<_> = sides.collect();
+    let once: BTreeSet<_> = all.iter().copied().collect();
+    assert_eq!(once.len(), all.len(), "no side twice in one sense");
+    assert!(once.iter().all(|(a, b)| once.contains(&(*b, *a))), "each side has its other triangle");
+    let vertices: BTreeSet<_> = all.iter().map(|(a, _)| *a).collect();
+    vertices.len() as i64 - all.len() as i64 / 2 + triangles.len() as i64
+}
+
+fn volume(triangles: &[[[f32; 3]; 3]]) -> f64 {
+    let of = |t: &[[f32; 3]; 3]| {
+        let [a, b, c] = t.map(|corner| corner.map(f64::from));
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    triangles.iter().map(of).sum::<f64>() / 6.0
+}
+
+/// A gear that a rack of 20 degrees, height 1.25 and tip radius 0.38 generates, by the involute and the trochoid in closed form.
+struct Spur {
+    module: f64,
+    teeth: f64,
+    shift: f64,
+}
+
+const ALPHA: f64 = PI / 9.0;
+
+impl Spur {
+    fn radius(&self) -> f64 {
+        0.5 * self.module * self.teeth
+    }
+
+    /// Distance from the axis and angle from the middle of the space, where the rounding of the rack's tip touches at an angle.
+    fn trochoid(&self, theta: f64) -> [f64; 2] {
+        let (m, r) = (self.module, self.radius());
+        let rounding = 0.38 * m;
+        let across = PI * m / 4.0 - (1.25 * m - rounding) * ALPHA.tan() - rounding / ALPHA.cos();
+        let depth = 1.25 * m - rounding - self.shift * m;
+        // the normal goes through the pitch point
+        let pitch_point = across - depth / theta.tan();
+        let x = across + rounding * theta.cos() - pitch_point;
+        let y = r - depth - rounding * theta.sin();
+        [x.hypot(y), x.atan2(y) + pitch_point / r]
+    }
+
+    /// Half the angle of the space at a distance from the axis.
+    fn involute(&self, rho: f64) -> f64 {
+        let inv = |angle: f64| angle.tan() - angle;
+        let at = (self.radius() * ALPHA.cos() / rho).acos();
+        let tooth = FRAC_PI_2 / self.teeth + 2.0 * self.shift * ALPHA.tan() / self.teeth + inv(ALPHA) - inv(at);
+        PI / self.teeth - tooth
+    }
+
+    /// The area of one space up to a tip radius: half the angle times twice ρ dρ, flank and fillet one after the other.
+    fn space(&self, tip: f64) -> f64 {
+        let [form, _] = self.trochoid(ALPHA);
+        let flank = simpson(form, tip, |rho| 2.0 * self.involute(rho) * rho);
+        flank + self.fillet(ALPHA)
+    }
+
+    /// The area of one space up to where the rounding of the rack's tip touches at an angle.
+    fn fillet(&self, theta: f64) -> f64 {
+        let step = 1e-5;
+        simpson(theta, FRAC_PI_2, |theta| {
+            let [rho, angle] = self.trochoid(theta);
+            let slope = (self.trochoid(theta + step)[0] - self.trochoid(theta - step)[0]) / (2.0 * step);
+            -2.0 * angle * rho * slope
+        })
+    }
+}
+
+fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: usize = 4000;
+    let h = (to - from) / STEPS as f64;
+    let weight = |k: usize| {
+        if k == 0 || k == STEPS {
+            1.0
+        } else if k % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        }
+    };
+    (0..=STEPS).map(|k| weight(k) * f(from + h * k as f64)).sum::<f64>() * h / 3.0
+}
+
+#[test]
+fn a_spur_gear_has_the_volume_of_involute_and_trochoid() {
+    for (teeth, shift) in [(24.0, 0.2), (41.0, -0.3), (17.0, 0.45)] {
+        let set = [("helix_angle", "0 deg"), ("teeth", &*teeth.to_string()), ("shift", &*shift.to_string())];
+        let (body, _) = Asked::new(BODIES, "helical", &set).only();
+        let spur = Spur { module: 3.0, teeth, shift };
+        let tip = spur.radius() + (1.0 + shift) * 3.0;
+        let section = PI * (tip * tip - 400.0) - teeth * spur.space(tip);
+        // the slope by differences is good to some 1e-9
+        let off = body.volume_mm3 / (20.0 * section) - 1.0;
+        assert!(off.abs() < 2e-8, "{teeth} teeth: {} mm³, {off:e}", body.volume_mm3);
+        assert!(body.centre_mm.iter().all(|x| x.abs() < 1e-9), "{:?}", body.centre_mm);
+        assert!((body.mass_kg / (7.85e-6 * body.volume_mm3) - 1.0).abs() < 1e-14);
+    }
+}
+
+/// Cavalieri: each section of a helical gear is the same one turned.
+#[test]
+fn a_helical_gear_has_a_volume_in_proportion_to_its_width() {
+    let volume = |width: &str| Asked::new(BODIES, "helical", &[("face_width", width)]).only().0.volume_mm3;
+    let (one, two) = (volume("15 mm"), volume("30 mm"));
+    assert!((two / one - 2.0).abs() < 1e-10, "{one} {two}");
+}
+
+#[test]
+fn every_mesh_is_closed_and_nears_the_exact_body() {
+    let jobs = [
+        ("specs/pairs/spur_pair.chain", "spur_pair", "pinion"),
+        (BODIES, "helical", "gear"),
+        ("specs/bevel/pinion_19x62.chain", "pinion_19x62", "pinion"),
+    ];
+    for (spec, job, name) in jobs {
+        for (part, holes, of) in [(SolidPart::Gear, 0, 1), (SolidPart::Tooth, 2, 0), (SolidPart::Space, 2, 0)] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let result = Asked { part, ..Asked::new(spec, job, &[]) }.built(folder.path());
+            let body = &result.solids[0];
+            assert_eq!(body.name, name);
+            let file = if result.solids.len() == 1 { job.to_string() } else { format!("{job}.{name}") };
+            let mesh = triangles(&folder.path().join(format!("{file}.stl")));
+            assert_eq!(euler_characteristic(&mesh), holes, "{job} {part:?}");
+            let exact = if of == 1 { body.volume_mm3 } else { body.volume_mm3 / f64::from(body.teeth) };
+            let area = body.mesh.area_mm2;
+            // no more than a skin as thick as the mesh may be off, and single precision
+            let off = (volume(&mesh) - exact).abs();
+            assert!(off < area * (DEVIATION + 1e-5), "{job} {part:?}: {off} mm³ of {exact}");
+            assert!((volume(&mesh) - body.mesh.volume_mm3).abs() < area * 1e-5, "what is said of the mesh is so");
+            if of == 1 {
+                assert!((area / body.area_mm2 - 1.0).abs() < 2e-3, "{area} {}", body.area_mm2);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_finer_mesh_is_nearer() {
+    let asked = |deviation: f64| Asked { deviation, ..Asked::new(BODIES, "helical", &[]) }.only().0;
+    let off = [0.08, 0.005].map(|deviation| {
+        let body = asked(deviation);
+        ((body.mesh.volume_mm3 / body.volume_mm3 - 1.0).abs(), (body.mesh.area_mm2 / body.area_mm2 - 1.0).abs())
+    });
+    assert!(off[1].0 < off[0].0 / 4.0 && off[1].1 < off[0].1 / 4.0, "{off:?}");
+}
+
+/// Moments of a gear with so many teeth are the same about all axes across its own, and those of a full ring are a ring's.
+#[test]
+fn inertia_is_that_of_a_ring_with_spaces() {
+    let (body, _) = Asked::new(BODIES, "helical", &[]).only();
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = body.inertia_kg_mm2;
+    assert!((xx / yy - 1.0).abs() < 1e-10 && [xy, xz, yz].iter().all(|x| x.abs() < 1e-9 * zz), "{xx} {yy} {zz}");
+    // between those of the rings with root and tip radius
+    let ring = |outer: f64| 7.85e-6 * 0.5 * PI * 20.0 * (outer.powi(4) - 20f64.powi(4));
+    assert!(ring(33.0) < zz && zz < ring(41.0), "{zz}");
+    // by width h: xx is half of zz and the mass times h²/12
+    assert!((xx - 0.5 * zz - body.mass_kg * 400.0 / 12.0).abs() < 1e-9 * xx);
+}
+
+#[test]
+fn teeth_that_the_rack_undercuts_end_where_flank_and_fillet_meet() {
+    let set = [("helix_angle", "0 deg"), ("teeth", "10"), ("shift", "0"), ("bore", "5 mm")];
+    let (body, mesh) = Asked::new(BODIES, "helical", &set).only();
+    assert_eq!(euler_characteristic(&mesh), 0);
+    let spur = Spur { module: 3.0, teeth: 10.0, shift: 0.0 };
+    let differs = |theta: f64| {
+        let [rho, angle] = spur.trochoid(theta);
+        angle - spur.involute(rho)
+    };
+    // from the root up the fillet's space is the wider one, from where they cross on the flank's
+    let base = spur.radius() * ALPHA.cos();
+    let thetas = (0..4000).map(|k| FRAC_PI_2 - f64::from(k) / 4000.0 * (FRAC_PI_2 - ALPHA));
+    let mut above = thetas.filter(|theta| spur.trochoid(*theta)[0] > base);
+    let crossed = above.find(|theta| differs(*theta) < 0.0).expect("they cross");
+    let (mut low, mut high) = (crossed, crossed + (FRAC_PI_2 - ALPHA) / 4000.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if differs(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let [form, _] = spur.trochoid(low);
+    let space = spur.fillet(low) + simpson(form, 18.0, |rho| 2.0 * spur.involute(rho) * rho);
+    let exact = 20.0 * (PI * (18.0 * 18.0 - 25.0) - 10.0 * space);
+    assert!((body.volume_mm3 / exact - 1.0).abs() < 1e-7, "{} {exact}", body.volume_mm3);
+}
+
+#[test]
+fn what_bounds_no_body_is_told_with_its_number() {
+    let spaces = "[left, left_fillet, root, right_fillet, right]";
+    let with = |to: &'static str| Asked { changed: Some((spaces, to)), ..Asked::new(BODIES, "helical", &[]) };
+    let told = with("[left, left_fillet, right_fillet, right]").refused();
+    assert!(told.contains("`left_fillet` and `right_fillet`") && told.contains("leave a gap of 3.66e-1 mm"), "{told}");
+    let told = with("[left]").refused();
+    assert!(told.contains("is one surface"), "{told}");
+    let set = [("helix_angle", "0 deg"), ("teeth", "9"), ("shift", "0.9"), ("bore", "5 mm")];
+    let told = Asked::new(BODIES, "helical", &set).refused();
+    assert!(told.contains("are pointed below the tip: their flanks overlap by"), "{told}");
+    let told = Asked::new(BODIES, "helical", &[("bore", "35 mm")]).refused();
+    assert!(told.contains("mm through `bore` of its outline"), "{told}");
+}
+
+/// The corner of a cutter without a rounding sweeps a surface of its own.
+#[test]
+fn a_corner_that_no_surface_is_named_for_is_a_gap() {
+    let told = Asked::new(BODIES, "internal", &[]).refused();
+    assert!(told.contains("`left` and `root`") && told.contains("leave a gap of 6.7"), "{told}");
+}
