@@ -45,8 +45,10 @@ impl<'a> Asked<'a> {
             part: self.part,
             out: folder.to_path_buf(),
             format: vec![MeshFormat::Stl],
+            step: None,
             deviation: self.deviation,
             density: 7850.0,
+            ball: None,
             evaluator: EvaluatorOptions::default(),
         };
         let mut results = Vec::new();
@@ -178,6 +180,61 @@ fn a_spur_gear_has_the_volume_of_involute_and_trochoid() {
         assert!(body.centre_mm.iter().all(|x| x.abs() < 1e-9), "{:?}", body.centre_mm);
         assert!((body.mass_kg / (7.85e-6 * body.volume_mm3) - 1.0).abs() < 1e-14);
     }
+}
+
+/// Thickness, span and dimension over balls of a helical involute gear (ISO 21771), and the circles on which the rack's own corners leave it.
+#[test]
+fn gauges_find_what_an_involute_has() {
+    let inv = |angle: f64| angle.tan() - angle;
+    for (teeth, shift, helix) in [(24.0, 0.2, 0.0), (24.0, 0.2, 15.0), (31.0, -0.1, -28.0)] {
+        let set =
+            [("helix_angle", &*format!("{helix} deg")), ("teeth", &*teeth.to_string()), ("shift", &*shift.to_string())];
+        let (body, _) = Asked::new(BODIES, "helical", &set).only();
+        let beta = f64::to_radians(helix);
+        let (radius, transverse) = (1.5 * teeth / beta.cos(), (ALPHA.tan() / beta.cos()).atan());
+        let base = radius * transverse.cos();
+        let gauges = &body.gauges;
+        let near = |found: f64, exact: f64, what: &str| {
+            assert!((found - exact).abs() < 2e-8, "{what} of {teeth} teeth at {helix} degrees: {found}, not {exact}");
+        };
+        near(gauges.tip_diameter_mm, 2.0 * (radius + (1.0 + shift) * 3.0), "tip");
+        near(gauges.root_diameter_mm, 2.0 * (radius - (1.25 - shift) * 3.0), "root");
+        // where the rounding of the rack's tip begins
+        let depth = 3.0 * (1.25 - 0.38 * (1.0 - ALPHA.sin()) - shift);
+        let form = base.hypot(radius * transverse.sin() - depth / transverse.sin());
+        gauges.form_diameters_mm.iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
+        // half the tooth's angle on the reference circle
+        let half = (FRAC_PI_2 + 2.0 * shift * ALPHA.tan()) / teeth;
+        assert_eq!(gauges.thickness.len(), 5);
+        for found in &gauges.thickness {
+            let at = (2.0 * base / found.diameter_mm).acos();
+            let angle = 2.0 * (half + inv(transverse) - inv(at));
+            near(found.arc_mm, 0.5 * found.diameter_mm * angle, "thickness");
+            near(found.chord_mm, found.diameter_mm * (0.5 * angle).sin(), "chord");
+            let height = 0.5 * (gauges.tip_diameter_mm - found.diameter_mm * (0.5 * angle).cos());
+            near(found.chord_height_mm, height, "height");
+        }
+        assert!(gauges.spans.len() > 1, "{:?}", gauges.spans);
+        for span in &gauges.spans {
+            let across = (f64::from(span.teeth) - 0.5) * PI + teeth * inv(transverse);
+            near(span.width_mm, 3.0 * ALPHA.cos() * across + 6.0 * shift * ALPHA.sin(), "span");
+        }
+        let balls = gauges.balls.as_ref().expect("one touches");
+        let wanted = inv(transverse) + balls.ball_mm / (3.0 * teeth * ALPHA.cos()) + half - PI / teeth;
+        let centre = base / arcinv(wanted).cos();
+        let across = if teeth % 2.0 == 0.0 { 1.0 } else { (FRAC_PI_2 / teeth).cos() };
+        near(balls.over_balls_mm, 2.0 * centre * across + balls.ball_mm, "balls");
+    }
+}
+
+/// The angle whose involute is given.
+fn arcinv(wanted: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.5);
+    for _ in 0..60 {
+        let middle: f64 = 0.5 * (low + high);
+        if middle.tan() - middle < wanted { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// Cavalieri: each section of a helical gear is the same one turned.

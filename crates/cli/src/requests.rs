@@ -45,8 +45,10 @@ impl Solve {
             part,
             out: self.out.clone(),
             format: self.format.iter().map(|format| mesh_format(*format)).collect::<Result<_, _>>()?,
+            step: self.faces.step,
             deviation: self.body.deviation,
             density: self.body.density,
+            ball: self.body.ball,
             evaluator: self.evaluator.evaluator(),
         }))
     }

@@ -94,7 +94,7 @@ pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
 pub use schema::schema_of;
 pub use solid::{BodyMesh, write_body_3mf, write_body_obj, write_body_stl};
-pub use step::{Deviation, Face, write_step};
+pub use step::{Deviation, Face, GearBody, TurnedSegment, spline_deviation, write_step, write_step_body};
 pub use text::number::{degrees, fixed};
 
 /// The schemas of the JSON documents that this crate writes: surfaces, motion tables, measuring grids.

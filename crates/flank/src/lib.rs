@@ -118,7 +118,9 @@ pub use report::result::{
     InputSource, NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
     SolidEdge,
 };
-pub use solve::body::result::{MeshNumbers, SolidNumbers, SolidResult};
+pub use solve::body::result::{
+    BallNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
+};
 pub use solve::body::solid;
 pub use solve::result::{
     BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,

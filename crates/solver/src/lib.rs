@@ -63,6 +63,7 @@ pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
 pub use solid::blank::Blank;
 pub use solid::body::{Body, BodyFault};
 pub use solid::chart::Chart;
+pub use solid::gauge::{BallGauge, Span, Thickness};
 pub use solid::mass::MassProperties;
 pub use solid::mesh::{BodyPart, ClosedMesh};
 pub use solid::section::Fineness;

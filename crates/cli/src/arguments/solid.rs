@@ -18,6 +18,9 @@ pub(crate) struct SolidArguments {
     /// Density of the body: 7850 kg/m3, 7.85 g/cm3
     #[arg(long, value_name = "DENSITY", requires = "solid", value_parser = density, default_value = "7850 kg/m3")]
     pub(crate) density: f64,
+    /// Diameter of the balls that the gear is measured over: 5.25mm; otherwise one that touches about the middle of the flanks
+    #[arg(long, value_name = "LENGTH", requires = "solid", value_parser = length)]
+    pub(crate) ball: Option<f64>,
 }
 
 /// kg/m³

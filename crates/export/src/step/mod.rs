@@ -1,17 +1,19 @@
 //! Surfaces as smooth faces in a STEP file (ISO 10303-21, AP242).
 
 mod face;
+mod solid;
 mod spline;
 
 use std::io::Write;
 
 pub use face::{Deviation, Face};
+pub use solid::{GearBody, TurnedSegment, spline_deviation, write_step_body};
 
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
 use crate::text::number::shortest;
 use crate::text::one_line;
-use spline::Direction;
+use spline::{Direction, SplineSurface};
 
 const SCHEMA: &str = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }";
 
@@ -22,16 +24,11 @@ const SCHEMA: &str = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 1030
 /// # Errors
 /// When the stream refuses.
 pub fn write_step(header: &Header, faces: &[&Face], out: &mut dyn Write) -> Result<(), WriteError> {
-    let about = format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job);
-    let told = faces.iter().map(|face| text(&face.told()));
-    let lines: Vec<String> = [text(&about)].into_iter().chain(told).collect();
-    writeln!(out, "ISO-10303-21;\nHEADER;")?;
-    writeln!(out, "FILE_DESCRIPTION(({}),'2;1');", lines.join(",\n"))?;
-    writeln!(out, "FILE_NAME({},'',(''),(''),{},'','');", text(&header.job), text(&header.program))?;
-    writeln!(out, "FILE_SCHEMA(('{SCHEMA}'));\nENDSEC;\nDATA;")?;
+    let told: Vec<String> = faces.iter().map(|face| face.told()).collect();
+    write_head(header, &told, out)?;
     let mut part = DataSection { out, last: 0 };
-    let product = part.product(&header.job)?;
-    let context = part.units()?;
+    let [_, product] = part.product_and_shape(&header.job)?;
+    let (context, _) = part.units_of(SAME_POINT)?;
     let shells: Vec<usize> = faces.iter().map(|face| part.shell(face)).collect::<Result<_, _>>()?;
     let model = part.add(&format!("SHELL_BASED_SURFACE_MODEL('',{})", numbers(&shells)))?;
     let origin = part.add("CARTESIAN_POINT('',(0.,0.,0.))")?;
@@ -40,8 +37,25 @@ pub fn write_step(header: &Header, faces: &[&Face], out: &mut dyn Write) -> Resu
     let place = part.add(&place)?;
     let shape = part.add(&format!("MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#{place},#{model}),#{context})"))?;
     part.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#{product},#{shape})"))?;
-    writeln!(part.out, "ENDSEC;\nEND-ISO-10303-21;")?;
+    write_end(part.out)
+}
+
+/// Points that are nearer to each other are one, mm.
+const SAME_POINT: f64 = 1e-6;
+
+/// All before the data, with lines on what they are.
+fn write_head(header: &Header, told: &[String], out: &mut dyn Write) -> Result<(), WriteError> {
+    let about = format!("{}; spec: {}, hash {}; job: {}", header.program, header.spec, header.spec_hash, header.job);
+    let lines: Vec<String> = [&about].into_iter().chain(told).map(|line| text(line)).collect();
+    writeln!(out, "ISO-10303-21;\nHEADER;")?;
+    writeln!(out, "FILE_DESCRIPTION(({}),'2;1');", lines.join(",\n"))?;
+    writeln!(out, "FILE_NAME({},'',(''),(''),{},'','');", text(&header.job), text(&header.program))?;
+    writeln!(out, "FILE_SCHEMA(('{SCHEMA}'));\nENDSEC;\nDATA;")?;
     Ok(())
+}
+
+fn write_end(out: &mut dyn Write) -> Result<(), WriteError> {
+    Ok(writeln!(out, "ENDSEC;\nEND-ISO-10303-21;")?)
 }
 
 impl Face {
@@ -76,8 +90,8 @@ impl DataSection<'_> {
         Ok(self.last)
     }
 
-    /// The product whose shape the faces are.
-    fn product(&mut self, name: &str) -> Result<usize, WriteError> {
+    /// A product, and its shape.
+    fn product_and_shape(&mut self, name: &str) -> Result<[usize; 2], WriteError> {
         let application = self.add("APPLICATION_CONTEXT('managed model based 3d engineering')")?;
         self.add(&format!(
             "APPLICATION_PROTOCOL_DEFINITION('international standard','ap242_managed_model_based_3d_engineering',2014,#{application})"
@@ -89,38 +103,29 @@ impl DataSection<'_> {
         let formation = self.add(&format!("PRODUCT_DEFINITION_FORMATION('','',#{product})"))?;
         let stage = self.add(&format!("PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')"))?;
         let definition = self.add(&format!("PRODUCT_DEFINITION('design','',#{formation},#{stage})"))?;
-        self.add(&format!("PRODUCT_DEFINITION_SHAPE('','',#{definition})"))
+        let shape = self.add(&format!("PRODUCT_DEFINITION_SHAPE('','',#{definition})"))?;
+        Ok([definition, shape])
     }
 
-    /// Millimetres, radians, and how near points have to be to be one.
-    fn units(&mut self) -> Result<usize, WriteError> {
+    /// Millimetres, radians, and how near points have to be to be one, mm: the context, and the unit of length.
+    fn units_of(&mut self, near: f64) -> Result<(usize, usize), WriteError> {
         let length = self.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))")?;
         let angle = self.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")?;
         let solid = self.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")?;
         let near = self.add(&format!(
-            "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-6),#{length},'distance_accuracy_value','')"
+            "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({}),#{length},'distance_accuracy_value','')",
+            real(near)
         ))?;
-        self.add(&format!(
+        let context = self.add(&format!(
             "(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{near}))GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid}))REPRESENTATION_CONTEXT('',''))"
-        ))
+        ))?;
+        Ok((context, length))
     }
 
     fn shell(&mut self, face: &Face) -> Result<usize, WriteError> {
         let name = text(&face.name);
         let points: Vec<usize> = face.spline.poles.iter().map(|pole| self.point(*pole)).collect::<Result<_, _>>()?;
-        let [along, across] = &face.spline.directions;
-        let rows: Vec<String> = points.chunks_exact(across.count).map(numbers).collect();
-        let (u, v) = (knots(along), knots(across));
-        let surface = self.add(&format!(
-            "B_SPLINE_SURFACE_WITH_KNOTS({name},{},{},({}),.UNSPECIFIED.,.F.,.F.,.F.,{},{},{},{},.UNSPECIFIED.)",
-            along.degree,
-            across.degree,
-            rows.join(","),
-            u.0,
-            v.0,
-            u.1,
-            v.1
-        ))?;
+        let surface = self.spline_surface(&face.name, &face.spline, &points)?;
         let edges = self.border(face, &points)?;
         let border = self.add(&format!("EDGE_LOOP('',{})", numbers(&edges)))?;
         // the border runs around the spline's own normal
@@ -128,6 +133,23 @@ impl DataSection<'_> {
         let bound = self.add(&format!("FACE_OUTER_BOUND('',#{border},{sense})"))?;
         let of_body = self.add(&format!("ADVANCED_FACE({name},(#{bound}),#{surface},{sense})"))?;
         self.add(&format!("OPEN_SHELL({name},(#{of_body}))"))
+    }
+
+    fn spline_surface(&mut self, name: &str, spline: &SplineSurface, poles: &[usize]) -> Result<usize, WriteError> {
+        let [along, across] = &spline.directions;
+        let rows: Vec<String> = poles.chunks_exact(across.count).map(numbers).collect();
+        let (u, v) = (knots(along), knots(across));
+        self.add(&format!(
+            "B_SPLINE_SURFACE_WITH_KNOTS({},{},{},({}),.UNSPECIFIED.,.F.,.F.,.F.,{},{},{},{},.UNSPECIFIED.)",
+            text(name),
+            along.degree,
+            across.degree,
+            rows.join(","),
+            u.0,
+            v.0,
+            u.1,
+            v.1
+        ))
     }
 
     /// The four edges, one after the other around the spline's own normal.

@@ -1,6 +1,6 @@
 //! B-spline surfaces through grids of points.
 
-use crate::vector::{Vector, add, cross, dot, scale, sub};
+use crate::vector::{Vector, add, cross, dot, length, scale, sub};
 
 /// The highest degree: curvature continues from piece to piece.
 const CUBIC: usize = 3;
@@ -58,6 +58,14 @@ impl SplineSurface {
             }
         }
         out
+    }
+
+    /// How far it lies from the points of a lattice with one more row and column between any two, at the same parameters, mm.
+    pub(super) fn off(&self, doubled: &[Vector]) -> f64 {
+        let [rows, columns] = self.directions.each_ref().map(|direction| 2 * direction.count - 1);
+        let at = |i: usize, j: usize| self.at(0.5 * i as f64, 0.5 * j as f64)[0];
+        let off = |k: usize| length(sub(doubled[k], at(k / columns, k % columns)));
+        (0..rows * columns).map(off).fold(0.0, f64::max)
     }
 
     /// How far the surface lies from a point along the point's normal, mm; `None` if the normal does not meet it near `start`.

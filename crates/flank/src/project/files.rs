@@ -4,10 +4,10 @@ use std::path::Path;
 
 use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
-    BodyMesh, Dataset, Dialect, Face, FileSet, Header, MeasuringGrid, MotionTable, Surfaces, Target, WriteError,
-    make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv, write_grid_csv, write_grid_json,
-    write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step, write_stl,
-    write_vtp,
+    BodyMesh, Dataset, Dialect, Face, FileSet, GearBody, Header, MeasuringGrid, MotionTable, Surfaces, Target,
+    WriteError, make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv, write_grid_csv,
+    write_grid_json, write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step,
+    write_step_body, write_stl, write_vtp,
 };
 
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
@@ -90,6 +90,11 @@ impl<'a> Folder<'a> {
     /// The closed surface of a body.
     pub(crate) fn body_stl(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
         self.write(&format!("{name}.stl"), |out| write_body_stl(header, body, out))
+    }
+
+    /// A body with smooth faces.
+    pub(crate) fn body_step(&mut self, name: &str, header: &Header, body: &GearBody) -> Result<(), Failure> {
+        self.write(&format!("{name}.step"), |out| write_step_body(header, body, out))
     }
 
     /// The same with shared corners.

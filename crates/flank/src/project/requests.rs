@@ -163,10 +163,14 @@ pub struct SolidRequest {
     pub out: PathBuf,
     /// Files with the closed surface.
     pub format: Vec<MeshFormat>,
+    /// Also as a body with smooth faces in a STEP file, this near to the exact surfaces, mm; of the whole gear alone.
+    pub step: Option<f64>,
     /// How far the middles of a mesh's edges may lie off the exact surfaces, mm.
     pub deviation: f64,
     /// kg/m³
     pub density: f64,
+    /// Diameter of the balls that the gear is measured over, mm; one that touches about the middle of the flanks otherwise.
+    pub ball: Option<f64>,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }

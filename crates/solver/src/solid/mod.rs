@@ -3,6 +3,7 @@
 pub(crate) mod blank;
 pub(crate) mod body;
 pub(crate) mod chart;
+pub(crate) mod gauge;
 pub(crate) mod mass;
 pub(crate) mod mesh;
 pub(crate) mod section;

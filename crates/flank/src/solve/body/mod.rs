@@ -2,8 +2,10 @@
 
 pub(crate) mod borders;
 pub(crate) mod ends;
+pub(crate) mod gauges;
 pub(crate) mod piece;
 pub(crate) mod result;
+pub(crate) mod smooth;
 pub(crate) mod space;
 
 use flank_chain_dsl::{Job, Solid};
@@ -31,6 +33,9 @@ pub fn solid(request: &SolidRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
+    if request.step.is_some() && request.part != SolidPart::Gear {
+        return Err(Failure::Request("a STEP file holds the whole gear: say `gear` for option `solid`".to_string()));
+    }
     let session = Session::new(request.evaluator, monitor);
     let meant: Vec<&Job<'_>> = jobs.iter().filter(|job| !job.solids.is_empty()).collect();
     if meant.is_empty() {
@@ -54,7 +59,19 @@ fn built(
     for solid in &job.solids {
         let _working = session.begin(format!("building {}", solid.name))?;
         match one(job, solid, (request, &header), (&mut folder, session)) {
-            Ok(numbers) => solids.push(numbers),
+            Ok(numbers) => {
+                let too_far = numbers.step_deviation_mm.zip(request.step).filter(|(off, allowed)| off > allowed);
+                not_done.extend(too_far.map(|(off, allowed)| {
+                    let message = format!(
+                        "the faces of `{}` would be off by {:.2e} um, {:.2e} um is allowed: no STEP file of it is written",
+                        solid.name,
+                        1e3 * off,
+                        1e3 * allowed
+                    );
+                    NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
+                }));
+                solids.push(numbers);
+            }
             Err(Failure::Input(reason)) => not_done.push(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
             Err(other) => return Err(other),
         }
@@ -91,5 +108,18 @@ fn one(
             MeshFormat::ThreeMf => folder.body_3mf(&file, header, &written)?,
         }
     }
-    Ok(SolidNumbers::new((&solid.name, &solid.frame, names), (&body, off), request.density, (&mesh, request.deviation)))
+    let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, &body, tolerance));
+    if let Some(faces) = faces.as_ref().filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed)) {
+        folder.body_step(&file, header, faces)?;
+    }
+    Ok(SolidNumbers {
+        step_deviation_mm: faces.map(|faces| faces.deviation),
+        gauges: gauges::measured(&body, request.ball),
+        ..SolidNumbers::new(
+            (&solid.name, &solid.frame, names),
+            (&body, off),
+            request.density,
+            (&mesh, request.deviation),
+        )
+    })
 }

@@ -52,6 +52,11 @@ pub struct SolidNumbers {
     pub inertia_kg_mm2: [[f64; 3]; 3],
     /// The closed surface of the part that was asked for.
     pub mesh: MeshNumbers,
+    /// How far the faces of the STEP file are off the exact surfaces between their points at the most, or would be; null where none is
+    /// asked for.
+    pub step_deviation_mm: Option<f64>,
+    /// What gauges and calipers find half-way along the teeth.
+    pub gauges: GaugeNumbers,
 }
 
 /// A closed mesh.
@@ -67,6 +72,59 @@ pub struct MeshNumbers {
     pub volume_mm3: f64,
     /// Of its surface.
     pub area_mm2: f64,
+}
+
+/// What gauges and calipers find on a body, half-way along its teeth.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct GaugeNumbers {
+    /// Of the tip.
+    pub tip_diameter_mm: f64,
+    /// Of the deepest point of a space.
+    pub root_diameter_mm: f64,
+    /// Where the flanks end towards the root, the first one of the space and the last.
+    pub form_diameters_mm: [f64; 2],
+    /// Of the tooth, from the form diameter to the tip.
+    pub thickness: Vec<ThicknessNumbers>,
+    /// Over some teeth of a cylindrical gear, all that planes can touch.
+    pub spans: Vec<SpanNumbers>,
+    /// Over balls, or between them in an internal gear; null where no ball of the size touches both flanks, and unless the tip is a
+    /// cylinder.
+    pub balls: Option<BallNumbers>,
+}
+
+/// The thickness of a tooth on a circle.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ThicknessNumbers {
+    /// Of the circle.
+    pub diameter_mm: f64,
+    /// Along the circle.
+    pub arc_mm: f64,
+    /// Straight, as a tooth caliper measures it.
+    pub chord_mm: f64,
+    /// From the tip down to the middle of the chord.
+    pub chord_height_mm: f64,
+}
+
+/// The width over teeth.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SpanNumbers {
+    /// How many.
+    pub teeth: u32,
+    /// Between parallel planes that touch the outer flanks.
+    pub width_mm: f64,
+    /// On which circles they touch.
+    pub diameters_mm: [f64; 2],
+}
+
+/// The dimension over balls in opposite spaces.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct BallNumbers {
+    /// Of the ball.
+    pub ball_mm: f64,
+    /// Over both balls, or between them.
+    pub over_balls_mm: f64,
+    /// On which circles it touches the flanks.
+    pub diameters_mm: [f64; 2],
 }
 
 impl SolidNumbers {
@@ -98,6 +156,8 @@ impl SolidNumbers {
                 volume_mm3: mesh.volume(),
                 area_mm2: mesh.area(),
             },
+            step_deviation_mm: None,
+            gauges: GaugeNumbers::default(),
         }
     }
 }
@@ -133,7 +193,35 @@ impl fmt::Display for SolidNumbers {
             mesh.triangles,
             1e3 * mesh.deviation_mm,
             mesh.volume_mm3
-        )
+        )?;
+        let told = |step: f64| format!("  faces    off by at most {:.3} um in the STEP file\n", 1e3 * step);
+        f.write_str(&self.step_deviation_mm.map(told).unwrap_or_default())?;
+        write!(f, "{}", self.gauges)
+    }
+}
+
+impl fmt::Display for GaugeNumbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [first, last] = self.form_diameters_mm;
+        writeln!(f, "  tip      {:.4} mm in diameter, root {:.4} mm", self.tip_diameter_mm, self.root_diameter_mm)?;
+        writeln!(f, "  form     {first:.4} mm and {last:.4} mm in diameter")?;
+        for of in &self.thickness {
+            let ThicknessNumbers { diameter_mm, arc_mm, chord_mm, chord_height_mm } = of;
+            writeln!(
+                f,
+                "  tooth    {arc_mm:.4} mm thick at {diameter_mm:.3} mm, chord {chord_mm:.4} mm {chord_height_mm:.4} mm below the tip"
+            )?;
+        }
+        for SpanNumbers { teeth, width_mm, diameters_mm: [a, b] } in &self.spans {
+            writeln!(f, "  span     {width_mm:.4} mm over {teeth} teeth, touching at {a:.3} mm and {b:.3} mm")?;
+        }
+        if let Some(BallNumbers { ball_mm, over_balls_mm, diameters_mm: [a, b] }) = &self.balls {
+            writeln!(
+                f,
+                "  balls    {over_balls_mm:.4} mm by balls of {ball_mm} mm, touching at {a:.3} mm and {b:.3} mm"
+            )?;
+        }
+        Ok(())
     }
 }
 

@@ -1,0 +1,50 @@
+//! What gauges and calipers find on a body.
+
+use flank_solver::{BallGauge, Body, Span, Thickness};
+
+use crate::solve::body::result::{BallNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
+
+/// Circles from the form diameter to the tip on which the thickness is told.
+const CIRCLES: usize = 5;
+/// Balls come in such steps, mm.
+const BALL_STEP: f64 = 0.25;
+
+/// A ball of the diameter that is asked for, or of one that touches about the middle of the flanks. Spans and balls are dimensions of
+/// cylindrical gears: those whose tip is a cylinder.
+pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
+    let [tip, root] = body.tip_and_root();
+    let form = body.form();
+    let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
+    let circle = |k: usize| deepest + (tip - deepest) * k as f64 / (CIRCLES - 1) as f64;
+    let thickness = (0..CIRCLES).filter_map(|k| body.thickness(circle(k)));
+    let [_, outline, _] = body.blank().bounds();
+    let is_cylindrical = outline.center.is_none() && outline.from[1] == outline.to[1];
+    let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
+    let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
+    GaugeNumbers {
+        tip_diameter_mm: 2.0 * tip,
+        root_diameter_mm: 2.0 * root,
+        form_diameters_mm: form.map(|rho| 2.0 * rho),
+        thickness: thickness.map(thickness_numbers).collect(),
+        spans: (1..=most).filter_map(|teeth| body.span(teeth)).map(span_numbers).collect(),
+        balls: is_cylindrical.then(|| body.ball(diameter())).flatten().map(ball_numbers),
+    }
+}
+
+/// About the width of the space where it is touched.
+fn middle_ball(body: &Body, rho: f64) -> f64 {
+    let width = body.thickness(rho).map_or(0.0, |tooth| body.pitch() * rho - tooth.arc);
+    (1.05 * width / BALL_STEP).ceil() * BALL_STEP
+}
+
+fn thickness_numbers(of: Thickness) -> ThicknessNumbers {
+    ThicknessNumbers { diameter_mm: 2.0 * of.rho, arc_mm: of.arc, chord_mm: of.chord, chord_height_mm: of.chord_height }
+}
+
+fn span_numbers(of: Span) -> SpanNumbers {
+    SpanNumbers { teeth: of.teeth, width_mm: of.width, diameters_mm: of.rho.map(|rho| 2.0 * rho) }
+}
+
+fn ball_numbers(of: BallGauge) -> BallNumbers {
+    BallNumbers { ball_mm: of.diameter, over_balls_mm: of.over_balls, diameters_mm: of.rho.map(|rho| 2.0 * rho) }
+}
