@@ -153,7 +153,7 @@ fn pinion_in(out: &std::path::Path) -> (String, std::path::PathBuf) {
 fn a_tolerance_without_solved_points_is_told() {
     let out = folder("convert-pointless");
     let (job, here) = pinion_in(&out);
-    let unsampled = job.split("    sample concave, convex for").next().expect("a job").to_string() + "}\n";
+    let unsampled = job.split("    // back to the depth").next().expect("a job").to_string() + "}\n";
     let kept = |line: &&str| !line.contains("envelope(") || line.contains("surface concave,");
     let edge: String = unsampled.lines().filter(kept).map(|line| format!("{line}\n")).collect();
     let edge = edge
