@@ -114,7 +114,14 @@ impl<'p, 'g> Gauge<'p, 'g> {
             near: pairs.iter().map(|(point, _)| NearFoot { unknowns: point.unknowns.clone(), distance: 0.0 }).collect(),
         };
         let turn = ScaledUnknown { start: 0.0, scale: 0.1 / 40.0, range: Range { low: -7.0, high: 7.0 } };
-        let adjustment = SettingsAdjustment { wanted: vec![wanted], settings, turn, resolution: 1e-4, uses_weak: true };
+        let adjustment = SettingsAdjustment {
+            wanted: vec![wanted],
+            settings,
+            turn,
+            shapes: None,
+            resolution: 1e-4,
+            uses_weak: true,
+        };
         adjustment.solve().expect("the points have feet")
     }
 }

@@ -260,6 +260,75 @@ fn noise_is_not_taken_for_settings() {
     assert!(is_told, "{stderr}");
 }
 
+/// A deviation that is not above the noise that is said asks for no change, and what no setting does is not taken for one.
+#[test]
+fn noise_that_is_said_is_kept_to() {
+    let out = folder("fit_noise_said");
+    let noise = |at: usize| 0.6 * ((at * 7919 % 97) as f64 / 48.0 - 1.0);
+    let file = deviating(&out, "noise.csv", noise);
+    let (_, stderr) = fit(0, &[PINION, "concave", "--measured", &file, "--vary", VARIED, "--noise", "0.4um"]);
+    assert!(stderr.contains("is not larger than the measuring noise of 0.400 um"), "{stderr}");
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", &file, "--noise", "0.4um"]);
+    assert!(names(&told["correction"]["settings"]).is_empty() && number(&told["choice"]["noise_um"]) == 0.4, "{told}");
+    // twenty times as much is no noise
+    let file = deviating(&out, "more.csv", |at| 6.0 * (at as f64 / 22.0 - 1.0));
+    let (told, _) = fit(3, &[PINION, "concave", "--measured", &file, "--noise", "0.4um", "--within", "0.01um"]);
+    assert!(!names(&told["correction"]["settings"]).is_empty(), "{told}");
+}
+
+/// The grid of the concave flank with deviations by the place, 5 x 9.
+fn deviating(out: &Path, name: &str, off: impl Fn(usize) -> f64) -> String {
+    let lines: String = (0..45).map(|at| format!("{},{},{}\n", at / 9 + 1, at % 9 + 1, off(at))).collect();
+    written(out, name, &format!("row,column,deviation_um\n{lines}"))
+}
+
+/// Slopes alone, where what else deviates is beyond all settings: three settings and the turn make three shapes.
+#[test]
+fn slopes_are_fitted_alone() {
+    let out = folder("fit_order");
+    let [row, column] = [|at: usize| at as f64 / 9.0 - 2.0, |at: usize| (at % 9) as f64 - 4.0];
+    let waves = |at: usize| if at.is_multiple_of(2) { 3.0 } else { -3.0 };
+    let file = deviating(&out, "waves.csv", |at| 2.0 * row(at / 9 * 9) + 0.5 * column(at) + waves(at));
+    let asked = [PINION, "concave", "--measured", &file, "--vary", VARIED];
+    let (all, _) = fit(3, &asked);
+    assert!(number(&all["correction"]["left_um"]) > 2.5, "{}", all["correction"]);
+    let (told, _) = fit(0, &[&asked[..], &["--order", "1"]].concat());
+    assert_eq!(told["order"], 1);
+    for of in [&told["identification"], &told["correction"]] {
+        assert!(number(&of["left_um"]) < 1e-6, "{of}");
+    }
+}
+
+/// Steps of two settings; the third one makes up for them as far as it can.
+#[test]
+fn corrections_are_multiples_of_steps() {
+    let file = gauged("fit_round");
+    let asked = [PINION, "concave", "--measured", path(&file), "--vary", VARIED];
+    let (exact, _) = fit(0, &asked);
+    let (told, _) = fit(0, &[&asked[..], &["--round", "radial_distance=20um,m.work_offset=0.01mm"]].concat());
+    let settings = told["correction"]["settings"].as_array().expect("settings");
+    for (setting, step) in settings.iter().zip([0.02, 0.01]) {
+        let share = number(&setting["new"]) / step;
+        assert!((share - share.round()).abs() < 1e-9 && number(&setting["step"]) == step, "{setting}");
+    }
+    assert!(settings[2]["step"].is_null());
+    for (found, exact) in told["identification"]["settings"].as_array().expect("settings").iter().zip(CHANGED) {
+        assert!((number(&found["new"]) - exact.2).abs() < 1e-9, "what was is not rounded: {found}");
+    }
+    let [rounded, best] = [&told, &exact].map(|told| number(&told["correction"]["left_um"]));
+    assert!(best < 1e-2 && rounded > best && rounded < 1.0, "{rounded} {best}");
+    for (round, says) in [
+        ("nosuch=1um", "names `nosuch`, which does not vary"),
+        ("radial_distance=1arcsec", "this step is one in mm"),
+        ("radial_distance=1um,m.radial_distance=2um", "names `m.radial_distance` twice"),
+        ("radial_distance=0um", "--round"),
+    ] {
+        let run = flank(&[&["fit"], &asked[..], &["--round", round]].concat());
+        assert!(matches!(run.status.code(), Some(1 | 2)), "{round}: {:?}", run.status.code());
+        assert!(text(&run.stderr).contains(says), "{round}: {}", text(&run.stderr));
+    }
+}
+
 /// A range that ends before the flank is reached: the setting stands at its end, and that is the reason.
 #[test]
 fn a_setting_stays_within_its_range() {

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::WantedEaseOff;
+use flank::{ToleratedAmount, WantedEaseOff};
 
 use super::measuring::Margin;
+use super::tolerance::amount;
 use super::{EvaluatorArguments, JobArguments, count, length};
 
 #[derive(Args, Debug)]
@@ -24,7 +25,7 @@ Examples:
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --and convex=measured.csv
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --vary radial_distance,machine_root_angle --share 0.7
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --write corrected.chain
-  flank fit specs/bevel/ease_off_19x62.chain pinion.concave --ease-off 'crowning: 50, 25; slope: 0, 0; bias: 0' --from basic.concave")]
+  flank fit specs/bevel/ease_off_19x62.chain pinion.concave --ease-off 'crowning: 50, 25' --from basic.concave --order 2")]
 pub(crate) struct Fit {
     #[command(flatten)]
     pub(crate) which: JobArguments,
@@ -53,6 +54,15 @@ pub(crate) struct Fit {
     /// The parameters and settings that may change, several with commas: radial_distance,c.blade_angle
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) vary: Vec<String>,
+    /// Fit slopes (1), or slopes, crownings and bias (2), and leave the rest of the deviations as it is; all of them otherwise
+    #[arg(long, value_name = "1|2", value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub(crate) order: Option<u8>,
+    /// What a measured point scatters by; without it as all settings leave it. Without --vary, settings that take less than twice that are not changed
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) noise: Option<f64>,
+    /// Round corrections to the steps of settings, several with commas: radial_distance=1um,machine_root_angle=1arcsec; the others are fitted again
+    #[arg(long, value_name = "NAME=STEP", value_delimiter = ',', value_parser = amount)]
+    pub(crate) round: Vec<(String, ToleratedAmount)>,
     /// Do not turn the points about z
     #[arg(long)]
     pub(crate) as_it_lies: bool,

@@ -66,7 +66,7 @@ pub(crate) struct Tolerance {
     pub(crate) evaluator: EvaluatorArguments,
 }
 
-fn amount(text: &str) -> Result<(String, ToleratedAmount), String> {
+pub(super) fn amount(text: &str) -> Result<(String, ToleratedAmount), String> {
     let wanted =
         || "write NAME=AMOUNT, for example radial_distance=5um, m.S=1arcmin or ratio_of_roll=0.01%".to_string();
     let (name, value) = text.split_once('=').ok_or_else(wanted)?;

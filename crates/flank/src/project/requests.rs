@@ -317,6 +317,12 @@ pub struct FitRequest {
     pub from: Option<String>,
     /// The parameters and settings that may change; some of those that the job gives a value, if none is named.
     pub vary: Vec<String>,
+    /// Whether only slopes (1), or slopes, crownings and bias (2) are fitted; the rest of the deviations is left as it is.
+    pub order: Option<u8>,
+    /// What a measured point scatters by, mm; as all settings leave it where it is not said.
+    pub noise: Option<f64>,
+    /// Settings that are set in steps, with these: corrections are multiples of them.
+    pub round: Vec<(String, ToleratedAmount)>,
     /// Whether the points are not turned about z.
     pub as_it_lies: bool,
     /// The share of the deviation that the corrected settings take away.
@@ -348,6 +354,9 @@ impl FitRequest {
             ease_off: None,
             from: None,
             vary: Vec::new(),
+            order: None,
+            noise: None,
+            round: Vec::new(),
             as_it_lies: false,
             share: 1.0,
             within: 1e-3,

@@ -54,13 +54,19 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let candidates: Vec<usize> = all.filter(|k| rms(&effects[*k]) >= CANDIDATE).collect();
             let mut own: Vec<Vec<f64>> = candidates.iter().map(|k| effects[*k].clone()).collect();
             let (off, turn) = (&self.now.fit.residuals, self.turn_effect(self.now));
+            own.push(turn.clone());
+            let all_leave = linear_rest(off, &own, request.resolution);
+            own.pop();
+            // a wish does not scatter
+            let of_points = || scatter(all_leave, off.len(), own.len() + 1);
+            let noise = request.noise.unwrap_or_else(|| if request.ease_off.is_some() { 0.0 } else { of_points() });
             let mut free: Vec<usize> =
-                most_effective(off, &own, &turn, LEAST).into_iter().map(|k| candidates[k]).collect();
+                most_effective(off, &own, &turn, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
-            own.push(turn);
             let choice = SettingsChoice {
                 candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
-                all_leave_um: 1e3 * linear_rest(off, &own, request.resolution),
+                all_leave_um: 1e3 * all_leave,
+                noise_um: 1e3 * noise,
             };
             (free, Some(choice))
         } else {
@@ -81,14 +87,14 @@ impl<'a, 'g> Fitting<'a, 'g> {
     /// What each setting does to the distances for its scale, mm.
     fn effects(&self, of: &AdjustedSurfaces) -> Vec<Vec<f64>> {
         let unknowns = self.problem.unknowns.iter().enumerate();
-        unknowns.map(|(k, unknown)| scaled(of.effect(k), unknown.scale)).collect()
+        unknowns.map(|(k, unknown)| self.problem.part(scaled(of.effect(k), unknown.scale))).collect()
     }
 
     /// The same of the turn; nothing where it is held.
     pub(super) fn turn_effect(&self, of: &AdjustedSurfaces) -> Vec<f64> {
         let turn = self.problem.turn;
         let scale = if turn.range.low < turn.range.high { turn.scale } else { 0.0 };
-        scaled(of.effect(self.problem.settings.len()), scale)
+        self.problem.part(scaled(of.effect(self.problem.settings.len()), scale))
     }
 
     /// The value of a setting as a spec has it.
@@ -120,6 +126,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             correction: self.adjusted(correction, &self.problem.settable(free)),
             ease_off: request.ease_off.map(|wish| self.ease_off(wish, &predicted)),
             share: request.share,
+            order: request.order,
             predicted_um: 1e3 * rms(&predicted),
             within_um: 1e3 * request.within,
             directions: main
@@ -131,9 +138,10 @@ impl<'a, 'g> Fitting<'a, 'g> {
                 .collect(),
             untold: words::untold(&main.fit.directions, &unknowns),
             choice,
-            scatter_um: main.fit.variance().map(|variance| 1e3 * variance.sqrt()),
-            leave_out_um: self.leave_out(main).map(|error| 1e3 * error),
-            outliers: if is_wish { vec![] } else { self.outliers(main) },
+            scatter_um: variance(main).map(|variance| 1e3 * variance.sqrt()),
+            // of points one by one nothing is asked where only shapes are fitted
+            leave_out_um: self.leave_out(main).filter(|_| request.order.is_none()).map(|error| 1e3 * error),
+            outliers: if is_wish || request.order.is_some() { vec![] } else { self.outliers(main) },
             corrected: None,
             files: Vec::new(),
             not_done: self.aims.iter().flat_map(|aim| aim.missing.clone()).collect(),
@@ -185,7 +193,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
     }
 
     fn adjusted(&self, of: &AdjustedSurfaces, free: &[usize]) -> AdjustedSettings {
-        let variance = of.fit.variance();
+        let variance = variance(of);
         let setting = |&k: &usize| {
             let setting = self.problem.settings[k];
             let shown = |value: f64| units::shown(setting.dimension, value);
@@ -195,6 +203,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             AdjustedSetting {
                 name: setting.name.clone(),
                 is_error: setting.is_error,
+                step: self.problem.steps[k].map(shown),
                 unit: units::whole_symbol(setting.dimension),
                 now: shown(setting.value),
                 change: shown(change),
@@ -209,7 +218,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
         };
         AdjustedSettings {
             settings: free.iter().map(setting).collect(),
-            left_um: 1e3 * of.rms(),
+            left_um: 1e3 * rms(&of.fit.residuals),
             steps: of.fit.steps,
             is_settled: of.fit.end == SearchEnd::Settled,
         }
@@ -217,11 +226,11 @@ impl<'a, 'g> Fitting<'a, 'g> {
 
     /// The deviations to be expected after the correction, mm.
     fn predicted(&self, request: &FitRequest, correction: &AdjustedSurfaces) -> Vec<f64> {
-        let left = &correction.fit.residuals;
+        let left = &correction.distances();
         match request.ease_off {
             Some(_) => left.iter().map(|off| -off).collect(),
             None => {
-                self.now.fit.residuals.iter().zip(left).map(|(off, left)| (1.0 - request.share) * off - left).collect()
+                self.now.distances().iter().zip(left).map(|(off, left)| (1.0 - request.share) * off - left).collect()
             }
         }
     }
@@ -244,8 +253,8 @@ impl<'a, 'g> Fitting<'a, 'g> {
                 wanted: aim.wanted.clone(),
                 counts: aim.counts,
                 known: places.len(),
-                before_um: on_grid(&self.now.fit.residuals, sign),
-                left_um: on_grid(&main.fit.residuals, sign),
+                before_um: on_grid(&self.now.distances(), sign),
+                left_um: on_grid(&main.distances(), sign),
                 predicted_um: on_grid(predicted, 1e3),
             }
         };
@@ -296,6 +305,19 @@ impl<'a, 'g> Fitting<'a, 'g> {
         };
         own.enumerate().filter_map(outlier).collect()
     }
+}
+
+/// What residuals scatter by of which so many unknowns leave this, root of the mean square.
+fn scatter(left: f64, residuals: usize, unknowns: usize) -> f64 {
+    let free = residuals.saturating_sub(unknowns).max(1);
+    left * (residuals as f64 / free as f64).sqrt()
+}
+
+/// Of the distances that a fit leaves, of which one is taken by each direction that is used.
+fn variance(of: &AdjustedSurfaces) -> Option<f64> {
+    let distances = of.distances();
+    let free = distances.len().checked_sub(of.fit.rank()).filter(|free| *free > 0)?;
+    Some(distances.iter().map(|off| off * off).sum::<f64>() / free as f64)
 }
 
 fn told(of: &SingularDirection, unknowns: &[Unknown<'_, '_>]) -> SettingsDirection {

@@ -103,7 +103,7 @@ impl Found {
         aims.iter().try_for_each(|aim| aim.check_places(turn_of(&now)))?;
         let (free, choice) = Fitting { aims, problem, now: &now }.chosen(request)?;
         let (identification, correction) = match request.ease_off {
-            Some(_) => (None, problem.identified(&now, &free)?),
+            Some(_) => (None, problem.reached(&now, &free)?),
             None => (
                 Some(problem.identified(&now, &free)?),
                 problem.corrected(&now, &problem.settable(&free), request.share)?,

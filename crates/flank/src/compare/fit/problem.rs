@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{GeneratedSurface, Parameter};
 use flank_solver::{
     AdjustableSurface, AdjustedSurfaces, BoundSurface, Foot, NearFoot, Range, ScaledUnknown, SettingsAdjustment,
-    WantedPoints,
+    Shapes, WantedPoints,
 };
 
 use super::aim::{Aim, Aimed};
@@ -25,6 +25,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) settings: Vec<&'p Parameter<'g>>,
     /// The settings as unknowns.
     pub(super) unknowns: Vec<ScaledUnknown>,
+    /// What each setting is set in steps of.
+    pub(super) steps: Vec<Option<f64>>,
     surfaces: Vec<AdjustableSurface>,
     /// Of each surface, of each of its unknowns.
     ends: Vec<Vec<End>>,
@@ -32,6 +34,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) places: Vec<Vec<usize>>,
     points: Vec<Vec<Aimed>>,
     pub(super) turn: ScaledUnknown,
+    /// The parts of the distances that are fitted.
+    shapes: Option<Shapes>,
     resolution: f64,
     /// A measured flank comes from settings, a wanted one need not.
     is_measured: bool,
@@ -39,12 +43,13 @@ pub(super) struct Problem<'p, 'g> {
 
 impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
-    /// If no point has a foot.
+    /// If no point has a foot, or a step is none of its setting.
     pub(super) fn new(
         aims: &[Aim<'_, 'g>],
         settings: Vec<&'p Parameter<'g>>,
         request: &FitRequest,
     ) -> Result<Problem<'p, 'g>, Failure> {
+        let steps = super::settings::steps(&settings, &request.round)?;
         let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim, &settings)).collect();
         let (as_it_lies, resolution) = (request.as_it_lies, request.resolution);
         let start = if as_it_lies { 0.0 } else { Aim::first_turn(aims) };
@@ -79,17 +84,25 @@ impl<'p, 'g> Problem<'p, 'g> {
         let moved = squares.iter().map(|sum: &f64| (sum / count).sqrt());
         let unknowns = settings.iter().zip(moved).map(|(of, moved)| unknown(of, moved)).collect();
         let ends = aims.iter().map(|aim| ends(aim.of.surface)).collect();
+        let shapes = request.order.map(|order| shapes(aims, &places, order));
         Ok(Problem {
             settings,
             unknowns,
+            steps,
             surfaces,
             ends,
             places,
             points,
             turn,
+            shapes,
             resolution,
             is_measured: request.ease_off.is_none(),
         })
+    }
+
+    /// The part of distances that is fitted.
+    pub(super) fn part(&self, of: Vec<f64>) -> Vec<f64> {
+        self.shapes.as_ref().map_or_else(|| of.clone(), |shapes| shapes.part(&of))
     }
 
     /// Of settings, by their places, those that somebody can set: an error of the machine stays what it is.
@@ -121,7 +134,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn as_it_is(&self) -> Result<AdjustedSurfaces, Failure> {
-        self.fitted(&self.points, self.turn, &[])
+        self.fitted(&self.points, self.turn, (&[], &[]))
     }
 
     /// With some settings free, from where the points lie nearest to the surface as it is.
@@ -130,7 +143,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// If a point loses its foot.
     pub(super) fn identified(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
         let turn = now.fit.values.last().copied().unwrap_or_default();
-        self.fitted(&self.points, ScaledUnknown { start: turn, ..self.turn }, free)
+        self.fitted(&self.points, ScaledUnknown { start: turn, ..self.turn }, (free, &[]))
     }
 
     /// The same for points that lie on the other side of the surface by a share of the way.
@@ -152,21 +165,56 @@ impl<'p, 'g> Problem<'p, 'g> {
             feet.iter().map(point).collect()
         });
         let mirrored: Vec<Vec<Aimed>> = mirrored.collect();
-        self.fitted(&mirrored, ScaledUnknown { start: 0.0, ..self.turn }, free)
+        self.rounded(&mirrored, 0.0, free)
     }
 
-    fn fitted(&self, points: &[Vec<Aimed>], turn: ScaledUnknown, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+    /// A wanted surface: that of the points themselves.
+    ///
+    /// # Errors
+    /// If a point loses its foot.
+    pub(super) fn reached(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+        self.rounded(&self.points, now.fit.values.last().copied().unwrap_or_default(), free)
+    }
+
+    /// Settings that have a step are brought onto it one by one, and the others are fitted again.
+    fn rounded(&self, points: &[Vec<Aimed>], turn: f64, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+        let turn = ScaledUnknown { start: turn, ..self.turn };
+        let mut fixed = Vec::new();
+        let mut found = self.fitted(points, turn, (free, &fixed))?;
+        for &k in free {
+            let Some(step) = self.steps[k] else { continue };
+            let Range { low, high } = self.unknowns[k].range;
+            let whole = (found.fit.values[k] / step).round();
+            let inside = whole.max((low / step).ceil()).min((high / step).floor());
+            fixed.push((k, inside * step));
+            found = self.fitted(points, turn, (free, &fixed))?;
+        }
+        Ok(found)
+    }
+
+    /// With settings free, some of which are fixed at values; all others stay as they are.
+    fn fitted(
+        &self,
+        points: &[Vec<Aimed>],
+        turn: ScaledUnknown,
+        (free, fixed): (&[usize], &[(usize, f64)]),
+    ) -> Result<AdjustedSurfaces, Failure> {
         let wanted = self.surfaces.iter().zip(points).map(|(surface, points)| WantedPoints {
             surface,
             points: points.iter().map(|point| point.position).collect(),
             near: points.iter().map(|point| point.near.clone()).collect(),
         });
         let settings = self.unknowns.iter().enumerate();
-        let settings = settings.map(|(k, of)| if free.contains(&k) { *of } else { held(*of) });
+        let settings = settings.map(|(k, of)| match fixed.iter().find(|(at, _)| *at == k) {
+            Some((_, value)) => held(ScaledUnknown { start: *value, ..*of }),
+            None if free.contains(&k) => *of,
+            None => held(*of),
+        });
         let adjustment = SettingsAdjustment {
             wanted: wanted.collect(),
             settings: settings.collect(),
             turn,
+            shapes: self.shapes.clone(),
             resolution: self.resolution,
             uses_weak: self.is_measured,
         };
@@ -175,6 +223,27 @@ impl<'p, 'g> Problem<'p, 'g> {
         let solved = if self.count() > 0 { adjustment.solve() } else { None };
         solved.ok_or(Failure::Unsolved(lost.to_string()))
     }
+}
+
+/// Of each surface a constant, the slopes in both directions of its grid and, of the second order, their squares and their product.
+fn shapes(aims: &[Aim<'_, '_>], places: &[Vec<usize>], order: u8) -> Shapes {
+    let all: usize = places.iter().map(Vec::len).sum();
+    let mut from = 0;
+    let mut found = Vec::new();
+    for (aim, places) in aims.iter().zip(places) {
+        let share = |at: usize, count: usize| if count > 1 { 2.0 * at as f64 / (count - 1) as f64 - 1.0 } else { 0.0 };
+        let terms = |at: usize| {
+            let [v, u] = [share(at / aim.counts[1], aim.counts[0]), share(at % aim.counts[1], aim.counts[1])];
+            [1.0, v, u, v * v, v * u, u * u]
+        };
+        for term in 0..if order == 1 { 3 } else { 6 } {
+            let mut shape = vec![0.0; all];
+            shape[from..].iter_mut().zip(places).for_each(|(value, at)| *value = terms(*at)[term]);
+            found.push(shape);
+        }
+        from += places.len();
+    }
+    Shapes::new(&found)
 }
 
 /// Where a surface ends in one of its unknowns.

@@ -31,6 +31,8 @@ pub struct FitResult {
     pub ease_off: Option<FittedEaseOff>,
     /// The share of the deviation that the correction takes away.
     pub share: f64,
+    /// 1 where only slopes are fitted, 2 where slopes, crownings and bias are; null where all of the deviations is.
+    pub order: Option<u8>,
     /// Root of the mean square of the deviations that are to be expected after the correction.
     pub predicted_um: f64,
     /// What a flank may be off to be as it was wanted, root of the mean square.
@@ -105,7 +107,7 @@ pub struct EaseOffNumbers {
 pub struct AdjustedSettings {
     /// In the order of the job.
     pub settings: Vec<AdjustedSetting>,
-    /// What is left between the flank of these settings and what it shall be, root of the mean square.
+    /// What is left of what is fitted between the flank of these settings and what it shall be, root of the mean square.
     pub left_um: f64,
     /// Steps that it took.
     pub steps: usize,
@@ -120,6 +122,8 @@ pub struct AdjustedSetting {
     pub name: String,
     /// Whether it is an error of the machine, which is identified and not set.
     pub is_error: bool,
+    /// The step that a correction is rounded to, if that was said.
+    pub step: Option<f64>,
     /// mm, deg, products of mm and rad; empty for a plain number.
     pub unit: String,
     /// As the job has it.
@@ -175,6 +179,8 @@ pub struct SettingChange {
 pub struct SettingsChoice {
     /// Those that move the flank, of which the settings were chosen.
     pub candidates: Vec<String>,
+    /// What a point was taken to scatter by: as it was said, or as all of them leave it; 0 for a wish.
+    pub noise_um: f64,
     /// What all of them together would leave, by the linear model, root of the mean square.
     pub all_leave_um: f64,
 }

@@ -4,6 +4,7 @@ use flank_chain_dsl::{Dimension, Job, Parameter, ValueSource};
 use flank_solver::{Range, ScaledUnknown};
 
 use crate::project::failure::Failure;
+use crate::project::requests::ToleratedAmount;
 use crate::project::units;
 use crate::solve::sensitivity::usual_change;
 
@@ -59,6 +60,39 @@ pub(in crate::compare) fn find(job: &Job<'_>, name: &str) -> Result<usize, Failu
             Err(Failure::Input(format!("several settings end with `{name}`; say which: {}", known.join(", "))))
         }
     }
+}
+
+/// Of each setting the step that it is set in, in mm and radians.
+///
+/// # Errors
+/// If a step is named for a setting that does not vary, twice, or has another unit.
+pub(super) fn steps(
+    settings: &[&Parameter<'_>],
+    round: &[(String, ToleratedAmount)],
+) -> Result<Vec<Option<f64>>, Failure> {
+    let mut steps = vec![None; settings.len()];
+    for (name, amount) in round {
+        let is_named = |of: &&Parameter<'_>| of.name == *name || of.name.rsplit('.').next() == Some(name);
+        let exact = settings.iter().position(|of| of.name == *name);
+        let Some(at) = exact.or_else(|| settings.iter().position(is_named)) else {
+            return Err(Failure::Input(format!("option `round` names `{name}`, which does not vary")));
+        };
+        let dimension = settings[at].dimension;
+        let step = match amount {
+            ToleratedAmount::Length(mm) if dimension == Dimension::LENGTH => *mm,
+            ToleratedAmount::Angle(radians) if units::is_angle(dimension) => *radians,
+            ToleratedAmount::Number(number) if dimension != Dimension::LENGTH && !units::is_angle(dimension) => *number,
+            _ => {
+                let unit = units::whole_symbol(dimension);
+                let wanted = if unit.is_empty() { "a plain number".to_string() } else { format!("one in {unit}") };
+                return Err(Failure::Input(format!("option `round {name}`: this step is {wanted}")));
+            }
+        };
+        if steps[at].replace(step).is_some() {
+            return Err(Failure::Request(format!("option `round` names `{name}` twice: leave one of them out")));
+        }
+    }
+    Ok(steps)
 }
 
 /// A setting as an unknown, within the range that it is said to have. `moved` is what one mm, radian or 1 of it moves the flank by, mm.

@@ -40,6 +40,14 @@ impl fmt::Display for FitResult {
                 writeln!(f, "  {name:12}  slopes {slopes}, crownings {crownings}, bias {} um", um(of.bias_um))?;
             }
         }
+        if let Some(order) = self.order {
+            let what = if order == 1 { "slopes" } else { "slopes, crownings and bias" };
+            writeln!(
+                f,
+                "  order {order}       rms {} um is left of {what}, which alone are fitted",
+                um(self.correction.left_um)
+            )?;
+        }
         if let Some(scatter) = self.scatter_um {
             let leave_out = self.leave_out_um.map(|error| format!("; rows and columns left out: {} um", um(error)));
             writeln!(f, "  scatter       {} um{}", um(scatter), leave_out.unwrap_or_default())?;
@@ -62,11 +70,12 @@ impl fmt::Display for FitResult {
         if let Some(choice) = &self.choice {
             let all = choice.candidates.len();
             let (chosen, leave) = (self.correction.settings.len(), um(choice.all_leave_um));
-            writeln!(
-                f,
-                "\nchosen: {chosen} of {}; all of them would leave {leave} um",
-                units::counted(all, "setting")
-            )?;
+            let settings = units::counted(all, "setting");
+            write!(f, "\nchosen: {chosen} of {settings}; all of them would leave {leave} um")?;
+            match choice.noise_um {
+                0.0 => writeln!(f)?,
+                noise => writeln!(f, "; a point scatters by {} um", um(noise))?,
+            }
         }
         writeln!(f, "\nwhat changes together move the flank by, um rms\n")?;
         self.directions.iter().try_for_each(|of| writeln!(f, "  {}", direction(of)))?;

@@ -53,14 +53,18 @@ pub(super) fn judged(
         );
         Remark::new(RemarkKind::Outlier, surface, message)
     }));
-    if let Some(remark) = not_shown(&result, fitting, main) {
+    if let Some(remark) = not_shown(&result, fitting, (request, main)) {
         result.remarks.push(remark);
     }
     result
 }
 
 /// Settings that take no more away than chance would.
-fn not_shown(result: &FitResult, fitting: &Fitting<'_, '_>, main: &AdjustedSurfaces) -> Option<Remark> {
+fn not_shown(
+    result: &FitResult,
+    fitting: &Fitting<'_, '_>,
+    (request, main): (&FitRequest, &AdjustedSurfaces),
+) -> Option<Remark> {
     let surface = &fitting.aims[0].of.surface.name;
     let identified = result.identification.as_ref().map_or(0, |of| of.settings.len());
     if result.correction.settings.is_empty() && identified == 0 {
@@ -69,6 +73,13 @@ fn not_shown(result: &FitResult, fitting: &Fitting<'_, '_>, main: &AdjustedSurfa
         return Some(Remark::new(RemarkKind::NotShown, surface, message));
     }
     result.identification.as_ref()?;
+    if let Some(noise) = request.noise.filter(|noise| fitting.now.rms() <= *noise) {
+        let (before, noise) = (result.before_um, 1e3 * noise);
+        let message = format!(
+            "the deviation, {before:.3} um rms, is not larger than the measuring noise of {noise:.3} um: the changes mean nothing"
+        );
+        return Some(Remark::new(RemarkKind::NotShown, surface, message));
+    }
     let (count, rank) = (main.fit.residuals.len(), main.fit.rank());
     // of scatter alone, unknowns take away their share
     let scatter = (count.saturating_sub(rank).max(1) as f64 / count.max(1) as f64).sqrt();

@@ -8,17 +8,21 @@ use crate::newton::least_squares::{LeastSquares, Linearized, ScaledUnknown};
 /// A setting that does something of its own by less than this share of all that it does is made up by others.
 const OWN: f64 = 1e-6;
 
+/// What a setting takes of the residuals has to be so many standard deviations of their scatter.
+const SHOWN: f64 = 2.0;
+
 /// Residuals that change by less, mm, have settled.
 const SETTLED: f64 = 1e-10;
 
 /// Settings in the order in which they lower what the linear model leaves most, until the next would lower its root of the mean square by
-/// less than `least`, or does less than `least` of its own for its scale. An entry of `effects` for each setting says what it does
+/// less than `least`, does less than `least` of its own for its scale, or would take no more than twice `noise` of them as one number: residuals that
+/// scatter by `noise` each give a setting that does nothing that much in one of twenty cases. An entry of `effects` for each setting says what it does
 /// to the residuals for its scale; what `always` holds is fitted first. Of two that do as much the first one is taken.
 ///
 /// # Panics
 /// If entries are not as long as the residuals.
 #[must_use]
-pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], least: f64) -> Vec<usize> {
+pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], least: f64, noise: f64) -> Vec<usize> {
     let root = (residuals.len().max(1) as f64).sqrt();
     let column = |of: &[f64]| Col::from_fn(residuals.len(), |row| of[row]);
     let mut left = column(residuals);
@@ -37,7 +41,9 @@ pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], l
         let falls = |k: usize| -> Option<f64> {
             let (length, along) = (own[k].norm_l2(), product(own[k].as_ref(), left.as_ref()));
             let is_own = length > OWN * whole[k] && length >= least * root && !taken.contains(&k);
-            is_own.then(|| rms - (left.squared_norm_l2() - (along / length).powi(2)).max(0.0).sqrt() / root)
+            let is_shown = along.abs() >= SHOWN * noise * length;
+            (is_own && is_shown)
+                .then(|| rms - (left.squared_norm_l2() - (along / length).powi(2)).max(0.0).sqrt() / root)
         };
         let better = |best: Option<(usize, f64)>, (k, fall): (usize, f64)| match best {
             Some((_, most)) if fall <= most => best,
@@ -89,8 +95,10 @@ mod tests {
         let first = vec![1.0, 0.0, 0.0, 0.0];
         // the third setting does what the first one does, the last one next to nothing
         let effects = [first.clone(), vec![0.0, 1.0, 0.0, 0.0], first, vec![0.0, 0.0, 1e-4, 0.0]];
-        let found = most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3);
+        let found = most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3, 0.0);
         assert_eq!(found, [1, 0]);
-        assert_eq!(most_effective(&[0.0; 4], &effects, &[0.0; 4], 1e-3), []);
+        // one takes 3 of the residuals, the other 1
+        assert_eq!(most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3, 0.8), [1]);
+        assert_eq!(most_effective(&[0.0; 4], &effects, &[0.0; 4], 1e-3, 0.0), []);
     }
 }

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::shapes::Shapes;
 use super::{AdjustableSurface, Foot, NearFoot};
 use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown};
 
@@ -28,6 +29,8 @@ pub struct SettingsAdjustment<'s> {
     pub settings: Vec<ScaledUnknown>,
     /// About z, radians.
     pub turn: ScaledUnknown,
+    /// The parts of the distances that are fitted; all of them where there is none.
+    pub shapes: Option<Shapes>,
     /// As [`LeastSquares::resolution`], mm.
     pub resolution: f64,
     /// As [`LeastSquares::uses_weak`].
@@ -37,17 +40,23 @@ pub struct SettingsAdjustment<'s> {
 /// Surfaces that are as near to points as their settings bring them.
 #[derive(Clone, Debug)]
 pub struct AdjustedSurfaces {
-    /// Residuals are the distances of the points, mm; unknowns the settings, then the turn.
+    /// Residuals are the distances of the points, mm, or their parts that are fitted; unknowns the settings, then the turn.
     pub fit: LeastSquaresFit,
     /// Of each surface, for each point.
     pub feet: Vec<Vec<Foot>>,
 }
 
 impl AdjustedSurfaces {
+    /// The distances of all points, mm.
+    #[must_use]
+    pub fn distances(&self) -> Vec<f64> {
+        self.feet.iter().flatten().map(|foot| foot.distance).collect()
+    }
+
     /// Root of the mean square of the distances, mm.
     #[must_use]
     pub fn rms(&self) -> f64 {
-        let squares: f64 = self.fit.residuals.iter().map(|off| off * off).sum();
+        let squares: f64 = self.distances().iter().map(|off| off * off).sum();
         (squares / self.fit.residuals.len().max(1) as f64).sqrt()
     }
 
@@ -75,7 +84,7 @@ impl SettingsAdjustment<'_> {
         let fit = problem.solve(|values| {
             let feet = self.feet(values, &near)?;
             near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
-            Some(linearized(&feet))
+            Some(linearized(&feet, self.shapes.as_ref()))
         })?;
         let feet = self.feet(&fit.values, &near)?;
         Some(AdjustedSurfaces { fit, feet })
@@ -92,12 +101,15 @@ impl SettingsAdjustment<'_> {
     }
 }
 
-fn linearized(feet: &[Vec<Foot>]) -> Linearized {
+fn linearized(feet: &[Vec<Foot>], shapes: Option<&Shapes>) -> Linearized {
     let all: Vec<&Foot> = feet.iter().flatten().collect();
     let settings = all.first().map_or(0, |foot| foot.moved.len());
+    let part = |of: Vec<f64>| shapes.map_or_else(|| of.clone(), |shapes| shapes.part(&of));
+    let columns: Vec<Vec<f64>> =
+        (0..=settings).map(|k| part(all.iter().map(|foot| slope(foot, k)).collect())).collect();
     Linearized {
-        residuals: all.iter().map(|foot| foot.distance).collect(),
-        jacobian: Mat::from_fn(all.len(), settings + 1, |row, k| slope(all[row], k)),
+        residuals: part(all.iter().map(|foot| foot.distance).collect()),
+        jacobian: Mat::from_fn(all.len(), settings + 1, |row, k| columns[k][row]),
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod choice;
 pub(crate) mod fit;
+pub(crate) mod shapes;
 
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
