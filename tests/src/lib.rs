@@ -2,6 +2,7 @@
 
 pub mod compiled;
 pub mod conversion;
+pub mod deck;
 mod dice;
 pub mod layout;
 pub mod machines;

@@ -70,6 +70,9 @@ impl From<flank::Failure> for Failure {
             flank::Failure::Unsolved(reason) => {
                 Failure { ending: Ending::Unsolved, ..Failure::from(with_flags(&reason)) }
             }
+            flank::Failure::TooLarge(reason) => {
+                Failure { ending: Ending::OutOfMemory, ..Failure::from(with_flags(&reason)) }
+            }
             flank::Failure::NotDone(not_done) => {
                 let each: Vec<String> = not_done.iter().map(|missing| with_flags(&missing.to_string())).collect();
                 Failure { ending: Ending::Unsolved, not_done, ..Failure::from(each.join("\n")) }

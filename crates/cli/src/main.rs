@@ -90,6 +90,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Tolerance(arguments) => operations::tolerance(arguments),
         Command::Contact(arguments) => operations::contact(arguments),
         Command::Measure(arguments) => operations::measure(arguments),
+        Command::Mesh(arguments) => operations::mesh(arguments),
         Command::Plot(arguments) => operations::plot(arguments),
         Command::Explain(arguments) => Ok(explain::run(arguments)),
         Command::Import(arguments) => import::run(arguments),

@@ -2,11 +2,12 @@
 
 use flank::{
     Choice, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
-    MeshFormat, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest, ToleranceRequest, ViewRequest,
+    MeshFormat, MeshRequest, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest, ToleranceRequest,
+    ViewRequest,
 };
 
 use crate::arguments::{
-    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Onto, Plot, Report, Solve, Tolerance, View,
+    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Mesh, Onto, Plot, Report, Solve, Tolerance, View,
 };
 use crate::failure::Failure;
 use crate::spec;
@@ -62,6 +63,20 @@ fn mesh_format(format: PointFormat) -> Result<MeshFormat, Failure> {
         PointFormat::Csv | PointFormat::Json | PointFormat::Parquet | PointFormat::Vtp => {
             Err(Failure::of_usage(format!("a body is written as stl, obj or 3mf, not as {}", format.name())))
         }
+    }
+}
+
+impl Mesh {
+    pub(crate) fn request(&self) -> Result<MeshRequest, Failure> {
+        Ok(MeshRequest {
+            jobs: self.which.jobs()?,
+            teeth: self.teeth.0,
+            elements: self.elements,
+            order: self.order,
+            out: self.out.clone(),
+            format: self.format.clone(),
+            evaluator: self.evaluator.evaluator(),
+        })
     }
 }
 

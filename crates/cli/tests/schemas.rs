@@ -82,6 +82,7 @@ fn solved_surfaces() {
     judge.run(&solve(PINION, &["--geometry", "--sensitivity", "--format", "json"]), 0);
     judge.file(&out.join("pinion_19x62.json"));
     judge.run(&["solve", PINION, "--solid", "tooth", "--json", at, to], 0);
+    judge.run(&["mesh", PINION, "--json", at, to], 0);
     judge.run(&solve("specs/hobbing/undercut_gear.chain", &["--limits", "--format", "json"]), 3);
     judge.file(&out.join("undercut_gear.json"));
     assert_eq!(judge.run(&solve("specs/bevel/ease_off_19x62.chain", &[]), 0).len(), 2, "one document for each job");
@@ -103,7 +104,7 @@ fn solved_surfaces() {
     assert!(first["message"].as_str().expect("a message").starts_with("ambiguous: "), "{first}");
     assert_eq!(first["place"]["text"], first["of"], "{first}");
     assert!(first["details"].as_array().expect("branches").len() > 2, "{first}");
-    judge.has_met(&["flank.solve/3", "flank.solid/1", "flank.surfaces/3"]);
+    judge.has_met(&["flank.solve/3", "flank.solid/1", "flank.mesh/1", "flank.surfaces/3"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Solved tooth surfaces as files: CSV, JSON, Parquet, STL, OBJ, 3MF, VTK, STEP; and what axes do over a motion: CSV, JSON, NC programs.
+//! Solved tooth surfaces as files: CSV, JSON, Parquet, STL, OBJ, 3MF, VTK, STEP; bodies as bricks for Abaqus, CalculiX and ParaView; and what axes do over a motion: CSV, JSON, NC programs.
 //!
 //! A [`Dataset`] is a list of [`Patch`]es, each a grid of [`Point`]s in a named frame. This crate writes it and knows
 //! nothing of how the points were solved. Lengths are mm. Angles are handed over in radians and written in degrees.
@@ -93,7 +93,7 @@ pub use points::tally::Tally;
 pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
 pub use schema::schema_of;
-pub use solid::{BodyMesh, write_body_3mf, write_body_obj, write_body_stl};
+pub use solid::{BodyMesh, BrickBody, BrickSet, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu};
 pub use step::{Deviation, Face, GearBody, TurnedSegment, spline_deviation, write_step, write_step_body};
 pub use text::number::{degrees, fixed};
 

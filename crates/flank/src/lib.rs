@@ -1,7 +1,7 @@
 //! Tooth surfaces of any machine: the library that the command line `flank` stands on.
 //!
 //! A [`Project`] is a spec with the files that it uses, a [`Job`] one job of it with its values and all its texts ([`Project::job`]). What
-//! works on the text alone takes a project: [`check`], [`lay_out`]. What works on jobs takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`], [`solid`],
+//! works on the text alone takes a project: [`check`], [`lay_out`]. What works on jobs takes a request of its own and a [`Monitor`], which hears how far it is, and gives a result of its own for each job: [`solve`], [`solid`], [`mesh()`],
 //! [`deviation`], [`fit`], [`tolerance`], [`measure`], [`convert`], [`derive()`], [`plot`], [`view`], [`report`]. A result is data; its serialisation is a document
 //! whose schema [`schemas`] has, its `Display` a text for people, and what was not done ([`Answer::not_done`]) and what else is to be known
 //! ([`Answer::remarks`]) stand in it as data: a code, what it is about, its place in the spec. What is wrong
@@ -96,8 +96,8 @@ pub use page::result::ViewResult;
 pub use page::view;
 pub use project::answer::{Answer, Timing};
 pub use project::choices::{
-    Choice, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat,
-    SolidPart, TableFormat, UnknownChoice,
+    BrickFormat, Choice, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind,
+    PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,
 };
 pub use project::failure::Failure;
 pub use project::files::write_texts;
@@ -108,8 +108,8 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, MeasureRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest, SolveRequest,
-    ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
+    JobSelection, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
+    SolveRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
@@ -118,6 +118,8 @@ pub use report::result::{
     InputSource, NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
     SolidEdge,
 };
+pub use solve::body::bricks::mesh;
+pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
 pub use solve::body::result::{
     BallNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
 };
@@ -137,6 +139,7 @@ const _: () = {
     is_shared::<JobSelection>();
     is_shared::<SolveRequest>();
     is_shared::<SolidRequest>();
+    is_shared::<MeshRequest>();
     is_shared::<PlotRequest>();
     is_shared::<ReportRequest>();
     is_shared::<ViewRequest>();
@@ -149,6 +152,7 @@ const _: () = {
     is_shared::<DeriveRequest>();
     is_shared::<SolveResult>();
     is_shared::<SolidResult>();
+    is_shared::<MeshResult>();
     is_shared::<DeviationResult>();
     is_shared::<FitResult>();
     is_shared::<ToleranceResult>();

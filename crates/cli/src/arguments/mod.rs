@@ -5,6 +5,7 @@ mod contact;
 mod convert;
 mod fit;
 mod measuring;
+mod mesh;
 mod plot;
 mod report;
 mod solid;
@@ -24,6 +25,7 @@ pub(crate) use contact::Contact;
 pub(crate) use convert::{Convert, Onto};
 pub(crate) use fit::Fit;
 pub(crate) use measuring::{Deviation, Measure};
+pub(crate) use mesh::Mesh;
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
 pub(crate) use solid::SolidArguments;
@@ -46,8 +48,8 @@ Examples:
   flank fmt specs/tools/*.chain                         the settled layout
 
 Exit codes: 0 done; 1 what was read is wrong or has not what is asked of it, or a file cannot be read or written; 2 the
-command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed; 4 the
-system gave no more memory; 141 done, but nobody read to the end what was printed."
+command line is wrong, whatever the files say; 3 done, but something asked for could not be solved, and it is listed; 4 there is
+not the memory that it takes; 141 done, but nobody read to the end what was printed."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -78,6 +80,8 @@ pub(crate) enum Command {
     Contact(Contact),
     /// Write nominal points and normals for a gear measuring machine
     Measure(Measure),
+    /// Cut the bodies of a job into bricks for finite elements: CalculiX, Abaqus, ParaView
+    Mesh(Mesh),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
     /// Make a job of a bevel gear's machine summary in a REXS file
@@ -105,6 +109,7 @@ impl Command {
             Command::Convert(arguments) => arguments.json,
             Command::Derive(arguments) => arguments.json,
             Command::Measure(arguments) => arguments.json,
+            Command::Mesh(arguments) => arguments.json,
             Command::Plot(arguments) => arguments.json,
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
@@ -137,6 +142,7 @@ impl Command {
             Command::Tolerance(arguments) => Some(arguments.evaluator),
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
+            Command::Mesh(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),
             Command::Check(_)
             | Command::Explain(_)
@@ -264,7 +270,8 @@ pub(crate) struct Faces {
 }
 
 /// Extensions that no folder for results is made with.
-const OF_FILES: [&str; 12] = ["csv", "json", "parquet", "stl", "obj", "3mf", "vtp", "step", "png", "svg", "html", "md"];
+const OF_FILES: [&str; 14] =
+    ["csv", "json", "parquet", "stl", "obj", "3mf", "vtp", "step", "inp", "vtu", "png", "svg", "html", "md"];
 
 /// The folder of `--out`.
 fn folder() -> impl TypedValueParser<Value = PathBuf> {

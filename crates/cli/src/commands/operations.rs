@@ -2,7 +2,7 @@
 
 use flank::{Answer, Failure as Refused, Monitor};
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Plot, Report, Solve, Tolerance, View};
+use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Plot, Report, Solve, Tolerance, View};
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -52,6 +52,11 @@ pub(crate) fn view(arguments: &View) -> Result<Ending, Failure> {
 pub(crate) fn measure(arguments: &Measure) -> Result<Ending, Failure> {
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::measure(&request, monitor, each))
+}
+
+pub(crate) fn mesh(arguments: &Mesh) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, |monitor, each| flank::mesh(&request, monitor, each))
 }
 
 pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {

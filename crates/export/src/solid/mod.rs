@@ -1,9 +1,11 @@
-//! Closed bodies as meshes whose triangles share their corners.
+//! Closed bodies as meshes whose triangles share their corners, and of bricks.
 
+mod bricks;
 mod obj;
 mod stl;
 mod threemf;
 
+pub use bricks::{BrickBody, BrickSet, write_inp, write_vtu};
 pub use obj::write_body_obj;
 pub use stl::write_body_stl;
 pub use threemf::write_body_3mf;

@@ -20,6 +20,7 @@ use crate::language::check::CheckResult;
 use crate::language::errors::Explanation;
 use crate::page::result::ViewResult;
 use crate::report::result::ReportResult;
+use crate::solve::body::bricks_result::MeshResult;
 use crate::solve::body::result::SolidResult;
 use crate::solve::result::SolveResult;
 
@@ -43,6 +44,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<Explanation>(),
         schema_of::<SolveResult>(),
         schema_of::<SolidResult>(),
+        schema_of::<MeshResult>(),
         schema_of::<DeviationResult>(),
         schema_of::<ContactResult>(),
         schema_of::<FitResult>(),

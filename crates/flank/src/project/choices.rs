@@ -116,6 +116,26 @@ choices! {
 }
 
 choices! {
+    /// A format of bricks for finite elements.
+    BrickFormat {
+        /// Input of Abaqus and CalculiX.
+        Inp = "inp",
+        /// The same bricks for ParaView.
+        Vtu = "vtu",
+    }
+}
+
+choices! {
+    /// The order of the shape functions of bricks.
+    ElementOrder {
+        /// Eight nodes, straight edges.
+        First = "1",
+        /// Twenty nodes, edges through points of the exact surfaces.
+        Second = "2",
+    }
+}
+
+choices! {
     /// A format of pictures.
     PictureFormat {
         /// Pixels.

@@ -23,6 +23,9 @@ pub enum Failure {
     /// The same, as data.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
     NotDone(Vec<NotDone>),
+    /// What was asked for takes more memory than there is to spare.
+    #[error("{0}")]
+    TooLarge(String),
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),

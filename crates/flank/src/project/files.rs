@@ -4,10 +4,10 @@ use std::path::Path;
 
 use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
-    BodyMesh, Dataset, Dialect, Face, FileSet, GearBody, Header, MeasuringGrid, MotionTable, Surfaces, Target,
-    WriteError, make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv, write_grid_csv,
-    write_grid_json, write_json, write_motion_csv, write_motion_json, write_nc, write_obj, write_parquet, write_step,
-    write_step_body, write_stl, write_vtp,
+    BodyMesh, BrickBody, Dataset, Dialect, Face, FileSet, GearBody, Header, MeasuringGrid, MotionTable, Surfaces,
+    Target, WriteError, make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv,
+    write_grid_csv, write_grid_json, write_inp, write_json, write_motion_csv, write_motion_json, write_nc, write_obj,
+    write_parquet, write_step, write_step_body, write_stl, write_vtp, write_vtu,
 };
 
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
@@ -105,6 +105,16 @@ impl<'a> Folder<'a> {
     /// The same, packed.
     pub(crate) fn body_3mf(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
         self.write(&format!("{name}.3mf"), |out| write_body_3mf(header, body, out))
+    }
+
+    /// Bricks for Abaqus and CalculiX.
+    pub(crate) fn bricks_inp(&mut self, name: &str, header: &Header, body: &BrickBody<'_>) -> Result<(), Failure> {
+        self.write(&format!("{name}.inp"), |out| write_inp(header, body, out))
+    }
+
+    /// The same for ParaView.
+    pub(crate) fn bricks_vtu(&mut self, name: &str, header: &Header, body: &BrickBody<'_>) -> Result<(), Failure> {
+        self.write(&format!("{name}.vtu"), |out| write_vtu(header, body, out))
     }
 
     /// A picture as PNG and SVG.

@@ -65,6 +65,8 @@ pub enum NotDoneKind {
     NotMet,
     /// The surfaces of a solid bound no body.
     NoBody,
+    /// A body is not cut into bricks.
+    NoBricks,
 }
 
 /// Kinds of remarks.

@@ -8,8 +8,8 @@ use flank_solver::MOST_BOXES;
 
 use crate::project::Project;
 use crate::project::choices::{
-    EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat, ReportFormat, SolidPart,
-    TableFormat,
+    BrickFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat,
+    ReportFormat, SolidPart, TableFormat,
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
@@ -173,6 +173,40 @@ pub struct SolidRequest {
     pub ball: Option<f64>,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
+}
+
+/// Bodies as bricks for finite elements.
+#[derive(Clone, Debug)]
+pub struct MeshRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// Neighbouring teeth, each from the middle of a space to the middle of the next; the whole gear otherwise.
+    pub teeth: Option<u32>,
+    /// Bricks up a flank (from 1 on), along the tooth (from 1 on), and from flank to flank (from 3 on).
+    pub elements: [u32; 3],
+    /// The order of their shape functions.
+    pub order: ElementOrder,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with the bricks.
+    pub format: Vec<BrickFormat>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl MeshRequest {
+    /// One tooth of 8 x 12 x 6 bricks of the first order as an input file in the folder `build`.
+    pub fn new(jobs: impl Into<JobSelection>) -> MeshRequest {
+        MeshRequest {
+            jobs: jobs.into(),
+            teeth: Some(1),
+            elements: [8, 12, 6],
+            order: ElementOrder::First,
+            out: "build".into(),
+            format: vec![BrickFormat::Inp],
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
 }
 
 impl SolveRequest {

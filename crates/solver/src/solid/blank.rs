@@ -37,22 +37,31 @@ impl Blank {
     /// Places `[z, rho]` around the rest, from where the spaces begin to where they end, with so many steps: its corners among them where
     /// there are as many steps as segments.
     pub(crate) fn below(&self, steps: usize) -> Vec<[f64; 2]> {
+        let segments = self.outline.segments();
+        let cells = self.below_cells(steps);
+        let mut places: Vec<[f64; 2]> = cells.iter().map(|(segment, [from, _])| segments[*segment].at(*from)).collect();
+        places.push(self.bounds()[2].to);
+        places
+    }
+
+    /// The same as cells: of each the segment of the outline, and the shares of it between which it runs.
+    pub(crate) fn below_cells(&self, steps: usize) -> Vec<(usize, [f64; 2])> {
         let rest = self.rest();
         let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
         let mut left = steps;
-        let mut places = Vec::with_capacity(steps + 1);
+        let mut cells = Vec::with_capacity(steps);
         let mut passed = 0.0;
-        for (k, segment) in rest.iter().rev().enumerate() {
+        for (k, segment) in rest.iter().enumerate().rev() {
             passed += segment.length();
-            let behind = rest.len() - 1 - k;
             let wanted = (steps as f64 * passed / whole).round() as usize;
-            let count = wanted.saturating_sub(steps - left).max(1).min(left.saturating_sub(behind));
-            let count = if behind == 0 { left } else { count };
-            places.extend((0..count).map(|step| segment.at(1.0 - step as f64 / count as f64)));
+            let count = wanted.saturating_sub(steps - left).max(1).min(left.saturating_sub(k));
+            let count = if k == 0 { left } else { count };
+            let number = (self.ends[2] + 1 + k) % self.outline.segments().len();
+            let share = |step: usize| 1.0 - step as f64 / count as f64;
+            cells.extend((0..count).map(|step| (number, [share(step), share(step + 1)])));
             left -= count;
         }
-        places.push(self.bounds()[2].to);
-        places
+        cells
     }
 
     /// How far a place `[z, rho]` lies from begin to end, as a share.

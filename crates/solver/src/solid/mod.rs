@@ -2,6 +2,7 @@
 
 pub(crate) mod blank;
 pub(crate) mod body;
+pub(crate) mod bricks;
 pub(crate) mod chart;
 pub(crate) mod gauge;
 pub(crate) mod mass;

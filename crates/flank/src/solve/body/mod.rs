@@ -1,6 +1,8 @@
 //! `flank solve` with option `solid`: closed bodies.
 
 pub(crate) mod borders;
+pub(crate) mod bricks;
+pub(crate) mod bricks_result;
 pub(crate) mod ends;
 pub(crate) mod gauges;
 pub(crate) mod piece;
@@ -37,12 +39,7 @@ pub fn solid(request: &SolidRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
         return Err(Failure::Request("a STEP file holds the whole gear: say `gear` for option `solid`".to_string()));
     }
     let session = Session::new(request.evaluator, monitor);
-    let meant: Vec<&Job<'_>> = jobs.iter().filter(|job| !job.solids.is_empty()).collect();
-    if meant.is_empty() {
-        let names: Vec<String> = jobs.iter().map(|job| format!("`{}`", job.name)).collect();
-        return Err(format!("no solid in job {}: `solid NAME in FRAME = turned(…)` makes one", names.join(", ")).into());
-    }
-    for job in meant {
+    for job in space::with_solids(&jobs)? {
         each(built(job, (request, &origin), session)?);
     }
     Ok(())

@@ -24,6 +24,19 @@ pub(crate) struct Space {
     pub(crate) off: f64,
 }
 
+/// The jobs that have solids.
+///
+/// # Errors
+/// If none has.
+pub(crate) fn with_solids<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>>, Failure> {
+    let meant: Vec<&Job<'g>> = jobs.iter().filter(|job| !job.solids.is_empty()).collect();
+    if meant.is_empty() {
+        let names: Vec<String> = jobs.iter().map(|job| format!("`{}`", job.name)).collect();
+        return Err(format!("no solid in job {}: `solid NAME in FRAME = turned(…)` makes one", names.join(", ")).into());
+    }
+    Ok(meant)
+}
+
 /// # Errors
 /// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
 pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>) -> Result<Space, Failure> {

@@ -1,0 +1,208 @@
+//! `flank mesh`: bodies as bricks for finite elements.
+
+use std::collections::BTreeSet;
+
+use flank_chain_dsl::{Job, Solid};
+use flank_export::{BrickBody, BrickSet, Header};
+use flank_expr::Graph;
+use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide};
+
+use crate::project::choices::{BrickFormat, ElementOrder};
+use crate::project::failure::Failure;
+use crate::project::files::Folder;
+use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::{MeshRequest, Session};
+use crate::project::shown_path;
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::solve::body::bricks_result::{BrickNumbers, MeshResult};
+use crate::solve::body::space::{self, Space};
+use crate::solve::dataset::header;
+
+/// Bytes that a mesh may take with what its files are made from: what machines of today can spare.
+const MOST_BYTES: usize = 1 << 30;
+/// Bytes of a node, in sections and in place, and of a brick's node, in parts and together.
+const OF_NODE: usize = 3 * size_of::<[f64; 3]>();
+const OF_CORNER: usize = 2 * size_of::<u32>() + size_of::<i64>();
+
+/// Cuts the bodies of jobs into bricks and writes these. `each` is given the result of each job.
+///
+/// # Errors
+/// What is wrong with the spec, that it has no solid, that there would be too many bricks, or that a file cannot be written.
+pub fn mesh(request: &MeshRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(MeshResult)) -> Result<(), Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of_compilation(&compilation);
+    let session = Session::new(request.evaluator, monitor);
+    for job in space::with_solids(&jobs)? {
+        each(meshed(job, (request, &origin), session)?);
+    }
+    Ok(())
+}
+
+fn meshed(
+    job: &Job<'_>,
+    (request, origin): (&MeshRequest, &Origin),
+    session: Session<'_>,
+) -> Result<MeshResult, Failure> {
+    let header = header(&[job], &request.jobs, origin);
+    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let (mut solids, mut not_done) = (Vec::new(), Vec::new());
+    for solid in &job.solids {
+        let _working = session.begin(format!("meshing {}", solid.name))?;
+        let kind = match space::body(job, solid, session) {
+            Ok(space) => match one(job, solid, &space, (request, &header), &mut folder)? {
+                Ok(numbers) => {
+                    solids.push(numbers);
+                    continue;
+                }
+                Err(reason) => (NotDoneKind::NoBricks, reason),
+            },
+            Err(Failure::Input(reason)) => (NotDoneKind::NoBody, reason),
+            Err(other) => return Err(other),
+        };
+        not_done.push(NotDone::new(kind.0, &solid.name, kind.1));
+    }
+    Ok(MeshResult {
+        job: job.name.clone(),
+        spec: shown_path(request.jobs.file()),
+        solids,
+        files: folder.finish()?,
+        not_done: origin.located(&[job], not_done),
+    })
+}
+
+/// The bricks of a solid, or why there are none.
+fn one(
+    job: &Job<'_>,
+    solid: &Solid,
+    space: &Space,
+    (request, header): (&MeshRequest, &Header),
+    folder: &mut Folder<'_>,
+) -> Result<Result<BrickNumbers, String>, Failure> {
+    let body = &space.body;
+    let teeth = request.teeth.unwrap_or(body.teeth());
+    if teeth > body.teeth() {
+        return Ok(Err(format!("`{}` has {} teeth: there are no {teeth} of them", solid.name, body.teeth())));
+    }
+    let order = match request.order {
+        ElementOrder::First => BrickOrder::First,
+        ElementOrder::Second => BrickOrder::Second,
+    };
+    let counts = body.brick_counts(request.elements.map(|count| count as usize));
+    let size = counts.size(body, order, teeth as usize);
+    check_size(&solid.name, size, order)?;
+    let mesh = body.bricks(&counts, order, teeth as usize);
+    let quality = mesh.quality();
+    if quality.least_scaled_jacobian <= 0.0 || quality.least_jacobian <= 0.0 {
+        return Ok(Err(format!(
+            "the bricks of `{}` would be folded: their least scaled Jacobian is {:.3}, and has to be above 0; try other numbers with option `elements`",
+            solid.name,
+            quality.least_scaled_jacobian.min(quality.least_jacobian)
+        )));
+    }
+    let sets = sets(&mesh, body, &names(space, body), teeth);
+    let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
+    let written = BrickBody {
+        name: &solid.name,
+        frame: &solid.frame,
+        nodes: &mesh.nodes,
+        nodes_of_brick: order.nodes(),
+        bricks: &mesh.bricks,
+        teeth: teeth as usize,
+        sets: &sets,
+        deviation: mesh.deviation,
+    };
+    for format in &request.format {
+        match format {
+            BrickFormat::Inp => folder.bricks_inp(&file, header, &written)?,
+            BrickFormat::Vtu => folder.bricks_vtu(&file, header, &written)?,
+        }
+    }
+    Ok(Ok(BrickNumbers::new((&solid.name, &solid.frame), body, &counts, (mesh, quality), sets)))
+}
+
+fn check_size(name: &str, [bricks, nodes]: [usize; 2], order: BrickOrder) -> Result<(), Failure> {
+    let bytes = nodes.saturating_mul(OF_NODE).saturating_add(bricks.saturating_mul(order.nodes() * OF_CORNER));
+    if bytes <= MOST_BYTES {
+        return Ok(());
+    }
+    Err(Failure::TooLarge(format!(
+        "`{name}` would have {bricks} bricks of {} nodes: that would take about {:.1} GB, and {:.1} GB is the most; ask for fewer with \
+         option `elements` or option `teeth`",
+        order.nodes(),
+        bytes as f64 / 1e9,
+        MOST_BYTES as f64 / 1e9
+    )))
+}
+
+/// What the sets on charts are called, in the order of the body.
+fn names(space: &Space, body: &Body) -> Vec<String> {
+    let (charts, is_reversed) = body.charts();
+    let count = charts.len();
+    let name = |k: usize| {
+        let own = &space.names[if is_reversed { count - 1 - k } else { k }];
+        let kind = if k == 0 || k + 1 == count {
+            "FLANK"
+        } else if 2 * k + 1 == count {
+            "ROOT"
+        } else {
+            "FILLET"
+        };
+        format!("{kind}_{}", set_name(own))
+    };
+    (0..count).map(name).collect()
+}
+
+/// As readers of input files take names: they do not tell small letters from large ones.
+fn set_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' }).collect()
+}
+
+/// The sets of a mesh, those of one tooth beside each other.
+fn sets(mesh: &BrickMesh, body: &Body, charts: &[String], teeth: u32) -> Vec<BrickSet> {
+    let mut taken = BTreeSet::new();
+    let mut sets = Vec::new();
+    let mut add = |name: String, faces: &[&BrickFaces]| {
+        let mut name = name;
+        while !taken.insert(name.clone()) {
+            name.push('_');
+        }
+        let nodes = mesh.side_nodes(faces);
+        sets.push(BrickSet { name, faces: faces.iter().flat_map(|of| of.faces.iter().copied()).collect(), nodes });
+    };
+    for of in mesh.faces.iter() {
+        if let BrickSide::Chart(chart) = of.side {
+            let name = &charts[chart];
+            add(if teeth == 1 { name.clone() } else { format!("{name}_T{}", of.tooth + 1) }, &[of]);
+        }
+    }
+    let on = |side: BrickSide| mesh.faces.iter().filter(|of| of.side == side).collect::<Vec<&BrickFaces>>();
+    let cuts = (0..2).map(|k| (format!("SIDE_{}", k + 1), BrickSide::Cut(k)));
+    let segments = body.blank().outline.segments().iter().enumerate();
+    let outline = segments.map(|(k, segment)| (set_name(&segment.name), BrickSide::Outline(k)));
+    for (name, side) in cuts.chain(outline) {
+        let faces = on(side);
+        if !faces.is_empty() {
+            add(name, &faces);
+        }
+    }
+    sets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_that_is_too_large_is_refused_with_its_size() {
+        assert!(check_size("gear", [100_000, 450_000], BrickOrder::Second).is_ok());
+        let refused = check_size("gear", [3_000_000, 13_000_000], BrickOrder::Second).expect_err("1.9 GB");
+        let told = refused.to_string();
+        assert!(
+            told.starts_with("`gear` would have 3000000 bricks of 20 nodes: that would take about 1.9 GB, and 1.1 GB"),
+            "{told}"
+        );
+    }
+}

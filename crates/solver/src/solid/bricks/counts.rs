@@ -1,0 +1,160 @@
+//! How finely a tooth is cut into bricks.
+
+use crate::solid::body::{Body, Polar};
+
+/// Samples of a line across a chart by which its length is measured.
+const SAMPLES: usize = 1024;
+/// Bricks across a flank to which the numbers below belong; of twice as many each brick turns and grows half as much.
+const USUAL: f64 = 8.0;
+/// How far a fillet turns within a brick at the most, rad.
+const TURN: f64 = 0.21;
+/// By how much a brick below the root is thicker than the one above it.
+const GROWTH: f64 = 1.5;
+/// The thickness of bricks in the middle of a tooth, of those at a flank.
+const GRADING: f64 = 2.25;
+/// Bricks below the root at the most.
+const MOST_BELOW: usize = 256;
+
+/// How many bricks a tooth is cut into.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BrickCounts {
+    /// Across each chart of a space. The last has as many as the first, the last but one as the second; one in the middle has an even number.
+    pub charts: Vec<usize>,
+    /// Layers along flanks, fillets and roots.
+    pub band: usize,
+    /// Between the layers of both flanks.
+    pub core: usize,
+    /// From the layers of the root to the rest of the outline.
+    pub rim: usize,
+    /// Along the tooth.
+    pub along: usize,
+}
+
+impl Body {
+    /// So many bricks up a flank, along the tooth, and from flank to flank; others so that they are about as large, and smaller where a fillet
+    /// turns. Along the tooth there are at least as many as the rest of the outline has segments.
+    ///
+    /// # Panics
+    /// If there are none up a flank, or fewer than three from flank to flank.
+    pub fn brick_counts(&self, [profile, along, thickness]: [usize; 3]) -> BrickCounts {
+        assert!(profile > 0 && thickness > 2, "a brick up the flank, and three from flank to flank");
+        let last = self.charts.len() - 1;
+        let finer = profile as f64 / USUAL;
+        let measured: Vec<(f64, f64)> = (0..=last).map(|k| length_and_turn(&middle_line(self, k))).collect();
+        let size = 0.5 * (measured[0].0 + measured[last].0) / profile as f64;
+        let wanted = |k: usize| {
+            let (length, turn) = measured[k];
+            (length / size).max(turn / TURN * finer).ceil().max(1.0) as usize
+        };
+        let mut charts: Vec<usize> = (0..=last).map(|k| wanted(k).max(wanted(last - k))).collect();
+        (charts[0], charts[last]) = (profile, profile);
+        if last.is_multiple_of(2) {
+            charts[last / 2] = charts[last / 2].next_multiple_of(2);
+        }
+        let band = ((thickness as f64 / 3.0).round() as usize).max(1);
+        let along = along.max(self.blank().rest().len()).max(1);
+        let growth = GROWTH.powf(1.0 / finer);
+        let layers = (1.0 + self.depth_below() * (growth - 1.0) / size).ln() / growth.ln();
+        let rim = (layers.round() as usize).clamp(2, MOST_BELOW);
+        BrickCounts { charts, band, core: thickness - 2 * band, rim, along }
+    }
+
+    /// From the middle of the root to the rest of the outline, half-way along, mm.
+    fn depth_below(&self) -> f64 {
+        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
+        let [z, rho, _] = line[line.len() / 2];
+        let [below_z, below_rho] = self.blank().below(2 * self.blank().rest().len())[self.blank().rest().len()];
+        (z - below_z).hypot(rho - below_rho)
+    }
+}
+
+impl BrickCounts {
+    /// How thick the band is beside a tooth, of half the tooth.
+    pub(crate) fn band_share(&self) -> f64 {
+        let growth = self.band_growth();
+        let layers: f64 = (0..self.band).map(|k| growth.powi(k as i32)).sum();
+        layers / (layers + 0.5 * self.core as f64 * GRADING)
+    }
+
+    fn band_growth(&self) -> f64 {
+        GRADING.powf(1.0 / self.band as f64)
+    }
+
+    /// Shares of the band's thickness between its layers.
+    pub(crate) fn band_shares(&self, steps: usize) -> Vec<f64> {
+        refined(&growing(self.band, self.band_growth()), steps)
+    }
+
+    /// Shares of the way from the band to the rest of the outline: the first layer as thick as is wanted, of the whole way.
+    pub(crate) fn rim_shares(&self, first: f64, steps: usize) -> Vec<f64> {
+        refined(&growing(self.rim, growth_from(first, self.rim)), steps)
+    }
+}
+
+/// Shares between layers each of which is so much thicker than the one before.
+fn growing(count: usize, growth: f64) -> Vec<f64> {
+    let mut sums = vec![0.0];
+    (0..count).for_each(|k| sums.push(sums[k] + growth.powi(k as i32)));
+    let whole = sums[count];
+    sums.iter().map(|sum| sum / whole).collect()
+}
+
+/// By how much each of some layers is thicker than the one before if the first has a share of all; between 1 and 2.
+fn growth_from(first: f64, count: usize) -> f64 {
+    let share = |growth: f64| 1.0 / (0..count).map(|k| growth.powi(k as i32)).sum::<f64>();
+    let (mut low, mut high) = (1.0, 2.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if share(middle) > first { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// With so many steps between two neighbours.
+pub(crate) fn refined(stations: &[f64], steps: usize) -> Vec<f64> {
+    let between = |pair: &[f64]| {
+        (0..steps).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / steps as f64).collect::<Vec<f64>>()
+    };
+    let mut fine: Vec<f64> = stations.windows(2).flat_map(between).collect();
+    fine.extend(stations.last());
+    fine
+}
+
+/// Shares across a chart at which it is cut into pieces of one length, half-way along.
+pub(crate) fn even_shares(body: &Body, chart: usize, count: usize) -> Vec<f64> {
+    let line = middle_line(body, chart);
+    let mut sums = vec![0.0];
+    line.windows(2).for_each(|pair| sums.push(sums[sums.len() - 1] + apart(pair[0], pair[1])));
+    let whole = sums[SAMPLES];
+    let share = |k: usize| {
+        if k == 0 || k == count {
+            return if k == 0 { 0.0 } else { 1.0 };
+        }
+        let wanted = whole * k as f64 / count as f64;
+        let at = sums.partition_point(|sum| *sum < wanted).clamp(1, SAMPLES);
+        (at as f64 - (sums[at] - wanted) / (sums[at] - sums[at - 1])) / SAMPLES as f64
+    };
+    (0..=count).map(share).collect()
+}
+
+fn middle_line(body: &Body, chart: usize) -> Vec<[f64; 3]> {
+    let shares: Vec<f64> = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64).collect();
+    body.charts[chart].lattice(&shares, &[0.5])
+}
+
+/// How long a line is, mm, and by how much it turns, rad.
+fn length_and_turn(line: &[[f64; 3]]) -> (f64, f64) {
+    let steps: Vec<nalgebra::Vector3<f64>> =
+        line.windows(2).map(|pair| nalgebra::Vector3::from(pair[1]) - nalgebra::Vector3::from(pair[0])).collect();
+    let length = steps.iter().map(|step| step.norm()).sum();
+    (length, steps.windows(2).map(|pair| pair[0].angle(&pair[1])).sum())
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The distance of two points about the axis, mm, where these are near to each other.
+pub(crate) fn polar_distance(a: Polar, b: Polar) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1]).hypot(0.5 * (a[1] + b[1]) * (a[2] - b[2]))
+}

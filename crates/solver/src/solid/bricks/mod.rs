@@ -1,0 +1,316 @@
+//! A body cut into bricks for finite elements.
+//!
+//! A section across a tooth is laid out in blocks of cells (`layout`) and its nodes are placed (`section`); the bricks lie between one section
+//! and the next. Of the second order, the lattice of nodes is twice as fine, so that the nodes in the middle of edges lie on the
+//! exact surfaces, too.
+
+pub(crate) mod counts;
+pub(crate) mod element;
+pub(crate) mod layout;
+pub(crate) mod quality;
+pub(crate) mod section;
+pub(crate) mod skin;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::solid::body::{Body, Polar, position};
+use crate::solid::bricks::counts::{BrickCounts, refined};
+use crate::solid::bricks::layout::{Cell, CellSide, Layout};
+use crate::solid::bricks::section::Sections;
+
+/// The order of a brick's shape functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BrickOrder {
+    /// Eight corners.
+    First,
+    /// Twenty nodes: corners and the middles of edges.
+    Second,
+}
+
+impl BrickOrder {
+    /// Nodes of a brick.
+    pub fn nodes(self) -> usize {
+        match self {
+            BrickOrder::First => 8,
+            BrickOrder::Second => 20,
+        }
+    }
+
+    /// Steps of the lattice of nodes from one corner of a brick to the next.
+    pub(crate) fn steps(self) -> usize {
+        match self {
+            BrickOrder::First => 1,
+            BrickOrder::Second => 2,
+        }
+    }
+}
+
+/// What faces of bricks lie on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BrickSide {
+    /// A chart of the tooth spaces, by its place in [`Body::charts`].
+    Chart(usize),
+    /// A segment of the outline, by its place in it.
+    Outline(usize),
+    /// Where the model is cut through the middle of a space: 0 before its first tooth, 1 behind its last. The nodes of both are the same, turned
+    /// by the teeth between.
+    Cut(usize),
+}
+
+/// Faces of the bricks of one tooth on one side.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BrickFaces {
+    /// What they lie on.
+    pub side: BrickSide,
+    /// The tooth, from 0.
+    pub tooth: usize,
+    /// Each as its brick and its face, both from 0. Faces are those of C3D8: 0 holds the first four corners, 1 the last four, 2 to 5 the edges
+    /// from the first corner to the second and so on.
+    pub faces: Vec<(u32, u8)>,
+}
+
+/// Bricks that share their nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BrickMesh {
+    /// The order of all bricks.
+    pub order: BrickOrder,
+    /// mm, each once.
+    pub nodes: Vec<[f64; 3]>,
+    /// The nodes of each brick one after the other, as C3D8 and C3D20 have them: corners of one face, those of the face opposite, then the
+    /// middles of the edges of the first face, of the second, and between both.
+    pub bricks: Vec<u32>,
+    /// How many teeth it has; the bricks of one follow those of the other.
+    pub teeth: usize,
+    /// The outer faces.
+    pub faces: Vec<BrickFaces>,
+    /// How far faces on charts are off these at the most, mm.
+    pub deviation: f64,
+}
+
+impl BrickMesh {
+    /// How many bricks.
+    pub fn len(&self) -> usize {
+        self.bricks.len() / self.order.nodes()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.bricks.is_empty()
+    }
+
+    /// The tooth that a brick is of, from 0.
+    pub fn tooth(&self, brick: usize) -> usize {
+        brick * self.teeth / self.len()
+    }
+
+    /// The nodes of a face of a brick: corners, then of the second order the middles of its edges.
+    pub fn face_nodes(&self, (brick, face): (u32, u8)) -> impl Iterator<Item = u32> + '_ {
+        let count = self.order.nodes();
+        let own = &self.bricks[brick as usize * count..][..count];
+        element::FACES[face as usize].iter().filter(move |node| **node < count).map(|node| own[*node])
+    }
+
+    /// The nodes of the faces on a side, in rising order.
+    pub fn side_nodes(&self, faces: &[&BrickFaces]) -> Vec<u32> {
+        let mut nodes: Vec<u32> =
+            faces.iter().flat_map(|of| &of.faces).flat_map(|face| self.face_nodes(*face)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+impl Body {
+    /// The bricks of so many neighbouring teeth, each from the middle of a space to the middle of the next; of all of them, the whole gear.
+    ///
+    /// # Panics
+    /// If there are no teeth or more than the body has, or `counts` are not those of its charts.
+    pub fn bricks(&self, counts: &BrickCounts, order: BrickOrder, teeth: usize) -> BrickMesh {
+        assert!((1..=self.teeth() as usize).contains(&teeth), "between one tooth and all");
+        let stations = counts.stations(self, order);
+        let layout = Layout::new(self, counts, order);
+        let sections = Sections::new(self, &layout, counts, &stations);
+        let places: Vec<Vec<Polar>> = (0..stations.along.len()).into_par_iter().map(|a| sections.places(a)).collect();
+        let numbers = Numbers::new(&layout, stations.along.len(), (teeth, teeth == self.teeth() as usize));
+        let nodes = numbers.positions(&places, self.pitch());
+        let is_forward = is_forward(layout.cells[0], &places, order.steps());
+        let bricks = bricks_of(&layout, &numbers, (counts.along, is_forward), order);
+        let faces = faces_of(self, &layout, counts, (teeth, numbers.is_ring), is_forward);
+        BrickMesh { order, nodes, bricks, teeth, faces, deviation: skin::deviation(self, &stations, order) }
+    }
+}
+
+/// Whether the corners of a cell, then those of the next section, are in the order of a brick's.
+fn is_forward(cell: Cell, places: &[Vec<Polar>], steps: usize) -> bool {
+    let corner = |section: usize, k: usize| nalgebra::Vector3::from(position(places[section][cell.nodes[k]]));
+    let from = corner(0, 0);
+    let [a, b, c] = [corner(0, 1), corner(0, 3), corner(steps, 0)].map(|to| to - from);
+    a.cross(&b).dot(&c) > 0.0
+}
+
+/// The numbers of nodes: those of a tooth follow each other, without the ones that it shares with the next tooth.
+struct Numbers<'l> {
+    layout: &'l Layout,
+    /// Of each section and node of the layout the number within its tooth; none of nodes that no brick has.
+    own: Vec<Option<u32>>,
+    /// Nodes of one tooth.
+    of_tooth: usize,
+    /// Of each section the number among those on the far side of the last tooth, of nodes that lie there.
+    last: BTreeMap<(usize, usize), u32>,
+    teeth: usize,
+    is_ring: bool,
+}
+
+impl<'l> Numbers<'l> {
+    fn new(layout: &'l Layout, sections: usize, (teeth, is_ring): (usize, bool)) -> Numbers<'l> {
+        let (mut own, mut of_tooth, mut last) = (vec![None; sections * layout.nodes], 0, BTreeMap::new());
+        for section in 0..sections {
+            let is_between = !section.is_multiple_of(layout.steps);
+            for node in 0..layout.nodes {
+                if !layout.is_used(node, is_between) {
+                    continue;
+                }
+                if layout.twin(node).is_some() {
+                    last.insert((section, node), last.len() as u32);
+                } else {
+                    own[section * layout.nodes + node] = Some(of_tooth);
+                    of_tooth += 1;
+                }
+            }
+        }
+        Numbers { layout, own, of_tooth: of_tooth as usize, last, teeth, is_ring }
+    }
+
+    fn own(&self, section: usize, node: usize) -> u32 {
+        self.own[section * self.layout.nodes + node].expect("bricks have used nodes alone")
+    }
+
+    fn of(&self, tooth: usize, section: usize, node: usize) -> u32 {
+        let base = |tooth: usize| (tooth * self.of_tooth) as u32;
+        match self.layout.twin(node) {
+            None => base(tooth) + self.own(section, node),
+            Some(_) if tooth + 1 == self.teeth && !self.is_ring => base(self.teeth) + self.last[&(section, node)],
+            Some(twin) => base((tooth + 1) % self.teeth) + self.own(section, twin),
+        }
+    }
+
+    fn positions(&self, places: &[Vec<Polar>], pitch: f64) -> Vec<[f64; 3]> {
+        let used: Vec<Polar> =
+            places.iter().flatten().zip(&self.own).filter(|(_, own)| own.is_some()).map(|(place, _)| *place).collect();
+        let turned = |[z, rho, angle]: Polar, tooth: usize| position([z, rho, angle + tooth as f64 * pitch]);
+        let mut nodes: Vec<[f64; 3]> = Vec::with_capacity(self.teeth * used.len() + self.last.len());
+        for tooth in 0..self.teeth {
+            nodes.par_extend(used.par_iter().map(|place| turned(*place, tooth)));
+        }
+        if !self.is_ring {
+            let last = self.last.keys().map(|(section, node)| places[*section][*node]);
+            nodes.extend(last.map(|place| turned(place, self.teeth - 1)));
+        }
+        nodes
+    }
+}
+
+fn bricks_of(
+    layout: &Layout,
+    numbers: &Numbers<'_>,
+    (along, is_forward): (usize, bool),
+    order: BrickOrder,
+) -> Vec<u32> {
+    let steps = order.steps();
+    let brick = |tooth: usize, a: usize, cell: &Cell| {
+        let (from, to) = if is_forward { (a * steps, (a + 1) * steps) } else { ((a + 1) * steps, a * steps) };
+        let at = move |section: usize, node: usize| numbers.of(tooth, section, node);
+        let corners = [from, to].map(|section| [0, 1, 2, 3].map(|k| at(section, cell.nodes[k])));
+        let mut nodes = corners.concat();
+        if order == BrickOrder::Second {
+            for section in [from, to] {
+                nodes.extend((4..8).map(|k| at(section, cell.nodes[k])));
+            }
+            nodes.extend((0..4).map(|k| at(a * steps + 1, cell.nodes[k])));
+        }
+        nodes
+    };
+    let layers: Vec<(usize, usize)> =
+        (0..numbers.teeth).flat_map(|tooth| (0..along).map(move |a| (tooth, a))).collect();
+    let layer =
+        |(tooth, a): (usize, usize)| layout.cells.iter().flat_map(|cell| brick(tooth, a, cell)).collect::<Vec<u32>>();
+    layers.into_par_iter().map(layer).collect::<Vec<Vec<u32>>>().concat()
+}
+
+fn faces_of(
+    body: &Body,
+    layout: &Layout,
+    counts: &BrickCounts,
+    (teeth, is_ring): (usize, bool),
+    is_forward: bool,
+) -> Vec<BrickFaces> {
+    let blank = body.blank();
+    let below = blank.below_cells(counts.along);
+    let mut found: BTreeMap<(BrickSide, usize), Vec<(u32, u8)>> = BTreeMap::new();
+    let [first, last] = if is_forward { [0, 1] } else { [1, 0] };
+    let of_tooth = layout.cells.len() * counts.along;
+    for tooth in 0..teeth {
+        for (a, (segment, _)) in below.iter().enumerate() {
+            for (c, cell) in layout.cells.iter().enumerate() {
+                let brick = (tooth * of_tooth + a * layout.cells.len() + c) as u32;
+                let mut add = |side, face| found.entry((side, tooth)).or_default().push((brick, face));
+                if a == 0 {
+                    add(BrickSide::Outline(blank.ends[0]), first);
+                }
+                if a + 1 == counts.along {
+                    add(BrickSide::Outline(blank.ends[2]), last);
+                }
+                for (k, side) in cell.sides.iter().enumerate() {
+                    let side = match side {
+                        CellSide::Inner => continue,
+                        CellSide::Chart(chart) => BrickSide::Chart(*chart),
+                        CellSide::Tip => BrickSide::Outline(blank.ends[1]),
+                        CellSide::Below => BrickSide::Outline(*segment),
+                        CellSide::Before if tooth == 0 && !is_ring => BrickSide::Cut(0),
+                        CellSide::Behind if tooth + 1 == teeth && !is_ring => BrickSide::Cut(1),
+                        CellSide::Before | CellSide::Behind => continue,
+                    };
+                    add(side, 2 + k as u8);
+                }
+            }
+        }
+    }
+    found.into_iter().map(|((side, tooth), faces)| BrickFaces { side, tooth, faces }).collect()
+}
+
+/// Where lines of the lattice of nodes lie.
+pub(crate) struct Stations {
+    /// Shares across each chart.
+    pub(crate) across: Vec<Vec<f64>>,
+    /// Shares along the tooth.
+    pub(crate) along: Vec<f64>,
+    /// The place on the rest of the outline below each section, `[z, rho]`.
+    pub(crate) below: Vec<[f64; 2]>,
+}
+
+impl BrickCounts {
+    /// Bricks, and no fewer nodes than they have, of so many teeth.
+    pub fn size(&self, body: &Body, order: BrickOrder, teeth: usize) -> [usize; 2] {
+        let layout = Layout::new(body, self, order);
+        let sections = self.along * order.steps() + 1;
+        [layout.cells.len() * self.along * teeth, layout.nodes * sections * teeth]
+    }
+
+    pub(crate) fn stations(&self, body: &Body, order: BrickOrder) -> Stations {
+        let steps = order.steps();
+        let across = self.charts.iter().enumerate().map(|(k, count)| counts::even_shares(body, k, count * steps));
+        let even: Vec<f64> = (0..=self.along).map(|k| k as f64 / self.along as f64).collect();
+        let segments = body.blank().outline.segments();
+        let mut below: Vec<[f64; 2]> = Vec::new();
+        for (segment, [from, to]) in body.blank().below_cells(self.along) {
+            let at = |k: usize| segments[segment].at(from + (to - from) * k as f64 / steps as f64);
+            below.extend((0..steps).map(at));
+            if below.len() == self.along * steps {
+                below.push(segments[segment].at(to));
+            }
+        }
+        Stations { across: across.collect(), along: refined(&even, steps), below }
+    }
+}

@@ -1,0 +1,224 @@
+//! Where the nodes of a section lie.
+//!
+//! Those of the flanks, fillets and roots lie on the exact surfaces. The layers of a band lie along the normals there, which turn into the
+//! direction of the tip's land towards the tip. What is inside is interpolated between the borders, then moved in Laplace steps whose
+//! weights keep the layers' thicknesses.
+
+use crate::contact::OutlineSegment;
+use crate::solid::body::{Body, Polar};
+use crate::solid::bricks::Stations;
+use crate::solid::bricks::counts::{BrickCounts, polar_distance};
+use crate::solid::bricks::layout::{Hand, Layout};
+
+/// Laplace steps: more move no node by a tenth of its cell.
+const LAPLACE_STEPS: usize = 24;
+/// Of the way from the root to the rest of the outline the band takes so much at the most.
+const MOST_OF_RIM: f64 = 0.35;
+
+/// All sections of a tooth.
+pub(crate) struct Sections<'b> {
+    body: &'b Body,
+    layout: &'b Layout,
+    /// Lines across a space.
+    lines: Vec<Vec<Polar>>,
+    below: Vec<[f64; 2]>,
+    band_share: f64,
+    band: Vec<f64>,
+    rim: Vec<f64>,
+    /// Of the lower row the shares of the pitch.
+    around: Vec<f64>,
+    /// Nodes that Laplace steps move, each with its neighbours.
+    free: Vec<(usize, [usize; 4])>,
+}
+
+impl<'b> Sections<'b> {
+    pub(crate) fn new(body: &'b Body, layout: &'b Layout, counts: &BrickCounts, stations: &Stations) -> Sections<'b> {
+        let lines = body.lines(&stations.across, &stations.along);
+        let mut sections = Sections {
+            body,
+            layout,
+            lines,
+            below: stations.below.clone(),
+            band_share: counts.band_share(),
+            band: counts.band_shares(layout.steps),
+            rim: Vec::new(),
+            around: Vec::new(),
+            free: free(layout),
+        };
+        let middle = sections.lines.len() / 2;
+        let mut places = vec![[0.0; 3]; layout.nodes];
+        sections.place_bands(middle, &mut places);
+        sections.place_core(&mut places);
+        let top: Vec<Polar> = (0..=layout.width()).map(|column| places[layout.in_rim(0, column)]).collect();
+        sections.around = mixed_shares(&top);
+        let [z, rho, _] = top[0];
+        let way = (z - sections.below[middle][0]).hypot(rho - sections.below[middle][1]);
+        let whole: f64 = top.windows(2).map(|pair| polar_distance(pair[0], pair[1])).sum();
+        let size = whole / layout.width() as f64 * layout.steps as f64;
+        sections.rim = counts.rim_shares(size / way, layout.steps);
+        sections
+    }
+
+    /// The nodes of a section.
+    pub(crate) fn places(&self, section: usize) -> Vec<Polar> {
+        let mut places = vec![[0.0; 3]; self.layout.nodes];
+        self.place_bands(section, &mut places);
+        self.place_core(&mut places);
+        self.place_rim(section, &mut places);
+        smooth(&self.free, &mut places);
+        self.bring_to_end(section, &mut places);
+        places
+    }
+
+    fn place_bands(&self, section: usize, places: &mut [Polar]) {
+        let (layout, line, below) = (self.layout, &self.lines[section], self.below[section]);
+        let (last, pitch) = (line.len() - 1, self.body.pitch());
+        let normals = normals(line, below);
+        let down = direction(line[0], below);
+        let half = |row: usize| 0.5 * polar_distance(line[last - row], turned(line[row], pitch));
+        let root = line[last / 2];
+        let deepest = MOST_OF_RIM * (root[0] - below[0]).hypot(root[1] - below[1]);
+        for row in 0..=layout.profile {
+            let thickness = (self.band_share * half(row.min(layout.depth))).min(deepest);
+            // at the tip along its land
+            let turn = (row as f64 / layout.depth as f64).min(1.0);
+            for (hand, at, inward) in [(Hand::Low, last - row, 1.0), (Hand::High, row, -1.0)] {
+                let place = if hand == Hand::Low { line[at] } else { turned(line[at], pitch) };
+                let [x, y] = unit([(1.0 - turn) * inward + turn * normals[at][0], turn * normals[at][1]]);
+                for (layer, share) in self.band.iter().enumerate() {
+                    let [x, y] = [x, y].map(|part| part * share * thickness);
+                    let [z, rho, angle] = place;
+                    places[layout.in_band(hand, row, layer)] =
+                        if layer == 0 { place } else { [z + y * down[0], rho + y * down[1], angle + x / rho] };
+                }
+            }
+        }
+    }
+
+    fn place_core(&self, places: &mut [Polar]) {
+        let layout = self.layout;
+        for row in 0..=layout.depth {
+            let [from, to] = [0, layout.core].map(|column| places[layout.in_core(row, column)]);
+            for column in 1..layout.core {
+                places[layout.in_core(row, column)] = between(from, to, column as f64 / layout.core as f64);
+            }
+        }
+    }
+
+    fn place_rim(&self, section: usize, places: &mut [Polar]) {
+        let (layout, line, below) = (self.layout, &self.lines[section], self.below[section]);
+        let start = line[(line.len() - 1) / 2][2];
+        for (column, around) in self.around.iter().enumerate() {
+            let from = places[layout.in_rim(0, column)];
+            let to = [below[0], below[1], start + around * self.body.pitch()];
+            for (row, share) in self.rim.iter().enumerate().skip(1) {
+                places[layout.in_rim(row, column)] = between(from, to, *share);
+            }
+        }
+    }
+
+    /// Of the first and the last section, where these lie on arcs of the outline.
+    fn bring_to_end(&self, section: usize, places: &mut [Polar]) {
+        let [begin, _, end] = self.body.blank().bounds();
+        let segment: &OutlineSegment = match section {
+            0 => begin,
+            last if last + 1 == self.lines.len() => end,
+            _ => return,
+        };
+        if segment.center.is_some() {
+            for place in places.iter_mut() {
+                let [z, rho] = segment.nearest([place[0], place[1]]);
+                (place[0], place[1]) = (z, rho);
+            }
+        }
+    }
+}
+
+/// Of the places along a row the shares of the way, half by length and half evenly.
+fn mixed_shares(row: &[Polar]) -> Vec<f64> {
+    let mut sums = vec![0.0];
+    row.windows(2).for_each(|pair| sums.push(sums[sums.len() - 1] + polar_distance(pair[0], pair[1])));
+    let (whole, last) = (sums[sums.len() - 1], row.len() - 1);
+    let share =
+        |(k, sum): (usize, &f64)| if k == last { 1.0 } else { 0.5 * sum / whole + 0.5 * k as f64 / last as f64 };
+    sums.iter().enumerate().map(share).collect()
+}
+
+/// Unit normals into the material along a line across a space, `[along the circle, towards a place below]`.
+pub(crate) fn normals(line: &[Polar], below: [f64; 2]) -> Vec<[f64; 2]> {
+    let down = direction(line[0], below);
+    let step = |from: Polar, to: Polar| {
+        let x = 0.5 * (from[1] + to[1]) * (to[2] - from[2]);
+        unit([x, (to[0] - from[0]) * down[0] + (to[1] - from[1]) * down[1]])
+    };
+    let steps: Vec<[f64; 2]> = line.windows(2).map(|pair| step(pair[0], pair[1])).collect();
+    let last = steps.len() - 1;
+    let normal = |k: usize| {
+        let (before, after) = (steps[k.saturating_sub(1)], steps[k.min(last)]);
+        let [x, y] = unit([before[0] + after[0], before[1] + after[1]]);
+        [-y, x]
+    };
+    (0..line.len()).map(normal).collect()
+}
+
+/// From a place towards one on the rest of the outline, `[z, rho]`.
+fn direction(place: Polar, below: [f64; 2]) -> [f64; 2] {
+    unit([below[0] - place[0], below[1] - place[1]])
+}
+
+fn unit([x, y]: [f64; 2]) -> [f64; 2] {
+    let size = x.hypot(y);
+    if size == 0.0 { [0.0, 0.0] } else { [x / size, y / size] }
+}
+
+fn turned([z, rho, angle]: Polar, by: f64) -> Polar {
+    [z, rho, angle + by]
+}
+
+fn between(from: Polar, to: Polar, share: f64) -> Polar {
+    if share == 1.0 {
+        return to;
+    }
+    [0, 1, 2].map(|k| (1.0 - share) * from[k] + share * to[k])
+}
+
+/// Nodes inside the core and the rim, each with its neighbours.
+fn free(layout: &Layout) -> Vec<(usize, [usize; 4])> {
+    let core = |row: usize, column: usize| layout.in_core(row, column);
+    let rim = |row: usize, column: usize| layout.in_rim(row, column);
+    let beside = layout.profile - layout.depth;
+    let mut free = Vec::new();
+    for row in 1..=layout.depth {
+        for column in 1..layout.core {
+            let under = if row == layout.depth { rim(1, beside + column) } else { core(row + 1, column) };
+            let neighbours = [core(row - 1, column), under, core(row, column - 1), core(row, column + 1)];
+            free.push((core(row, column), neighbours));
+        }
+    }
+    for row in 1..layout.rim {
+        for column in 1..layout.width() {
+            let neighbours = [rim(row - 1, column), rim(row + 1, column), rim(row, column - 1), rim(row, column + 1)];
+            free.push((rim(row, column), neighbours));
+        }
+    }
+    free
+}
+
+/// Each node to the mean of its neighbours, the nearer ones counting more.
+fn smooth(free: &[(usize, [usize; 4])], places: &mut [Polar]) {
+    let weights = |(node, neighbours): &(usize, [usize; 4])| {
+        let nearness = neighbours.map(|other| 1.0 / polar_distance(places[*node], places[other]));
+        let sum: f64 = nearness.iter().sum();
+        nearness.map(|of| of / sum)
+    };
+    let weights: Vec<[f64; 4]> = free.iter().map(weights).collect();
+    for _ in 0..LAPLACE_STEPS {
+        for ((node, neighbours), weights) in free.iter().zip(&weights) {
+            let mut mean = [0.0; 3];
+            for (other, weight) in neighbours.iter().zip(weights) {
+                (0..3).for_each(|k| mean[k] += weight * places[*other][k]);
+            }
+            places[*node] = mean;
+        }
+    }
+}
