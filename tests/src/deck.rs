@@ -55,7 +55,7 @@ impl Deck {
                 "ELEMENT" => {
                     started.extend(numbers());
                     if !line.ends_with(',') {
-                        let brick: Vec<usize> = started.drain(..).collect();
+                        let brick: Vec<usize> = std::mem::take(&mut started);
                         deck.tooth_sets.entry(name.clone()).or_default().push(brick[0] - 1);
                         deck.bricks.push(brick[1..].iter().map(|node| node - 1).collect());
                         assert_eq!(brick[0], deck.bricks.len(), "numbered one after the other");

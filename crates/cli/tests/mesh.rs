@@ -81,7 +81,7 @@ fn paraview_gets_the_same_bricks() {
         let size = u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight")) as usize;
         &bytes[at + 8..at + 8 + size]
     };
-    let lines = |keyword: &str| {
+    let lines = |keyword: &'static str| {
         inp.lines().skip_while(move |line| !line.starts_with(keyword)).skip(1).take_while(|line| !line.starts_with('*'))
     };
     let nodes: Vec<f64> = lines("*NODE")

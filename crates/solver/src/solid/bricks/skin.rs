@@ -39,7 +39,7 @@ fn quartered(stations: &[f64], order: BrickOrder) -> Vec<f64> {
     let steps = order.steps();
     let quarter = |k: usize| {
         let (cell, at) = (k / 4 * steps, (k % 4) as f64 / 2.0 - 1.0);
-        if k % 4 == 0 {
+        if k.is_multiple_of(4) {
             return stations[cell];
         }
         let (from, to) = (stations[cell], stations[cell + steps]);
