@@ -313,8 +313,11 @@ impl<'a> Flat<'a> {
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         nc_word::settle(context, &self.words, &scope, &mut axes);
         let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
-        let linkages =
-            if lacks_transforms { Vec::new() } else { closure::linkages(context, &self.closes, &frames, &axes) };
+        let linkages = if lacks_transforms {
+            Vec::new()
+        } else {
+            closure::linkages(context, &self.closes, &frames, &axes, &scope)
+        };
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
         Built { parameters, settings, scope, axes, frames, linkages, declared_frames, lost_laws, lacks_transforms }
     }

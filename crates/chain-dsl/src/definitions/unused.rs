@@ -172,6 +172,7 @@ impl Used {
                 }
                 MachineStatement::Close(close) => {
                     self.words.extend([close.first.node.clone(), close.second.node.clone()]);
+                    close.keeps.iter().for_each(|kept| self.range(&kept.range));
                 }
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
                 MachineStatement::Nc(word) => {

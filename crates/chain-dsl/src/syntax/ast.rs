@@ -160,7 +160,7 @@ pub struct Axis {
     pub is_unknown: bool,
 }
 
-/// `close tip = pin along x, y about z`
+/// `close tip = pin along x, y about z keep rod: 0 deg .. 80 deg`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Close {
     /// The frame at the end of one chain.
@@ -171,6 +171,17 @@ pub struct Close {
     pub along: Vec<Name>,
     /// Axes about which the frames are not turned.
     pub about: Vec<Name>,
+    /// Where unknown axes are in the branch that is meant.
+    pub keeps: Vec<KeptAxis>,
+}
+
+/// `keep rod: 0 deg .. 80 deg`, in a closed loop
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptAxis {
+    /// An unknown axis that the loop gives.
+    pub name: Name,
+    /// Where it is.
+    pub range: Range,
 }
 
 /// How an axis moves.

@@ -110,7 +110,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::trim | Rule::cut | Rule::solid | Rule::unknown_axis | Rule::error_term => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
-        Rule::argument | Rule::bound | Rule::keep | Rule::sampled | Rule::change => Kind::Element,
+        Rule::argument | Rule::bound | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,
         Rule::arguments | Rule::settings | Rule::changes | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
         Rule::definition | Rule::variant_of | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,

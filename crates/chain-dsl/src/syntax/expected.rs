@@ -25,7 +25,9 @@ pub(super) struct Before<'t> {
 pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
     const TIGHT: [Rule; 7] =
         [Rule::open_index, Rule::unit, Rule::unit_word, Rule::unit_power, Rule::dot, Rule::caret, Rule::kw_runs];
-    rules.retain(|rule| !TIGHT.contains(rule));
+    if rules.iter().any(|rule| !TIGHT.contains(rule)) {
+        rules.retain(|rule| !TIGHT.contains(rule));
+    }
     if rules.contains(&Rule::infix) {
         rules.retain(|rule| *rule != Rule::colon);
     }
@@ -129,6 +131,7 @@ fn name(before: &Before<'_>) -> String {
         ("frame" | "insert", "in") => "the frame that it hangs on".to_owned(),
         ("frame" | "insert", _) => TRANSFORM.to_owned(),
         ("close", "along" | "about" | ",") => "`x`, `y` or `z`".to_owned(),
+        ("close", "keep") => "the name of an unknown axis".to_owned(),
         ("close", _) => "the name of a frame".to_owned(),
         ("job", "extends") => "the job that it extends".to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),
@@ -165,6 +168,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
         "machine" | "tool" | "job" if before.in_parentheses => "setting",
         "surface" | "fn" if before.in_parentheses => "parameter",
         "sample" if before.last != "sample" => "entry",
+        "close" => "axis",
         statement => noun(statement),
     }
 }

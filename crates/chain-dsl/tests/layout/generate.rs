@@ -133,9 +133,15 @@ impl Writer {
     fn block(&mut self, head: &[&str], statement: fn(&mut Writer)) {
         self.all(head);
         self.name();
-        if head == ["machine"] && self.random.one_in(3) {
+        if head != ["tool"] && self.random.one_in(3) {
             self.put("extends");
             self.name();
+            if head == ["job"] && self.random.one_in(2) {
+                self.text.push('(');
+                self.all(&["m.x", ":"]);
+                self.expression(1);
+                self.put(")");
+            }
         }
         self.put("{");
         for _ in 0..self.random.below(5) {
@@ -237,8 +243,18 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(11) {
+        match self.random.below(12) {
             0 => self.param(),
+            11 => {
+                self.put("error");
+                self.name();
+                self.put(":");
+                self.dimension();
+                if self.random.one_in(2) {
+                    self.put("in");
+                    self.range();
+                }
+            }
             1 => self.assignment("let"),
             7 => self.requirement(),
             8 => {
@@ -279,6 +295,12 @@ impl Writer {
             if self.random.one_in(2) {
                 self.all(&[word, "x", ",", "y"]);
             }
+        }
+        for _ in 0..self.random.of(&[0, 0, 1, 2]) {
+            self.put("keep");
+            self.name();
+            self.put(":");
+            self.range();
         }
     }
 
@@ -470,6 +492,12 @@ impl Writer {
                 it.name();
             }
         });
+        if self.random.one_in(5) {
+            self.put("for");
+            self.name();
+            self.put("in");
+            self.vector(1);
+        }
         self.put("{");
         for _ in 0..self.random.below(4) {
             self.name();
@@ -563,6 +591,14 @@ impl Writer {
     fn call(&mut self, depth: usize) {
         self.name();
         self.text.push('(');
+        if self.random.one_in(6) {
+            self.name();
+            self.put("in");
+            self.range();
+            self.put(":");
+            self.expression(depth.saturating_sub(1));
+            return self.put(")");
+        }
         let count = self.random.below(5);
         for index in 0..count {
             if self.random.one_in(3) {

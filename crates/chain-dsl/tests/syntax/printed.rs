@@ -69,7 +69,9 @@ fn machine_statement(statement: &MachineStatement) -> String {
                 if names.is_empty() { String::new() } else { format!(" {word} {}", names.join(" ")) }
             };
             let components = format!("{}{}", list("along", &it.along), list("about", &it.about));
-            format!("close {} {}{components}", it.first.node, it.second.node)
+            let keep = |kept: &KeptAxis| format!(" keep {}{}", kept.name.node, optional_range(Some(&kept.range)));
+            let keeps: String = it.keeps.iter().map(keep).collect();
+            format!("close {} {}{components}{keeps}", it.first.node, it.second.node)
         }
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),

@@ -8,8 +8,8 @@ use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Close, Contact, Drive, Expression, Frame, GeneratedSurface, Instance,
-    JobStatement, Keep, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement,
-    Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
+    JobStatement, Keep, KeptAxis, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range,
+    Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -106,7 +106,12 @@ impl Build<'_> {
             let names = list.map_or_else(Vec::new, |mut list| list.all(Rule::name));
             names.into_iter().map(|name| self.name(name)).collect()
         };
-        Close { first, second, along: listed(Rule::closed_along), about: listed(Rule::closed_about) }
+        let (along, about) = (listed(Rule::closed_along), listed(Rule::closed_about));
+        let keeps = parts.all(Rule::kept_axis).into_iter().map(|pair| {
+            let mut parts = Parts::of(pair);
+            KeptAxis { name: self.name(parts.required(Rule::name)), range: self.range(parts.required(Rule::range)) }
+        });
+        Close { first, second, along, about, keeps: keeps.collect() }
     }
 
     fn axis(&mut self, pair: Pair<'_, Rule>) -> Axis {
