@@ -1,5 +1,6 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
+pub mod bodies;
 pub mod compiled;
 pub mod conversion;
 pub mod deck;

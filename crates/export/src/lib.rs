@@ -93,8 +93,13 @@ pub use points::tally::Tally;
 pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
 pub use schema::schema_of;
-pub use solid::{BodyMesh, BrickBody, BrickSet, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu};
-pub use step::{Deviation, Face, GearBody, TurnedSegment, spline_deviation, write_step, write_step_body};
+pub use solid::{
+    BodyMesh, BrickBody, BrickSet, PlacedFrame, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu,
+};
+pub use step::{
+    Deviation, Face, GearBody, PlacedBody, TurnedSegment, spline_deviation, write_step, write_step_assembly,
+    write_step_body,
+};
 pub use text::number::{degrees, fixed};
 
 /// The schemas of the JSON documents that this crate writes: surfaces, motion tables, measuring grids.

@@ -120,8 +120,9 @@ pub use report::result::{
 };
 pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
+pub use solve::body::mounted::{MountedSolid, Mounting};
 pub use solve::body::result::{
-    BallNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
+    BallNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
 };
 pub use solve::body::solid;
 pub use solve::result::{
