@@ -22,6 +22,8 @@ use crate::solve::dataset::header;
 
 /// Bytes that a mesh may take with what its files are made from: what machines of today can spare.
 const MOST_BYTES: usize = 1 << 30;
+/// The width of a tooth's tip that counts as none, mm: rounding of solved points.
+const LEAST_LAND: f64 = 1e-6;
 /// Bytes of a node, in sections and in place, and of a brick's node, in parts and together.
 const OF_NODE: usize = 3 * size_of::<[f64; 3]>();
 const OF_CORNER: usize = 2 * size_of::<u32>() + size_of::<i64>();
@@ -85,6 +87,9 @@ fn one(
     let teeth = request.teeth.unwrap_or(body.teeth());
     if teeth > body.teeth() {
         return Ok(Err(format!("`{}` has {} teeth: there are no {teeth} of them", solid.name, body.teeth())));
+    }
+    if body.least_land() < LEAST_LAND {
+        return Ok(Err(format!("the teeth of `{}` end in an edge: bricks need a land at their tip", solid.name)));
     }
     let order = match request.order {
         ElementOrder::First => BrickOrder::First,
