@@ -64,6 +64,7 @@ pub use compare::tolerance::result::{
     CauseKind, ScatteringCause, SweptCases, SweptResult, ToleranceResult, ToleratedResult,
 };
 pub use compare::tolerance::tolerance;
+pub use compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, TraceNumbers};
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,

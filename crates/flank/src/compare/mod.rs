@@ -9,3 +9,5 @@ pub(crate) mod map;
 pub(crate) mod measure;
 pub(crate) mod measure_result;
 pub(crate) mod tolerance;
+pub(crate) mod trace_result;
+pub(crate) mod traces;

@@ -8,6 +8,7 @@ pub(crate) mod gauges;
 pub(crate) mod mounted;
 pub(crate) mod piece;
 pub(crate) mod result;
+pub(crate) mod shape;
 pub(crate) mod smooth;
 pub(crate) mod space;
 
