@@ -35,6 +35,57 @@ pub struct Job<'g> {
     pub solids: Vec<Solid>,
     /// Flanks that roll on each other.
     pub contacts: Vec<Contact<'g>>,
+    /// What contacts shall be like.
+    pub wants: Vec<WantedContact>,
+}
+
+/// What a contact shall be like at its vertex, where the error is extreme. Places and directions are on the second flank.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedContact {
+    /// Its name.
+    pub name: String,
+    /// Its doc comment.
+    pub doc: Vec<String>,
+    /// The contact, as an index into those of the job.
+    pub contact: usize,
+    /// In the order in which they are written.
+    pub conditions: Vec<ContactCondition>,
+    /// Thickness of the film that the ellipse is of, mm.
+    pub film: f64,
+    /// Where its name is written.
+    pub written: Span,
+}
+
+/// What one number of a contact shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactCondition {
+    /// Which number.
+    pub of: ContactQuantity,
+    /// mm or radians.
+    pub value: f64,
+    /// How far it may be off, as least squares weigh it; a condition without one holds exactly.
+    pub within: Option<f64>,
+    /// Where it is written.
+    pub written: Span,
+}
+
+/// A number of a contact at its vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ContactQuantity {
+    /// Along the axis of the second member.
+    Z,
+    /// Distance from that axis.
+    Rho,
+    /// Share of the way from toe to heel of the sample of the second flank.
+    Lengthwise,
+    /// Share of the way from root to tip.
+    Profilewise,
+    /// Angle of the path against the rows of that sample: positive where it comes nearer to the tip on its way to the heel.
+    Path,
+    /// Length of the ellipse within the film: its longer axis.
+    Ellipse,
+    /// Height of the error's parabola over a pitch.
+    TransmissionError,
 }
 
 /// Two flanks on a pair of shafts that roll on each other.

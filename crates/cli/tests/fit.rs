@@ -397,7 +397,10 @@ fn what_does_not_go_together_is_refused() {
         &["fit", PINION, "concave", "--ease-off", "twist: 3", "--from", "convex"],
         &["fit", PINION, "concave", "--measured", "a.csv", "--share", "1.5"],
         &["fit", PINION, "concave", "--measured", "a.csv", "--dry"],
-        &["fit", PINION, "concave", "--measured", "a.csv", "--and", "convex"],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--and", "convex="],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--keep", "root=point"],
+        &["fit", PINION, "concave", "--want", "centred"],
+        &["fit", PINION, "--want", "centred", "--measured", "a.csv"],
     ];
     for arguments in usage {
         let run = flank(arguments);
@@ -412,5 +415,69 @@ fn what_does_not_go_together_is_refused() {
         let run = flank(&[&["fit", PINION, "concave", "--measured", path(&file)], more].concat());
         assert!(matches!(run.status.code(), Some(1 | 2)), "{more:?}");
         assert!(text(&run.stderr).contains(says), "{more:?}: {}", text(&run.stderr));
+    }
+}
+
+/// With the root line kept, the root lies where it did at both ends of it; without, the same correction lifts or tilts it.
+#[test]
+fn a_root_line_is_kept() {
+    let file = gauged("fit_keep");
+    let varied = "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,outside_point_radius";
+    let asked = ["concave", "--measured", path(&file), "--vary", varied, "--within", "10um"];
+    let (free, _) = fit(0, &[&[PINION][..], &asked].concat());
+    let (kept, _) = fit(0, &[&[PINION][..], &asked, &["--keep", "root=line"]].concat());
+    let told = &kept["kept"][0];
+    assert_eq!((&told["surface"], &told["is_line"]), (&Value::from("root"), &Value::from(true)));
+    assert!(number(&told["off_um"]) < 1e-6, "{told}");
+    assert!(free["kept"].as_array().is_some_and(Vec::is_empty));
+    // of the same correction without it the root tilts: by the settings that move it, the sliding base and the machine centre, it goes elsewhere
+    let value = |of: &Value, name: &str| {
+        let all = of["correction"]["settings"].as_array().expect("settings").iter();
+        all.filter(|of| of["name"] == name).map(|of| number(&of["new"])).next().expect("it varies")
+    };
+    // a root plane at the machine root angle, the sliding base and the centre's share along the cradle's axis: these make the root line
+    let line = |of: &Value| {
+        let angle = value(of, "m.machine_root_angle");
+        let depth =
+            value(of, "m.sliding_base") + value(of, "m.machine_center_to_crossing_point") * angle.to_radians().sin();
+        [angle, depth]
+    };
+    let [nominal_angle, nominal_depth] =
+        [15.64096727073747, -0.001306176586991889 * 15.64096727073747f64.to_radians().sin()];
+    let [[angle, depth], [free_angle, _]] = [line(&kept), line(&free)];
+    assert!((angle - nominal_angle).abs() < 1e-3 && (depth - nominal_depth).abs() < 1e-3, "{angle} {depth}");
+    assert!((free_angle - nominal_angle).abs() > 1e-2, "{free_angle}");
+}
+
+/// A table of deviations is a wish as a parabola is: of the same numbers the same settings.
+#[test]
+fn a_wished_table_is_met() {
+    let project = folder("fit_table");
+    let wish = |i: usize, j: usize| {
+        let (v, u) = (i as f64 / 12.0 - 1.0, j as f64 / 22.0 - 1.0);
+        -10.0 * u * u + 4.0 * v
+    };
+    let lines = (0..25).flat_map(|i| (0..45).map(move |j| format!("{},{},{:?}\n", i + 1, j + 1, wish(i, j))));
+    let table = written(&project, "wish.csv", &format!("row,column,deviation_um\n{}", lines.collect::<String>()));
+    let asked = [
+        EASE_OFF,
+        "pinion.concave",
+        "--from",
+        "basic.concave",
+        "--vary",
+        "radial_distance,ratio_of_roll,blade_angle",
+        "--within",
+        "50um",
+    ];
+    let (parabola, _) =
+        fit(0, &[&asked[..], &["--ease-off", "crowning: 10 lengthwise; slope: 8 profilewise"]].concat());
+    let (told, _) = fit(3, &[&asked[..], &["--ease-off", &table, "--margin", "0,0"]].concat());
+    for (of, other) in told["correction"]["settings"]
+        .as_array()
+        .expect("settings")
+        .iter()
+        .zip(parabola["correction"]["settings"].as_array().expect("settings"))
+    {
+        assert!((number(&of["new"]) - number(&other["new"])).abs() < 1e-8, "{of} {other}");
     }
 }

@@ -55,11 +55,13 @@ pub use compare::deviation::deviation;
 pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
 pub use compare::fit::fit;
 pub use compare::fit::result::{
-    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
-    RangeBound, SettingChange, SettingsChoice, SettingsDirection,
+    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, KeptSurface,
+    OutlyingPoint, RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
 pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
+pub use compare::synthesis::result::{CheckedContact, ReachedCondition, SynthesisResult, SynthesizedSetting};
+pub use compare::synthesis::synthesis;
 pub use compare::tolerance::result::{
     CauseKind, ScatteringCause, SweptCases, SweptResult, ToleranceResult, ToleratedResult,
 };
@@ -109,8 +111,8 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
-    SolveRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
+    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
+    SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
 pub use report::report;

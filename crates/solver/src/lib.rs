@@ -24,7 +24,7 @@ mod roots;
 mod solid;
 mod surface;
 
-pub use analysis::adjustment::choice::{linear_rest, most_effective};
+pub use analysis::adjustment::choice::{linear_rest, most_effective, most_independent, opposed, separated};
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
 pub use analysis::adjustment::{AdjustableSurface, Foot, NearFoot};
@@ -41,8 +41,9 @@ pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter, total_derivatives};
 pub use analysis::trim::{Trim, trim};
 pub use contact::{
-    Carried, ContactChange, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState, Engagement,
-    FlankEdge, Gap, GapProblem, NoContact, Outline, OutlineSegment, RollingPair,
+    Carried, ContactChange, ContactNumber, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState,
+    ContactSynthesis, ContactWish, Engagement, FlankCorners, FlankDirections, FlankEdge, Gap, GapProblem, NoContact,
+    Outline, OutlineSegment, RollingPair, SynthesizedContact,
 };
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};

@@ -266,6 +266,7 @@ impl Used {
                 JobStatement::Contact(contact) => {
                     contact.arguments.iter().for_each(|argument| self.expression(&argument.value));
                 }
+                JobStatement::Want(want) => self.expression(&want.value),
                 JobStatement::Drive(drive) => drive.values.iter().for_each(|value| self.expression(value)),
                 JobStatement::Surface(surface) => {
                     self.path(&surface.frame);

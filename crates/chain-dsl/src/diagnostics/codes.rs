@@ -85,6 +85,7 @@ codes! {
     UnevenLists       = "E0514" Error "two lists that belong together are not of one length";
     Contact           = "E0515" Error "two flanks cannot be in contact";
     Solid             = "E0516" Error "a solid is not a body";
+    Want              = "E0517" Error "a contact cannot be wanted so";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";

@@ -13,6 +13,7 @@ mod sliding;
 mod solid;
 mod surfaces;
 mod sweep;
+mod want;
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -31,7 +32,8 @@ use crate::diagnostics::source::{Name, Span};
 use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
-    Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, within,
+    Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, WantedContact,
+    within,
 };
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
@@ -69,6 +71,7 @@ struct Builder<'a, 'g> {
     unknowns: Vec<Expr<'g>>,
     solids: Vec<Solid>,
     contacts: Vec<Contact<'g>>,
+    wants: Vec<WantedContact>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,
@@ -104,6 +107,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             unknowns: Vec::new(),
             solids: Vec::new(),
             contacts: Vec::new(),
+            wants: Vec::new(),
             mounts: HashMap::new(),
             lost_mounts: 0,
             drives: HashMap::new(),
@@ -205,6 +209,7 @@ fn with_points<'g>(
             JobStatement::Cut { surface, by } => builder.cut(context, surface, by, job),
             JobStatement::Solid(solid) => builder.solid(context, solid, job),
             JobStatement::Contact(contact) => builder.contact(context, contact, job),
+            JobStatement::Want(want) => builder.want(context, want, job),
             JobStatement::Sample(sample) => builder.sample(context, sample, job),
             _ => {}
         }
@@ -247,6 +252,7 @@ impl<'g> Builder<'_, 'g> {
             unknowns: self.unknowns,
             solids: self.solids,
             contacts: self.contacts,
+            wants: self.wants,
         }
     }
 
@@ -295,6 +301,7 @@ impl<'g> Builder<'_, 'g> {
             }
             JobStatement::Solid(solid) => self.define(context, &solid.name),
             JobStatement::Contact(contact) => self.define(context, &contact.name),
+            JobStatement::Want(want) => self.define(context, &want.name),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }

@@ -10,7 +10,7 @@ use crate::diagnostics::source::{Name, Span, Spanned};
 pub(crate) use job::Subject;
 pub use job::{
     Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
-    SampleValues, Sampled, Solid, Variant,
+    SampleValues, Sampled, Solid, Variant, Want,
 };
 
 /// One parsed file.

@@ -107,7 +107,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         }
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
-        Rule::trim | Rule::cut | Rule::solid | Rule::unknown_axis | Rule::error_term => Kind::Statement,
+        Rule::trim | Rule::cut | Rule::solid | Rule::want | Rule::unknown_axis | Rule::error_term => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::bound | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,

@@ -86,6 +86,7 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
             "`in` and the frame in which the surface is given".to_owned()
         }
+        Rule::kw_in if before.statement == "want" => "`in` and the contact that is wanted so".to_owned(),
         Rule::kw_in if before.statement == "solid" => "`in` and the frame of the body".to_owned(),
         Rule::kw_in if matches!(before.statement, "motion" | "unknown" | "surface") && !before.name => {
             "`in` and a range".to_owned()
@@ -140,6 +141,7 @@ fn name(before: &Before<'_>) -> String {
         ("job", "=") => "the name of a job".to_owned(),
         ("machine" | "tool" | "job", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("trim", "by") => "the name of the surface that cuts".to_owned(),
+        ("want", "in") => "the name of a contact".to_owned(),
         ("contact", "=") | ("contact", "with") => "the name of a flank".to_owned(),
         ("contact", _) => "an argument such as `over: turn` or `for: lag`".to_owned(),
         ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
@@ -158,6 +160,7 @@ fn path(before: &Before<'_>) -> &'static str {
         "job" => "a setting such as `radial: 70 mm`",
         "sample" | "trim" | "cut" => "the name of the surface",
         "contact" => "the name of a flank",
+        "want" => "the name of a contact",
         _ => "a frame such as `m.work`",
     }
 }
@@ -176,6 +179,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
 fn assigned(before: &Before<'_>) -> String {
     match before.statement {
         "frame" | "insert" | "close" | "surface" | "solid" => "the name of the frame".to_owned(),
+        "want" => "the name of the contact".to_owned(),
         statement => format!("the name of the {}", noun(statement)),
     }
 }
@@ -190,6 +194,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "sample" | "trim" | "cut" => "surface",
         "require" => "condition",
         "fn" => "function",
+        "want" => "wanted contact",
         "nc" => "NC word",
         "insert" | "close" => "frame",
         other => other,

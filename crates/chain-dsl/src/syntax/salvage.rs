@@ -62,7 +62,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
-        "require" | "solid" | "contact" => return None,
+        "require" | "solid" | "contact" | "want" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }

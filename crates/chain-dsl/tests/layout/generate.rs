@@ -390,7 +390,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(14) {
+        match self.random.below(15) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -449,6 +449,14 @@ impl Writer {
                 }
             }
             12 => self.profile(),
+            13 => {
+                self.put("want");
+                self.name();
+                self.put("in");
+                self.name();
+                self.put("=");
+                self.call(2);
+            }
             _ => self.sample(),
         }
     }

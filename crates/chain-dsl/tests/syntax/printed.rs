@@ -139,6 +139,9 @@ fn job_statement(statement: &JobStatement) -> String {
                 listed(&it.arguments, argument)
             )
         }
+        JobStatement::Want(it) => {
+            format!("{}want {} in {} {}", doc(&it.doc), it.name.node, path(&it.contact), expression(&it.value))
+        }
         JobStatement::Drive(it) => {
             format!("drive {} {}", listed(&it.targets, path), listed(&it.values, expression))
         }

@@ -23,7 +23,7 @@ use choice::{described, names};
 
 pub(crate) use contact::Contact;
 pub(crate) use convert::{Convert, Onto};
-pub(crate) use fit::Fit;
+pub(crate) use fit::{EaseOffWish, Fit};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use mesh::Mesh;
 pub(crate) use plot::Plot;

@@ -65,6 +65,10 @@ pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
 }
 
 pub(crate) fn fit(arguments: &Fit) -> Result<Ending, Failure> {
+    if let Some(want) = &arguments.want {
+        let request = arguments.synthesis(want)?;
+        return told(arguments.json, |monitor, each| flank::synthesis(&request, monitor).map(each));
+    }
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::fit(&request, monitor).map(each))
 }

@@ -88,6 +88,8 @@ pub enum JobStatement {
     Solid(Solid),
     /// `contact drive_side = left with right, over: turn, for: lag`
     Contact(Contact),
+    /// `want centred in drive_side = vertex(z: 21 mm, rho: 106 mm)`
+    Want(Want),
     /// `sample name, other { … }`
     Sample(Sample),
     /// `require a < b, "…"`
@@ -123,6 +125,7 @@ impl JobStatement {
             JobStatement::Profile(profile) => defined(&profile.name),
             JobStatement::Solid(solid) => defined(&solid.name),
             JobStatement::Contact(contact) => defined(&contact.name),
+            JobStatement::Want(want) => defined(&want.name),
             JobStatement::Surface(surface) => surface.names.iter().flat_map(defined).collect(),
             JobStatement::Mount { names, .. } => {
                 names.iter().map(|name| (Subject::Mounted, name.node.clone())).collect()
@@ -183,6 +186,19 @@ pub struct Solid {
     /// The frame that it stands in.
     pub frame: Path,
     /// `turned(blank, spaces: 19, of: [left, right])`
+    pub value: Expression,
+}
+
+/// `want name in contact = vertex(…)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Want {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The contact that it is about.
+    pub contact: Path,
+    /// `vertex(z: 21 mm, rho: 106 mm, path: 30 deg)`
     pub value: Expression,
 }
 

@@ -177,6 +177,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_unknown
             | kw_solid
             | kw_contact
+            | kw_want
             | kw_with
             | kw_drive
             | kw_trim

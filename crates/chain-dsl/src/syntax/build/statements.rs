@@ -9,7 +9,7 @@ use crate::diagnostics::source::{Name, Span};
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Close, Contact, Drive, Expression, Frame, GeneratedSurface, Instance,
     JobStatement, Keep, KeptAxis, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range,
-    Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
+    Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement, Want,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -58,6 +58,7 @@ impl Build<'_> {
             Rule::profile => JobStatement::Profile(self.profile(pair)),
             Rule::solid => JobStatement::Solid(self.solid(pair)),
             Rule::contact => JobStatement::Contact(self.contact(pair)),
+            Rule::want => JobStatement::Want(self.want(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => {
                 let [surface, by] = self.two_surfaces(pair);
@@ -173,6 +174,17 @@ impl Build<'_> {
             name: self.name(parts.required(Rule::name)),
             surfaces: [self.path(parts.required(Rule::path)), self.path(parts.required(Rule::path))],
             arguments: parts.all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect(),
+        }
+    }
+
+    fn want(&mut self, pair: Pair<'_, Rule>) -> Want {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Want {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            contact: self.path(parts.required(Rule::path)),
+            value: self.expression(parts.required(Rule::expression)),
         }
     }
 
