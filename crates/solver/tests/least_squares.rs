@@ -145,12 +145,12 @@ fn where_there_are_no_residuals_no_step_leads() {
     assert!(problem(vec![unknown(-1.0, EVERYWHERE)]).solve(root).is_none());
 }
 
-/// The point of the unit circle that is nearest to (3, 1), and the one right of nothing but 0.5.
+/// The point of the unit circle that is nearest to (1.2, 0.4), and the one that is no farther right than 0.5.
 #[test]
 fn what_is_to_be_zero_is_zero() {
     let nearest = |at: &[f64]| {
         let [x, y] = [at[0], at[1]];
-        rows(vec![x - 3.0, y - 1.0, x * x + y * y - 1.0], &[&[1.0, 0.0], &[0.0, 1.0], &[2.0 * x, 2.0 * y]])
+        rows(vec![x - 1.2, y - 0.4, x * x + y * y - 1.0], &[&[1.0, 0.0], &[0.0, 1.0], &[2.0 * x, 2.0 * y]])
     };
     let on_circle =
         |range: Range| LeastSquares { exact: 1, ..problem(vec![unknown(0.1, range), unknown(0.9, EVERYWHERE)]) };
