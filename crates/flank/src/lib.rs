@@ -111,8 +111,8 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
-    SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
+    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest,
+    SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
