@@ -57,8 +57,11 @@ pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
-    Axis, Contact, ContactCondition, ContactQuantity, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource,
-    Machine, MountingAxis, NcWord, OutlineCurve, OutlineSegment, Parameter, PieceEnds, PointRequirement, Process,
-    RangedVariable, Sample, SampleEnds, SampleGrid, Solid, ToolShape, ValueSource, WantedContact,
+    Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface, Generation, Job, LawSource,
+    Machine,
+    MilledArea, Milling, MillingClearance, MountingAxis, NcWord, OutlineCurve, OutlineSegment, Parameter, PassSpacing,
+    PieceEnds, PointRequirement, Process,
+    RangedVariable, Sample, SampleEnds, SampleGrid, Solid, ToolShape,
+    ValueSource, WantedContact,
 };
 pub use values::dimension::Dimension;

@@ -89,6 +89,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Fit(arguments) => operations::fit(arguments),
         Command::Tolerance(arguments) => operations::tolerance(arguments),
         Command::Contact(arguments) => operations::contact(arguments),
+        Command::Mill(arguments) => operations::mill(arguments),
         Command::Measure(arguments) => operations::measure(arguments),
         Command::Mesh(arguments) => operations::mesh(arguments),
         Command::Plot(arguments) => operations::plot(arguments),

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use flank::{
     Choice, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
-    MeshFormat, MeshRequest, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest, SynthesisRequest,
-    ToleranceRequest, ViewRequest,
+    MeshFormat, MeshRequest, MillRequest, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest,
+    SynthesisRequest, ToleranceRequest, ViewRequest,
 };
 
 use crate::arguments::{
-    Contact, Convert, Derive, Deviation, EaseOffWish, Fit, JobArguments, Measure, Mesh, Onto, Plot, Report, Solve,
-    Tolerance, View,
+    Contact, Convert, Derive, Deviation, EaseOffWish, Fit, JobArguments, Measure, Mesh, Mill, Onto, Plot, Report, Solve,
+    Tolerance,
+    View,
 };
 use crate::failure::Failure;
 use crate::spec;
@@ -228,6 +229,25 @@ impl Contact {
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Mill {
+    pub(crate) fn request(&self) -> Result<MillRequest, Failure> {
+        Ok(MillRequest {
+            jobs: self.which.jobs()?,
+            milling: self.milling.clone(),
+            out: self.out.clone(),
+            format: self.format.clone(),
+            nc: self.nc.clone(),
+            tool_centre_control: self.tool_centre_control,
+            feed: self.feed,
+            spindle: self.spindle,
+            approach: self.approach,
+            spaces: self.spaces,
+            verify: self.verify.clone(),
             evaluator: self.evaluator.evaluator(),
         })
     }

@@ -73,6 +73,10 @@ pub use contact::result::{
     FlankEnd, InfluenceKind, LeadingEdge, MountedError, PlaceOnFlank, ProvenContact, TransmissionError, VhjRow,
 };
 pub use convert::convert;
+pub use convert::milling::mill;
+pub use convert::milling::result::{
+    BallAt, ClearanceKept, CurvatureAt, HeightLeft, MillResult, MilledAxis, VerifiedProgram,
+};
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
     FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
@@ -99,8 +103,8 @@ pub use page::result::ViewResult;
 pub use page::view;
 pub use project::answer::{Answer, Timing};
 pub use project::choices::{
-    BrickFormat, Choice, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind,
-    PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,
+    BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
+    PlotKind, PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,
 };
 pub use project::failure::Failure;
 pub use project::files::write_texts;
@@ -111,7 +115,7 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest,
+    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest,
     SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
@@ -152,6 +156,7 @@ const _: () = {
     is_shared::<ToleranceRequest>();
     is_shared::<ContactRequest>();
     is_shared::<MeasureRequest>();
+    is_shared::<MillRequest>();
     is_shared::<ConvertRequest>();
     is_shared::<DeriveRequest>();
     is_shared::<SolveResult>();
@@ -162,6 +167,7 @@ const _: () = {
     is_shared::<ToleranceResult>();
     is_shared::<ContactResult>();
     is_shared::<MeasureResult>();
+    is_shared::<MillResult>();
     is_shared::<ConvertResult>();
     is_shared::<DeriveResult>();
     is_shared::<PlotResult>();

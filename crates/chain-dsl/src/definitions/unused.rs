@@ -272,6 +272,16 @@ impl Used {
                     self.path(&surface.frame);
                     self.expression(&surface.value);
                 }
+                JobStatement::Mill(mill) => {
+                    self.path(&mill.frame);
+                    for run in mill.passes.iter().chain(&mill.along) {
+                        run.definition.iter().for_each(|definition| self.expression(definition));
+                        self.range(&run.range);
+                        self.expression(&run.value);
+                    }
+                    mill.attitudes.iter().for_each(|(_, value)| self.expression(value));
+                    mill.clearances.iter().for_each(|clear| self.expression(&clear.distance));
+                }
                 JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
                 JobStatement::Sample(sample) => {
                     sample.each.iter().flat_map(|each| &each.values).for_each(|value| self.expression(value));

@@ -86,6 +86,7 @@ codes! {
     Contact           = "E0515" Error "two flanks cannot be in contact";
     Solid             = "E0516" Error "a solid is not a body";
     Want              = "E0517" Error "a contact cannot be wanted so";
+    Milling           = "E0520" Error "a surface cannot be milled so";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";

@@ -9,6 +9,7 @@ mod close;
 mod contact;
 mod cut;
 mod independence;
+mod mill;
 mod sliding;
 mod solid;
 mod surfaces;
@@ -32,7 +33,7 @@ use crate::diagnostics::source::{Name, Span};
 use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
-    Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, WantedContact,
+    Contact, GeneratedSurface, Job, Machine, Milling, Parameter, RangedVariable, Sample, Solid, ValueSource, WantedContact,
     within,
 };
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
@@ -72,6 +73,9 @@ struct Builder<'a, 'g> {
     solids: Vec<Solid>,
     contacts: Vec<Contact<'g>>,
     wants: Vec<WantedContact>,
+    millings: Vec<Milling<'g>>,
+    /// Machines that mill and generate nothing: cutter paths give the motions of their axes.
+    mills: HashSet<String>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,
@@ -108,6 +112,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             solids: Vec::new(),
             contacts: Vec::new(),
             wants: Vec::new(),
+            millings: Vec::new(),
+            mills: HashSet::new(),
             mounts: HashMap::new(),
             lost_mounts: 0,
             drives: HashMap::new(),
@@ -182,6 +188,7 @@ fn with_points<'g>(
             });
         }
     }
+    builder.name_mills(job);
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
@@ -212,6 +219,12 @@ fn with_points<'g>(
             JobStatement::Want(want) => builder.want(context, want, job),
             JobStatement::Sample(sample) => builder.sample(context, sample, job),
             _ => {}
+        }
+    }
+    // coordinates may be those of a sample
+    for statement in &job.statements {
+        if let JobStatement::Mill(mill) = statement {
+            builder.mill(context, mill, job);
         }
     }
     builder.add_named_samples(context);
@@ -253,6 +266,7 @@ impl<'g> Builder<'_, 'g> {
             solids: self.solids,
             contacts: self.contacts,
             wants: self.wants,
+            millings: self.millings,
         }
     }
 
@@ -302,6 +316,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Solid(solid) => self.define(context, &solid.name),
             JobStatement::Contact(contact) => self.define(context, &contact.name),
             JobStatement::Want(want) => self.define(context, &want.name),
+            JobStatement::Mill(mill) => self.define(context, &mill.name),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }

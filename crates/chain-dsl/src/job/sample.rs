@@ -229,7 +229,7 @@ impl<'g> GeneratedSurface<'g> {
     }
 }
 
-fn coordinate<'g>(
+pub(super) fn coordinate<'g>(
     context: &mut Context<'g>,
     (key, definition): (&Name, Option<&Expression>),
     surface: &GeneratedSurface<'g>,

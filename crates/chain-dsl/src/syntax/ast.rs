@@ -9,8 +9,8 @@ use crate::diagnostics::source::{Name, Span, Spanned};
 
 pub(crate) use job::Subject;
 pub use job::{
-    Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
-    SampleValues, Sampled, Solid, Variant, Want,
+    Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, Mill, MillClearance, MillRun,
+    PointRequirement, Sample, SampleEntry, SampleValues, Sampled, Solid, Variant, Want,
 };
 
 /// One parsed file.

@@ -101,7 +101,10 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
-        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
+        Rule::passes | Rule::along_passes => return parts.push(mill_run(pair)),
+        Rule::attitude | Rule::both_ways | Rule::clearance => Kind::Statement,
+        Rule::spacing => Kind::Steps,
+        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile | Rule::mill => Kind::Block,
         Rule::variant | Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => {
             Kind::Statement
         }
@@ -241,6 +244,17 @@ fn entry(pair: Pair<'_, Rule>) -> Part<'_> {
         parts.push(Part::node(Kind::Operation, range));
     }
     Part::node(Kind::Element, parts)
+}
+
+/// The coordinate and its range stand behind the first word as they do in a sample.
+fn mill_run(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let comma = parts.iter().position(|part| part.is(",")).unwrap_or(parts.len());
+    let behind = parts.split_off(comma);
+    let entry = Part::node(Kind::Element, parts.split_off(1));
+    parts.push(entry);
+    parts.extend(behind);
+    Part::node(Kind::Statement, parts)
 }
 
 /// The message of a requirement may stand on a line of its own.

@@ -87,6 +87,11 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
             "`in` and the frame in which the surface is given".to_owned()
         }
         Rule::kw_in if before.statement == "want" => "`in` and the contact that is wanted so".to_owned(),
+        Rule::kw_in if before.statement == "mill" => "`in` and the frame in which the work is clamped".to_owned(),
+        Rule::kw_of if before.name => "`of` and the name of a surface".to_owned(),
+        Rule::spacing_word => "`scallop`, `step`, `chord` or `by` and a value".to_owned(),
+        Rule::attitude_word => "`lead`, `tilt` or `stock`".to_owned(),
+        Rule::kw_with if before.statement == "mill" => "`with` and a surface of the cutter".to_owned(),
         Rule::kw_in if before.statement == "solid" => "`in` and the frame of the body".to_owned(),
         Rule::kw_in if matches!(before.statement, "motion" | "unknown" | "surface") && !before.name => {
             "`in` and a range".to_owned()
@@ -144,6 +149,10 @@ fn name(before: &Before<'_>) -> String {
         ("want", "in") => "the name of a contact".to_owned(),
         ("contact", "=") | ("contact", "with") => "the name of a flank".to_owned(),
         ("contact", _) => "an argument such as `over: turn` or `for: lag`".to_owned(),
+        ("mill", "of") => "the name of a surface".to_owned(),
+        ("mill", "with") => "a surface of the cutter such as `e.cutting`".to_owned(),
+        ("mill", "in") => "a frame such as `m.work`".to_owned(),
+        ("mill", _) => "a coordinate such as `lengthwise`".to_owned(),
         ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
         ("surface", "along") => "the name of a profile".to_owned(),
         ("profile", _) => SEGMENT.to_owned(),
@@ -161,6 +170,7 @@ fn path(before: &Before<'_>) -> &'static str {
         "sample" | "trim" | "cut" => "the name of the surface",
         "contact" => "the name of a flank",
         "want" => "the name of a contact",
+        "mill" => "the name of a surface",
         _ => "a frame such as `m.work`",
     }
 }
@@ -197,6 +207,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "want" => "wanted contact",
         "nc" => "NC word",
         "insert" | "close" => "frame",
+        "mill" => "milling",
         other => other,
     }
 }
@@ -232,6 +243,11 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
         Rule::kw_with => "with",
+        Rule::kw_of => "of",
+        Rule::kw_passes => "passes",
+        Rule::kw_both => "both",
+        Rule::kw_ways => "ways",
+        Rule::kw_clear => "clear",
         Rule::kw_require => "require",
         Rule::kw_if => "if",
         Rule::kw_then => "then",

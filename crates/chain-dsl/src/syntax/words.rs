@@ -27,17 +27,17 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] = &[
     "param", "let", "machine", "tool", "mount", "motion", "unknown", "drive", "surface", "trim", "cut", "profile",
-    "solid", "contact", "want", "sample", "require",
+    "solid", "contact", "want", "mill", "sample", "require",
 ];
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] = &[
     "fn", "machine", "tool", "job", "param", "let", "axis", "error", "frame", "insert", "profile", "surface", "motion",
-    "unknown", "solid", "contact", "want",
+    "unknown", "solid", "contact", "want", "mill",
 ];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact", "want"];
+const FREE: &[&str] = &["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact", "want", "mill"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

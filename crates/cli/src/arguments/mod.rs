@@ -6,6 +6,7 @@ mod convert;
 mod fit;
 mod measuring;
 mod mesh;
+mod mill;
 mod plot;
 mod report;
 mod solid;
@@ -26,6 +27,7 @@ pub(crate) use convert::{Convert, Onto};
 pub(crate) use fit::{EaseOffWish, Fit};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use mesh::Mesh;
+pub(crate) use mill::Mill;
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
 pub(crate) use solid::SolidArguments;
@@ -82,6 +84,8 @@ pub(crate) enum Command {
     Measure(Measure),
     /// Cut the bodies of a job into bricks for finite elements: CalculiX, Abaqus, ParaView
     Mesh(Mesh),
+    /// Passes of a cutter over a surface on a five-axis machine: what they leave, cutter locations, NC programs; or what a program leaves
+    Mill(Mill),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
     /// Make a job of a bevel gear's machine summary in a REXS file
@@ -110,6 +114,7 @@ impl Command {
             Command::Derive(arguments) => arguments.json,
             Command::Measure(arguments) => arguments.json,
             Command::Mesh(arguments) => arguments.json,
+            Command::Mill(arguments) => arguments.json,
             Command::Plot(arguments) => arguments.json,
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
@@ -143,6 +148,7 @@ impl Command {
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::Mesh(arguments) => Some(arguments.evaluator),
+            Command::Mill(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),
             Command::Check(_)
             | Command::Explain(_)

@@ -2,7 +2,9 @@
 
 use flank::{Answer, Failure as Refused, Monitor};
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Plot, Report, Solve, Tolerance, View};
+use crate::arguments::{
+    Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Mill, Plot, Report, Solve, Tolerance, View,
+};
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -57,6 +59,11 @@ pub(crate) fn measure(arguments: &Measure) -> Result<Ending, Failure> {
 pub(crate) fn mesh(arguments: &Mesh) -> Result<Ending, Failure> {
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::mesh(&request, monitor, each))
+}
+
+pub(crate) fn mill(arguments: &Mill) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, |monitor, each| flank::mill(&request, monitor, each))
 }
 
 pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {

@@ -3,6 +3,7 @@
 mod blocks;
 mod failures;
 mod files;
+pub(crate) mod milling;
 mod rates;
 pub(crate) mod result;
 mod series;

@@ -12,6 +12,7 @@ use crate::compare::measure_result::MeasureResult;
 use crate::compare::synthesis::result::SynthesisResult;
 use crate::compare::tolerance::result::ToleranceResult;
 use crate::contact::result::ContactResult;
+use crate::convert::milling::result::MillResult;
 use crate::convert::result::{AxisMotion, FoundSettings};
 use crate::derive::result::{CostTable, Derivation};
 use crate::draw::result::PlotResult;
@@ -52,6 +53,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<SynthesisResult>(),
         schema_of::<ToleranceResult>(),
         schema_of::<MeasureResult>(),
+        schema_of::<MillResult>(),
         schema_of::<AxisMotion>(),
         schema_of::<FoundSettings>(),
         schema_of::<Derivation>(),

@@ -232,6 +232,16 @@ choices! {
 }
 
 choices! {
+    /// A format of cutter locations.
+    CutterFormat {
+        /// A table with contact, normal, tip, axis and the axes of the machine.
+        Csv = "csv",
+        /// APT: GOTO with tip and axis.
+        Apt = "apt",
+    }
+}
+
+choices! {
     /// A language that functions are written in.
     FunctionLanguage {
         /// C.

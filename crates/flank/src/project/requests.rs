@@ -8,8 +8,8 @@ use flank_solver::MOST_BOXES;
 
 use crate::project::Project;
 use crate::project::choices::{
-    BrickFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat,
-    ReportFormat, SolidPart, TableFormat,
+    BrickFormat, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
+    PlotKind, PointFormat, ReportFormat, SolidPart, TableFormat,
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
@@ -579,6 +579,55 @@ impl ContactRequest {
             out: "build".into(),
             format: vec![PointFormat::Csv],
             no_picture: false,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+}
+
+/// Passes of cutters over surfaces.
+#[derive(Clone, Debug)]
+pub struct MillRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// The milling; all if none is named.
+    pub milling: Option<String>,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with cutter locations.
+    pub format: Vec<CutterFormat>,
+    /// Controls that programs are written for.
+    pub nc: Vec<NcDialect>,
+    /// Whether the control keeps the tip on its way, so that blocks are straight in the work.
+    pub tool_centre_control: bool,
+    /// Of the cutter along the surface, mm/min.
+    pub feed: f64,
+    /// Revolutions of the cutter a minute, if programs are to say that.
+    pub spindle: Option<f64>,
+    /// How far above a pass the cutter comes down and is lifted with feed, mm.
+    pub approach: f64,
+    /// Spaces of the work that a program mills, one after the other.
+    pub spaces: u32,
+    /// A program whose blocks are measured on the surface.
+    pub verify: Option<PathBuf>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl MillRequest {
+    /// All millings, cutter locations as a table into the folder `build`, 600 mm/min, one space.
+    pub fn new(jobs: impl Into<JobSelection>) -> MillRequest {
+        MillRequest {
+            jobs: jobs.into(),
+            milling: None,
+            out: "build".into(),
+            format: vec![CutterFormat::Csv],
+            nc: Vec::new(),
+            tool_centre_control: false,
+            feed: 600.0,
+            spindle: None,
+            approach: 5.0,
+            spaces: 1,
+            verify: None,
             evaluator: EvaluatorOptions::default(),
         }
     }

@@ -90,6 +90,8 @@ pub enum JobStatement {
     Contact(Contact),
     /// `want centred in drive_side = vertex(z: 21 mm, rho: 106 mm)`
     Want(Want),
+    /// `mill finish of flank with e.cutting in m.work { … }`
+    Mill(Mill),
     /// `sample name, other { … }`
     Sample(Sample),
     /// `require a < b, "…"`
@@ -126,6 +128,7 @@ impl JobStatement {
             JobStatement::Solid(solid) => defined(&solid.name),
             JobStatement::Contact(contact) => defined(&contact.name),
             JobStatement::Want(want) => defined(&want.name),
+            JobStatement::Mill(mill) => defined(&mill.name),
             JobStatement::Surface(surface) => surface.names.iter().flat_map(defined).collect(),
             JobStatement::Mount { names, .. } => {
                 names.iter().map(|name| (Subject::Mounted, name.node.clone())).collect()
@@ -324,4 +327,57 @@ pub enum SampleValues {
     Range(Range, Expression),
     /// One value, or a vector: several values, or a point.
     Value(Expression),
+}
+
+/// `mill name of surface with cutter in frame { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mill {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The surface that is milled.
+    pub surface: Path,
+    /// The surface of the cutter that touches it.
+    pub cutter: Path,
+    /// The frame of the milling machine in which the work is clamped.
+    pub frame: Path,
+    /// `passes profilewise: 0 .. 1, scallop 2 um`
+    pub passes: Vec<MillRun>,
+    /// `along lengthwise: 0 .. 1, chord 0.5 um`
+    pub along: Vec<MillRun>,
+    /// `lead`, `tilt`, `stock`, each with its value.
+    pub attitudes: Vec<(Name, Expression)>,
+    /// Where `both ways` stands.
+    pub both_ways: Vec<Span>,
+    /// `clear of other by 0.2 mm with e.whole`
+    pub clearances: Vec<MillClearance>,
+    /// Whether something in it could not be read, which has been reported.
+    pub broken: bool,
+}
+
+/// `name: range, word value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MillRun {
+    /// A coordinate.
+    pub key: Name,
+    /// What it is, if it is defined here.
+    pub definition: Option<Expression>,
+    /// Its values.
+    pub range: Range,
+    /// `scallop`, `step`, `chord` or `by`.
+    pub word: Name,
+    /// A height, a distance or a number.
+    pub value: Expression,
+}
+
+/// `clear of surface by distance with body`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MillClearance {
+    /// The surface that is kept clear of.
+    pub surface: Path,
+    /// How far.
+    pub distance: Expression,
+    /// The surface of the cutter.
+    pub body: Path,
 }

@@ -179,6 +179,12 @@ fn is_mark(rule: Rule) -> bool {
             | kw_contact
             | kw_want
             | kw_with
+            | kw_mill
+            | kw_of
+            | kw_passes
+            | kw_both
+            | kw_ways
+            | kw_clear
             | kw_drive
             | kw_trim
             | kw_cut

@@ -8,8 +8,8 @@ use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Close, Contact, Drive, Expression, Frame, GeneratedSurface, Instance,
-    JobStatement, Keep, KeptAxis, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range,
-    Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement, Want,
+    JobStatement, Keep, KeptAxis, Let, MachineStatement, Mill, MillClearance, MillRun, NcWord, Param, Parameter, Path,
+    PointRequirement, Range, Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement, Want,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -59,6 +59,7 @@ impl Build<'_> {
             Rule::solid => JobStatement::Solid(self.solid(pair)),
             Rule::contact => JobStatement::Contact(self.contact(pair)),
             Rule::want => JobStatement::Want(self.want(pair)),
+            Rule::mill => JobStatement::Mill(self.mill(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => {
                 let [surface, by] = self.two_surfaces(pair);
@@ -185,6 +186,57 @@ impl Build<'_> {
             name: self.name(parts.required(Rule::name)),
             contact: self.path(parts.required(Rule::path)),
             value: self.expression(parts.required(Rule::expression)),
+        }
+    }
+
+    fn mill(&mut self, pair: Pair<'_, Rule>) -> Mill {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let mut mill = Mill {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            surface: self.path(parts.required(Rule::path)),
+            cutter: self.path(parts.required(Rule::path)),
+            frame: self.path(parts.required(Rule::path)),
+            passes: Vec::new(),
+            along: Vec::new(),
+            attitudes: Vec::new(),
+            both_ways: Vec::new(),
+            clearances: Vec::new(),
+            broken: false,
+        };
+        let said = [Rule::passes, Rule::along_passes, Rule::attitude, Rule::both_ways, Rule::clearance];
+        while let Some(pair) = said.into_iter().find_map(|rule| parts.optional(rule)) {
+            match pair.as_rule() {
+                Rule::passes => mill.passes.push(self.mill_run(pair)),
+                Rule::along_passes => mill.along.push(self.mill_run(pair)),
+                Rule::attitude => {
+                    let mut parts = Parts::of(pair);
+                    let word = self.name(parts.required(Rule::attitude_word));
+                    mill.attitudes.push((word, self.expression(parts.required(Rule::expression))));
+                }
+                Rule::both_ways => mill.both_ways.push(self.span(&pair)),
+                _ => mill.clearances.push(self.mill_clearance(pair)),
+            }
+        }
+        mill
+    }
+
+    fn mill_run(&mut self, pair: Pair<'_, Rule>) -> MillRun {
+        let mut parts = Parts::of(pair);
+        let (key, definition) = self.coordinate(&mut parts);
+        let range = self.range(parts.required(Rule::range));
+        let mut parts = Parts::of(parts.required(Rule::spacing));
+        let word = self.name(parts.required(Rule::spacing_word));
+        MillRun { key, definition, range, word, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn mill_clearance(&mut self, pair: Pair<'_, Rule>) -> MillClearance {
+        let mut parts = Parts::of(pair);
+        MillClearance {
+            surface: self.path(parts.required(Rule::path)),
+            distance: self.expression(parts.required(Rule::expression)),
+            body: self.path(parts.required(Rule::path)),
         }
     }
 
