@@ -7,6 +7,7 @@ use flank_expr::geometry::{Chain, Edge, Step, Surface, Vector3};
 use flank_expr::{Expr, Graph};
 
 use crate::diagnostics::source::Span;
+use crate::job::expect::model::Expectation;
 use crate::values::dimension::Dimension;
 
 /// One job, ready to be solved: its parameters are variables with values beside them.
@@ -37,6 +38,10 @@ pub struct Job<'g> {
     pub contacts: Vec<Contact<'g>>,
     /// What contacts shall be like.
     pub wants: Vec<WantedContact>,
+    /// Surfaces that are milled.
+    pub millings: Vec<Milling<'g>>,
+    /// What it is tested by, if that was asked for ([`Request::expectations`](crate::Request::expectations)).
+    pub expectations: Vec<Expectation<'g>>,
 }
 
 /// What a contact shall be like at its vertex, where the error is extreme. Places and directions are on the second flank.
@@ -86,8 +91,6 @@ pub enum ContactQuantity {
     Ellipse,
     /// Height of the error's parabola over a pitch.
     TransmissionError,
-    /// Surfaces that are milled.
-    pub millings: Vec<Milling<'g>>,
 }
 
 /// Two flanks on a pair of shafts that roll on each other.

@@ -9,9 +9,8 @@ use flank::{
 };
 
 use crate::arguments::{
-    Contact, Convert, Derive, Deviation, EaseOffWish, Fit, JobArguments, Measure, Mesh, Mill, Onto, Plot, Report, Solve,
-    Tolerance,
-    View,
+    Contact, Convert, Derive, Deviation, EaseOffWish, Fit, JobArguments, Measure, Mesh, Mill, Onto, Plot, Report,
+    Solve, Tolerance, View,
 };
 use crate::failure::Failure;
 use crate::spec;

@@ -42,7 +42,6 @@
 mod compare;
 mod contact;
 mod convert;
-mod derive;
 mod draw;
 mod exchange;
 mod language;
@@ -50,6 +49,7 @@ mod page;
 mod project;
 mod report;
 mod solve;
+mod testing;
 
 pub use compare::deviation::deviation;
 pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
@@ -81,10 +81,6 @@ pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
     FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
 };
-pub use derive::derive;
-pub use derive::result::{
-    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
-};
 pub use draw::plot;
 pub use draw::result::{PlotResult, WrittenPicture};
 pub use exchange::changes::Words;
@@ -96,6 +92,10 @@ pub use exchange::templates::{
 pub use flank_chain_dsl::syntax::is_reserved;
 pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
 pub use language::check::{CheckResult, Checked, check};
+pub use language::derive::derive;
+pub use language::derive::result::{
+    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
+};
 pub use language::errors::{ErrorCode, Explanation, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
@@ -138,6 +138,8 @@ pub use solve::result::{
     UsualChange,
 };
 pub use solve::solve;
+pub use testing::result::{TestResult, TestedExpectation, TestedItem, TestedSnapshot, TestedSpec};
+pub use testing::{TestRequest, accept_snapshot, find_specs, junit, test, test_spec};
 
 /// What is asked and what is answered goes from thread to thread.
 const _: () = {
@@ -173,6 +175,8 @@ const _: () = {
     is_shared::<PlotResult>();
     is_shared::<ViewResult>();
     is_shared::<ReportResult>();
+    is_shared::<TestRequest>();
+    is_shared::<TestResult>();
     is_shared::<Checked>();
     is_shared::<Findings>();
     is_shared::<Layout>();

@@ -144,11 +144,16 @@ impl Used {
     }
 
     fn expression(&mut self, expression: &Expression) {
-        expression.each(&mut |part| match &part.kind {
+        expression.each(&mut |part| self.part(part));
+    }
+
+    /// An expression without what it is made of.
+    fn part(&mut self, part: &Expression) {
+        match &part.kind {
             ExpressionKind::Path(path) => self.path(path),
             ExpressionKind::Call(call) => drop(self.words.insert(call.function.node.clone())),
             _ => {}
-        });
+        }
     }
 
     fn range(&mut self, range: &ast::Range) {
@@ -180,6 +185,7 @@ impl Used {
                     word.increment.iter().for_each(|increment| self.expression(increment));
                 }
                 MachineStatement::Require(required) => self.expression(&required.condition),
+                MachineStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
             }
         }
     }
@@ -250,6 +256,7 @@ impl Used {
                 JobStatement::Param(param) => self.param(param),
                 JobStatement::Let(binding) => self.expression(&binding.value),
                 JobStatement::Require(required) => self.expression(&required.condition),
+                JobStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
                 JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
                     self.words.insert(instance.definition.node.clone());
                     instance.settings.iter().for_each(|setting| self.expression(&setting.value));

@@ -8,6 +8,7 @@ mod axes;
 mod close;
 mod contact;
 mod cut;
+pub(crate) mod expect;
 mod independence;
 mod mill;
 mod sliding;
@@ -33,8 +34,8 @@ use crate::diagnostics::source::{Name, Span};
 use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
-    Contact, GeneratedSurface, Job, Machine, Milling, Parameter, RangedVariable, Sample, Solid, ValueSource, WantedContact,
-    within,
+    Contact, GeneratedSurface, Job, Machine, Milling, Parameter, RangedVariable, Sample, Solid, ValueSource,
+    WantedContact, within,
 };
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
@@ -235,8 +236,11 @@ fn with_points<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
+    let is_settled = context.expects && builder.sampled.are_known();
+    let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
-    (builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file), sampled)
+    let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
+    (Job { expectations, ..built }, sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -267,6 +271,7 @@ impl<'g> Builder<'_, 'g> {
             contacts: self.contacts,
             wants: self.wants,
             millings: self.millings,
+            expectations: Vec::new(),
         }
     }
 
@@ -320,7 +325,8 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }
-            | JobStatement::Cut { .. } => {}
+            | JobStatement::Cut { .. }
+            | JobStatement::Expect(_) => {}
             JobStatement::Sample(sample) => {
                 sample
                     .surfaces

@@ -3,10 +3,12 @@
 //! After a mistake, a value may be [`ExpressionKind::Error`] and a name the empty string (a frame's parent, a dimension, a
 //! definition that is not there): both have been reported, and whoever meets one says nothing.
 
+mod expectation;
 mod job;
 
 use crate::diagnostics::source::{Name, Span, Spanned};
 
+pub use expectation::{Expectation, Expected};
 pub(crate) use job::Subject;
 pub use job::{
     Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, Mill, MillClearance, MillRun,
@@ -117,6 +119,8 @@ pub enum MachineStatement {
     Nc(NcWord),
     /// `require a < b, "…"`
     Require(Requirement),
+    /// `expect tool in work near translate(…) at (X: 10 mm) within 1 um`
+    Expect(Expectation),
 }
 
 /// `param name : dimension in a .. b = default`

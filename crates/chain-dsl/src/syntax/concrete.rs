@@ -87,6 +87,13 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         | Rule::profile_head
         | Rule::closed_along
         | Rule::closed_about
+        | Rule::expected_error
+        | Rule::expected_nothing
+        | Rule::expected_on
+        | Rule::expected_travel
+        | Rule::expected_status
+        | Rule::expected_value
+        | Rule::expected_pose
         | Rule::label
         | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
@@ -112,6 +119,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
         Rule::trim | Rule::cut | Rule::solid | Rule::want | Rule::unknown_axis | Rule::error_term => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
+        Rule::expectation | Rule::machine_expectation => return parts.push(expectation(pair)),
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
         Rule::argument | Rule::bound | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,
         Rule::arguments | Rule::settings | Rule::changes | Rule::vector => Kind::List,
@@ -207,6 +215,28 @@ fn one_row(pair: Pair<'_, Rule>) -> Part<'_> {
     }
     parts.push(Part::node(Kind::Steps, row));
     Part::node(Kind::Statement, parts)
+}
+
+/// An expectation is one row; a tolerance that does not fit behind what it is for stands on a line of its own.
+fn expectation(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let head = parts.remove(0);
+    if parts.len() > 1 && parts[1].is(":") {
+        let of = Part::node(Kind::Element, parts.drain(..2).collect());
+        parts.insert(0, of);
+    }
+    let tolerance = parts.iter().position(|part| part.is("within")).map(|within| parts.split_off(within));
+    let mut rows = vec![one_of(Kind::Statement, parts)];
+    rows.extend(tolerance.map(|tolerance| one_of(Kind::Statement, tolerance)));
+    Part::node(Kind::Statement, vec![head, one_of(Kind::Steps, rows)])
+}
+
+/// Several parts as one.
+fn one_of(kind: Kind, parts: Vec<Part<'_>>) -> Part<'_> {
+    match <[Part; 1]>::try_from(parts) {
+        Ok([only]) => only,
+        Err(parts) => Part::node(kind, parts),
+    }
 }
 
 /// A motion's parameter is laid out like any other statement, unlike those between brackets.

@@ -108,6 +108,13 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::string => "a path such as `\"machines/hobbing.chain\"`".to_owned(),
         Rule::infix => "an operator".to_owned(),
         Rule::integer => "a whole number".to_owned(),
+        Rule::expected_value | Rule::expected_status | Rule::expected_pose => {
+            "what is expected, such as `all solved`".to_owned()
+        }
+        Rule::kw_near => "`near` and what it is compared with".to_owned(),
+        Rule::kw_within => "`within` and a tolerance".to_owned(),
+        Rule::error_code => "the code of an error, such as `E0307`".to_owned(),
+        Rule::status => "a status such as `solved`".to_owned(),
         Rule::dimension | Rule::dimension_factor | Rule::dimension_name | Rule::one => {
             "a dimension such as `length` or `angle`".to_owned()
         }
@@ -206,6 +213,7 @@ pub(super) fn noun(statement: &str) -> &str {
         "fn" => "function",
         "want" => "wanted contact",
         "nc" => "NC word",
+        "expect" => "surface",
         "insert" | "close" => "frame",
         "mill" => "milling",
         other => other,
@@ -242,6 +250,10 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_in | Rule::kw_runs => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
+        Rule::kw_travel => "travel",
+        Rule::kw_nothing => "nothing",
+        Rule::kw_error => "error",
+        Rule::kw_at => "at",
         Rule::kw_with => "with",
         Rule::kw_of => "of",
         Rule::kw_passes => "passes",

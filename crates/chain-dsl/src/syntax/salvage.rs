@@ -63,7 +63,7 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
         "mill" => JobStatement::Mill(piece.mill(name)),
-        "require" | "solid" | "contact" | "want" => return None,
+        "require" | "solid" | "contact" | "want" | "expect" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }

@@ -271,6 +271,7 @@ impl Writer {
                 self.range();
             }
             10 => self.close(),
+            11 => self.machine_expectation(),
             2 => self.assignment("fix"),
             3 => self.assignment("couple"),
             4 => {
@@ -301,6 +302,47 @@ impl Writer {
             self.name();
             self.put(":");
             self.range();
+        }
+    }
+
+    fn machine_expectation(&mut self) {
+        self.all(&["expect", "tool", "in", "work", "near"]);
+        self.call(2);
+        self.all(&["at", "(", "X", ":"]);
+        self.value();
+        self.all(&[")", "within"]);
+        self.value();
+    }
+
+    fn expectation(&mut self) {
+        self.put("expect");
+        match self.random.below(6) {
+            0 => self.all(&["error", "E0307"]),
+            1 => self.all(&["all", "solved"]),
+            2 => {
+                self.all(&["flank", "undercut", "at", "["]);
+                self.value();
+                self.put(",");
+                self.value();
+                self.put("]");
+            }
+            3 => {
+                self.all(&["on", "free_form", "within"]);
+                self.value();
+            }
+            4 => {
+                self.all(&["flank", ":"]);
+                self.value();
+                self.put("in");
+                self.range();
+            }
+            _ => {
+                self.value();
+                self.put("near");
+                self.value();
+                self.put("within");
+                self.value();
+            }
         }
     }
 
@@ -390,7 +432,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(15) {
+        match self.random.below(16) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -457,6 +499,7 @@ impl Writer {
                 self.put("=");
                 self.call(2);
             }
+            14 => self.expectation(),
             _ => self.sample(),
         }
     }

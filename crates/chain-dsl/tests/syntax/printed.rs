@@ -80,6 +80,7 @@ fn machine_statement(statement: &MachineStatement) -> String {
             format!("nc {} {}{by}", it.address.node, expression(&it.value))
         }
         MachineStatement::Require(it) => requirement(it),
+        MachineStatement::Expect(it) => expectation(it),
     }
 }
 
@@ -157,10 +158,49 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
         JobStatement::Cut { surface, by } => format!("cut {} {}", path(surface), path(by)),
         JobStatement::Require(it) => requirement(it),
+        JobStatement::Expect(it) => expectation(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
             format!("sample {} {}", listed(&it.surfaces, sampled), entries.join(", "))
         }
+    }
+}
+
+fn expectation(it: &Expectation) -> String {
+    let of = |surface: &Option<Path>| surface.as_ref().map_or(String::new(), |surface| format!("{}: ", path(surface)));
+    match &it.what {
+        Expected::Error(code) => format!("expect error {}", code.node),
+        Expected::Nothing => "expect nothing".to_owned(),
+        Expected::Travel => "expect travel".to_owned(),
+        Expected::On { machine, within } => {
+            let settings = listed(&machine.settings, argument);
+            format!("expect on {}({settings}) within {}", machine.definition.node, expression(within))
+        }
+        Expected::Status { surface, status, at } => {
+            let at = at.as_ref().map_or(String::new(), |at| format!(" at {}", expression(at)));
+            format!("expect {} {}{at}", path(surface), status.node)
+        }
+        Expected::Near { surface, value, target, within } => format!(
+            "expect {}{} near {} within {}",
+            of(surface),
+            expression(value),
+            expression(target),
+            expression(within)
+        ),
+        Expected::InRange { surface, value, range } => format!(
+            "expect {}{} in {} .. {}",
+            of(surface),
+            expression(value),
+            expression(&range.low),
+            expression(&range.high)
+        ),
+        Expected::Pose { frames: [frame, reference], at, within, .. } => format!(
+            "expect {} in {} at {} within {}",
+            frame.node,
+            reference.node,
+            listed(at, argument),
+            expression(within)
+        ),
     }
 }
 

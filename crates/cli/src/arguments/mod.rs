@@ -10,6 +10,7 @@ mod mill;
 mod plot;
 mod report;
 mod solid;
+mod test;
 mod tolerance;
 
 use std::num::NonZero;
@@ -31,6 +32,7 @@ pub(crate) use mill::Mill;
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
 pub(crate) use solid::SolidArguments;
+pub(crate) use test::Test;
 pub(crate) use tolerance::Tolerance;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
@@ -42,6 +44,7 @@ pub(crate) use tolerance::Tolerance;
 Examples:
   flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
   flank check specs/machines/*.chain                    is it right, and if not, where and why
+  flank test specs                                      does it make what it is to make
   flank view specs/bevel/pinion_19x62.chain             a page with the machine in 3-D
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
   flank plot specs/bevel/pinion_19x62.chain             the pictures that matter for the job
@@ -64,6 +67,8 @@ pub(crate) enum Command {
     Solve(Solve),
     /// Parse, resolve and check dimensions
     Check(Check),
+    /// Check what specs expect of what is derived from them
+    Test(Test),
     /// Carry a job over to another machine: axis positions and polynomials that do the same
     Convert(Convert),
     /// Print what was built: matrices, vector parts, twists, the equation of meshing
@@ -110,6 +115,7 @@ impl Command {
         match self {
             Command::Solve(arguments) => arguments.json,
             Command::Check(arguments) => arguments.json,
+            Command::Test(arguments) => arguments.json,
             Command::Convert(arguments) => arguments.json,
             Command::Derive(arguments) => arguments.json,
             Command::Measure(arguments) => arguments.json,
@@ -150,6 +156,7 @@ impl Command {
             Command::Mesh(arguments) => Some(arguments.evaluator),
             Command::Mill(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),
+            Command::Test(arguments) => Some(arguments.evaluator),
             Command::Check(_)
             | Command::Explain(_)
             | Command::Import(_)

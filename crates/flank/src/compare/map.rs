@@ -185,7 +185,7 @@ impl DeviationMap<'_, '_> {
     }
 
     /// The result, with the files that were written.
-    pub(super) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
+    pub(crate) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
         let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
         let direction = |k: usize| {
             ease_off.map(|of| EaseOffDirection {

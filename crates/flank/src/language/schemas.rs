@@ -14,17 +14,18 @@ use crate::compare::tolerance::result::ToleranceResult;
 use crate::contact::result::ContactResult;
 use crate::convert::milling::result::MillResult;
 use crate::convert::result::{AxisMotion, FoundSettings};
-use crate::derive::result::{CostTable, Derivation};
 use crate::draw::result::PlotResult;
 use crate::exchange::import::Imported;
 use crate::exchange::templates::{FromLibrary, TemplateList};
 use crate::language::check::CheckResult;
+use crate::language::derive::result::{CostTable, Derivation};
 use crate::language::errors::Explanation;
 use crate::page::result::ViewResult;
 use crate::report::result::ReportResult;
 use crate::solve::body::bricks_result::MeshResult;
 use crate::solve::body::result::SolidResult;
 use crate::solve::result::SolveResult;
+use crate::testing::result::TestResult;
 
 /// A schema.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -61,6 +62,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<PlotResult>(),
         schema_of::<ViewResult>(),
         schema_of::<ReportResult>(),
+        schema_of::<TestResult>(),
         schema_of::<Imported>(),
         schema_of::<FromLibrary>(),
         schema_of::<TemplateList>(),

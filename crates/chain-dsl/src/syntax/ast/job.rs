@@ -1,6 +1,9 @@
 //! What a job says, and its variants.
 
-use super::{Argument, EachSide, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range, Requirement};
+use super::{
+    Argument, EachSide, Expectation, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range,
+    Requirement,
+};
 use crate::diagnostics::source::{Name, Span};
 
 /// A job: machine, tool, motions, the surfaces asked for.
@@ -96,6 +99,8 @@ pub enum JobStatement {
     Sample(Sample),
     /// `require a < b, "…"`
     Require(Requirement),
+    /// `expect all solved`
+    Expect(Expectation),
 }
 
 /// Keeps those that stay; there may be more, or fewer, in a text with mistakes.
@@ -135,7 +140,10 @@ impl JobStatement {
             }
             JobStatement::Drive(drive) => drive.targets.iter().map(|axis| (Subject::Axis, axis.joined())).collect(),
             JobStatement::Sample(sample) => sample.surfaces.iter().map(Sampled::about).collect(),
-            JobStatement::Trim { .. } | JobStatement::Cut { .. } | JobStatement::Require(_) => Vec::new(),
+            JobStatement::Trim { .. }
+            | JobStatement::Cut { .. }
+            | JobStatement::Require(_)
+            | JobStatement::Expect(_) => Vec::new(),
         }
     }
 

@@ -28,6 +28,7 @@ impl Build<'_> {
             Rule::couple => MachineStatement::Couple(self.assignment(pair)),
             Rule::nc_word => MachineStatement::Nc(self.nc_word(pair)),
             Rule::requirement => MachineStatement::Require(self.requirement(pair)),
+            Rule::machine_expectation => MachineStatement::Expect(self.expectation(pair)),
             _ => return None,
         })
     }
@@ -71,6 +72,7 @@ impl Build<'_> {
             }
             Rule::sample => JobStatement::Sample(self.sample(pair)),
             Rule::requirement => JobStatement::Require(self.requirement(pair)),
+            Rule::expectation => JobStatement::Expect(self.expectation(pair)),
             _ => return None,
         })
     }
@@ -251,12 +253,20 @@ impl Build<'_> {
     fn instance(&mut self, pair: Pair<'_, Rule>) -> Instance {
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
-        let mut parts = Parts::of(parts.required(Rule::definition));
-        let definition = self.name(parts.required(Rule::name));
-        let settings = parts.optional(Rule::settings).map_or_else(Vec::new, |settings| {
-            Parts::of(settings).all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect()
-        });
+        let (definition, settings) = self.definition(parts.required(Rule::definition));
         Instance { name, definition, settings }
+    }
+
+    /// A definition, and the settings that it is given.
+    pub(super) fn definition(&mut self, pair: Pair<'_, Rule>) -> (Name, Vec<Argument>) {
+        let mut parts = Parts::of(pair);
+        let definition = self.name(parts.required(Rule::name));
+        let settings = parts.optional(Rule::settings).map_or_else(Vec::new, |settings| self.settings(settings));
+        (definition, settings)
+    }
+
+    pub(super) fn settings(&mut self, pair: Pair<'_, Rule>) -> Vec<Argument> {
+        Parts::of(pair).all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect()
     }
 
     fn setting(&mut self, pair: Pair<'_, Rule>) -> Argument {

@@ -1,0 +1,17 @@
+//! `flank test`: specs that say what they are to be like.
+
+mod explain;
+mod find;
+mod judge;
+mod junit;
+mod points;
+mod quantities;
+pub(crate) mod result;
+mod run;
+mod snapshot;
+mod text;
+
+pub use find::find_specs;
+pub use junit::junit;
+pub use run::{TestRequest, test, test_spec};
+pub use snapshot::accept_snapshot;
