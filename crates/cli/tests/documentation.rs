@@ -40,6 +40,7 @@ const PAGES: [Page; 6] = [
     Page { path: "docs/new_variant.md", file: "skiving.chain", changes: &[] },
     Page { path: "docs/testing.md", file: "gear.chain", changes: &[] },
     page("docs/conversion.md"),
+    page("docs/milling.md"),
     page("docs/files.md"),
     page("docs/gears.md"),
 ];
