@@ -246,7 +246,7 @@ pub(super) fn scope_at_points<'g>(
     Some(scope)
 }
 
-fn coordinate<'g>(
+pub(super) fn coordinate<'g>(
     context: &mut Context<'g>,
     (key, definition): (&Name, Option<&Expression>),
     surface: &GeneratedSurface<'g>,
