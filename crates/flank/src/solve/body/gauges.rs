@@ -22,7 +22,7 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
     let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
     let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
     let thickness: Vec<ThicknessNumbers> = thickness.map(thickness_numbers).collect();
-    let face = body.is_face_gear().then(|| FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
+    let face = body.is_face_gear().then_some(FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
     let diameters = |of: f64| match &face {
         Some(_) => thickness.first().map_or(0.0, |tooth| tooth.diameter_mm),
         None => 2.0 * of,

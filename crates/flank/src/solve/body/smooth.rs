@@ -13,7 +13,7 @@ const MOST: usize = 321;
 pub(crate) fn gear(name: &str, names: &[String], body: &Body, tolerance: f64) -> GearBody {
     let (charts, is_reversed) = body.charts();
     // neighbours have the same columns
-    let land = body.land().filter(|land| winds(land));
+    let land = body.land().filter(winds);
     let charts: Vec<&Chart> = charts.iter().chain(&land).collect();
     let along = charts.iter().map(|chart| fewest(chart, 1, tolerance)).max().unwrap_or(FEWEST);
     let mut deviation: f64 = 0.0;
