@@ -6,6 +6,9 @@ use flank_solver::{BoundSurface, Outline, OutlineSegment, Range, RollingPair, Su
 
 use crate::sampled;
 
+/// Parameters that stay symbols, with their values.
+type Open<'g> = Vec<(Expr<'g>, f64)>;
+
 /// The first contact of a job, its pair mounted with errors, with the points that the samples of both flanks ask for; with the ends of its
 /// teeth, or of flanks without edges.
 ///
@@ -59,7 +62,7 @@ pub fn with_pair_in<'g, R>(
 fn with_values<'g, R>(
     job: &Job<'g>,
     contact: &Contact<'g>,
-    (given, parameters): (&[(Expr<'g>, Expr<'g>)], Vec<(Expr<'g>, f64)>),
+    (given, parameters): (&[(Expr<'g>, Expr<'g>)], Open<'g>),
     has_edges: bool,
     use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
 ) -> R {
