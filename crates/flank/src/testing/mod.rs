@@ -6,6 +6,7 @@ mod judge;
 mod junit;
 mod points;
 mod quantities;
+mod request;
 pub(crate) mod result;
 mod run;
 mod snapshot;
@@ -13,5 +14,6 @@ mod text;
 
 pub use find::find_specs;
 pub use junit::junit;
-pub use run::{TestRequest, test, test_spec};
+pub use request::TestRequest;
+pub use run::{test, test_spec};
 pub use snapshot::accept_snapshot;

@@ -1,57 +1,22 @@
 //! One spec, tested.
 
-use std::sync::Arc;
 
-use flank_chain_dsl::{Compilation, Disk, Expectation, Job, Request, Span, compile_request};
+use flank_chain_dsl::{Compilation, Expectation, Job, Request, Span, compile_request};
 use flank_expr::Graph;
 use rayon::prelude::*;
 
-use crate::project::Project;
 use crate::project::failure::Failure;
 use crate::project::findings::{Findings, Place};
 use crate::project::monitor::{Monitor, Unwatched};
-use crate::project::requests::{EvaluatorOptions, JobSelection, Session, check};
+use crate::project::requests::{JobSelection, Session, check};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 use crate::testing::judge::{judged, of_pose};
 use crate::testing::points::{Tested, thinned};
 use crate::testing::quantities::Known;
+use crate::testing::request::TestRequest;
 use crate::testing::result::{TestResult, TestedExpectation, TestedItem, TestedSpec};
 use crate::testing::snapshot;
-
-/// How specs are tested.
-#[derive(Clone, Debug)]
-pub struct TestRequest {
-    /// The spec.
-    pub project: Project,
-    /// Jobs and machines alone whose `file:name` contains this.
-    pub filter: Option<String>,
-    /// Also beside its snapshot, if there is one.
-    pub snapshot: bool,
-    /// Also what its snapshot would be, if there is none.
-    pub propose: bool,
-    /// How the numbers are worked out.
-    pub evaluator: EvaluatorOptions,
-}
-
-impl TestRequest {
-    /// A spec of the disk with its snapshot.
-    pub fn new(file: impl Into<std::path::PathBuf>) -> TestRequest {
-        TestRequest {
-            project: Project::open(file, Arc::new(Disk)),
-            filter: None,
-            snapshot: true,
-            propose: false,
-            evaluator: EvaluatorOptions::default(),
-        }
-    }
-
-    /// Whether a job or a machine of the spec is asked for.
-    pub(super) fn takes(&self, name: &str) -> bool {
-        let whole = format!("{}:{name}", shown_path(self.project.file()));
-        self.filter.as_ref().is_none_or(|filter| whole.contains(filter.as_str()))
-    }
-}
 
 /// Tests specs, as many at a time as there are threads. The result does not depend on how many these are.
 ///

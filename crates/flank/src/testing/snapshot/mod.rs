@@ -9,8 +9,8 @@ use crate::project::failure::Failure;
 use crate::project::files::write_texts;
 use crate::project::shown_path;
 use crate::testing::points::Tested;
+use crate::testing::request::TestRequest;
 use crate::testing::result::{TestedSnapshot, TestedSpec};
-use crate::testing::run::TestRequest;
 use text::{Kept, KeptSurface};
 
 /// Rows and columns of a sample that are kept.
