@@ -110,7 +110,9 @@ fn solved(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     for k in 0..count {
         let weight = |row: usize| matrix[row * count + k].abs() / scale[row];
         let pivot = (k..count).max_by(|a, b| weight(*a).total_cmp(&weight(*b)))?;
-        if !(weight(pivot) > NO_PIVOT) {
+        // a NaN is no pivot
+        let is_pivot = weight(pivot) > NO_PIVOT;
+        if !is_pivot {
             return None;
         }
         if pivot != k {
