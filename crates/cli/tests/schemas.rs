@@ -154,7 +154,10 @@ fn comparisons_and_pictures() {
     judge.run(&[&fit[..], &["--vary", "radial_distance,cradle_angle,blade_angle"]].concat(), 0);
     judge.run(&fit, 0);
     judge.run(&[&fit[..], &["--vary", "nosuch"]].concat(), 1);
-    judge.run(&["fit", "specs/pairs/bevel_19x62.chain", "--want", "centred", "--json", "--vary", "p.radial_distance"], 3);
+    judge.run(
+        &["fit", "specs/pairs/bevel_19x62.chain", "--want", "centred", "--json", "--vary", "p.radial_distance"],
+        3,
+    );
     let tolerance = ["tolerance", PINION, "concave", "--json", "--scatter", "radial_distance=5um,ratio_of_roll=0.01%"];
     judge.run(&[&tolerance[..], &["--sweep", "20"]].concat(), 0);
     judge.run(&[&tolerance[..], &["--budget", "bias=1nm"]].concat(), 2);

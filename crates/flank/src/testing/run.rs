@@ -1,6 +1,5 @@
 //! One spec, tested.
 
-
 use flank_chain_dsl::{Compilation, Expectation, Job, Request, Span, compile_request};
 use flank_expr::Graph;
 use rayon::prelude::*;
