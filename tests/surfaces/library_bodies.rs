@@ -1,4 +1,4 @@
-//! The bodies of the library's jobs: each is closed and has the volume of its exact surfaces, or it is named with the reason why not.
+//! Bodies of gears of all kinds: each is closed and has the volume of its exact surfaces, or it is named with the reason why not.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ const FLANKS: [(&str, &str); 6] = [
 ];
 
 fn built(spec: &str, set: &[(&str, &str)], folder: &std::path::Path) -> Vec<SolidResult> {
-    let project = Project::open(&repository(spec), Arc::new(Disk));
+    let project = Project::open(repository(spec), Arc::new(Disk));
     let set = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     let request = SolidRequest {
         jobs: JobSelection { project, job: None, set },
@@ -71,29 +71,29 @@ fn check(spec: &str, expected: &[(&str, u32)]) {
 
 #[test]
 fn cylindrical_gears() {
-    check("specs/hobbing/spur_gear.chain", &[("gear", 24)]);
-    check("specs/hobbing/undercut_gear.chain", &[("gear", 10)]);
-    check("specs/hobbing/helical_gear.chain", &[("gear", 31)]);
-    check("specs/hobbing/diagonal_gear.chain", &[("gear", 31)]);
-    check("specs/hobbing/shaped_gear.chain", &[("gear", 47)]);
-    check("specs/pairs/internal_pair.chain", &[("pinion", 21), ("ring", 62)]);
-    check("specs/pairs/rack_and_pinion.chain", &[("pinion", 24)]);
+    check("tests/surfaces/specs/bodies/hobbing/spur_gear.chain", &[("gear", 24)]);
+    check("tests/surfaces/specs/bodies/hobbing/undercut_gear.chain", &[("gear", 10)]);
+    check("tests/surfaces/specs/bodies/hobbing/helical_gear.chain", &[("gear", 31)]);
+    check("tests/surfaces/specs/bodies/hobbing/diagonal_gear.chain", &[("gear", 31)]);
+    check("tests/surfaces/specs/bodies/hobbing/shaped_gear.chain", &[("gear", 47)]);
+    check("tests/surfaces/specs/bodies/pairs/internal_pair.chain", &[("pinion", 21), ("ring", 62)]);
+    check("tests/surfaces/specs/bodies/pairs/rack_and_pinion.chain", &[("pinion", 24)]);
 }
 
 #[test]
 fn crowned_and_taper_gears() {
-    check("specs/hobbing/crowned_gear.chain", &[("gear", 27)]);
-    check("specs/hobbing/crowned_gear_quartic.chain", &[("gear", 27)]);
-    check("specs/hobbing/beveloid.chain", &[("gear", 30)]);
-    check("specs/pairs/helical_pair.chain", &[("pinion", 27), ("gear", 47)]);
+    check("tests/surfaces/specs/bodies/hobbing/crowned_gear.chain", &[("gear", 27)]);
+    check("tests/surfaces/specs/bodies/hobbing/crowned_gear_quartic.chain", &[("gear", 27)]);
+    check("tests/surfaces/specs/bodies/hobbing/beveloid.chain", &[("gear", 30)]);
+    check("tests/surfaces/specs/bodies/pairs/helical_pair.chain", &[("pinion", 27), ("gear", 47)]);
 }
 
 #[test]
 fn worm_gears_and_face_gears() {
-    check("specs/hobbing/worm_wheel.chain", &[("wheel", 40)]);
-    check("specs/pairs/worm_and_wheel.chain", &[("worm", 1), ("wheel", 40)]);
-    check("specs/hobbing/face_gear.chain", &[("gear", 108)]);
-    check("specs/pairs/face_gear_pair.chain", &[("pinion", 23), ("gear", 108)]);
+    check("tests/surfaces/specs/bodies/hobbing/worm_wheel.chain", &[("wheel", 40)]);
+    check("tests/surfaces/specs/bodies/pairs/worm_and_wheel.chain", &[("worm", 1), ("wheel", 40)]);
+    check("tests/surfaces/specs/bodies/hobbing/face_gear.chain", &[("gear", 108)]);
+    check("tests/surfaces/specs/bodies/pairs/face_gear_pair.chain", &[("pinion", 23), ("gear", 108)]);
 }
 
 #[test]
@@ -151,12 +151,15 @@ fn cycloidal_discs_end_in_edges() {
     assert_eq!(euler_characteristic(&mesh), 0);
 }
 
+/// A spec, values of its parameters, and what speaks against its body.
+type Odd = (&'static str, &'static [(&'static str, &'static str)], Option<&'static str>);
+
 /// Odd numbers give a body, or a reason with its number and no file.
 #[test]
 fn odd_numbers_give_a_body_or_a_reason() {
-    let spur = "specs/hobbing/spur_gear.chain";
-    let helical = "specs/hobbing/helical_gear.chain";
-    let odd: [(&str, &[(&str, &str)], Option<&str>); 11] = [
+    let spur = "tests/surfaces/specs/bodies/hobbing/spur_gear.chain";
+    let helical = "tests/surfaces/specs/bodies/hobbing/helical_gear.chain";
+    let odd: [Odd; 11] = [
         (spur, &[("teeth", "7")], None),
         (spur, &[("teeth", "4"), ("profile_shift", "0")], Some("9 of 9 points there are beyond the ranges")),
         (spur, &[("teeth", "8"), ("profile_shift", "0.9")], None),
@@ -165,13 +168,17 @@ fn odd_numbers_give_a_body_or_a_reason() {
         (spur, &[("module", "0.01 mm"), ("face_width", "0.05 mm")], None),
         (spur, &[("face_width", "400 mm")], None),
         (helical, &[("helix_angle", "45 deg")], None),
+        (helical, &[("helix_angle", "0 deg"), ("teeth", "12"), ("shift", "0 mm")], None),
         (
-            helical,
-            &[("helix_angle", "0 deg"), ("teeth", "12"), ("shift", "0 mm")],
+            "tests/surfaces/specs/bodies/hobbing/face_gear.chain",
+            &[("inner_radius", "120 mm")],
             Some("neither end in one line nor meet"),
         ),
-        ("specs/hobbing/face_gear.chain", &[("inner_radius", "120 mm")], Some("neither end in one line nor meet")),
-        ("specs/hobbing/worm_wheel.chain", &[("teeth", "11")], Some("neither end in one line nor meet")),
+        (
+            "tests/surfaces/specs/bodies/hobbing/worm_wheel.chain",
+            &[("teeth", "11")],
+            Some("neither end in one line nor meet"),
+        ),
     ];
     for (spec, set, reason) in odd {
         let folder = tempfile::tempdir().expect("a folder");

@@ -115,7 +115,7 @@ fn read(path: &Path) -> Vec<Triangle> {
 }
 
 fn selection(spec: &str) -> JobSelection {
-    JobSelection { project: Project::open(&repository(spec), Arc::new(Disk)), job: None, set: Vec::new() }
+    JobSelection { project: Project::open(repository(spec), Arc::new(Disk)), job: None, set: Vec::new() }
 }
 
 /// One part of all solids of a spec as triangles, by the names of the solids.
@@ -240,14 +240,24 @@ fn spur_gears() {
 
 #[test]
 fn a_pinion_in_a_ring() {
-    Pair { spec: "specs/pairs/internal_pair.chain", solids: ["pinion", "ring"], teeth: [21, 62], spacing: 0.2 }
-        .check(3);
+    Pair {
+        spec: "tests/surfaces/specs/bodies/pairs/internal_pair.chain",
+        solids: ["pinion", "ring"],
+        teeth: [21, 62],
+        spacing: 0.2,
+    }
+    .check(3);
 }
 
 #[test]
 fn helical_gears() {
-    Pair { spec: "specs/pairs/helical_pair.chain", solids: ["pinion", "gear"], teeth: [27, 47], spacing: 0.12 }
-        .check(3);
+    Pair {
+        spec: "tests/surfaces/specs/bodies/pairs/helical_pair.chain",
+        solids: ["pinion", "gear"],
+        teeth: [27, 47],
+        spacing: 0.12,
+    }
+    .check(3);
 }
 
 /// The same with the pinion's space turned inside out by a mirror: what a kernel calls valid.

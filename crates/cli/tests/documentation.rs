@@ -27,7 +27,7 @@ const fn page(path: &'static str) -> Page {
     Page { path, file: "page.chain", changes: &[] }
 }
 
-const PAGES: [Page; 6] = [
+const PAGES: [Page; 7] = [
     Page {
         path: "docs/tutorial.md",
         file: "gear.chain",

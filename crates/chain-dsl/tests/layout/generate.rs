@@ -243,9 +243,9 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(12) {
+        match self.random.below(13) {
             0 => self.param(),
-            11 => {
+            12 => {
                 self.put("error");
                 self.name();
                 self.put(":");

@@ -143,6 +143,7 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Want(it) => {
             format!("{}want {} in {} {}", doc(&it.doc), it.name.node, path(&it.contact), expression(&it.value))
         }
+        JobStatement::Mill(it) => milling(it),
         JobStatement::Drive(it) => {
             format!("drive {} {}", listed(&it.targets, path), listed(&it.values, expression))
         }
@@ -164,6 +165,28 @@ fn job_statement(statement: &JobStatement) -> String {
             format!("sample {} {}", listed(&it.surfaces, sampled), entries.join(", "))
         }
     }
+}
+
+fn milling(it: &Mill) -> String {
+    let run = |it: &MillRun| {
+        let definition = it.definition.as_ref().map_or(String::new(), |it| format!(" = {}", expression(it)));
+        format!("{}{definition}: {} {} {}", it.key.node, range(&it.range), it.word.node, expression(&it.value))
+    };
+    let clearance =
+        |it: &MillClearance| format!("clear {} {} {}", path(&it.surface), expression(&it.distance), path(&it.body));
+    format!(
+        "{}mill {} {} {} {} [{}] [{}] [{}] {} [{}]",
+        doc(&it.doc),
+        it.name.node,
+        path(&it.surface),
+        path(&it.cutter),
+        path(&it.frame),
+        listed(&it.passes, run),
+        listed(&it.along, run),
+        listed(&it.attitudes, |(word, value)| format!("{} {}", word.node, expression(value))),
+        it.both_ways.len(),
+        listed(&it.clearances, clearance),
+    )
 }
 
 fn expectation(it: &Expectation) -> String {

@@ -115,7 +115,7 @@ fn own(known: &[&SurfacePoint]) -> Option<InvoluteHelicoid> {
     };
     let found = touching(known.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?)?;
     let is_like = |point: &&SurfacePoint| touching(point).is_some_and(|other| are_alike(other, found));
-    known.iter().all(|point| is_like(point)).then_some(found)
+    known.iter().all(is_like).then_some(found)
 }
 
 fn are_alike(a: InvoluteHelicoid, b: InvoluteHelicoid) -> bool {

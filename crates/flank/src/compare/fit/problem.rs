@@ -205,7 +205,6 @@ impl<'p, 'g> Problem<'p, 'g> {
         turn: ScaledUnknown,
         (free, fixed): (&[usize], &[(usize, f64)]),
     ) -> Result<AdjustedSurfaces, Failure> {
-        let wanted = |(surface, points)| wanted(surface, points);
         let kept = keeps.iter().map(|keep| (&keep.surface, &keep.points)).map(wanted);
         let settings = self.unknowns.iter().enumerate();
         let settings = settings.map(|(k, of)| match fixed.iter().find(|(at, _)| *at == k) {
@@ -271,7 +270,7 @@ fn is_in(range: Range, value: f64) -> bool {
     value >= range.low - margin && value <= range.high + margin
 }
 
-fn wanted<'s>(surface: &'s AdjustableSurface, points: &Vec<Aimed>) -> WantedPoints<'s> {
+fn wanted<'s>((surface, points): (&'s AdjustableSurface, &Vec<Aimed>)) -> WantedPoints<'s> {
     let near = points.iter().map(|point| point.near.clone()).collect();
     WantedPoints { surface, points: points.iter().map(|point| point.position).collect(), near }
 }

@@ -74,8 +74,10 @@ impl<'p, 'g> Machine<'p, 'g> {
         };
         if let Some(k) = (0..rows.len()).find(off) {
             let message = format!("{name} does not bring the cutter to its pose at {}", place(k));
-            let why =
-                format!("{:.3} deg from where a rotary axis is free", self.axes.from_pole(&poses[k]).to_degrees());
+            let why = format!(
+                "{:.3} deg from where a rotary axis is free",
+                self.axes.angle_from_pole(&poses[k]).to_degrees()
+            );
             found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why]));
             return found;
         }
@@ -110,7 +112,7 @@ impl<'p, 'g> Machine<'p, 'g> {
                     self.free[axis].name,
                     turn(k).to_degrees(),
                     place(k),
-                    self.axes.from_pole(&poses[k]).min(self.axes.from_pole(&poses[k + 1])).to_degrees()
+                    self.axes.angle_from_pole(&poses[k]).min(self.axes.angle_from_pole(&poses[k + 1])).to_degrees()
                 );
                 let way = "lean the cutter away with `lead` or `tilt`, or clamp the work at another angle".to_string();
                 found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![way]));
@@ -199,7 +201,7 @@ impl FreeAxes {
     }
 
     /// The angle of the cutter's axis from where a rotary axis is free, radians.
-    pub(super) fn from_pole(&self, row: &[f64; 6]) -> f64 {
+    pub(super) fn angle_from_pole(&self, row: &[f64; 6]) -> f64 {
         self.closed.from_pole([row[3], row[4], row[5]])
     }
 }

@@ -27,6 +27,7 @@ use self::target::{Fields, Target};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::quantity::Travel;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{MillRequest, Session};
 use crate::project::spec;
@@ -251,7 +252,7 @@ fn describe(
     }
     bending(result, target, cutter, milled);
     let Some(machine) = &milled.machine else { return };
-    let poles = milled.poses.iter().flatten().map(|row| machine.axes.from_pole(row).to_degrees());
+    let poles = milled.poses.iter().flatten().map(|row| machine.axes.angle_from_pole(row).to_degrees());
     result.least_from_pole = poles.reduce(f64::min);
     result.axes = axes(machine, milled);
     for (pass, (poses, rows)) in milled.poses.iter().zip(&milled.axes).enumerate() {
@@ -323,7 +324,7 @@ fn axes(machine: &Machine<'_, '_>, milled: &Milled<'_, '_>) -> Vec<MilledAxis> {
             name: own.name.clone(),
             unit: units::symbol(own.dimension).to_string(),
             extent: extent.map(shown),
-            travel: own.travel.map(|(low, high)| [shown(low), shown(high)]),
+            travel: own.travel.map(|(low, high)| Travel { low: shown(low), high: shown(high) }),
             rate_per_mm: shown(rate.fold(0.0, f64::max)),
         }
     };

@@ -116,11 +116,8 @@ impl Planner<'_, '_, '_> {
             if count < 2 {
                 return Ok(2);
             }
-            height = match highest(count) {
-                Ok(height) => height,
-                // so few do not meet
-                Err(_) => f64::INFINITY,
-            };
+            // so few do not meet
+            height = highest(count).unwrap_or(f64::INFINITY);
             if !height.is_finite() {
                 low = count;
                 count = high.map_or(2 * count, |high| (low + high).div_ceil(2).min(high));

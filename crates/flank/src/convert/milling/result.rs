@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::{Answer, Timing};
+use crate::project::quantity::Travel;
 use crate::project::remark::{NotDone, Remark};
 
 /// Passes of a cutter over a surface, what they leave, and what a machine's axes do, of `flank mill`. Lengths are mm, angles deg, heights um
@@ -121,7 +122,7 @@ pub struct MilledAxis {
     /// Lowest and highest position, as the frames of the machine count.
     pub extent: [f64; 2],
     /// Its travel.
-    pub travel: Option<[f64; 2]>,
+    pub travel: Option<Travel>,
     /// At the most per mm of the contact's way.
     pub rate_per_mm: f64,
 }
