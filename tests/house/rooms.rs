@@ -40,21 +40,10 @@ fn code(path: &Path) -> String {
 const ROOMS: [(&str, &[&str]); 3] = [
     (
         "solver",
-        &[
-            "equations",
-            "newton",
-            "roots",
-            "continuation",
-            "surface",
-            "analysis",
-            "contact",
-            "solid",
-            "conversion",
-            "milling",
-        ],
+        &["equations", "newton", "roots", "continuation", "surface", "analysis", "contact", "solid", "conversion"],
     ),
     ("export", &["vector", "text", "schema", "files", "points", "shape", "solid", "step", "motion", "measuring"]),
-    ("flank", &["project", "solve", "compare", "convert", "draw", "report", "page", "exchange", "testing", "language"]),
+    ("flank", &["project", "solve", "compare", "convert", "derive", "draw", "report", "page", "exchange", "language"]),
 ];
 
 /// Entries of a crate's `src/` at the most.

@@ -8,4 +8,3 @@ pub(crate) mod gauge;
 pub(crate) mod mass;
 pub(crate) mod mesh;
 pub(crate) mod section;
-pub(crate) mod sheets;

@@ -11,9 +11,7 @@ use flank_expr::{Graph, Style};
 use flank_solver::Explicit;
 
 use crate::convert::{self, Conversion};
-use crate::language::derive::result::{
-    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost,
-};
+use crate::derive::result::{CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
