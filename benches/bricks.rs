@@ -50,7 +50,7 @@ fn body() -> Body {
             .collect();
         Chart::through(points, POINTS)
     };
-    Body::new(blank, TEETH, (0..3).map(chart).collect()).expect("a body")
+    Body::new(blank, TEETH, (0..3).map(chart).collect(), false).expect("a body")
 }
 
 /// Three teeth of 34,000 bricks each.

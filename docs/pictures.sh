@@ -9,10 +9,13 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 mkdir "$out/images" "$out/new"
 
-# Leaves the pictures of one call in $out/new, under the names that `flank plot` gives them.
-plot() {
-    "$flank" plot "$@" --no-origin --format png --size 800x600 --out "$out/new" >"$out/told" || [ $? -eq 3 ] || { cat "$out/told"; exit 1; }
+# Leaves the pictures of one call in $out/new, under the names that `flank plot` gives them; fails where the kind does not fit the job.
+try() {
+    local ending=0
+    "$flank" plot "$@" --no-origin --format png --size 800x600 --out "$out/new" >"$out/told" 2>&1 || ending=$?
+    [ $ending -eq 0 ] || [ $ending -eq 3 ]
 }
+plot() { try "$@" || { cat "$out/told" >&2; exit 1; }; }
 
 # picture NAME SPEC --what KIND …: draws one picture into images/NAME.png
 picture() {
@@ -40,16 +43,22 @@ sentence() {
             section=$folder
             printf '\n## %s\n' "${folder//_/ }"
         fi
-        # what single edges leave is what there is to see of an edge's work
-        kind=surface
-        if grep -q '^ *cut ' "$spec"; then kind=left; fi
-        plot "$spec" --what $kind
-        for file in "$out"/new/*."$kind".png; do
-            name=$(basename "$file" ".$kind.png")
-            mv "$file" "$out/images/$name.png"
-            printf '\n### %s\n\n%s\n\n' "$name" "$(sentence "$spec")"
-            printf '![%s](images/%s.png)\n\n' "${name//_/ }" "$name"
-            printf '    flank plot %s --what %s\n' "$spec" "$kind"
+        jobs=$(sed -n 's/^job \([A-Za-z0-9_]*\).*/\1/p' "$spec")
+        for job in $jobs; do
+            # the gear; what single edges leave is what there is to see of their work; else the surfaces
+            kinds="gear surface"
+            if grep -q '^ *cut ' "$spec"; then kinds="gear left surface"; fi
+            for kind in $kinds; do
+                if try "$spec" --job "$job" --what "$kind"; then break; fi
+            done
+            file=$out/new/$job.$kind.png
+            # a job that others are made of asks for no points
+            if [ ! -e "$file" ]; then continue; fi
+            mv "$file" "$out/images/$job.png"
+            of=$([ "$jobs" = "$job" ] || echo " --job $job")
+            printf '\n### %s\n\n%s\n\n' "$job" "$(sentence "$spec")"
+            printf '![%s](images/%s.png)\n\n' "${job//_/ }" "$job"
+            printf '    flank plot %s%s --what %s\n' "$spec" "$of" "$kind"
         done
     done
 } >"$out/gallery.md"
@@ -64,6 +73,7 @@ picture real_hob_run_out $hob --what left --set run_out="0.02 mm"
 picture worm_wheel_ease_off $wheel --what deviation "${flanks[@]}"
 picture worm_wheel_ease_off_shifted $wheel --what deviation "${flanks[@]}" --set oversize="2 mm" --set m.swivel="0 deg"
 picture ease_off_19x62 $ease_off --what deviation --surface pinion.concave --reference conjugate.concave
+picture traces specs/hobbing/crowned_gear.chain --what traces
 picture topography $ease_off --what topography --surface pinion.concave --reference conjugate.concave
 picture sensitivity $pinion --what sensitivity
 picture curvature $pinion --what curvature

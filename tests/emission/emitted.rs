@@ -1,8 +1,8 @@
 //! Emitted functions, compiled by the compilers of their languages, against the interpreter.
 
 use flank_expr::{
-    Binary, Curve, CurveId, Expr, Graph, Interval, Language, Polynomial, Signature, Unary, Unknown, emit_function,
-    emit_polynomials, roots,
+    Binary, Curve, CurveId, End, Expr, Graph, Interval, Language, Polynomial, Signature, Unary, Unknown, emit_function,
+    emit_polynomials, integral, roots,
 };
 use flank_tests::compiled::values_at;
 use flank_tests::{Dice, job};
@@ -101,6 +101,26 @@ fn root_at(a: Expr<'_>) -> Expr<'_> {
     graph.substitute(&[root], &[(given, a)])[0]
 }
 
+/// Length of the parabola t² from 0 to a.
+fn length_to(a: Expr<'_>) -> Expr<'_> {
+    let graph = a.graph();
+    let [own, to] = ["own", "to"].map(|name| graph.variable(name));
+    let ends =
+        [(graph.constant(0.0), 0.0), (to, 1.0)].map(|(expr, reach)| End { expr, range: Interval::new(-reach, reach) });
+    let length = integral((1.0 + 4.0 * own * own).sqrt(), own, ends, &[]).expect("it is smooth");
+    graph.substitute(&[length], &[(to, a)])[0]
+}
+
+/// Unknowns of two equations, x + sin(y) / 5 = a and y − 3/10 x² = 0.
+fn linkage_at(a: Expr<'_>) -> Expr<'_> {
+    let graph = a.graph();
+    let [x, y, given] = ["first", "second", "given"].map(|name| graph.variable(name));
+    let unknowns = [x, y].map(|variable| Unknown { variable, range: Interval::new(-4.0, 4.0) });
+    let residuals = [x + 0.2 * y.sin() - given, y - 0.3 * x * x];
+    let found = roots(&residuals, &unknowns, &[(given, Interval::new(-1.0, 1.0))]).expect("nearly linear");
+    graph.substitute(&[found[0] + found[1]], &[(given, a)])[0]
+}
+
 /// Each operation alone, then combinations of combinations; the sine brings each back to [−1, 1], so that rounding stays
 /// rounding: no slope is beyond 10, and three of them lie behind each other.
 #[test]
@@ -116,7 +136,7 @@ fn random_expressions_meet_the_interpreter() {
         let mut made: Vec<Expr<'_>> = Unary::ALL.map(|op| unary_of(op, pick())).to_vec();
         made.extend(Binary::ALL.map(|op| binary_of(op, pick(), pick())));
         made.extend((0..4).map(|order| pick().on_curve(curve, order)));
-        made.push(root_at(pick()));
+        made.extend([root_at(pick()), linkage_at(pick()), length_to(pick())]);
         layer = made.iter().map(|part| part.sin()).collect();
         outputs.extend(made);
     }

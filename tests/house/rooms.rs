@@ -40,10 +40,21 @@ fn code(path: &Path) -> String {
 const ROOMS: [(&str, &[&str]); 3] = [
     (
         "solver",
-        &["equations", "newton", "roots", "continuation", "surface", "analysis", "contact", "solid", "conversion"],
+        &[
+            "equations",
+            "newton",
+            "roots",
+            "continuation",
+            "surface",
+            "analysis",
+            "contact",
+            "solid",
+            "conversion",
+            "milling",
+        ],
     ),
     ("export", &["vector", "text", "schema", "files", "points", "shape", "solid", "step", "motion", "measuring"]),
-    ("flank", &["project", "solve", "compare", "convert", "derive", "draw", "report", "page", "exchange", "language"]),
+    ("flank", &["project", "solve", "compare", "convert", "draw", "report", "page", "exchange", "testing", "language"]),
 ];
 
 /// Entries of a crate's `src/` at the most.

@@ -1,5 +1,6 @@
 //! What the tests of flank as a whole share: specs solved at given points, reference tables read.
 
+pub mod bodies;
 pub mod compiled;
 pub mod conversion;
 pub mod deck;
@@ -111,14 +112,16 @@ pub fn job_of_text<'g>(graph: &'g Graph, text: &str) -> Job<'g> {
     right(compile_text(graph, "text", text, &[]), "the text").swap_remove(0)
 }
 
-/// Specs given by their paths below `specs`, as one text: what a file uses must stand there, too.
+/// Specs given by their paths below `specs`, as one text: what a file uses must stand there, too. Expectations that need other files
+/// are left out.
 ///
 /// # Panics
 /// If one cannot be read.
 pub fn library(paths: &[&str]) -> String {
     let read = |path: &&str| std::fs::read_to_string(repository("specs").join(path)).expect("the spec is there");
     let all: String = paths.iter().map(read).collect();
-    let lines = all.lines().filter(|line| !line.starts_with("use ") && !line.starts_with("//!"));
+    let needs_files = |line: &str| line.contains(" near table(") || line.trim_start().starts_with("expect on ");
+    let lines = all.lines().filter(|line| !line.starts_with("use ") && !line.starts_with("//!") && !needs_files(line));
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 

@@ -1,9 +1,13 @@
 //! Pairs of specs as the solver takes them.
 
-use flank_chain_dsl::{Job, OutlineCurve, Solid};
-use flank_solver::{Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
+use flank_chain_dsl::{Contact, Job, OutlineCurve, Solid};
+use flank_expr::Expr;
+use flank_solver::{BoundSurface, Outline, OutlineSegment, Range, RollingPair, SurfacePoint};
 
-use crate::{bound, sampled};
+use crate::sampled;
+
+/// Parameters that stay symbols, with their values.
+type Open<'g> = Vec<(Expr<'g>, f64)>;
 
 /// The first contact of a job, its pair mounted with errors, with the points that the samples of both flanks ask for; with the ends of its
 /// teeth, or of flanks without edges.
@@ -35,17 +39,47 @@ pub fn with_contact<'g, R>(
     let error = |name: &str| wrong.iter().find(|(of, _)| *of == name).map_or(0.0, |(_, error)| *error);
     let mounted = contact.errors.iter().map(|axis| (axis.variable, graph.constant(error(&axis.name))));
     let given: Vec<_> = mounted.chain(job.bindings()).collect();
+    with_values(job, contact, (&given, Vec::new()), has_edges, use_pair)
+}
+
+/// The first contact of a job as it is mounted, without edges and with parameters of the job open.
+///
+/// # Panics
+/// If the job has no contact, or a flank of it no sample.
+pub fn with_pair_in<'g, R>(
+    job: &Job<'g>,
+    open: &[Expr<'g>],
+    use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
+) -> R {
+    let contact = &job.contacts[0];
+    let mounted = contact.errors.iter().map(|axis| (axis.variable, axis.variable.graph().constant(0.0)));
+    let given: Vec<_> = mounted.chain(job.bindings_beside(open)).collect();
+    let value = |variable: &Expr<'g>| job.parameters.iter().find(|of| of.variable == *variable).expect("open").value;
+    let parameters = open.iter().map(|variable| (*variable, value(variable))).collect();
+    with_values(job, contact, (&given, parameters), false, use_pair)
+}
+
+fn with_values<'g, R>(
+    job: &Job<'g>,
+    contact: &Contact<'g>,
+    (given, parameters): (&[(Expr<'g>, Expr<'g>)], Open<'g>),
+    has_edges: bool,
+    use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
+) -> R {
     let surfaces = contact.surfaces.map(|at| &job.surfaces[at]);
-    let flanks = surfaces.map(|surface| bound(job, surface));
+    let flanks = surfaces.map(|surface| {
+        let ranges = surface.unknowns.iter().map(|of| Range { low: of.low, high: of.high }).collect();
+        BoundSurface::new(&surface.surface, ranges, given)
+    });
     let points = surfaces.map(|surface| sampled(job, &surface.name));
     let solids = contact.surfaces.map(|at| job.solids.iter().find(|solid| solid.space.contains(&at)));
     let pair = RollingPair {
         surfaces: flanks.each_ref(),
-        placements: contact.placements.each_ref().map(|placement| placement.substituted(&given)),
+        placements: contact.placements.each_ref().map(|placement| placement.substituted(given)),
         roll: contact.roll.variable,
         lag: (contact.lag.variable, Range { low: contact.lag.low, high: contact.lag.high }),
         outlines: solids.map(|solid| solid.filter(|_| has_edges).map(outline)),
-        parameters: Vec::new(),
+        parameters,
     };
     use_pair(&pair, points.each_ref().map(Vec::as_slice))
 }

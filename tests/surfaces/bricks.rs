@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flank::{
-    Answer, BrickFormat, BrickNumbers, Disk, ElementOrder, JobSelection, MeshRequest, MeshResult, Project, Unwatched,
-    mesh,
+    Answer, BrickFormat, BrickNumbers, Disk, ElementOrder, JobSelection, MeshRequest, MeshResult, NotDoneKind, Project,
+    Unwatched, mesh,
 };
 use flank_tests::deck::Deck;
 use flank_tests::{repository, shipped};
@@ -232,6 +232,10 @@ fn volumes_converge_to_that_of_the_body() {
     }
 }
 
+/// Bodies that the layout does not fit: lobes without a land, and a thread of one start, along which a section across the axis runs.
+const REFUSED: [(&str, &str); 2] =
+    [("disc", "end in an edge"), ("worm", "nearly so: their least scaled Jacobian is 0.0")];
+
 /// No brick of any body of the library is folded or nearly so, as they come.
 #[test]
 fn bricks_of_all_bodies_are_well_shaped() {
@@ -241,8 +245,13 @@ fn bricks_of_all_bodies_are_well_shaped() {
     for spec in specs {
         for order in ORDERS {
             for result in (Asked { order, ..Asked::new(&spec, "") }).results() {
-                let folded = result.not_done().iter().find(|not_done| not_done.message.contains("folded"));
-                assert!(folded.is_none(), "{spec}: {folded:?}");
+                let refused = result.not_done().iter().filter(|not_done| not_done.kind == NotDoneKind::NoBricks);
+                for refused in refused {
+                    let is_known = REFUSED
+                        .iter()
+                        .any(|(of, why)| refused.of.as_deref() == Some(*of) && refused.message.contains(why));
+                    assert!(is_known, "{spec}: {refused:?}");
+                }
                 for solid in &result.solids {
                     bodies += 1;
                     let least = [solid.least_scaled_jacobian, solid.least_jacobian];

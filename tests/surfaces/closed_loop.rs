@@ -116,6 +116,7 @@ impl<'p, 'g> Gauge<'p, 'g> {
         let turn = ScaledUnknown { start: 0.0, scale: 0.1 / 40.0, range: Range { low: -7.0, high: 7.0 } };
         let adjustment = SettingsAdjustment {
             wanted: vec![wanted],
+            kept: vec![],
             settings,
             turn,
             shapes: None,
@@ -280,4 +281,73 @@ fn settings_that_do_the_same_are_told() {
         // each made of the two: cradle and turn, base and radius, but that the blade is an arc; the ratio of roll is told
         assert!(shares[3].abs() < 1e-4, "{shares:?}");
     }
+}
+
+/// Where the settings of a machine are off, each by as much in its unit as here at the most; no fit varies the last three.
+const HIDDEN: [(&str, f64); 8] = [
+    ("m.radial_distance", 0.03),
+    ("m.work_offset", 0.03),
+    ("m.machine_root_angle", 3e-4),
+    ("m.machine_center_to_crossing_point", 0.03),
+    ("m.ratio_of_roll", 3e-4),
+    ("m.cutter_tilt", 3e-4),
+    ("m.cradle_angle", 6e-4),
+    ("m.sliding_base", 0.03),
+];
+
+/// Cut on a machine with eight hidden errors, measured with noise, corrected, twice: what is left of the flank is less than 1.5 times the
+/// noise, in 95 of 100 machines.
+#[test]
+fn the_loop_closes_in_two_rounds() {
+    const NOISE: f64 = 5e-4;
+    const VARIED: usize = 5;
+    let graph = Graph::new();
+    let job = compiled(&graph, (PINION, "pinion_19x62"), &[]);
+    let names = HIDDEN.map(|(name, _)| name.to_string());
+    let whole = Gauge::new(&job, "concave", named(&job, &names));
+    let varied = Gauge::new(&job, "concave", named(&job, &names[..VARIED]));
+    let held = |of: &Gauge<'_, '_>| {
+        let still = |of: ScaledUnknown| ScaledUnknown { range: Range { low: of.start, high: of.start }, ..of };
+        of.unknowns().into_iter().map(still).collect::<Vec<ScaledUnknown>>()
+    };
+    let near: Vec<NearFoot> =
+        whole.nominal.iter().map(|point| NearFoot { unknowns: point.unknowns.clone(), distance: 0.0 }).collect();
+    let places: Vec<[f64; 3]> = whole.nominal.iter().map(|point| point.position).collect();
+    let mut dice = Dice(8);
+    let mut closed = 0;
+    for _ in 0..100 {
+        let hidden: Vec<f64> = HIDDEN.iter().map(|(_, most)| most * share(&mut dice)).collect();
+        // the points that the machine makes where the nominal ones would be, with the changes that are set
+        let cut = |set: &[f64]| -> Vec<[f64; 3]> {
+            let of = |k: usize| whole.settings[k].value + hidden[k] + set.get(k).copied().unwrap_or(0.0);
+            let values: Vec<f64> = (0..HIDDEN.len()).map(of).collect();
+            whole
+                .surface
+                .feet(&values, &places, &near)
+                .into_iter()
+                .map(|foot| foot.expect("it is near").position)
+                .collect()
+        };
+        let mut set = vec![0.0; VARIED];
+        for _ in 0..2 {
+            let measured = cut(&set).into_iter().zip(&whole.nominal).map(|(position, point)| {
+                let off = NOISE * gaussian(&mut dice);
+                Some(std::array::from_fn(|k| position[k] + off * point.normal[k]))
+            });
+            let measured: Vec<Option<[f64; 3]>> = measured.collect();
+            let now = varied.fitted(&measured, held(&varied));
+            let mirrored = now.feet[0]
+                .iter()
+                .map(|foot| Some(std::array::from_fn(|k| foot.position[k] - foot.distance * foot.normal[k])));
+            let mirrored: Vec<Option<[f64; 3]>> = mirrored.collect();
+            let found = varied.fitted(&mirrored, varied.unknowns());
+            set.iter_mut()
+                .zip(&found.fit.values)
+                .zip(&varied.settings)
+                .for_each(|((set, new), of)| *set += new - of.value);
+        }
+        let left: Vec<Option<[f64; 3]>> = cut(&set).into_iter().map(Some).collect();
+        closed += usize::from(varied.fitted(&left, held(&varied)).rms() < 1.5 * NOISE);
+    }
+    assert!(closed >= 95, "{closed} of 100");
 }

@@ -1,5 +1,5 @@
-//! Machines with closed loops: a cam by a rocker that a four-bar linkage swings, against the loop in closed form; a hexapod, against the
-//! machine with slides and distances from matrices.
+//! Machines with closed loops: a cam by a rocker that a four-bar linkage swings, against the loop in closed form; a hob that a cam relieves,
+//! against the cam's own push; a hexapod, against the machine with slides and distances from matrices.
 
 use flank_expr::Graph;
 use flank_tests::{assert_point, difference, job, points, sampled};
@@ -128,6 +128,71 @@ fn the_struts_of_a_hexapod_reach_from_joint_to_joint() {
             let law = job.machines[0].axes.iter().find(|axis| axis.name == name).expect("a strut").law;
             let found = graph.evaluate(&[law], &values)[0];
             assert!((found - exact).abs() < 1e-12, "{name} at {roll}: {found}, not {exact}");
+        }
+    }
+}
+
+/// A cam that rises by a cosine, and its roller; lengths in mm.
+struct Cam {
+    base: f64,
+    rise: f64,
+    roller: f64,
+}
+
+impl Cam {
+    /// How far the axis of the roller is from the camshaft on a line through it, and the rate of that over the turn of the cam. The roller is
+    /// pushed away by the place of the contour that pushes it farthest.
+    fn follower(&self, turn: f64) -> (f64, f64) {
+        let radius = |place: f64| self.base + 0.5 * self.rise * (1.0 - (place - turn).cos());
+        let bend = |place: f64| (self.roller.powi(2) - (radius(place) * place.sin()).powi(2)).sqrt();
+        let slope = |place: f64| {
+            let (r, rate) = (radius(place), 0.5 * self.rise * (place - turn).sin());
+            let across = r * rate * place.sin().powi(2) + r * r * place.sin() * place.cos();
+            rate * place.cos() - r * place.sin() - across / bend(place)
+        };
+        let (mut low, mut high) = (-0.2, 0.2);
+        assert!(slope(low) > 0.0 && slope(high) < 0.0, "it is farthest in between");
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if slope(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let (sine, cosine) = low.sin_cos();
+        let by_radius = cosine - radius(low) * sine * sine / bend(low);
+        (radius(low) * cosine + bend(low), -by_radius * 0.5 * self.rise * (low - turn).sin())
+    }
+}
+
+#[test]
+fn a_relieved_hob_is_what_the_follower_of_the_cam_leaves() {
+    let shipped = Cam { base: 60.0, rise: 4.0, roller: 15.0 };
+    let other = Cam { base: 45.0, rise: 7.0, roller: 20.0 };
+    let set = [("relief", "7 mm"), ("m.base_radius", "45 mm"), ("m.roller_radius", "20 mm")];
+    // lead in mm per radian: the module over two
+    let (lead, gashes, tool_radius, half_tip) = (1.5, 10.0, 31.25, 1.2);
+    for (cam, set) in [(shipped, &set[..0]), (other, &set)] {
+        let graph = Graph::new();
+        let job = job(&graph, "specs/linkages/relieved_hob.chain", set);
+        for (name, side) in [("plus", 1.0), ("minus", -1.0)] {
+            let sample = job.surfaces.iter().find(|surface| surface.name == name).and_then(|it| it.sample.as_ref());
+            for (target, point) in sample.expect("it is sampled").targets().iter().zip(sampled(&job, name)) {
+                let [u, turn] = *target;
+                let (far, rate) = cam.follower(gashes * turn);
+                let x = tool_radius + cam.base + cam.roller - far + u;
+                let incline = side * 20.0_f64.to_radians().tan();
+                let (sine, cosine) = turn.sin_cos();
+                let position = [x * cosine, -x * sine, side * half_tip + incline * u + lead * turn];
+                let along = [cosine, -sine, incline];
+                let fall = -gashes * rate;
+                let on = [fall * cosine - x * sine, -fall * sine - x * cosine, lead];
+                let across = [
+                    along[1] * on[2] - along[2] * on[1],
+                    along[2] * on[0] - along[0] * on[2],
+                    along[0] * on[1] - along[1] * on[0],
+                ];
+                // out of the tooth, towards the middle of the space
+                let size = -side * across[2].signum() * across.iter().map(|part| part * part).sum::<f64>().sqrt();
+                assert_point(&point, position, across.map(|part| part / size), &format!("{name}, u {u}, turn {turn}"));
+            }
         }
     }
 }

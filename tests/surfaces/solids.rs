@@ -1,6 +1,5 @@
 //! Bodies: closed, on the exact surfaces, with the volume of closed forms.
 
-use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use std::sync::Arc;
@@ -9,6 +8,7 @@ use flank::{
     Answer, Buffers, Disk, EvaluatorOptions, JobSelection, MeshFormat, Project, SolidNumbers, SolidPart, SolidRequest,
     SolidResult, Unwatched, solid,
 };
+use flank_tests::bodies::{euler_characteristic, triangles, volume};
 use flank_tests::repository;
 
 const BODIES: &str = "tests/surfaces/specs/bodies.chain";
@@ -69,33 +69,6 @@ impl<'a> Asked<'a> {
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0, "no broken body in a file");
         result.not_done()[0].message.clone()
     }
-}
-
-fn triangles(path: &Path) -> Vec<[[f32; 3]; 3]> {
-    let bytes = std::fs::read(path).expect("written");
-    let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().expect("four"));
-    let corner = |bytes: &[u8]| [0, 4, 8].map(|k| number(&bytes[k..k + 4]));
-    bytes[84..].chunks_exact(50).map(|of| [12, 24, 36].map(|k| corner(&of[k..k + 12]))).collect()
-}
-
-/// Vertices less edges plus faces of a mesh, in which each side of a triangle is one of another that runs along it the other way.
-fn euler_characteristic(triangles: &[[[f32; 3]; 3]]) -> i64 {
-    let bits = |corner: [f32; 3]| corner.map(f32::to_bits);
-    let sides = triangles.iter().flat_map(|t| (0..3).map(move |k| (bits(t[k]), bits(t[(k + 1) % 3]))));
-    let all: Vec<_> = sides.collect();
-    let once: BTreeSet<_> = all.iter().copied().collect();
-    assert_eq!(once.len(), all.len(), "no side twice in one sense");
-    assert!(once.iter().all(|(a, b)| once.contains(&(*b, *a))), "each side has its other triangle");
-    let vertices: BTreeSet<_> = all.iter().map(|(a, _)| *a).collect();
-    vertices.len() as i64 - all.len() as i64 / 2 + triangles.len() as i64
-}
-
-fn volume(triangles: &[[[f32; 3]; 3]]) -> f64 {
-    let of = |t: &[[f32; 3]; 3]| {
-        let [a, b, c] = t.map(|corner| corner.map(f64::from));
-        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
-    triangles.iter().map(of).sum::<f64>() / 6.0
 }
 
 /// A gear that a rack of 20 degrees, height 1.25 and tip radius 0.38 generates, by the involute and the trochoid in closed form.
@@ -323,6 +296,25 @@ fn teeth_that_the_rack_undercuts_end_where_flank_and_fillet_meet() {
     assert!((body.volume_mm3 / exact - 1.0).abs() < 1e-7, "{} {exact}", body.volume_mm3);
 }
 
+/// Flanks of neighbouring spaces meet where the tooth's thickness by the involute is nothing; the space is open from there on.
+#[test]
+fn pointed_teeth_end_in_an_edge() {
+    let set = [("helix_angle", "0 deg"), ("teeth", "9"), ("shift", "0.9"), ("bore", "5 mm")];
+    let (body, mesh) = Asked::new(BODIES, "helical", &set).only();
+    assert_eq!(euler_characteristic(&mesh), 0);
+    let spur = Spur { module: 3.0, teeth: 9.0, shift: 0.9 };
+    let (mut low, mut high) = (spur.radius(), spur.radius() + 1.9 * 3.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if spur.involute(middle) < PI / 9.0 { low = middle } else { high = middle }
+    }
+    let below = body.gauges.edge_below_tip_mm.expect("pointed");
+    assert!((0.5 * body.gauges.tip_diameter_mm - low).abs() < 1e-8, "{} {low}", body.gauges.tip_diameter_mm);
+    assert!((spur.radius() + 1.9 * 3.0 - below - low).abs() < 1e-8, "{below}");
+    let section = PI * (low * low - 25.0) - 9.0 * spur.space(low);
+    assert!((body.volume_mm3 / (20.0 * section) - 1.0).abs() < 2e-8, "{}", body.volume_mm3);
+}
+
 #[test]
 fn what_bounds_no_body_is_told_with_its_number() {
     let spaces = "[left, left_fillet, root, right_fillet, right]";
@@ -331,16 +323,13 @@ fn what_bounds_no_body_is_told_with_its_number() {
     assert!(told.contains("`left_fillet` and `right_fillet`") && told.contains("leave a gap of 3.66e-1 mm"), "{told}");
     let told = with("[left]").refused();
     assert!(told.contains("is one surface"), "{told}");
-    let set = [("helix_angle", "0 deg"), ("teeth", "9"), ("shift", "0.9"), ("bore", "5 mm")];
-    let told = Asked::new(BODIES, "helical", &set).refused();
-    assert!(told.contains("are pointed below the tip: their flanks overlap by"), "{told}");
     let told = Asked::new(BODIES, "helical", &[("bore", "35 mm")]).refused();
     assert!(told.contains("mm through `bore` of its outline"), "{told}");
 }
 
-/// The corner of a cutter without a rounding sweeps a surface of its own.
+/// A cutter's rounding makes the fillet; left out, it is a gap.
 #[test]
-fn a_corner_that_no_surface_is_named_for_is_a_gap() {
+fn a_rounding_that_no_surface_is_named_for_is_a_gap() {
     let told = Asked::new(BODIES, "internal", &[]).refused();
     assert!(told.contains("`left` and `root`") && told.contains("leave a gap of 6.7"), "{told}");
 }

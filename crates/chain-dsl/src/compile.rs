@@ -14,6 +14,8 @@ use crate::definitions::{unused, variant};
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Name, Sources, Span};
 use crate::diagnostics::{Diagnostic, Note, Severity};
+use crate::job::expect;
+use crate::job::expect::model::Expectation;
 use crate::job::{self, Definitions};
 use crate::limits;
 use crate::load::files::{Disk, Files};
@@ -39,9 +41,22 @@ pub struct Compilation<'g> {
     /// The machine of [`compile_with_machine`] as a job without surfaces, which its axes drive themselves; none if there is an
     /// error.
     pub machine: Option<Job<'g>>,
+    /// What the machines of the file itself are to be like, by themselves; none if there is an error.
+    pub machines: Vec<MachineExpectations<'g>>,
+    /// The errors that the file is to have, with the places where that is said.
+    pub expected_errors: Vec<(String, Span)>,
     main: Option<FileId>,
     /// The names of the values from outside.
     set: Vec<Name>,
+}
+
+/// What a machine is to be like.
+#[derive(Clone, Debug)]
+pub struct MachineExpectations<'g> {
+    /// Its name.
+    pub name: String,
+    /// What is expected of it.
+    pub expectations: Vec<Expectation<'g>>,
 }
 
 /// What is compiled beside the text of a file itself.
@@ -57,11 +72,13 @@ pub struct Request<'a> {
     /// Pairs of a name (`ratio`, `m.swivel`, in one job only `gear.m.swivel`) and a value as text (`2 mm`) that win over what the
     /// text says.
     pub set: &'a [(String, String)],
+    /// Whether what specs are tested by is looked at, too.
+    pub expectations: bool,
 }
 
 impl Default for Request<'_> {
     fn default() -> Self {
-        Request { files: Arc::new(Disk), machine: None, job: None, set: &[] }
+        Request { files: Arc::new(Disk), machine: None, job: None, set: &[], expectations: true }
     }
 }
 
@@ -143,30 +160,26 @@ pub fn compile_with_machine<'g>(
 
 /// The same of a file, as it is asked for.
 pub fn compile_request<'g>(graph: &'g Graph, path: &Path, request: &Request<'_>) -> Compilation<'g> {
-    compile(graph, load::load(Arc::clone(&request.files), path, request.machine), request.job, request.set)
+    compile(graph, load::load(Arc::clone(&request.files), path, request.machine), request)
 }
 
 /// The same for a text in memory, which can use no other file.
 pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(String, String)]) -> Compilation<'g> {
-    compile(graph, load::load_text(name, text), None, overrides)
+    compile(graph, load::load_text(name, text), &Request { set: overrides, ..Request::default() })
 }
 
-fn compile<'g>(
-    graph: &'g Graph,
-    loaded: Loaded,
-    wanted: Option<&str>,
-    overrides: &[(String, String)],
-) -> Compilation<'g> {
+fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compilation<'g> {
     let Loaded { from, mut sources, files, diagnostics, lacks_files, projects, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(from, projects, &sources));
     context.lacks_files = lacks_files;
+    context.expects = request.expectations;
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
-    let overrides = read_overrides(&mut context, &mut sources, overrides);
+    let overrides = read_overrides(&mut context, &mut sources, request.set);
     let items = Items::collect(&mut context, &files, beside.is_some());
     check_definitions(&mut context, &items);
     let main = files.last().map(|(id, _)| *id);
-    let mut jobs = Vec::new();
+    let (mut jobs, mut expected_errors) = (Vec::new(), Vec::new());
     for JobItem { file, job: written, made_from } in &items.jobs {
         context.begin_item();
         let found = context.findings();
@@ -176,7 +189,7 @@ fn compile<'g>(
         }
         // jobs that are not asked for are as they are written
         let name = &written.name.node;
-        let is_meant = Some(*file) == main && wanted.is_none_or(|wanted| wanted == name);
+        let is_meant = Some(*file) == main && request.job.is_none_or(|wanted| wanted == name);
         let own = if is_meant { overrides.of_job(name) } else { Overrides::new() };
         let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
         let job = job::build(&mut context, written, !made_from.is_empty(), &definitions, &sources.file(*file).path);
@@ -184,9 +197,11 @@ fn compile<'g>(
         let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
         made_from.iter().for_each(|parent| context.note_since(found, *parent, &note));
         if Some(*file) == main {
+            expected_errors.extend(expect::errors(&mut context, written));
             jobs.push(job);
         }
     }
+    let machines = if request.expectations { items.expected(&mut context, files.last(), &jobs) } else { Vec::new() };
     let beside = files.iter().find(|(id, _)| Some(*id) == beside);
     let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
@@ -206,8 +221,8 @@ fn compile<'g>(
     let failed = context.has_errors();
     let mut diagnostics = context.finish();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
-    let (jobs, machine) = if failed { (Vec::new(), None) } else { (jobs, machine) };
-    Compilation { sources, diagnostics, jobs, machine, main, set: overrides.names }
+    let (jobs, machine, machines) = if failed { Default::default() } else { (jobs, machine, machines) };
+    Compilation { sources, diagnostics, jobs, machine, machines, expected_errors, main, set: overrides.names }
 }
 
 /// The last machine of a file by itself.
@@ -335,6 +350,34 @@ impl Items {
             let job = make(context, found);
             self.jobs.push(JobItem { file, job, made_from });
         }
+    }
+}
+
+impl Items {
+    /// What the machines of a file expect by themselves. Its jobs may name each other's surfaces: these are looked for now.
+    fn expected<'g>(
+        &self,
+        context: &mut Context<'g>,
+        file: Option<&(FileId, ast::File)>,
+        jobs: &[Job<'g>],
+    ) -> Vec<MachineExpectations<'g>> {
+        let all = jobs.iter().flat_map(|job| job.surfaces.iter().map(|of| format!("{}.{}", job.name, of.name)));
+        let all: Vec<String> = all.collect();
+        if !context.has_errors() {
+            expect::check_others(context, jobs.iter().flat_map(|job| &job.expectations), &all);
+        }
+        let nothing = Overrides::new();
+        let definitions = Definitions { machines: &self.machines, tools: &self.tools, overrides: &nothing };
+        let machines = file.into_iter().flat_map(|(_, file)| &file.items).filter_map(|item| match item {
+            Item::Machine(machine) => Some(machine),
+            _ => None,
+        });
+        let found = machines.map(|machine| {
+            context.begin_item();
+            let expectations = expect::of_machine(context, machine, &definitions);
+            MachineExpectations { name: machine.name.node.clone(), expectations }
+        });
+        found.filter(|of| !of.expectations.is_empty()).collect()
     }
 }
 

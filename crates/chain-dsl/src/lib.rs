@@ -44,7 +44,9 @@ mod model;
 pub mod syntax;
 mod values;
 
-pub use compile::{Compilation, Request, compile_file, compile_request, compile_text, compile_with_machine};
+pub use compile::{
+    Compilation, MachineExpectations, Request, compile_file, compile_request, compile_text, compile_with_machine,
+};
 pub use derivation::{derivation, described, equations};
 pub use diagnostics::codes::Code;
 pub use diagnostics::explain::UnknownCode;
@@ -53,12 +55,16 @@ pub use diagnostics::source::{FileId, Name, SourceFile, Sources, Span, Spanned};
 pub use diagnostics::spelling::closest;
 pub use diagnostics::{Diagnostic, Note, Severity};
 pub use format::format;
+pub use job::expect::model::{
+    ContactNumber, DeviationNumber, Expectation, Expected, PointColumn, PointSet, Quantity, SolidNumber,
+};
 pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
-    Axis, Contact, Coordinate, Frame, GeneratedSurface, Generation, Job, LawSource, Machine, MountingAxis, NcWord,
-    OutlineCurve, OutlineSegment, Parameter, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
-    SampleGrid, Solid, ToolShape, ValueSource,
+    Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface,
+    Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MountingAxis, NcWord, OutlineCurve,
+    OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
+    SampleGrid, Solid, ToolShape, ValueSource, WantedContact,
 };
 pub use values::dimension::Dimension;

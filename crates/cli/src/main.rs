@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
-use commands::{check, explain, fmt, import, new, operations, schema, shell};
+use commands::{check, explain, fmt, import, new, operations, schema, shell, test};
 use console::{eprint, print};
 use failure::Failure;
 
@@ -82,6 +82,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(arguments) => operations::solve(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Test(arguments) => test::run(arguments),
         Command::Convert(arguments) => operations::convert(arguments),
         Command::Derive(arguments) => operations::derive(arguments),
         Command::Report(arguments) => operations::report(arguments),
@@ -89,6 +90,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Fit(arguments) => operations::fit(arguments),
         Command::Tolerance(arguments) => operations::tolerance(arguments),
         Command::Contact(arguments) => operations::contact(arguments),
+        Command::Mill(arguments) => operations::mill(arguments),
         Command::Measure(arguments) => operations::measure(arguments),
         Command::Mesh(arguments) => operations::mesh(arguments),
         Command::Plot(arguments) => operations::plot(arguments),

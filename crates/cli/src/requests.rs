@@ -1,13 +1,16 @@
 //! From arguments to what is asked of the library.
 
+use std::path::PathBuf;
+
 use flank::{
     Choice, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FitRequest, JobSelection, MeasureRequest,
-    MeshFormat, MeshRequest, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest, ToleranceRequest,
-    ViewRequest,
+    MeshFormat, MeshRequest, MillRequest, PlotRequest, PointFormat, ReportRequest, SolidRequest, SolveRequest,
+    SynthesisRequest, ToleranceRequest, ViewRequest,
 };
 
 use crate::arguments::{
-    Contact, Convert, Derive, Deviation, Fit, JobArguments, Measure, Mesh, Onto, Plot, Report, Solve, Tolerance, View,
+    Contact, Convert, Derive, Deviation, EaseOffWish, Fit, JobArguments, Measure, Mesh, Mill, Onto, Plot, Report,
+    Solve, Tolerance, View,
 };
 use crate::failure::Failure;
 use crate::spec;
@@ -142,24 +145,52 @@ impl Deviation {
 
 impl Fit {
     pub(crate) fn request(&self) -> Result<FitRequest, Failure> {
+        let parabola = |wish: &EaseOffWish| match wish {
+            EaseOffWish::Parabola(wanted) => Some(*wanted),
+            EaseOffWish::Table(_) => None,
+        };
+        let table = |wish: &EaseOffWish| match wish {
+            EaseOffWish::Parabola(_) => None,
+            EaseOffWish::Table(file) => Some(file.clone()),
+        };
+        // of both flanks in one file
+        let and =
+            |(name, file): &(String, Option<PathBuf>)| Some((name.clone(), file.clone().or(self.measured.clone())?));
         Ok(FitRequest {
             jobs: self.which.jobs()?,
-            surface: self.surface.clone(),
+            surface: self.surface.clone().unwrap_or_default(),
             measured: self.measured.clone(),
-            and: self.and.clone(),
+            and: self.and.as_ref().and_then(and),
             rows: self.rows,
             columns: self.columns,
             margin: self.margin.margin,
-            ease_off: self.ease_off,
+            ease_off: self.ease_off.as_ref().and_then(parabola),
+            ease_off_table: self.ease_off.as_ref().and_then(table),
             from: self.from.clone(),
             vary: self.vary.clone(),
             order: self.order,
             noise: self.noise,
             round: self.round.clone(),
+            keep: self.keep.clone(),
             as_it_lies: self.as_it_lies,
             share: self.share,
             within: self.within,
             resolution: self.resolution,
+            write: self.write.clone(),
+            dry: self.dry,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Fit {
+    /// Of a wanted contact.
+    pub(crate) fn synthesis(&self, want: &str) -> Result<SynthesisRequest, Failure> {
+        Ok(SynthesisRequest {
+            jobs: self.which.jobs()?,
+            want: want.to_string(),
+            vary: self.vary.clone(),
+            round: self.round.clone(),
             write: self.write.clone(),
             dry: self.dry,
             evaluator: self.evaluator.evaluator(),
@@ -197,6 +228,25 @@ impl Contact {
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,
+            evaluator: self.evaluator.evaluator(),
+        })
+    }
+}
+
+impl Mill {
+    pub(crate) fn request(&self) -> Result<MillRequest, Failure> {
+        Ok(MillRequest {
+            jobs: self.which.jobs()?,
+            milling: self.milling.clone(),
+            out: self.out.clone(),
+            format: self.format.clone(),
+            nc: self.nc.clone(),
+            tool_centre_control: self.tool_centre_control,
+            feed: self.feed,
+            spindle: self.spindle,
+            approach: self.approach,
+            spaces: self.spaces,
+            verify: self.verify.clone(),
             evaluator: self.evaluator.evaluator(),
         })
     }

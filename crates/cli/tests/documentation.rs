@@ -27,7 +27,7 @@ const fn page(path: &'static str) -> Page {
     Page { path, file: "page.chain", changes: &[] }
 }
 
-const PAGES: [Page; 5] = [
+const PAGES: [Page; 7] = [
     Page {
         path: "docs/tutorial.md",
         file: "gear.chain",
@@ -38,7 +38,9 @@ const PAGES: [Page; 5] = [
         ],
     },
     Page { path: "docs/new_variant.md", file: "skiving.chain", changes: &[] },
+    Page { path: "docs/testing.md", file: "gear.chain", changes: &[] },
     page("docs/conversion.md"),
+    page("docs/milling.md"),
     page("docs/files.md"),
     page("docs/gears.md"),
 ];

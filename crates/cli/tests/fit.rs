@@ -397,7 +397,10 @@ fn what_does_not_go_together_is_refused() {
         &["fit", PINION, "concave", "--ease-off", "twist: 3", "--from", "convex"],
         &["fit", PINION, "concave", "--measured", "a.csv", "--share", "1.5"],
         &["fit", PINION, "concave", "--measured", "a.csv", "--dry"],
-        &["fit", PINION, "concave", "--measured", "a.csv", "--and", "convex"],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--and", "convex="],
+        &["fit", PINION, "concave", "--measured", "a.csv", "--keep", "root=point"],
+        &["fit", PINION, "concave", "--want", "centred"],
+        &["fit", PINION, "--want", "centred", "--measured", "a.csv"],
     ];
     for arguments in usage {
         let run = flank(arguments);
@@ -413,4 +416,114 @@ fn what_does_not_go_together_is_refused() {
         assert!(matches!(run.status.code(), Some(1 | 2)), "{more:?}");
         assert!(text(&run.stderr).contains(says), "{more:?}: {}", text(&run.stderr));
     }
+}
+
+/// With the root line kept, the root lies where it did at both ends of it; without, the same correction lifts or tilts it.
+#[test]
+fn a_root_line_is_kept() {
+    let file = gauged("fit_keep");
+    let varied = "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,outside_point_radius";
+    let asked = ["concave", "--measured", path(&file), "--vary", varied, "--within", "10um"];
+    let (free, _) = fit(0, &[&[PINION][..], &asked].concat());
+    let (kept, _) = fit(0, &[&[PINION][..], &asked, &["--keep", "root=line"]].concat());
+    let told = &kept["kept"][0];
+    assert_eq!((&told["surface"], &told["is_line"]), (&Value::from("root"), &Value::from(true)));
+    assert!(number(&told["off_um"]) < 1e-6, "{told}");
+    assert!(free["kept"].as_array().is_some_and(Vec::is_empty));
+    // of the same correction without it the root tilts: by the settings that move it, the sliding base and the machine centre, it goes elsewhere
+    let value = |of: &Value, name: &str| {
+        let all = of["correction"]["settings"].as_array().expect("settings").iter();
+        all.filter(|of| of["name"] == name).map(|of| number(&of["new"])).next().expect("it varies")
+    };
+    // a root plane at the machine root angle, the sliding base and the centre's share along the cradle's axis: these make the root line
+    let line = |of: &Value| {
+        let angle = value(of, "m.machine_root_angle");
+        let depth =
+            value(of, "m.sliding_base") + value(of, "m.machine_center_to_crossing_point") * angle.to_radians().sin();
+        [angle, depth]
+    };
+    let [nominal_angle, nominal_depth] =
+        [15.64096727073747, -0.001306176586991889 * 15.64096727073747f64.to_radians().sin()];
+    let [[angle, depth], [free_angle, _]] = [line(&kept), line(&free)];
+    assert!((angle - nominal_angle).abs() < 1e-3 && (depth - nominal_depth).abs() < 1e-3, "{angle} {depth}");
+    assert!((free_angle - nominal_angle).abs() > 1e-2, "{free_angle}");
+}
+
+/// A table of deviations is a wish as a parabola is: of the same numbers the same settings.
+#[test]
+fn a_wished_table_is_met() {
+    let project = folder("fit_table");
+    let wish = |i: usize, j: usize| {
+        let (v, u) = (i as f64 / 12.0 - 1.0, j as f64 / 22.0 - 1.0);
+        -10.0 * u * u + 4.0 * v
+    };
+    let lines = (0..25).flat_map(|i| (0..45).map(move |j| format!("{},{},{:?}\n", i + 1, j + 1, wish(i, j))));
+    let table = written(&project, "wish.csv", &format!("row,column,deviation_um\n{}", lines.collect::<String>()));
+    let asked = [
+        EASE_OFF,
+        "pinion.concave",
+        "--from",
+        "basic.concave",
+        "--vary",
+        "radial_distance,ratio_of_roll,blade_angle",
+        "--within",
+        "50um",
+    ];
+    let (parabola, _) =
+        fit(3, &[&asked[..], &["--ease-off", "crowning: 10 lengthwise; slope: 8 profilewise"]].concat());
+    let (told, _) = fit(3, &[&asked[..], &["--ease-off", &table, "--margin", "0,0"]].concat());
+    for (of, other) in told["correction"]["settings"]
+        .as_array()
+        .expect("settings")
+        .iter()
+        .zip(parabola["correction"]["settings"].as_array().expect("settings"))
+    {
+        assert!((number(&of["new"]) - number(&other["new"])).abs() < 1e-8, "{of} {other}");
+    }
+}
+
+/// The ease-off that was published for the 19 x 62 pinion, crownings of 50 and 25 um and no slopes and no bias, from its basic settings: the five
+/// numbers are met, over the flank above its rounding. What is left of the points is no parabola, as with the published settings.
+#[test]
+fn the_published_ease_off_is_met_from_the_basic_settings() {
+    let project = folder("fit_published");
+    std::os::unix::fs::symlink(top().canonicalize().expect("the repository").join("specs"), project.join("specs"))
+        .expect("a link");
+    // a blade that is almost straight: its curvature is what changes by little
+    let spec = written(
+        &project,
+        "curved.chain",
+        "use \"specs/bevel/ease_off_19x62.chain\"
+        use \"specs/functions/blanks_19x62.chain\"
+        use \"specs/tools/face_mill.chain\"
+        job curved extends basic {
+            param blade_curvature : 1 / length in 0.0000001 / 1 mm .. 0.02 / 1 mm = 0.0000005 / 1 mm
+            tool c = face_mill(
+                outside_point_radius: 95.9517390193892 mm, inside_point_radius: 94.5482609806108 mm,
+                blade_angle: 20 deg, blade_radius: 1 / blade_curvature, edge_radius: 0.20845 mm,
+                theta_from: 80 deg, theta_to: 135 deg
+            )
+            sample concave {
+                toe_root: toe_root_1(), heel_root: heel_root_1(), toe_tip: toe_tip_1(), heel_tip: heel_tip_1()
+                profilewise: 0.3 .. 1 by 11, lengthwise: 0 .. 1 by 15
+            }
+        }
+        job plain = curved()
+        job published = pinion()\n",
+    );
+    let varied = "radial_distance,cradle_angle,work_offset,machine_center_to_crossing_point,ratio_of_roll,modified_roll_2c,modified_roll_6d,\
+                  outside_point_radius,blade_angle,blade_curvature";
+    let wish = ["--from", "plain.concave", "--ease-off", "crowning: 50, 25; slope: 0, 0; bias: 0", "--order", "2"];
+    let (told, stderr) =
+        fit(0, &[&[&spec, "curved.concave", "--vary", varied, "--within", "0.1um"][..], &wish].concat());
+    let reached = &told["ease_off"]["reached"];
+    let numbers = |of: &Value, name: &str| [number(&of[name][0]), number(&of[name][1])];
+    for (name, wanted) in [("slopes_um", [0.0, 0.0]), ("crownings_um", [50.0, 25.0])] {
+        let off = numbers(reached, name).iter().zip(wanted).map(|(x, wanted)| (x - wanted).abs()).fold(0.0, f64::max);
+        assert!(off < 0.1, "{name}: {reached} {stderr}");
+    }
+    assert!(number(&reached["bias_um"]).abs() < 0.1, "{reached}");
+    // neither lies on the parabola
+    let left = number(&told["predicted_um"]);
+    assert!(left > 3.0 && left < 6.0, "{left}");
 }

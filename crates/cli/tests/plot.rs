@@ -49,7 +49,7 @@ fn without_a_wish_there_are_the_three_that_matter() {
 #[test]
 fn each_kind_says_what_it_shows() {
     let out = folder("plot_kinds");
-    let kinds = "surface,topography,curvature,sensitivity,residual,contact-lines,section,machine,motion";
+    let kinds = "gear,surface,curvature,sensitivity,residual,contact-lines,section,machine,motion";
     let run = flank(&[
         "plot",
         "specs/bevel/pinion_19x62.chain",
@@ -65,14 +65,14 @@ fn each_kind_says_what_it_shows() {
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     let of = |kind: &str| labels(&out.join(format!("pinion_19x62.{kind}.svg")));
     has(&of("surface"), &["concave", "convex", "root", "tip", "toe", "heel", "z axis"]);
-    has(&of("topography"), &["height over the plane", "root", "tip", "toe", "heel", "mm"]);
+    has(&of("gear"), &["3 of 19 teeth", "tip diameter", "74.107 mm", "tooth thickness there", "concave_fillet"]);
     has(&of("curvature"), &["k1", "k2", "Gaussian curvature", "mean curvature", "1/mm\u{b2}", "toe", "heel"]);
-    has(&of("sensitivity"), &["d_normal/d_m.radial_distance", "\u{b5}m/mm", "root", "tip"]);
-    has(&of("residual"), &["residual", "mm or mm/rad", "z, mm", "radius, mm"]);
+    has(&of("sensitivity"), &["radial distance, \u{b5}m per mm", "m.radial_distance on concave", "root", "tip"]);
+    has(&of("residual"), &["residual", "mm or mm/rad", "lengthwise, mm", "profilewise, mm"]);
     has(&of("contact-lines"), &["roll", "concave, deg; in the axial plane", "0", "toe", "heel"]);
     has(&of("section"), &["concave", "root", "convex_fillet", "mm, towards the tip"]);
     has(&of("machine"), &["cradle in bed", "cutter in swivel", "work", "97.959 mm", "about \u{2212}x"]);
-    has(&of("motion"), &["cradle, rotary", "work, rotary", "roll, deg", "a straight line, 3.3397 deg per deg"]);
+    has(&of("motion"), &["cradle, rotary", "work, rotary", "roll", "3.3397 deg per deg", "stands still"]);
 }
 
 /// A gear ratio only multiplies what turns, so it is no link of its own; an angle that follows from a number of teeth is told as such.
@@ -121,7 +121,7 @@ job spur_gear {
 fn sensitivity_is_to_what_is_named() {
     let arguments = ["specs/bevel/pinion_19x62.chain", "--what", "sensitivity"];
     let found = plotted("plot_most", &arguments, "pinion_19x62.sensitivity.svg");
-    has(&found, &["d_normal/d_c.outside_point_radius", "d_normal/d_m.work_offset"]);
+    has(&found, &["outside point radius, \u{b5}m per mm", "work offset, \u{b5}m per mm"]);
     let run = flank(&[&["plot"], &arguments[..], &["--of", "m.nothing"]].concat());
     assert_eq!(run.status.code(), Some(1));
     let told = text(&run.stderr);
@@ -176,7 +176,7 @@ fn what_does_not_fit_says_why_and_what_does() {
         assert_eq!(run.status.code(), Some(1), "{spec} {kind}");
         let told = text(&run.stderr);
         assert!(told.contains(&format!("--what {kind} does not fit job")) && told.contains(why), "{told}");
-        assert!(told.contains("what fits: surface") && told.contains("machine"), "{told}");
+        assert!(told.contains("what fits: ") && told.contains("surface") && told.contains("machine"), "{told}");
     }
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--what", "deviation"]);
     assert!(
@@ -187,6 +187,54 @@ fn what_does_not_fit_says_why_and_what_does() {
     let run = flank(&["plot", "specs/hobbing/spur_gear.chain", "--size", "12"]);
     assert_eq!(run.status.code(), Some(2));
     assert!(text(&run.stderr).contains("for example 2400x1800"), "{}", text(&run.stderr));
+}
+
+/// A map has its values in numbers at five by nine points, and what sums them up beside its name.
+#[test]
+fn a_map_of_deviations_has_its_numbers() {
+    let arguments = [
+        "specs/bevel/ease_off_19x62.chain",
+        "--what",
+        "deviation",
+        "--surface",
+        "pinion.concave",
+        "--reference",
+        "conjugate.concave",
+    ];
+    let found = plotted("plot_numbers", &arguments, "pinion.concave.deviation.svg");
+    // as `flank deviation` prints them
+    has(&found, &["root to tip: slope \u{2212}160.36 \u{b5}m, crowning 30.01 \u{b5}m", "bias \u{2212}84.00 \u{b5}m"]);
+    // the lowest and the middle one are among the 45
+    has(&found, &["\u{2212}345", "0"]);
+    let is_number = |label: &&String| {
+        label.trim_start_matches('\u{2212}').parse::<i32>().is_ok_and(|x| x.abs() > 9 && x % 100 != 0)
+    };
+    assert!(found.iter().filter(is_number).count() > 30, "{found:?}");
+}
+
+/// A flank without an involute has no topography but against another one.
+#[test]
+fn a_topography_is_no_plane() {
+    let run = flank(&["plot", "specs/bevel/pinion_19x62.chain", "--what", "topography"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("no involute: say with --reference"), "{}", text(&run.stderr));
+    let spur = ["specs/hobbing/spur_gear.chain", "--what", "topography"];
+    has(&plotted("plot_involute", &spur, "spur_gear.topography.svg"), &["deviation from the involute"]);
+}
+
+/// The traces of a gear that is crowned by the path of its hob.
+#[test]
+fn traces_have_their_evaluation() {
+    let found =
+        plotted("plot_traces", &["specs/hobbing/crowned_gear.chain", "--what", "traces"], "crowned_gear.traces.svg");
+    has(&found, &["lower_flank, profile", "upper_flank, helix", "length of roll, mm", "z, mm"]);
+    assert_eq!(
+        found.iter().filter(|label| label.starts_with("F\u{3b2} ") && label.contains("C\u{3b2} ")).count(),
+        2,
+        "{found:?}"
+    );
+    let run = flank(&["plot", "specs/bevel/pinion_19x62.chain", "--what", "traces"]);
+    assert!(text(&run.stderr).contains("no flank of a cylindrical gear"), "{}", text(&run.stderr));
 }
 
 /// The same picture at each run, to the byte.

@@ -154,6 +154,10 @@ fn comparisons_and_pictures() {
     judge.run(&[&fit[..], &["--vary", "radial_distance,cradle_angle,blade_angle"]].concat(), 0);
     judge.run(&fit, 0);
     judge.run(&[&fit[..], &["--vary", "nosuch"]].concat(), 1);
+    judge.run(
+        &["fit", "specs/pairs/bevel_19x62.chain", "--want", "centred", "--json", "--vary", "p.radial_distance"],
+        3,
+    );
     let tolerance = ["tolerance", PINION, "concave", "--json", "--scatter", "radial_distance=5um,ratio_of_roll=0.01%"];
     judge.run(&[&tolerance[..], &["--sweep", "20"]].concat(), 0);
     judge.run(&[&tolerance[..], &["--budget", "bias=1nm"]].concat(), 2);
@@ -197,6 +201,8 @@ fn texts_and_files() {
     let imported = judge.run(&[&import[..], &["--coefficients", "taylor"]].concat(), 0);
     assert!(imported[0]["text"].as_str().expect("a text").contains("job imported {"));
     judge.run(&import, 1);
+    judge.run(&["test", "specs/tutorial", "--json"], 0);
+    judge.has_met(&["flank.test/1"]);
     judge.has_met(&["flank.check/1", "flank.fmt/1", "flank.explain/1", "flank.new/3", "flank.templates/3"]);
     judge.has_met(&["flank.schemas/1", "flank.completions/1", "flank.man/1", "flank.import/2", "flank.failure/1"]);
 }
@@ -244,7 +250,7 @@ fn failures_of_all_commands() {
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
     let shipped = schemas();
-    assert_eq!(shipped.len(), 28, "no document comes or goes unseen");
+    assert_eq!(shipped.len(), 31, "no document comes or goes unseen");
     for (name, schema) in &shipped {
         assert!(jsonschema::meta::is_valid(schema), "{name} is no schema");
         let (kind, version) =

@@ -398,7 +398,7 @@ fn the_page_works_in_a_browser() {
         }
     }
     let expected = json!({
-        "motion": "roll", "surface": surface["name"], "point": point, "values": values,
+        "teeth": 19, "signed": "d_normal/d_m.ratio_of_roll", "motion": "roll", "surface": surface["name"], "point": point, "values": values,
         "parameter": {
             "name": "m.machine_root_angle", "shown": 15.7,
             "position": moved["surfaces"][0]["points"][point]["position"],

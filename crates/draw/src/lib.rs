@@ -8,14 +8,15 @@ mod picture;
 mod report;
 
 pub use page::{
-    PageAxis, PageContact, PageFrame, PageJoint, PageMachine, PageMember, PageMotion, PageNumber, PageParameter,
-    PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm, write_page,
+    PageAxis, PageBody, PageContact, PageFace, PageFrame, PageJoint, PageMachine, PageMember, PageMotion, PageNumber,
+    PageParameter, PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm, write_page,
 };
 pub use picture::{
-    ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, LinkKind,
-    MOST_CONTACTS, MachineDrawing, MachineLink, Picture, PictureError, PictureOptions, Section, SectionLine, Station,
-    StationShape, ToolPosition, axis_positions, contact, field_lines, field_maps, machine, picture, round_step,
-    section, topography,
+    ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, GearDrawing,
+    GearFace, GearFaceKind, LinkKind, MOST_CONTACTS, MachineDrawing, MachineLink, Picture, PictureError,
+    PictureOptions, Section, SectionCircle, SectionLine, Station, StationShape, ToolPosition, TraceChart, TraceDrawing,
+    axis_positions, comparable_maps, contact, deviation_map, field_lines, field_maps, gear, machine, picture,
+    round_step, section, topography, traces,
 };
 pub use report::{
     Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,

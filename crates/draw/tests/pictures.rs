@@ -70,8 +70,8 @@ fn maps_say_what_they_show() {
     drawn.has_no_text_over_text();
     let svg = drawn.svg;
     let labels = labels(&svg);
-    let about = "right flank, \u{b5}m/mm; in the axial plane, upwards 2 times larger";
-    let words = ["root", "tip", "lower face", "upper face", "z, mm", "radius, mm", "0.25 everywhere"];
+    let about = "right flank, \u{b5}m/mm; laid flat, upwards 1.9 times larger";
+    let words = ["root", "tip", "lower face", "upper face", "lengthwise, mm", "profilewise, mm", "0.25 everywhere"];
     let titles =
         ["sensitivity", "d_normal/d_wave", "d_normal/d_constant", "none", "no point has a value", "what is held"];
     for wanted in titles.into_iter().chain(words).chain([about]) {
@@ -95,7 +95,7 @@ fn sides_are_named_in_words() {
         labels(&field_maps(&dataset, "", &[(0, 0)], "", &PictureOptions::default()).svg())
     };
     let all = |found: &[String], wanted: &[&str]| wanted.iter().all(|word| found.iter().any(|label| label == word));
-    assert!(all(&words(synthetic::bevel([11, 9])), &["toe", "heel", "root", "tip", "z, mm"]));
+    assert!(all(&words(synthetic::bevel([11, 9])), &["toe", "heel", "root", "tip", "lengthwise, mm"]));
     let spur = synthetic::Gear { helix: 0.0, width: 20.0 };
     assert!(all(&words(spur.flank("flank", [11, 9])), &["root", "tip", "lower face", "upper face"]));
     let cylinder = synthetic::grid("root land", ["z", "angle"], [5, 7], |s, t| {

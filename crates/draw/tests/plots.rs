@@ -5,8 +5,9 @@ mod readers;
 mod synthetic;
 
 use flank_draw::{
-    DrawnFrame, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions, Section, SectionLine, ToolPosition,
-    axis_positions, field_lines, field_maps, machine, picture, section, topography,
+    DrawnFrame, GearDrawing, GearFace, GearFaceKind, LinkKind, MachineDrawing, MachineLink, Picture, PictureOptions,
+    Section, SectionCircle, SectionLine, ToolPosition, TraceChart, TraceDrawing, axis_positions, field_lines,
+    field_maps, gear, machine, picture, section, topography, traces,
 };
 use flank_export::{Dataset, Field, MachineAxis, MotionRow, MotionTable, Patch, Unit, Unknown, Values};
 use readers::{Drawn, labels};
@@ -94,11 +95,7 @@ fn header() -> flank_export::Header {
 fn a_section_shows_tool_and_work() {
     let parabola = |x: f64| [x, x * x];
     let tangent = |at: f64| vec![[at - 1.0, at * at - 2.0 * at], [at + 1.0, at * at + 2.0 * at]];
-    let tool = |at: f64| ToolPosition {
-        label: format!("turn {at:.1} deg"),
-        lines: vec![tangent(at)],
-        contacts: vec![parabola(at)],
-    };
+    let tool = |at: f64| ToolPosition { value: at, lines: vec![tangent(at)], contacts: vec![parabola(at)] };
     let shares = || (-20..=20).map(|k| 0.05 * f64::from(k));
     let section_of = Section {
         header: header(),
@@ -108,11 +105,19 @@ fn a_section_shows_tool_and_work() {
             points: shares().map(parabola).collect(),
             normals: shares().map(|x| [-2.0 * x, 1.0]).collect(),
         }],
+        circles: vec![SectionCircle {
+            name: "tip circle".into(),
+            is_above: true,
+            points: vec![[-2.0, 0.9], [2.0, 0.9]],
+        }],
+        motion: "turn, deg".into(),
         tools: (-3..=3).map(|k| tool(0.3 * f64::from(k))).collect(),
     };
     let drawn = sound(&section(&section_of, &options()), "section");
     let labels = labels(&drawn.svg);
-    for wanted in ["job: section", "groove", "turn \u{2212}0.9 deg", "turn 0.3 deg", "across", "mm, towards the tip"] {
+    for wanted in
+        ["job: section", "groove", "tool at turn, deg", "\u{2212}0.5", "tip circle", "across", "mm, towards the tip"]
+    {
         assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
     }
     let empty = Section { surfaces: Vec::new(), tools: Vec::new(), ..section_of };
@@ -172,6 +177,77 @@ fn a_machine_has_its_frames_and_letters() {
     assert!(machine(&none, &options()).svg().contains("nothing to draw"));
 }
 
+/// A plate: a generated face on top, the blank below; what faces away from the eye is hidden.
+#[test]
+fn a_gear_is_seen_from_outside() {
+    let face = |kind, z: f64| GearFace {
+        kind,
+        counts: [2, 2],
+        ends: [true; 4],
+        points: [[1.0, -1.0], [1.0, 1.0], [3.0, -1.0], [3.0, 1.0]].map(|[x, y]| Some([x, y, z])).to_vec(),
+        normals: vec![[0.0, 0.0, z.signum()]; 4],
+    };
+    let faces = vec![face(GearFaceKind::Surface(0), 0.5), face(GearFaceKind::Blank, -0.5)];
+    let drawing = GearDrawing {
+        header: header(),
+        title: "plate".into(),
+        note: "seen askew".into(),
+        facts: vec![("teeth".into(), "19".into())],
+        surfaces: vec!["top".into()],
+        whole: faces.clone(),
+        teeth: faces,
+        shown: "3 of 19 teeth".into(),
+        directions: [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        is_closed: true,
+    };
+    let drawn = sound(&gear(&drawing, &options()), "gear");
+    let found = labels(&drawn.svg);
+    for wanted in ["plate", "3 of 19 teeth", "teeth", "19", "top", "seen askew"] {
+        assert!(found.iter().any(|label| label == wanted), "no `{wanted}` in {found:?}");
+    }
+    let open = sound(&gear(&GearDrawing { is_closed: false, ..drawing.clone() }, &options()), "open gear");
+    let polygons = |drawn: &Drawn| drawn.svg.matches("<polygon").count();
+    assert_eq!(polygons(&open), polygons(&drawn) + 2, "the lower face, in both views");
+    let none = GearDrawing { teeth: Vec::new(), whole: Vec::new(), ..drawing };
+    assert!(gear(&none, &options()).svg().contains("nothing to draw"));
+}
+
+#[test]
+fn traces_have_their_range_and_numbers() {
+    let chart = |name: &str, rise: f64| TraceChart {
+        name: name.into(),
+        across: "length of roll, mm".into(),
+        lengths: (0..=20).map(f64::from).collect(),
+        deviations: (0..=20).map(|k| rise * (f64::from(k) - 10.0)).collect(),
+        range: [0.0, 19.0],
+        mean: [-0.5 * rise, rise],
+        numbers: vec!["F\u{3b1} 3.8 \u{b5}m".into(), "fH\u{3b1} 4.0 \u{b5}m".into()],
+    };
+    let drawing = TraceDrawing {
+        header: header(),
+        title: "traces".into(),
+        note: "transverse".into(),
+        flanks: vec![vec![chart("left, profile", 0.2), chart("left, helix", 0.0)]],
+    };
+    let drawn = sound(&traces(&drawing, &options()), "traces");
+    let found = labels(&drawn.svg);
+    for wanted in [
+        "left, profile",
+        "left, helix",
+        "length of roll, mm",
+        "F\u{3b1} 3.8 \u{b5}m   fH\u{3b1} 4.0 \u{b5}m",
+        "transverse",
+    ] {
+        assert!(found.iter().any(|label| label == wanted), "no `{wanted}` in {found:?}");
+    }
+    // the same scale in both: one rises by 4 um, the other stays at its zero
+    let lines = drawn.lines("#0072b2", 2.4);
+    assert_eq!(lines.len(), 2);
+    let high = |line: &[[f64; 2]]| (line[0][1] - line[line.len() - 1][1]).abs();
+    assert!(high(&lines[0]) > 200.0 && high(&lines[1]) < 0.1, "{} {}", high(&lines[0]), high(&lines[1]));
+    assert!(traces(&TraceDrawing { flanks: Vec::new(), ..drawing }, &options()).svg().contains("nothing to draw"));
+}
+
 #[test]
 fn axes_that_move_have_a_chart() {
     let axis = |name: &str, is_rotary| MachineAxis {
@@ -199,10 +275,10 @@ fn axes_that_move_have_a_chart() {
     let labels = labels(&drawn.svg);
     // a parabola of two mm is off its chord by 1 rad
     let off = "up to 57.3 deg off a straight line";
-    for wanted in ["Z, linear", "C, rotary", "feed, mm", off, "a straight line, 3.0000 mm per mm"] {
+    for wanted in ["Z, linear", "C, rotary", "feed, mm", off, "3.0000 mm per mm", "A, rotary", "286.479 deg"] {
         assert!(labels.iter().any(|label| label == wanted), "no `{wanted}` in {labels:?}");
     }
-    assert!(labels.iter().any(|label| label.starts_with("Stand still: A 286.479 deg")), "{labels:?}");
+    assert_eq!(labels.iter().filter(|label| *label == "stands still").count(), 1, "{labels:?}");
     assert!(axis_positions(&[], &options()).svg().contains("nothing to draw"));
 }
 

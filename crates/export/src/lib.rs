@@ -76,8 +76,8 @@ pub use measuring::{
     read_measured, write_grid_csv, write_grid_json,
 };
 pub use motion::{
-    AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, Rates, Series, write_motion_csv,
-    write_motion_json, write_nc,
+    AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, PassProgram, ProgramPass, Rates, Series,
+    WordsOf, write_motion_csv, write_motion_json, write_nc, write_passes,
 };
 pub use points::bands::{Banded, Surfaces, Taker};
 pub use points::conventions::sentences as conventions;
@@ -93,8 +93,13 @@ pub use points::tally::Tally;
 pub use points::threemf::write_3mf;
 pub use points::vtp::write_vtp;
 pub use schema::schema_of;
-pub use solid::{BodyMesh, BrickBody, BrickSet, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu};
-pub use step::{Deviation, Face, GearBody, TurnedSegment, spline_deviation, write_step, write_step_body};
+pub use solid::{
+    BodyMesh, BrickBody, BrickSet, PlacedFrame, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu,
+};
+pub use step::{
+    Deviation, Face, GearBody, PlacedBody, TurnedSegment, spline_deviation, write_step, write_step_assembly,
+    write_step_body,
+};
 pub use text::number::{degrees, fixed};
 
 /// The schemas of the JSON documents that this crate writes: surfaces, motion tables, measuring grids.

@@ -25,7 +25,7 @@ mod symbolic;
 mod tape;
 
 pub use emit::{Language, Polynomial, Signature, emit_function, emit_polynomials, emit_values};
-pub use enclosure::implicit::{NoRoot, OnlyRoots, Unknown, roots};
+pub use enclosure::implicit::{NoRoot, OnlyRoots, Unknown, every_root, has_one_root, roots};
 pub use enclosure::interval::{Interval, IntervalEvaluator};
 pub use enclosure::quadrature::{End, Unproven, integral};
 pub use enclosure::taylor::{Coefficient, TaylorEvaluator};
@@ -33,6 +33,7 @@ pub use symbolic::curve::{Curve, CurveError};
 pub use symbolic::derivative::Linear;
 pub use symbolic::graph::{CurveId, Expr, Graph, Node, NodeCount, NodeId, VariableId};
 pub use symbolic::implicit::RootId;
+pub use symbolic::integral::IntegralId;
 pub use symbolic::op::{Binary, Unary};
 pub use symbolic::print::{Definition, Listing, Style};
 pub use tape::cost::Cost;

@@ -251,7 +251,9 @@ mod the_suite_notices {
                 Operation::Unary(op) => op.apply(a),
                 Operation::Curve(order) => tape.curves()[step.b as usize].value(order, a),
                 Operation::Binary(op) => op.apply(a, b),
-                Operation::Middle | Operation::Settled => unreachable!("no roots here"),
+                Operation::Middle | Operation::Settled | Operation::Widened => {
+                    unreachable!("no roots or integrals here")
+                }
             };
             write(&mut registers, step.out as usize, value);
         }

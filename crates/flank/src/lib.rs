@@ -42,7 +42,6 @@
 mod compare;
 mod contact;
 mod convert;
-mod derive;
 mod draw;
 mod exchange;
 mod language;
@@ -50,33 +49,37 @@ mod page;
 mod project;
 mod report;
 mod solve;
+mod testing;
 
 pub use compare::deviation::deviation;
 pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
 pub use compare::fit::fit;
 pub use compare::fit::result::{
-    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
-    RangeBound, SettingChange, SettingsChoice, SettingsDirection,
+    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, KeptSurface,
+    OutlyingPoint, RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
 pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
+pub use compare::synthesis::result::{CheckedContact, ReachedCondition, SynthesisResult, SynthesizedSetting};
+pub use compare::synthesis::synthesis;
 pub use compare::tolerance::result::{
     CauseKind, ScatteringCause, SweptCases, SweptResult, ToleranceResult, ToleratedResult,
 };
 pub use compare::tolerance::tolerance;
+pub use compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, TraceNumbers};
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
     FlankEnd, InfluenceKind, LeadingEdge, MountedError, PlaceOnFlank, ProvenContact, TransmissionError, VhjRow,
 };
 pub use convert::convert;
+pub use convert::milling::mill;
+pub use convert::milling::result::{
+    BallAt, ClearanceKept, CurvatureAt, HeightLeft, MillResult, MilledAxis, VerifiedProgram,
+};
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
     FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
-};
-pub use derive::derive;
-pub use derive::result::{
-    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
 };
 pub use draw::plot;
 pub use draw::result::{PlotResult, WrittenPicture};
@@ -89,6 +92,10 @@ pub use exchange::templates::{
 pub use flank_chain_dsl::syntax::is_reserved;
 pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
 pub use language::check::{CheckResult, Checked, check};
+pub use language::derive::derive;
+pub use language::derive::result::{
+    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
+};
 pub use language::errors::{ErrorCode, Explanation, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
@@ -96,8 +103,8 @@ pub use page::result::ViewResult;
 pub use page::view;
 pub use project::answer::{Answer, Timing};
 pub use project::choices::{
-    BrickFormat, Choice, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind,
-    PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,
+    BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
+    PlotKind, PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,
 };
 pub use project::failure::Failure;
 pub use project::files::write_texts;
@@ -108,8 +115,8 @@ pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
     ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, MeasureRequest, MeshRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
-    SolveRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
+    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest,
+    SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::{Project, shown_path};
 pub use report::report;
@@ -120,8 +127,9 @@ pub use report::result::{
 };
 pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
+pub use solve::body::mounted::{MountedSolid, Mounting};
 pub use solve::body::result::{
-    BallNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
+    BallNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
 };
 pub use solve::body::solid;
 pub use solve::result::{
@@ -130,6 +138,8 @@ pub use solve::result::{
     UsualChange,
 };
 pub use solve::solve;
+pub use testing::result::{TestResult, TestedExpectation, TestedItem, TestedSnapshot, TestedSpec};
+pub use testing::{TestRequest, accept_snapshot, find_specs, junit, test, test_spec};
 
 /// What is asked and what is answered goes from thread to thread.
 const _: () = {
@@ -148,6 +158,7 @@ const _: () = {
     is_shared::<ToleranceRequest>();
     is_shared::<ContactRequest>();
     is_shared::<MeasureRequest>();
+    is_shared::<MillRequest>();
     is_shared::<ConvertRequest>();
     is_shared::<DeriveRequest>();
     is_shared::<SolveResult>();
@@ -158,11 +169,14 @@ const _: () = {
     is_shared::<ToleranceResult>();
     is_shared::<ContactResult>();
     is_shared::<MeasureResult>();
+    is_shared::<MillResult>();
     is_shared::<ConvertResult>();
     is_shared::<DeriveResult>();
     is_shared::<PlotResult>();
     is_shared::<ViewResult>();
     is_shared::<ReportResult>();
+    is_shared::<TestRequest>();
+    is_shared::<TestResult>();
     is_shared::<Checked>();
     is_shared::<Findings>();
     is_shared::<Layout>();

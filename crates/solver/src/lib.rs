@@ -19,12 +19,13 @@ mod contact;
 mod continuation;
 mod conversion;
 mod equations;
+mod milling;
 mod newton;
 mod roots;
 mod solid;
 mod surface;
 
-pub use analysis::adjustment::choice::{linear_rest, most_effective};
+pub use analysis::adjustment::choice::{linear_rest, most_effective, most_independent, opposed, separated};
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
 pub use analysis::adjustment::{AdjustableSurface, Foot, NearFoot};
@@ -34,14 +35,16 @@ pub use analysis::extent::extent;
 pub use analysis::geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
 pub use analysis::inspection::{Inspection, beside, mean_turn};
 pub use analysis::intersection::{Intersection, Line, Meeting};
+pub use analysis::involute::{InvoluteHelicoid, InvoluteReference, TraceEvaluation};
 pub use analysis::scatter::{GaussianDraw, Scatter};
 pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter, total_derivatives};
 pub use analysis::trim::{Trim, trim};
 pub use contact::{
-    Carried, ContactChange, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState, Engagement,
-    FlankEdge, Gap, GapProblem, NoContact, Outline, OutlineSegment, RollingPair,
+    Carried, ContactChange, ContactNumber, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState,
+    ContactSynthesis, ContactWish, Engagement, FlankCorners, FlankDirections, FlankEdge, Gap, GapProblem, NoContact,
+    Outline, OutlineSegment, RollingPair, SynthesizedContact,
 };
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};
@@ -56,6 +59,14 @@ pub use conversion::tube::{Tube, Unproven};
 pub use equations::solution::{CutBy, Outcome, Range, Solution};
 pub use equations::system::System;
 pub use equations::tolerance::TOLERANCE;
+pub use milling::axes::MillAxes;
+pub use milling::cusp::{Cusp, cusp, left_by_block, peak};
+pub use milling::distance::{Nearest, Obstacle, ToolBody};
+pub use milling::frame::{SurfaceFrame, SurfaceFrames};
+pub use milling::height::{Lowest, NormalLine, lowest};
+pub use milling::outline::{Cutter, NoOutline, OutlinePiece};
+pub use milling::pose::{Bending, CutterPose, Lean, NoPose};
+pub use milling::series::{Moving, PoseField, PoseSeries};
 pub use newton::least_squares::{
     LeastSquares, LeastSquaresFit, Linearized, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
 };
@@ -71,6 +82,7 @@ pub use solid::gauge::{BallGauge, Span, Thickness};
 pub use solid::mass::MassProperties;
 pub use solid::mesh::{BodyPart, ClosedMesh};
 pub use solid::section::Fineness;
+pub use solid::sheets::{BodySheet, SheetFace};
 pub use surface::bands::Band;
 pub use surface::body::is_inside_out;
 pub use surface::bound::BoundSurface;

@@ -10,7 +10,7 @@ fn unknown(start: f64, range: Range) -> ScaledUnknown {
 }
 
 fn problem(unknowns: Vec<ScaledUnknown>) -> LeastSquares {
-    LeastSquares { unknowns, resolution: 1e-6, uses_weak: true, settled: 1e-13 }
+    LeastSquares { unknowns, exact: 0, resolution: 1e-6, uses_weak: true, settled: 1e-13 }
 }
 
 fn rows(residuals: Vec<f64>, slopes: &[&[f64]]) -> Option<Linearized> {
@@ -122,8 +122,13 @@ fn a_weak_direction_is_used_where_it_shows() {
             rows(residuals, &slopes.iter().map(|row| &row[..]).collect::<Vec<&[f64]>>())
         }
     };
-    let problem =
-        LeastSquares { unknowns: vec![unknown(0.0, EVERYWHERE); 2], resolution: 0.1, uses_weak: true, settled: 1e-13 };
+    let problem = LeastSquares {
+        unknowns: vec![unknown(0.0, EVERYWHERE); 2],
+        exact: 0,
+        resolution: 0.1,
+        uses_weak: true,
+        settled: 1e-13,
+    };
     let fit = problem.solve(weak(1e-6)).expect("finite");
     near(fit.values[1], 2.0, 1e-9);
     assert!(fit.directions[1].is_used);
@@ -138,4 +143,26 @@ fn where_there_are_no_residuals_no_step_leads() {
     let fit = problem(vec![unknown(20.0, EVERYWHERE)]).solve(root).expect("finite");
     near(fit.values[0], 1.0, 1e-12);
     assert!(problem(vec![unknown(-1.0, EVERYWHERE)]).solve(root).is_none());
+}
+
+/// The point of the unit circle that is nearest to (1.2, 0.4), and the one that is no farther right than 0.5.
+#[test]
+fn what_is_to_be_zero_is_zero() {
+    let nearest = |at: &[f64]| {
+        let [x, y] = [at[0], at[1]];
+        rows(vec![x - 1.2, y - 0.4, x * x + y * y - 1.0], &[&[1.0, 0.0], &[0.0, 1.0], &[2.0 * x, 2.0 * y]])
+    };
+    let on_circle =
+        |range: Range| LeastSquares { exact: 1, ..problem(vec![unknown(0.1, range), unknown(0.9, EVERYWHERE)]) };
+    let fit = on_circle(EVERYWHERE).solve(nearest).expect("finite");
+    assert_eq!(fit.end, SearchEnd::Settled);
+    near(fit.values[0], 0.9f64.sqrt(), 1e-9);
+    near(fit.values[1], 0.1f64.sqrt(), 1e-9);
+    near(fit.exact[0], 0.0, 1e-13);
+    assert_eq!((fit.residuals.len(), fit.rank()), (2, 1), "one direction keeps to the circle");
+    fit.gradient.iter().for_each(|slope| near(*slope, 0.0, 1e-8));
+    let fit = on_circle(Range { low: -2.0, high: 0.5 }).solve(nearest).expect("finite");
+    near(fit.values[1], 0.75f64.sqrt(), 1e-12);
+    assert_eq!(fit.held, [Some(RangeEnd::High), None]);
+    assert!(fit.gradient[0] < 0.0, "it pushes outwards");
 }

@@ -1,7 +1,7 @@
 //! Closed loops of a machine: frames that are one, however they are reached.
 
 use flank_expr::geometry::Chain;
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, Interval};
 
 use crate::definitions::machine::BuiltAxis;
 use crate::diagnostics::Diagnostic;
@@ -9,8 +9,10 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Frame, path};
-use crate::syntax::ast::Close;
+use crate::syntax::ast::{Close, KeptAxis};
 use crate::values::context::{Context, quoted};
+use crate::values::dimension::{Dimension, shown};
+use crate::values::value::Scope;
 
 /// The axes of a frame.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -21,6 +23,8 @@ pub(crate) struct Linkage<'g> {
     pub(crate) residuals: Vec<(Expr<'g>, Span)>,
     /// Places of the unknown axes in their machine.
     pub(crate) axes: Vec<usize>,
+    /// Where each of these is in the branch that is meant.
+    pub(crate) ranges: Vec<Interval>,
 }
 
 /// Two frames that coincide in some components, with their places in the machine's list.
@@ -28,6 +32,8 @@ struct Loop {
     first: usize,
     second: usize,
     components: Vec<Component>,
+    /// Unknown axes by their places, with where they are in the branch that is meant.
+    keeps: Vec<(usize, Interval)>,
     span: Span,
 }
 
@@ -72,6 +78,7 @@ impl<'g> Linkage<'g> {
     fn with(mut self, part: Linkage<'g>) -> Linkage<'g> {
         self.residuals.extend(part.residuals);
         self.axes.extend(part.axes);
+        self.ranges.extend(part.ranges);
         self
     }
 
@@ -111,13 +118,17 @@ pub(crate) fn linkages<'g>(
     closes: &[&Close],
     frames: &[Frame<'g>],
     axes: &[BuiltAxis<'g>],
+    scope: &Scope<'g>,
 ) -> Vec<Linkage<'g>> {
-    let alone = |axis: usize| Linkage { residuals: Vec::new(), axes: vec![axis] };
+    let travel = |axis: usize| axes[axis].travel.map_or(Interval::WHOLE, |(low, high)| Interval::new(low, high));
+    let alone = |axis: usize| Linkage { residuals: Vec::new(), axes: vec![axis], ranges: vec![travel(axis)] };
     let mut linkages: Vec<Linkage<'g>> = (0..axes.len()).filter(|axis| axes[*axis].is_unknown).map(alone).collect();
     let law = |axis: &BuiltAxis<'g>| Some((axis.variable, axis.law?.0?));
     let laws: Vec<(Expr<'g>, Expr<'g>)> = axes.iter().filter_map(law).collect();
     let mut is_whole = true;
-    for closed in loops(context, closes, frames, &mut is_whole) {
+    let mut keeps = Vec::new();
+    for closed in loops(context, closes, (frames, axes, scope), &mut is_whole) {
+        keeps.extend(closed.keeps.iter().copied());
         let residuals = (0..=laws.len())
             .fold(closed.residuals(context.graph, frames), |residuals, _| context.graph.substitute(&residuals, &laws));
         for residual in residuals {
@@ -128,7 +139,6 @@ pub(crate) fn linkages<'g>(
             match sharing.into_iter().reduce(Linkage::with) {
                 Some(mut whole) => {
                     whole.residuals.push((residual, closed.span));
-                    whole.axes.sort_unstable();
                     linkages.push(whole);
                 }
                 None => {
@@ -141,13 +151,26 @@ pub(crate) fn linkages<'g>(
         }
     }
     // a loop that is wrong leaves others without their equations
+    for linkage in &mut linkages {
+        linkage.axes.sort_unstable();
+        let kept = |axis: &usize| {
+            let own = keeps.iter().filter(|(kept, _)| kept == axis);
+            own.fold(travel(*axis), |range, (_, kept)| range.intersection(*kept))
+        };
+        linkage.ranges = linkage.axes.iter().map(kept).collect();
+    }
     linkages.sort_unstable_by_key(|linkage| linkage.axes[0]);
     let is_even = is_whole && linkages.iter().all(|linkage| linkage.is_even(context, axes));
     if is_even { linkages } else { Vec::new() }
 }
 
 /// The loops that a text declares; what is wrong in them is reported and left out.
-fn loops<'g>(context: &mut Context<'g>, closes: &[&Close], frames: &[Frame<'g>], is_whole: &mut bool) -> Vec<Loop> {
+fn loops<'g>(
+    context: &mut Context<'g>,
+    closes: &[&Close],
+    (frames, built, scope): (&[Frame<'g>], &[BuiltAxis<'g>], &Scope<'g>),
+    is_whole: &mut bool,
+) -> Vec<Loop> {
     let place = |context: &mut Context<'g>, name: &Name| {
         let found = frames.iter().position(|frame| frame.name == name.node);
         if found.is_none() {
@@ -160,7 +183,9 @@ fn loops<'g>(context: &mut Context<'g>, closes: &[&Close], frames: &[Frame<'g>],
         let ends = (place(context, &close.first), place(context, &close.second));
         let along = axes(context, &close.along);
         let about = axes(context, &close.about);
-        let (Some(along), Some(about), (Some(first), Some(second))) = (along, about, ends) else {
+        let keeps: Option<Vec<(usize, Interval)>> =
+            close.keeps.iter().map(|kept| keep(context, kept, built, scope)).collect();
+        let (Some(along), Some(about), Some(keeps), (Some(first), Some(second))) = (along, about, keeps, ends) else {
             *is_whole = false;
             continue;
         };
@@ -177,9 +202,35 @@ fn loops<'g>(context: &mut Context<'g>, closes: &[&Close], frames: &[Frame<'g>],
             components = (0..3).map(Component::Along).chain((0..3).map(Component::About)).collect();
         }
         let span = Span { end: close.second.span.end, ..close.first.span };
-        loops.push(Loop { first, second, components, span });
+        loops.push(Loop { first, second, components, keeps, span });
     }
     loops
+}
+
+/// Where an unknown axis is in the branch that is meant; anywhere, as long as its ends have no values.
+fn keep<'g>(
+    context: &mut Context<'g>,
+    kept: &KeptAxis,
+    axes: &[BuiltAxis<'g>],
+    scope: &Scope<'g>,
+) -> Option<(usize, Interval)> {
+    let Some(place) = axes.iter().position(|axis| axis.is_unknown && axis.name.node == kept.name.node) else {
+        let known = axes.iter().filter(|axis| axis.is_unknown).map(|axis| axis.name.node.as_str());
+        context.unknown(&kept.name, "unknown axis", known);
+        return None;
+    };
+    let axis = &axes[place];
+    let (findings, what) = (context.findings(), format!("axis `{}`", kept.name.node));
+    let Some((low, high)) = context.range(&kept.range, scope, axis.dimension?, &what) else {
+        return (context.findings() == findings).then_some((place, Interval::WHOLE));
+    };
+    if let Some((from, to)) = axis.travel.filter(|(from, to)| high < *from || *to < low) {
+        let [from, to] = [from, to].map(|end| shown(end, axis.dimension.unwrap_or(Dimension::LENGTH)));
+        let message = format!("{what} is never there: it travels from {from} to {to}");
+        context.report(Diagnostic::new(Code::EmptyRange, kept.range.span, message));
+        return None;
+    }
+    Some((place, Interval::new(low, high)))
 }
 
 /// The numbers of axes by their names, each once.

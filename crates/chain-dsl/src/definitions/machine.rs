@@ -43,6 +43,8 @@ pub(crate) struct Flat<'a> {
     words: Vec<(&'a ast::NcWord, usize)>,
     /// Of all machines of the line: what a variant demands comes on top of what its parents do.
     requirements: Vec<&'a Requirement>,
+    /// Each with the place of its machine in the line: a variant says it anew for those about the same.
+    expectations: Vec<(&'a ast::Expectation, usize)>,
 }
 
 /// A frame, and the frame that it hangs on: the one that is written, or one that a variant inserted there.
@@ -81,6 +83,8 @@ pub(crate) struct Built<'g> {
     pub(crate) lost_laws: usize,
     /// Whether a transform of a frame is wrong (and has been reported).
     pub(crate) lacks_transforms: bool,
+    /// What each job that uses it is to be like.
+    pub(crate) expectations: Vec<ast::Expectation>,
 }
 
 /// An axis, perhaps with a law.
@@ -160,7 +164,10 @@ fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
         MachineStatement::Axis(axis) => (&axis.name, "value"),
         MachineStatement::Frame(frame) | MachineStatement::Insert(frame) => (&frame.name, "frame"),
         MachineStatement::Fix(law) | MachineStatement::Couple(law) => (&law.target.segments[0], "law"),
-        MachineStatement::Close(_) | MachineStatement::Nc(_) | MachineStatement::Require(_) => return None,
+        MachineStatement::Close(_)
+        | MachineStatement::Nc(_)
+        | MachineStatement::Require(_)
+        | MachineStatement::Expect(_) => return None,
     })
 }
 
@@ -224,6 +231,10 @@ impl<'a> Flat<'a> {
             MachineStatement::Couple(law) => self.laws.put(&law.target.segments[0], (law, LawKind::Couple)),
             MachineStatement::Nc(word) => self.words.push((word, place)),
             MachineStatement::Require(required) => self.requirements.push(required),
+            MachineStatement::Expect(expected) => {
+                self.expectations.retain(|(earlier, of)| *of == place || earlier.about != expected.about);
+                self.expectations.push((expected, place));
+            }
         }
     }
 
@@ -313,10 +324,25 @@ impl<'a> Flat<'a> {
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
         nc_word::settle(context, &self.words, &scope, &mut axes);
         let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
-        let linkages =
-            if lacks_transforms { Vec::new() } else { closure::linkages(context, &self.closes, &frames, &axes) };
+        let linkages = if lacks_transforms {
+            Vec::new()
+        } else {
+            closure::linkages(context, &self.closes, &frames, &axes, &scope)
+        };
         let declared_frames = self.frames.list.iter().map(|frame| frame.name.node.clone()).collect();
-        Built { parameters, settings, scope, axes, frames, linkages, declared_frames, lost_laws, lacks_transforms }
+        let expectations = self.expectations.iter().map(|(expected, _)| (*expected).clone()).collect();
+        Built {
+            parameters,
+            settings,
+            scope,
+            axes,
+            frames,
+            linkages,
+            declared_frames,
+            lost_laws,
+            lacks_transforms,
+            expectations,
+        }
     }
 
     fn build_axes<'g>(&self, context: &mut Context<'g>, scope: &Scope<'g>, prefix: &str) -> Vec<BuiltAxis<'g>> {

@@ -144,11 +144,16 @@ impl Used {
     }
 
     fn expression(&mut self, expression: &Expression) {
-        expression.each(&mut |part| match &part.kind {
+        expression.each(&mut |part| self.part(part));
+    }
+
+    /// An expression without what it is made of.
+    fn part(&mut self, part: &Expression) {
+        match &part.kind {
             ExpressionKind::Path(path) => self.path(path),
             ExpressionKind::Call(call) => drop(self.words.insert(call.function.node.clone())),
             _ => {}
-        });
+        }
     }
 
     fn range(&mut self, range: &ast::Range) {
@@ -172,6 +177,7 @@ impl Used {
                 }
                 MachineStatement::Close(close) => {
                     self.words.extend([close.first.node.clone(), close.second.node.clone()]);
+                    close.keeps.iter().for_each(|kept| self.range(&kept.range));
                 }
                 MachineStatement::Fix(law) | MachineStatement::Couple(law) => self.expression(&law.value),
                 MachineStatement::Nc(word) => {
@@ -179,6 +185,7 @@ impl Used {
                     word.increment.iter().for_each(|increment| self.expression(increment));
                 }
                 MachineStatement::Require(required) => self.expression(&required.condition),
+                MachineStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
             }
         }
     }
@@ -249,6 +256,7 @@ impl Used {
                 JobStatement::Param(param) => self.param(param),
                 JobStatement::Let(binding) => self.expression(&binding.value),
                 JobStatement::Require(required) => self.expression(&required.condition),
+                JobStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
                 JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
                     self.words.insert(instance.definition.node.clone());
                     instance.settings.iter().for_each(|setting| self.expression(&setting.value));
@@ -265,10 +273,21 @@ impl Used {
                 JobStatement::Contact(contact) => {
                     contact.arguments.iter().for_each(|argument| self.expression(&argument.value));
                 }
+                JobStatement::Want(want) => self.expression(&want.value),
                 JobStatement::Drive(drive) => drive.values.iter().for_each(|value| self.expression(value)),
                 JobStatement::Surface(surface) => {
                     self.path(&surface.frame);
                     self.expression(&surface.value);
+                }
+                JobStatement::Mill(mill) => {
+                    self.path(&mill.frame);
+                    for run in mill.passes.iter().chain(&mill.along) {
+                        run.definition.iter().for_each(|definition| self.expression(definition));
+                        self.range(&run.range);
+                        self.expression(&run.value);
+                    }
+                    mill.attitudes.iter().for_each(|(_, value)| self.expression(value));
+                    mill.clearances.iter().for_each(|clear| self.expression(&clear.distance));
                 }
                 JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
                 JobStatement::Sample(sample) => {

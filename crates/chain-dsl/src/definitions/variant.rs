@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::syntax::ast::{Argument, Change, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
+use crate::syntax::ast::{Argument, Change, Expected, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
 use crate::values::context::{Context, did_you_mean};
 
 /// The job that a variant of an earlier one stands for.
@@ -37,7 +37,7 @@ fn changed(context: &mut Context<'_>, changes: &[Change], parent: &Job) -> Job {
 /// A job with the statements of the earlier one that it extends, in which values and parts may be changed: one of its own that is about the
 /// same takes the place of one of those. Others come before the next one that does, or at the end.
 pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Job {
-    let parent = changed(context, &job.changes, parent);
+    let parent = without_replaced(changed(context, &job.changes, parent), job);
     let mut places: HashMap<(Subject, String), usize> = HashMap::new();
     for (place, statement) in parent.statements.iter().enumerate() {
         places.extend(statement.about().into_iter().map(|about| (about, place)));
@@ -60,6 +60,21 @@ pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Jo
     }
     let doc = if job.doc.is_empty() { parent.doc } else { job.doc.clone() };
     Job { doc, statements: inherited.into_iter().flatten().chain(added).collect(), ..job.clone() }
+}
+
+/// Without expectations that a job which extends it replaces by its own about the same, or drops.
+fn without_replaced(mut parent: Job, job: &Job) -> Job {
+    let own = |statement: &JobStatement| match statement {
+        JobStatement::Expect(expected) => Some(expected.clone()),
+        _ => None,
+    };
+    let own: Vec<_> = job.statements.iter().filter_map(own).collect();
+    let drops = own.iter().any(|expected| expected.what == Expected::Nothing);
+    parent.statements.retain(|statement| match statement {
+        JobStatement::Expect(earlier) => !drops && own.iter().all(|expected| expected.about != earlier.about),
+        _ => true,
+    });
+    parent
 }
 
 fn names(change: &Change) -> impl Iterator<Item = &str> {

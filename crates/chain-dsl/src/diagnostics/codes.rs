@@ -85,10 +85,15 @@ codes! {
     UnevenLists       = "E0514" Error "two lists that belong together are not of one length";
     Contact           = "E0515" Error "two flanks cannot be in contact";
     Solid             = "E0516" Error "a solid is not a body";
+    Want              = "E0517" Error "a contact cannot be wanted so";
+    Milling           = "E0520" Error "a surface cannot be milled so";
+    // 06: tests
+    Expectation       = "E0601" Error "an expectation is not one that can be checked";
     // warnings
     UnusedParameter   = "W0001" Warning "a parameter is not used";
     UnusedMotion      = "W0002" Warning "a motion moves nothing";
     UnreachedFrame    = "W0003" Warning "a frame carries nothing";
     Sliding           = "W0004" Warning "with these values, a motion lets the tool slide within itself";
     EmptyFile         = "W0005" Warning "a file declares nothing";
+    NeverFails        = "W0006" Warning "an expectation can never fail";
 }

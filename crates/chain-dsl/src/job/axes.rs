@@ -83,7 +83,9 @@ impl<'g> Builder<'_, 'g> {
                     (Some((law, LawKind::Couple, _)), _) => (*law, LawSource::Coupled),
                     (None, _) if axis.is_unknown => (Some(axis.variable), LawSource::Closed),
                     (None, Some((law, _))) => (*law, LawSource::Driven),
-                    (None, None) if self.stands_alone => (Some(axis.variable), LawSource::Free),
+                    (None, None) if self.stands_alone || self.mills.contains(&name.node) => {
+                        (Some(axis.variable), LawSource::Free)
+                    }
                     (None, None) => {
                         idle.push(axis.name.node.as_str());
                         (None, LawSource::Driven)

@@ -9,7 +9,8 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::Machine;
 use crate::values::context::{Context, quoted};
-use crate::values::implicit::Unsolved;
+use crate::values::dimension::{Dimension, shown};
+use crate::values::implicit::{Branch, Unsolved, listed, shown_briefly};
 
 use super::Builder;
 
@@ -69,16 +70,14 @@ impl<'g> Builder<'_, 'g> {
         built: &Built<'g>,
         machine: &Name,
     ) -> Option<Vec<Expr<'g>>> {
-        let unknown = |axis: &usize| {
-            let BuiltAxis { variable, travel, .. } = built.axes[*axis];
-            let range = travel.map_or(Interval::WHOLE, |(low, high)| Interval::new(low, high));
-            Unknown { variable, range }
-        };
-        let unknowns: Vec<Unknown<'g>> = linkage.axes.iter().map(unknown).collect();
+        let axes = linkage.axes.iter().map(|axis| &built.axes[*axis]);
+        let dimensions: Vec<Dimension> = axes.clone().map(|axis| axis.dimension.unwrap_or(Dimension::LENGTH)).collect();
+        let unknown = |(axis, range): (&BuiltAxis<'g>, &Interval)| Unknown { variable: axis.variable, range: *range };
+        let unknowns: Vec<Unknown<'g>> = axes.zip(&linkage.ranges).map(unknown).collect();
         let (residuals, spans): (Vec<Expr<'g>>, Vec<Span>) = linkage.residuals.iter().copied().unzip();
         let residuals = context.graph.substitute(&residuals, &self.laws);
         let names = linkage.names(&built.axes);
-        let (why, help) = match context.solved(&residuals, &unknowns, &self.scope, spans[0]) {
+        let (why, help) = match context.solved(&residuals, &unknowns, &dimensions, &self.scope, spans[0]) {
             Ok(laws) => return Some(laws),
             // a machine whose parameters have no values yet
             Err(Unsolved::Unknown) => return None,
@@ -86,6 +85,12 @@ impl<'g> Builder<'_, 'g> {
                 format!("it follows from all places of {what}, which has no range"),
                 "give it one: `axis crank : rotary in 0 deg .. 360 deg`".to_owned(),
             ),
+            Err(Unsolved::Several(place, branches)) => {
+                let all = quoted(&names);
+                let why = format!("in the ranges of {all}, it closes in more than one way{place}");
+                let told = branches.iter().map(|branch| told(branch, &names, &dimensions));
+                (why, format!("say behind `close` which branch is meant{}", listed(told.collect())))
+            }
             Err(Unsolved::Not(why, place)) => {
                 let all = quoted(&names);
                 match why {
@@ -94,11 +99,7 @@ impl<'g> Builder<'_, 'g> {
                         "widen their ranges, narrow what drives the loop, or change the lengths of its links"
                             .to_owned(),
                     ),
-                    NoRoot::Several(_) => (
-                        format!("in the ranges of {all}, it closes in more than one way{place}"),
-                        "narrow their ranges to the branch that is meant".to_owned(),
-                    ),
-                    NoRoot::Unproven(_) => (
+                    NoRoot::Several(_) | NoRoot::Unproven(_) => (
                         format!("whether it closes in one way in the ranges of {all} is not decided{place}"),
                         "keep dead centres out of what drives the loop, and other branches out of the ranges"
                             .to_owned(),
@@ -115,4 +116,15 @@ impl<'g> Builder<'_, 'g> {
         context.report(open.help(help));
         None
     }
+}
+
+/// A branch: where its axes are, and what selects it.
+fn told(branch: &Branch, names: &[&str], dimensions: &[Dimension]) -> String {
+    let value = |(k, value): (usize, &f64)| format!("`{}` = {}", names[k], shown_briefly(*value, dimensions[k]));
+    let values: Vec<String> = branch.values.iter().enumerate().map(value).collect();
+    let keep = branch.keep.map(|(k, ends)| {
+        let [low, high] = ends.map(|end| shown(end, dimensions[k]));
+        format!(" by `keep {}: {low} .. {high}`", names[k])
+    });
+    format!("{}{}", values.join(", "), keep.unwrap_or_default())
 }

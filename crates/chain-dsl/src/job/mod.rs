@@ -8,11 +8,14 @@ mod axes;
 mod close;
 mod contact;
 mod cut;
+pub(crate) mod expect;
 mod independence;
+mod mill;
 mod sliding;
 mod solid;
 mod surfaces;
 mod sweep;
+mod want;
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -31,7 +34,8 @@ use crate::diagnostics::source::{Name, Span};
 use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
-    Contact, GeneratedSurface, Job, Machine, Parameter, RangedVariable, Sample, Solid, ValueSource, within,
+    Contact, GeneratedSurface, Job, Machine, Milling, Parameter, RangedVariable, Sample, Solid, ValueSource,
+    WantedContact, within,
 };
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role};
@@ -69,6 +73,10 @@ struct Builder<'a, 'g> {
     unknowns: Vec<Expr<'g>>,
     solids: Vec<Solid>,
     contacts: Vec<Contact<'g>>,
+    wants: Vec<WantedContact>,
+    millings: Vec<Milling<'g>>,
+    /// Machines that mill and generate nothing: cutter paths give the motions of their axes.
+    mills: HashSet<String>,
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,
@@ -104,6 +112,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             unknowns: Vec::new(),
             solids: Vec::new(),
             contacts: Vec::new(),
+            wants: Vec::new(),
+            millings: Vec::new(),
+            mills: HashSet::new(),
             mounts: HashMap::new(),
             lost_mounts: 0,
             drives: HashMap::new(),
@@ -178,6 +189,7 @@ fn with_points<'g>(
             });
         }
     }
+    builder.name_mills(job);
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
@@ -205,8 +217,15 @@ fn with_points<'g>(
             JobStatement::Cut { surface, by } => builder.cut(context, surface, by, job),
             JobStatement::Solid(solid) => builder.solid(context, solid, job),
             JobStatement::Contact(contact) => builder.contact(context, contact, job),
+            JobStatement::Want(want) => builder.want(context, want, job),
             JobStatement::Sample(sample) => builder.sample(context, sample, job),
             _ => {}
+        }
+    }
+    // coordinates may be those of a sample
+    for statement in &job.statements {
+        if let JobStatement::Mill(mill) = statement {
+            builder.mill(context, mill, job);
         }
     }
     builder.add_named_samples(context);
@@ -217,8 +236,11 @@ fn with_points<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
+    let is_settled = context.expects && builder.sampled.are_known();
+    let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
-    (builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file), sampled)
+    let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
+    (Job { expectations, ..built }, sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -247,6 +269,9 @@ impl<'g> Builder<'_, 'g> {
             unknowns: self.unknowns,
             solids: self.solids,
             contacts: self.contacts,
+            wants: self.wants,
+            millings: self.millings,
+            expectations: Vec::new(),
         }
     }
 
@@ -295,10 +320,13 @@ impl<'g> Builder<'_, 'g> {
             }
             JobStatement::Solid(solid) => self.define(context, &solid.name),
             JobStatement::Contact(contact) => self.define(context, &contact.name),
+            JobStatement::Want(want) => self.define(context, &want.name),
+            JobStatement::Mill(mill) => self.define(context, &mill.name),
             JobStatement::Mount { .. }
             | JobStatement::Drive(_)
             | JobStatement::Trim { .. }
-            | JobStatement::Cut { .. } => {}
+            | JobStatement::Cut { .. }
+            | JobStatement::Expect(_) => {}
             JobStatement::Sample(sample) => {
                 sample
                     .surfaces

@@ -4,7 +4,7 @@ use flank_expr::Expr;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Name;
+use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
 use crate::syntax::ast::{self, Expression, ExpressionKind, SampleEntry, SampleValues};
@@ -229,7 +229,24 @@ impl<'g> GeneratedSurface<'g> {
     }
 }
 
-fn coordinate<'g>(
+/// What an expression at the points of a surface may name beside the names of the job.
+pub(super) fn scope_at_points<'g>(
+    context: &mut Context<'g>,
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+    span: Span,
+) -> Option<Scope<'g>> {
+    if !context.spend(scope.len(), span) {
+        return None;
+    }
+    let mut scope = scope.clone();
+    for known in surface.coordinates() {
+        scope.insert(known.name, Value::Scalar(known.value, known.dimension));
+    }
+    Some(scope)
+}
+
+pub(super) fn coordinate<'g>(
     context: &mut Context<'g>,
     (key, definition): (&Name, Option<&Expression>),
     surface: &GeneratedSurface<'g>,
@@ -242,13 +259,7 @@ fn coordinate<'g>(
             context.report(Diagnostic::new(Code::DuplicateName, key.span, message).help(help));
             return None;
         }
-        if !context.spend(scope.len(), definition.span) {
-            return None;
-        }
-        let mut scope = scope.clone();
-        for known in surface.coordinates() {
-            scope.insert(known.name, Value::Scalar(known.value, known.dimension));
-        }
+        let scope = scope_at_points(context, surface, scope, definition.span)?;
         let value = context.evaluate(definition, &scope);
         let Value::Scalar(value, dimension) = value else {
             if !matches!(value, Value::Poison) {

@@ -52,6 +52,11 @@ impl SampledPoints {
         }
     }
 
+    /// Whether nothing is left to be looked for.
+    pub(super) fn are_known(&self) -> bool {
+        self.asked.iter().all(|asked| !matches!(asked.found, Found::Not))
+    }
+
     /// Looks for points on what a job has so far; whether some were found that were not known before.
     pub(super) fn find<'g>(&mut self, context: &mut Context<'g>, built: &Job<'g>, written: &ast::Job) -> bool {
         let mut is_new = false;

@@ -195,7 +195,7 @@ impl<'g> Builder<'_, 'g> {
         format!("{}.{}", name.node, built.frames[frame].name)
     }
 
-    fn path_between(
+    pub(super) fn path_between(
         &self,
         context: &mut Context<'g>,
         from: FrameRef,

@@ -3,14 +3,16 @@
 //! After a mistake, a value may be [`ExpressionKind::Error`] and a name the empty string (a frame's parent, a dimension, a
 //! definition that is not there): both have been reported, and whoever meets one says nothing.
 
+mod expectation;
 mod job;
 
 use crate::diagnostics::source::{Name, Span, Spanned};
 
+pub use expectation::{Expectation, Expected};
 pub(crate) use job::Subject;
 pub use job::{
-    Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, PointRequirement, Sample, SampleEntry,
-    SampleValues, Sampled, Solid, Variant,
+    Change, Contact, Drive, GeneratedSurface, Instance, Job, JobStatement, Keep, Mill, MillClearance, MillRun,
+    PointRequirement, Sample, SampleEntry, SampleValues, Sampled, Solid, Variant, Want,
 };
 
 /// One parsed file.
@@ -117,6 +119,8 @@ pub enum MachineStatement {
     Nc(NcWord),
     /// `require a < b, "…"`
     Require(Requirement),
+    /// `expect tool in work near translate(…) at (X: 10 mm) within 1 um`
+    Expect(Expectation),
 }
 
 /// `param name : dimension in a .. b = default`
@@ -160,7 +164,7 @@ pub struct Axis {
     pub is_unknown: bool,
 }
 
-/// `close tip = pin along x, y about z`
+/// `close tip = pin along x, y about z keep rod: 0 deg .. 80 deg`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Close {
     /// The frame at the end of one chain.
@@ -171,6 +175,17 @@ pub struct Close {
     pub along: Vec<Name>,
     /// Axes about which the frames are not turned.
     pub about: Vec<Name>,
+    /// Where unknown axes are in the branch that is meant.
+    pub keeps: Vec<KeptAxis>,
+}
+
+/// `keep rod: 0 deg .. 80 deg`, in a closed loop
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptAxis {
+    /// An unknown axis that the loop gives.
+    pub name: Name,
+    /// Where it is.
+    pub range: Range,
 }
 
 /// How an axis moves.

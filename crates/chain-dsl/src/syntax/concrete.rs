@@ -87,6 +87,13 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         | Rule::profile_head
         | Rule::closed_along
         | Rule::closed_about
+        | Rule::expected_error
+        | Rule::expected_nothing
+        | Rule::expected_on
+        | Rule::expected_travel
+        | Rule::expected_status
+        | Rule::expected_value
+        | Rule::expected_pose
         | Rule::label
         | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
@@ -101,16 +108,20 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
-        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile => Kind::Block,
+        Rule::passes | Rule::along_passes => return parts.push(mill_run(pair)),
+        Rule::attitude | Rule::both_ways | Rule::clearance => Kind::Statement,
+        Rule::spacing => Kind::Steps,
+        Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile | Rule::mill => Kind::Block,
         Rule::variant | Rule::use_item | Rule::param | Rule::let_statement | Rule::axis | Rule::fix | Rule::couple => {
             Kind::Statement
         }
         Rule::at | Rule::body | Rule::machine_instance | Rule::tool_instance | Rule::mount => Kind::Statement,
         Rule::drive | Rule::surface | Rule::sample => Kind::Statement,
-        Rule::trim | Rule::cut | Rule::solid | Rule::unknown_axis | Rule::error_term => Kind::Statement,
+        Rule::trim | Rule::cut | Rule::solid | Rule::want | Rule::unknown_axis | Rule::error_term => Kind::Statement,
         Rule::segment | Rule::requirement => Kind::Statement,
+        Rule::expectation | Rule::machine_expectation => return parts.push(expectation(pair)),
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
-        Rule::argument | Rule::bound | Rule::keep | Rule::sampled | Rule::change => Kind::Element,
+        Rule::argument | Rule::bound | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,
         Rule::arguments | Rule::settings | Rule::changes | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
         Rule::definition | Rule::variant_of | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
@@ -206,6 +217,28 @@ fn one_row(pair: Pair<'_, Rule>) -> Part<'_> {
     Part::node(Kind::Statement, parts)
 }
 
+/// An expectation is one row; a tolerance that does not fit behind what it is for stands on a line of its own.
+fn expectation(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let head = parts.remove(0);
+    if parts.len() > 1 && parts[1].is(":") {
+        let of = Part::node(Kind::Element, parts.drain(..2).collect());
+        parts.insert(0, of);
+    }
+    let tolerance = parts.iter().position(|part| part.is("within")).map(|within| parts.split_off(within));
+    let mut rows = vec![one_of(Kind::Statement, parts)];
+    rows.extend(tolerance.map(|tolerance| one_of(Kind::Statement, tolerance)));
+    Part::node(Kind::Statement, vec![head, one_of(Kind::Steps, rows)])
+}
+
+/// Several parts as one.
+fn one_of(kind: Kind, parts: Vec<Part<'_>>) -> Part<'_> {
+    match <[Part; 1]>::try_from(parts) {
+        Ok([only]) => only,
+        Err(parts) => Part::node(kind, parts),
+    }
+}
+
 /// A motion's parameter is laid out like any other statement, unlike those between brackets.
 fn motion(pair: Pair<'_, Rule>) -> Part<'_> {
     let mut parts = Vec::new();
@@ -241,6 +274,17 @@ fn entry(pair: Pair<'_, Rule>) -> Part<'_> {
         parts.push(Part::node(Kind::Operation, range));
     }
     Part::node(Kind::Element, parts)
+}
+
+/// The coordinate and its range stand behind the first word as they do in a sample.
+fn mill_run(pair: Pair<'_, Rule>) -> Part<'_> {
+    let mut parts = inner(pair);
+    let comma = parts.iter().position(|part| part.is(",")).unwrap_or(parts.len());
+    let behind = parts.split_off(comma);
+    let entry = Part::node(Kind::Element, parts.split_off(1));
+    parts.push(entry);
+    parts.extend(behind);
+    Part::node(Kind::Statement, parts)
 }
 
 /// The message of a requirement may stand on a line of its own.

@@ -25,7 +25,9 @@ pub(super) struct Before<'t> {
 pub(super) fn relevant(mut rules: Vec<Rule>) -> Vec<Rule> {
     const TIGHT: [Rule; 7] =
         [Rule::open_index, Rule::unit, Rule::unit_word, Rule::unit_power, Rule::dot, Rule::caret, Rule::kw_runs];
-    rules.retain(|rule| !TIGHT.contains(rule));
+    if rules.iter().any(|rule| !TIGHT.contains(rule)) {
+        rules.retain(|rule| !TIGHT.contains(rule));
+    }
     if rules.contains(&Rule::infix) {
         rules.retain(|rule| *rule != Rule::colon);
     }
@@ -84,6 +86,12 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::kw_in if before.statement == "surface" && before.name && !before.in_parentheses => {
             "`in` and the frame in which the surface is given".to_owned()
         }
+        Rule::kw_in if before.statement == "want" => "`in` and the contact that is wanted so".to_owned(),
+        Rule::kw_in if before.statement == "mill" => "`in` and the frame in which the work is clamped".to_owned(),
+        Rule::kw_of if before.name => "`of` and the name of a surface".to_owned(),
+        Rule::spacing_word => "`scallop`, `step`, `chord` or `by` and a value".to_owned(),
+        Rule::attitude_word => "`lead`, `tilt` or `stock`".to_owned(),
+        Rule::kw_with if before.statement == "mill" => "`with` and a surface of the cutter".to_owned(),
         Rule::kw_in if before.statement == "solid" => "`in` and the frame of the body".to_owned(),
         Rule::kw_in if matches!(before.statement, "motion" | "unknown" | "surface") && !before.name => {
             "`in` and a range".to_owned()
@@ -100,6 +108,13 @@ fn describe(rule: Rule, before: &Before<'_>) -> String {
         Rule::string => "a path such as `\"machines/hobbing.chain\"`".to_owned(),
         Rule::infix => "an operator".to_owned(),
         Rule::integer => "a whole number".to_owned(),
+        Rule::expected_value | Rule::expected_status | Rule::expected_pose => {
+            "what is expected, such as `all solved`".to_owned()
+        }
+        Rule::kw_near => "`near` and what it is compared with".to_owned(),
+        Rule::kw_within => "`within` and a tolerance".to_owned(),
+        Rule::error_code => "the code of an error, such as `E0307`".to_owned(),
+        Rule::status => "a status such as `solved`".to_owned(),
         Rule::dimension | Rule::dimension_factor | Rule::dimension_name | Rule::one => {
             "a dimension such as `length` or `angle`".to_owned()
         }
@@ -129,6 +144,7 @@ fn name(before: &Before<'_>) -> String {
         ("frame" | "insert", "in") => "the frame that it hangs on".to_owned(),
         ("frame" | "insert", _) => TRANSFORM.to_owned(),
         ("close", "along" | "about" | ",") => "`x`, `y` or `z`".to_owned(),
+        ("close", "keep") => "the name of an unknown axis".to_owned(),
         ("close", _) => "the name of a frame".to_owned(),
         ("job", "extends") => "the job that it extends".to_owned(),
         (_, "extends") => "the machine that it extends".to_owned(),
@@ -137,8 +153,13 @@ fn name(before: &Before<'_>) -> String {
         ("job", "=") => "the name of a job".to_owned(),
         ("machine" | "tool" | "job", _) => "a setting such as `radial: 70 mm`".to_owned(),
         ("trim", "by") => "the name of the surface that cuts".to_owned(),
+        ("want", "in") => "the name of a contact".to_owned(),
         ("contact", "=") | ("contact", "with") => "the name of a flank".to_owned(),
         ("contact", _) => "an argument such as `over: turn` or `for: lag`".to_owned(),
+        ("mill", "of") => "the name of a surface".to_owned(),
+        ("mill", "with") => "a surface of the cutter such as `e.cutting`".to_owned(),
+        ("mill", "in") => "a frame such as `m.work`".to_owned(),
+        ("mill", _) => "a coordinate such as `lengthwise`".to_owned(),
         ("cut", "by") => "the name of the sweep of the edges that cut".to_owned(),
         ("surface", "along") => "the name of a profile".to_owned(),
         ("profile", _) => SEGMENT.to_owned(),
@@ -155,6 +176,8 @@ fn path(before: &Before<'_>) -> &'static str {
         "job" => "a setting such as `radial: 70 mm`",
         "sample" | "trim" | "cut" => "the name of the surface",
         "contact" => "the name of a flank",
+        "want" => "the name of a contact",
+        "mill" => "the name of a surface",
         _ => "a frame such as `m.work`",
     }
 }
@@ -165,6 +188,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
         "machine" | "tool" | "job" if before.in_parentheses => "setting",
         "surface" | "fn" if before.in_parentheses => "parameter",
         "sample" if before.last != "sample" => "entry",
+        "close" => "axis",
         statement => noun(statement),
     }
 }
@@ -172,6 +196,7 @@ fn named<'t>(before: &Before<'t>) -> &'t str {
 fn assigned(before: &Before<'_>) -> String {
     match before.statement {
         "frame" | "insert" | "close" | "surface" | "solid" => "the name of the frame".to_owned(),
+        "want" => "the name of the contact".to_owned(),
         statement => format!("the name of the {}", noun(statement)),
     }
 }
@@ -186,8 +211,11 @@ pub(super) fn noun(statement: &str) -> &str {
         "sample" | "trim" | "cut" => "surface",
         "require" => "condition",
         "fn" => "function",
+        "want" => "wanted contact",
         "nc" => "NC word",
+        "expect" => "surface",
         "insert" | "close" => "frame",
+        "mill" => "milling",
         other => other,
     }
 }
@@ -222,7 +250,16 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_in | Rule::kw_runs => "in",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
+        Rule::kw_travel => "travel",
+        Rule::kw_nothing => "nothing",
+        Rule::kw_error => "error",
+        Rule::kw_at => "at",
         Rule::kw_with => "with",
+        Rule::kw_of => "of",
+        Rule::kw_passes => "passes",
+        Rule::kw_both => "both",
+        Rule::kw_ways => "ways",
+        Rule::kw_clear => "clear",
         Rule::kw_require => "require",
         Rule::kw_if => "if",
         Rule::kw_then => "then",

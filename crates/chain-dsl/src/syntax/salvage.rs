@@ -6,8 +6,8 @@ use crate::diagnostics::source::{Name, Span, Spanned};
 
 use super::ast::{
     Argument, Assignment, Axis, AxisKind, Body, Dimension, Drive, Expression, ExpressionKind, Frame, Function,
-    GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, NcWord, Param, Parameter, Path, Sample,
-    SampleEntry, SampleValues, Sampled, Segment, Side, SurfaceParameter, ToolStatement, Type,
+    GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Mill, NcWord, Param, Parameter, Path,
+    Sample, SampleEntry, SampleValues, Sampled, Segment, Side, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -62,7 +62,8 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "trim" => JobStatement::Trim { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
-        "require" | "solid" | "contact" => return None,
+        "mill" => JobStatement::Mill(piece.mill(name)),
+        "require" | "solid" | "contact" | "want" | "expect" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }
@@ -271,6 +272,23 @@ impl Piece<'_> {
         let settings = self.firsts_in_parentheses().into_iter();
         let settings = settings.map(|index| Argument { name: Some(self.name(index)), value: self.error() });
         Instance { name, definition, settings: settings.collect() }
+    }
+
+    /// Its frame is known: the axes of that machine need no laws.
+    fn mill(&self, name: Name) -> Mill {
+        Mill {
+            doc: self.doc(),
+            name,
+            surface: self.path_after("of"),
+            cutter: self.path_after("with"),
+            frame: self.path_after("in"),
+            passes: Vec::new(),
+            along: Vec::new(),
+            attitudes: Vec::new(),
+            both_ways: Vec::new(),
+            clearances: Vec::new(),
+            broken: true,
+        }
     }
 
     fn sample(&self) -> Sample {

@@ -171,7 +171,8 @@ fn one_mistake_is_one_report() {
 fn the_scanner_knows_the_words_of_the_grammar() {
     let lists = [words::ITEMS, words::IN_MACHINE, words::IN_TOOL, words::IN_SURFACE, words::IN_JOB];
     let others = ["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not", "μm"];
-    let free = ["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact"];
+    let free =
+        ["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact", "want", "mill", "expect"];
     let reserved = lists.concat().into_iter().filter(|word| !free.contains(word)).chain(others);
     for word in reserved.chain(words::UNITS.iter().copied()).chain(words::DIMENSIONS.iter().copied()) {
         assert!(words::reserved(word).is_some(), "{word}");

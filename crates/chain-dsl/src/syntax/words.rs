@@ -15,8 +15,9 @@ pub(super) enum Reserved {
 pub(super) const ITEMS: &[&str] = &["use", "fn", "machine", "tool", "job"];
 
 /// Words that begin a statement in a machine.
-pub(super) const IN_MACHINE: &[&str] =
-    &["param", "let", "axis", "unknown", "error", "frame", "insert", "close", "fix", "couple", "nc", "require"];
+pub(super) const IN_MACHINE: &[&str] = &[
+    "param", "let", "axis", "unknown", "error", "frame", "insert", "close", "fix", "couple", "nc", "require", "expect",
+];
 
 /// Words that begin a statement in a tool.
 pub(super) const IN_TOOL: &[&str] = &["param", "let", "profile", "surface", "require"];
@@ -27,17 +28,18 @@ pub(super) const IN_SURFACE: &[&str] = &["let", "at", "body"];
 /// Words that begin a statement in a job.
 pub(super) const IN_JOB: &[&str] = &[
     "param", "let", "machine", "tool", "mount", "motion", "unknown", "drive", "surface", "trim", "cut", "profile",
-    "solid", "contact", "sample", "require",
+    "solid", "contact", "want", "mill", "sample", "require", "expect",
 ];
 
 /// Those of all these that are followed by a new name.
 const DEFINING: &[&str] = &[
     "fn", "machine", "tool", "job", "param", "let", "axis", "error", "frame", "insert", "profile", "surface", "motion",
-    "unknown", "solid", "contact",
+    "unknown", "solid", "contact", "want", "mill",
 ];
 
 /// Words that begin something only where nothing else can, and are names elsewhere.
-const FREE: &[&str] = &["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact"];
+const FREE: &[&str] =
+    &["profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact", "want", "mill", "expect"];
 
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];

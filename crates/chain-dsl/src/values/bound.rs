@@ -11,6 +11,9 @@ use crate::values::dimension::{Dimension, shown};
 use crate::values::functions;
 use crate::values::value::{Constant, Scope, Value};
 
+/// For each operation of an integrand: some hundred parts of its range are bounded to an order of some thirty.
+const STEPS_OF_AN_INTEGRAL: usize = 500;
+
 impl ast::Function {
     /// Whether it takes a derivative by this argument.
     pub(crate) fn differentiates_by(&self, argument: &str) -> bool {
@@ -233,8 +236,7 @@ impl<'g> Context<'g> {
                     (None, _) | (_, Err(Unranged::Unknown)) => return Value::Scalar(*expr, product),
                     (Some(ends), Ok(ranges)) => (ends, ranges),
                 };
-                // each part of the range is bounded to an order of some thirty
-                if !self.spend(64 * self.graph.count(&[*expr]).shared, bound.value.span) {
+                if !self.spend(STEPS_OF_AN_INTEGRAL * self.graph.count(&[*expr]).shared, bound.value.span) {
                     return Value::Poison;
                 }
                 match flank_expr::integral(*expr, variable, ends, &ranges) {

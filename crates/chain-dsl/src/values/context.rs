@@ -34,6 +34,8 @@ pub(crate) enum Role {
     Integration,
     /// What an equation gives, in the equation.
     Unknown,
+    /// What is known of a job once it is solved.
+    Quantity,
 }
 
 impl Role {
@@ -50,6 +52,7 @@ impl Role {
             Role::SurfaceParameter => "surface parameter",
             Role::Integration => "variable of integration",
             Role::Unknown => "unknown",
+            Role::Quantity => "quantity",
             Role::StandingArgument | Role::MovingArgument => "argument",
         }
     }
@@ -70,6 +73,8 @@ pub(crate) struct Context<'g> {
     pub(crate) tables: Tables,
     /// Whether a file is used that was not read.
     pub(crate) lacks_files: bool,
+    /// Whether what specs are tested by is looked at.
+    pub(crate) expects: bool,
     variables: Vec<Expr<'g>>,
     roles: Vec<Role>,
     values: Vec<f64>,
@@ -102,6 +107,7 @@ impl<'g> Context<'g> {
             functions: HashMap::new(),
             tables,
             lacks_files: false,
+            expects: false,
             variables: Vec::new(),
             roles: Vec::new(),
             values: Vec::new(),

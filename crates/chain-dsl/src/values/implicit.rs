@@ -1,17 +1,25 @@
 //! Values that equations give: `root(x in a .. b: f(x))`, and the axes of closed loops.
 
-use flank_expr::{Expr, Interval, NoRoot, Unknown, roots};
+use flank_expr::{Expr, Interval, NoRoot, Unknown, every_root, has_one_root, roots};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::syntax::ast::Call;
 use crate::values::context::{Context, Role, Unranged};
-use crate::values::dimension::shown;
+use crate::values::dimension::{Dimension, shown};
 use crate::values::value::{Scope, Value};
 
 /// Boxes that a proof takes in a common case: what it costs in steps.
 const BOXES: usize = 256;
+
+/// One of several solutions of equations.
+pub(crate) struct Branch {
+    /// The value of each unknown where there are several.
+    pub(crate) values: Vec<f64>,
+    /// Which unknown has to lie where, so that this one alone is left wherever all else lies.
+    pub(crate) keep: Option<(usize, [f64; 2])>,
+}
 
 /// Why equations do not give their unknowns.
 pub(crate) enum Unsolved {
@@ -19,8 +27,10 @@ pub(crate) enum Unsolved {
     Unknown,
     /// Something moves without ends.
     Endless(String),
-    /// A word for what is wrong, and where.
+    /// What is wrong, and where in words.
     Not(NoRoot, String),
+    /// There are several solutions: where in words, and which.
+    Several(String, Vec<Branch>),
 }
 
 impl<'g> Context<'g> {
@@ -59,20 +69,31 @@ impl<'g> Context<'g> {
         // a definition without values
         let Some((low, high)) = range else { return Value::Scalar(variable, dimension) };
         let unknown = Unknown { variable, range: Interval::new(low, high) };
-        match self.solved(&[value], &[unknown], scope, bound.value.span) {
+        match self.solved(&[value], &[unknown], &[dimension], scope, bound.value.span) {
             Ok(roots) => Value::Scalar(roots[0], dimension),
             Err(Unsolved::Unknown) => Value::Scalar(variable, dimension),
-            Err(Unsolved::Endless(what)) => self.rootless(bound.value.span, &format!("{what} has no range"), None),
+            Err(Unsolved::Endless(what)) => {
+                let help = "give it one, or keep it out of the root".to_owned();
+                self.rootless(bound.value.span, &format!("{what} has no range"), help)
+            }
+            Err(Unsolved::Several(place, branches)) => {
+                let [low, high] = [low, high].map(|end| shown(end, dimension));
+                let why = format!("from {low} to {high}{place}, this is zero more than once");
+                let name = &bound.name.node;
+                let told = branches.iter().map(|branch| {
+                    let value = shown_briefly(branch.values[0], dimension);
+                    let range = branch.keep.map(|(_, ends)| ends.map(|end| shown(end, dimension)).join(" .. "));
+                    range.map_or_else(|| value.clone(), |range| format!("{value} by `{name} in {range}`"))
+                });
+                let help = format!("narrow the range to the root that is meant{}", listed(told.collect()));
+                self.rootless(bound.value.span, &why, help)
+            }
             Err(Unsolved::Not(why, place)) => {
                 let [low, high] = [low, high].map(|end| shown(end, dimension));
                 let name = &bound.name.node;
                 let (why, help) = match why {
                     NoRoot::None(_) => (format!("nowhere from {low} to {high}{place} is this zero"), "widen the range"),
-                    NoRoot::Several(_) => (
-                        format!("from {low} to {high}{place}, this is zero more than once"),
-                        "narrow the range to the root that is meant",
-                    ),
-                    NoRoot::Unproven(_) => (
+                    NoRoot::Several(_) | NoRoot::Unproven(_) => (
                         format!("whether this is zero once from {low} to {high} is not decided{place}"),
                         "keep double roots, poles and kinks out of the range, and narrow what moves",
                     ),
@@ -81,14 +102,13 @@ impl<'g> Context<'g> {
                         "narrow what moves, or let fewer things move",
                     ),
                 };
-                self.rootless(bound.value.span, &why, Some(help))
+                self.rootless(bound.value.span, &why, help.to_owned())
             }
         }
     }
 
-    fn rootless(&mut self, span: Span, why: &str, help: Option<&str>) -> Value<'g> {
+    fn rootless(&mut self, span: Span, why: &str, help: String) -> Value<'g> {
         let message = format!("this root cannot be proven: {why}");
-        let help = help.unwrap_or("give it one, or keep it out of the root");
         self.report(Diagnostic::new(Code::Unproven, span, message).help(help));
         Value::Poison
     }
@@ -98,6 +118,7 @@ impl<'g> Context<'g> {
         &mut self,
         residuals: &[Expr<'g>],
         unknowns: &[Unknown<'g>],
+        dimensions: &[Dimension],
         scope: &Scope<'g>,
         span: Span,
     ) -> Result<Vec<Expr<'g>>, Unsolved> {
@@ -123,12 +144,17 @@ impl<'g> Context<'g> {
         }
         let moving: Vec<Expr<'g>> =
             others.iter().filter(|(_, range)| range.lo < range.hi).map(|(variable, _)| *variable).collect();
-        roots(residuals, unknowns, &others).map_err(|why| {
-            let place = match &why {
-                NoRoot::None(at) | NoRoot::Several(at) | NoRoot::Unproven(at) => self.place(&moving, at, scope),
-                NoRoot::TooFast => String::new(),
-            };
-            Unsolved::Not(why, place)
+        roots(residuals, unknowns, &others).map_err(|why| match &why {
+            NoRoot::Several(at) => {
+                let place = self.place(&moving, at, scope);
+                let branches = branches((residuals, unknowns, dimensions), &others, at);
+                Unsolved::Several(place, branches)
+            }
+            NoRoot::None(at) | NoRoot::Unproven(at) => {
+                let place = self.place(&moving, at, scope);
+                Unsolved::Not(why, place)
+            }
+            NoRoot::TooFast => Unsolved::Not(why, String::new()),
         })
     }
 
@@ -145,4 +171,54 @@ impl<'g> Context<'g> {
         let values: Vec<String> = moving.iter().zip(at).map(value).collect();
         if values.is_empty() { String::new() } else { format!(" at {}", values.join(", ")) }
     }
+}
+
+/// The solutions where what moves has these values.
+fn branches<'g>(
+    (residuals, unknowns, dimensions): (&[Expr<'g>], &[Unknown<'g>], &[Dimension]),
+    others: &[(Expr<'g>, Interval)],
+    at: &[f64],
+) -> Vec<Branch> {
+    let mut moving = at.iter();
+    let value = |range: &Interval| if range.lo < range.hi { *moving.next().unwrap_or(&range.lo) } else { range.lo };
+    let values: Vec<f64> = others.iter().map(|other| &other.1).map(value).collect();
+    let places: Vec<(Expr<'g>, f64)> = others.iter().map(|other| other.0).zip(values).collect();
+    let solutions = every_root(residuals, unknowns, &places);
+    let branch = |own: &Vec<f64>| {
+        let keep = (0..unknowns.len()).find_map(|k| {
+            let range = unknowns[k].range;
+            let ends = [(own[k], range.lo, -1.0), (own[k], range.hi, 1.0)].map(|(value, end, side)| {
+                let beside = solutions.iter().map(|other| other[k]).filter(|other| (other - value) * side > 0.0);
+                let nearest = beside.min_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+                nearest.map_or(end, |nearest| between(value, nearest, dimensions[k]))
+            });
+            let mut narrowed = unknowns.to_vec();
+            narrowed[k].range = Interval::new(ends[0], ends[1]);
+            has_one_root(residuals, &narrowed, others).then_some((k, ends))
+        });
+        Branch { values: own.clone(), keep }
+    };
+    solutions.iter().map(branch).collect()
+}
+
+/// A number half-way between two, with as few decimals as leave it in the middle half.
+fn between(one: f64, other: f64, dimension: Dimension) -> f64 {
+    let unit = if dimension == Dimension::ANGLE { 1.0_f64.to_radians() } else { 1.0 };
+    let (middle, room) = (0.5 * (one + other), 0.25 * (one - other).abs());
+    (0..9)
+        .map(|decimals| 10.0_f64.powi(decimals) / unit)
+        .map(|scale| (middle * scale).round() / scale)
+        .find(|rounded| (rounded - middle).abs() <= room)
+        .unwrap_or(middle)
+}
+
+/// With three decimals.
+pub(crate) fn shown_briefly(value: f64, dimension: Dimension) -> String {
+    let unit = if dimension == Dimension::ANGLE { 1.0_f64.to_radians() } else { 1.0 };
+    shown((value / unit * 1e3).round() / 1e3 * unit, dimension)
+}
+
+/// The rest of a sentence that lists something, if there is something.
+pub(crate) fn listed(branches: Vec<String>) -> String {
+    if branches.is_empty() { String::new() } else { format!(": {}", branches.join("; ")) }
 }

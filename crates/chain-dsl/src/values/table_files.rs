@@ -157,8 +157,9 @@ pub(crate) fn numbers(
     let mut reader = reader(text);
     let wrong = |reason: String| Reason::Wrong(Code::WrongTable, reason);
     let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
-    let places: Result<Vec<(usize, f64)>, String> =
-        columns.iter().map(|(name, dimension)| found(&heads, name, *dimension)).collect();
+    let remarks = remarks(text);
+    let places: Result<Vec<Vec<(usize, f64)>>, String> =
+        columns.iter().map(|(name, dimension)| found(&heads, &remarks, name, *dimension)).collect();
     let places = places.map_err(wrong)?;
     let place = |name: &str| heads.iter().position(|head| head == name);
     let mut wanted = Vec::new();
@@ -176,12 +177,13 @@ pub(crate) fn numbers(
             continue;
         }
         let line = record.position().map_or(0, csv::Position::line);
-        let number = |(column, size): (usize, f64)| {
-            let cell = record.get(column).unwrap_or("");
+        let number = |columns: &[(usize, f64)]| {
+            let mut cells = columns.iter().map(|(column, size)| (record.get(*column).unwrap_or(""), *size));
+            let (cell, size) = cells.find(|(cell, _)| !cell.is_empty()).unwrap_or(("", 1.0));
             let value = cell.parse::<f64>().ok().map(|value| value * size).filter(|value| value.is_finite());
             value.ok_or_else(|| wrong(format!("line {line}: `{cell}` is not a finite number")))
         };
-        points.push(places.iter().map(|place| number(*place)).collect::<Result<Vec<f64>, Reason>>()?);
+        points.push(places.iter().map(|place| number(place)).collect::<Result<Vec<f64>, Reason>>()?);
         if points.len() > limits::TABLE_ROWS.most {
             return Err(Reason::Exceeded(limits::TABLE_ROWS));
         }
@@ -189,31 +191,65 @@ pub(crate) fn numbers(
     Ok(points)
 }
 
-/// The column with a name, `s` or `s [mm]`, and the size of its unit: mm and degrees where none is given.
-fn found(heads: &csv::StringRecord, name: &str, dimension: Dimension) -> Result<(usize, f64), String> {
+/// The columns with a name, `s` or `s [mm]`, and the size of their units: where none is given, the one that flank remarks for it, or mm and
+/// degrees. Of columns of one name each row has a value in one.
+fn found(
+    heads: &csv::StringRecord,
+    remarks: &HashMap<&str, &str>,
+    name: &str,
+    dimension: Dimension,
+) -> Result<Vec<(usize, f64)>, String> {
+    let mut columns = Vec::new();
     for (index, head) in heads.iter().enumerate() {
         let (plain, unit) = match head.split_once('[') {
             Some((plain, rest)) => (plain.trim(), Some(rest.trim_end_matches(']').trim())),
             None => (head, None),
         };
-        if plain != name {
-            continue;
+        if plain == name || as_name(plain) == name {
+            // a component of a vector has the vector's unit
+            let vector = plain.strip_suffix(['x', 'y', 'z']).and_then(|rest| rest.strip_suffix('_'));
+            let remark = remarks.get(plain).or_else(|| remarks.get(vector?)).copied();
+            columns.push((index, size_of_unit(name, unit.or(remark), dimension)?));
         }
-        let unit = unit.unwrap_or(match dimension {
-            Dimension::ANGLE => "deg",
-            Dimension::LENGTH => "mm",
-            _ => return Ok((index, 1.0)),
-        });
-        return match dimension::unit(unit) {
-            Some((size, found)) if found == dimension => Ok((index, size)),
-            Some((_, found)) => {
-                Err(format!("column `{name}` is {} {found}, not {} {dimension}", article(found), article(dimension)))
-            }
-            None if unit == "1" && dimension == Dimension::NUMBER => Ok((index, 1.0)),
-            None => Err(format!("column `{name}`: `{unit}` is not a unit")),
-        };
     }
-    Err(missing(heads, name))
+    if columns.is_empty() { Err(missing(heads, name)) } else { Ok(columns) }
+}
+
+/// What names such as `d_normal/d_m.swivel` are called where only letters and digits may stand.
+fn as_name(head: &str) -> String {
+    head.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect()
+}
+
+fn size_of_unit(name: &str, unit: Option<&str>, dimension: Dimension) -> Result<f64, String> {
+    let Some(unit) = unit.or(match dimension {
+        Dimension::ANGLE => Some("deg"),
+        Dimension::LENGTH => Some("mm"),
+        _ => None,
+    }) else {
+        return Ok(1.0);
+    };
+    // a number is taken as it is
+    let is_number = unit == "1" || unit.contains(['/', '^']);
+    match dimension::unit(unit) {
+        Some((size, found)) if found == dimension => Ok(size),
+        Some((_, found)) => {
+            Err(format!("column `{name}` is {} {found}, not {} {dimension}", article(found), article(dimension)))
+        }
+        None if is_number && dimension == Dimension::NUMBER => Ok(1.0),
+        None if is_number => Err(format!("column `{name}` is in {unit}: read it as a number")),
+        None => Err(format!("column `{name}`: `{unit}` is not a unit")),
+    }
+}
+
+/// The units of columns that flank remarks above a table: ``# field `left` in um: …``.
+fn remarks(text: &str) -> HashMap<&str, &str> {
+    let lines = text.lines().take_while(|line| line.starts_with('#'));
+    lines.filter_map(remark).collect()
+}
+
+fn remark(line: &str) -> Option<(&str, &str)> {
+    let (name, rest) = line.strip_prefix("# field `")?.split_once("` in ")?;
+    Some((name, rest.split_once(':')?.0))
 }
 
 fn missing(heads: &csv::StringRecord, name: &str) -> String {

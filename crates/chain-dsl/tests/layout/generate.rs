@@ -133,9 +133,15 @@ impl Writer {
     fn block(&mut self, head: &[&str], statement: fn(&mut Writer)) {
         self.all(head);
         self.name();
-        if head == ["machine"] && self.random.one_in(3) {
+        if head != ["tool"] && self.random.one_in(3) {
             self.put("extends");
             self.name();
+            if head == ["job"] && self.random.one_in(2) {
+                self.text.push('(');
+                self.all(&["m.x", ":"]);
+                self.expression(1);
+                self.put(")");
+            }
         }
         self.put("{");
         for _ in 0..self.random.below(5) {
@@ -237,8 +243,18 @@ impl Writer {
     }
 
     fn machine_statement(&mut self) {
-        match self.random.below(11) {
+        match self.random.below(13) {
             0 => self.param(),
+            12 => {
+                self.put("error");
+                self.name();
+                self.put(":");
+                self.dimension();
+                if self.random.one_in(2) {
+                    self.put("in");
+                    self.range();
+                }
+            }
             1 => self.assignment("let"),
             7 => self.requirement(),
             8 => {
@@ -255,6 +271,7 @@ impl Writer {
                 self.range();
             }
             10 => self.close(),
+            11 => self.machine_expectation(),
             2 => self.assignment("fix"),
             3 => self.assignment("couple"),
             4 => {
@@ -278,6 +295,53 @@ impl Writer {
         for word in ["along", "about"] {
             if self.random.one_in(2) {
                 self.all(&[word, "x", ",", "y"]);
+            }
+        }
+        for _ in 0..self.random.of(&[0, 0, 1, 2]) {
+            self.put("keep");
+            self.name();
+            self.put(":");
+            self.range();
+        }
+    }
+
+    fn machine_expectation(&mut self) {
+        self.all(&["expect", "tool", "in", "work", "near"]);
+        self.call(2);
+        self.all(&["at", "(", "X", ":"]);
+        self.value();
+        self.all(&[")", "within"]);
+        self.value();
+    }
+
+    fn expectation(&mut self) {
+        self.put("expect");
+        match self.random.below(6) {
+            0 => self.all(&["error", "E0307"]),
+            1 => self.all(&["all", "solved"]),
+            2 => {
+                self.all(&["flank", "undercut", "at", "["]);
+                self.value();
+                self.put(",");
+                self.value();
+                self.put("]");
+            }
+            3 => {
+                self.all(&["on", "free_form", "within"]);
+                self.value();
+            }
+            4 => {
+                self.all(&["flank", ":"]);
+                self.value();
+                self.put("in");
+                self.range();
+            }
+            _ => {
+                self.value();
+                self.put("near");
+                self.value();
+                self.put("within");
+                self.value();
             }
         }
     }
@@ -368,7 +432,7 @@ impl Writer {
     }
 
     fn job_statement(&mut self) {
-        match self.random.below(14) {
+        match self.random.below(16) {
             0 => self.param(),
             1 => self.assignment("let"),
             2 | 3 => self.instance(),
@@ -427,6 +491,15 @@ impl Writer {
                 }
             }
             12 => self.profile(),
+            13 => {
+                self.put("want");
+                self.name();
+                self.put("in");
+                self.name();
+                self.put("=");
+                self.call(2);
+            }
+            14 => self.expectation(),
             _ => self.sample(),
         }
     }
@@ -470,6 +543,12 @@ impl Writer {
                 it.name();
             }
         });
+        if self.random.one_in(5) {
+            self.put("for");
+            self.name();
+            self.put("in");
+            self.vector(1);
+        }
         self.put("{");
         for _ in 0..self.random.below(4) {
             self.name();
@@ -563,6 +642,14 @@ impl Writer {
     fn call(&mut self, depth: usize) {
         self.name();
         self.text.push('(');
+        if self.random.one_in(6) {
+            self.name();
+            self.put("in");
+            self.range();
+            self.put(":");
+            self.expression(depth.saturating_sub(1));
+            return self.put(")");
+        }
         let count = self.random.below(5);
         for index in 0..count {
             if self.random.one_in(3) {

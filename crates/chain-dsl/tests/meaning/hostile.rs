@@ -70,6 +70,12 @@ fn sweeps(count: usize) -> String {
     )
 }
 
+/// Calls inside each other, each with a name of its own.
+fn nested(levels: usize, call: &str, innermost: &str) -> String {
+    let open: String = (0..levels).map(|k| call.replace("NAME", &format!("x{k}"))).collect();
+    format!("{open}{innermost}{}", ")".repeat(levels))
+}
+
 /// Each surface the envelope of the one before.
 fn envelopes(levels: usize) -> String {
     let axes = lines(levels, |k| {
@@ -270,6 +276,58 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
             limits::EVALUATION_STEPS,
         ),
         (
+            "integrals of integrals",
+            small_job(&format!(
+                "let a = {}",
+                nested(8, "integral(NAME in 0 .. 1: ", "exp(turn / 1 rad * x0 * x1 * x2 * x3 * x4 * x5 * x6 * x7)")
+            )),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "thousands of integrals",
+            small_job(&lines(3_000, |k| {
+                format!("let a{k} = integral(x in 0 .. {}: exp(sin(x * turn) * cos({k} * x * 1 rad)))", k + 1)
+            })),
+            limits::MISTAKES,
+        ),
+        (
+            "thousands of roots",
+            small_job(&lines(3_000, |k| {
+                format!("let a{k} = root(x in -3 .. 5: x + 0.5 * sin(x * 1 rad) - turn / 1 rad - {k} / 3000)")
+            })),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "machines that insert into each other",
+            format!(
+                "machine m0 {{ frame f\nframe g in f = mirror_x() }}\n{}",
+                lines(3_000, |k| format!("machine m{} extends m{k} {{ insert i{k} in f = mirror_y() }}", k + 1))
+            ),
+            limits::EXTENDS_DEPTH,
+        ),
+        (
+            "a loop of seven axes",
+            format!(
+                "machine arm extends lathe {{ {}frame tip in bed = translate_x(100 mm)\nclose g6 = tip\nclose g5 = tip along x }}\n{}",
+                lines(7, |k| format!(
+                    "unknown u{k} : rotary in -40 deg .. 40 deg\nframe g{k} in {} = rotate_z(u{k}) rotate_x({k} deg) translate_x(20 mm)",
+                    if k == 0 { "bed".to_owned() } else { format!("g{}", k - 1) }
+                )),
+                job("arm(height: 3 mm)", "")
+            ),
+            limits::LOOP,
+        ),
+        (
+            "a sum within a sum within a sum",
+            small_job(&format!("let a = {}", nested(60, "sum(NAME in 1 .. 3: ", "turn"))),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "thousands of samples of one surface",
+            small_job(&lines(5_000, |k| format!("sample s as p{k} {{ u: 1 deg, turn: 2 deg }}"))),
+            limits::JOB_STATEMENTS,
+        ),
+        (
             "thousands of variants of a long job",
             small_job(&lines(3_000, |k| format!("let a{k} = {k}")))
                 + "\n"
@@ -372,6 +430,37 @@ fn accepted() -> Vec<(&'static str, String)> {
         ),
         ("envelopes of envelopes", envelopes(6)),
         ("sweeps over seven motions", sweeps(100)),
+        (
+            "roots of roots",
+            small_job(&format!(
+                "let a = {}",
+                nested(12, "root(NAME in -3 .. 9: NAME + 0.5 * sin(NAME * 1 rad) - ", "turn / 1 rad")
+            )),
+        ),
+        (
+            "derivatives of a root and an integral",
+            small_job(&format!(
+                "let a0 = root(x in -3 .. 5: x + 0.5 * sin(x * 1 rad) - turn / 1 rad) + integral(x in 0 .. 1: exp(x * sin(turn)))\n{}",
+                lines(8, |k| format!("let a{} = derivative(a{k}, turn) * 1 rad", k + 1))
+            )),
+        ),
+        (
+            "two hundred loops",
+            format!(
+                "machine arms extends lathe {{ {} }}\n{}",
+                lines(200, |k| format!(
+                    "unknown u{k} : rotary in -40 deg .. 40 deg\nframe g{k} in bed = rotate_z(u{k}) translate_x(50 mm)\nframe h{k} in bed = rotate_z(C / 3) translate_x(50 mm)\nclose g{k} = h{k} along y"
+                )),
+                job("arms(height: 3 mm)", "")
+            ),
+        ),
+        (
+            "9,000 frames inserted",
+            format!(
+                "machine a {{ frame f\nframe g in f = mirror_x() }}\nmachine b extends a {{ {} }}",
+                lines(9_000, |k| format!("insert i{k} in f = mirror_y()"))
+            ),
+        ),
         ("an empty file", " ".repeat((1 << 20) - LIBRARY.len() - 1)),
         ("comments", "// nothing\n".repeat(90_000)),
     ]

@@ -32,7 +32,7 @@ fn what_nobody_uses_is_warned_about() {
 
 #[test]
 fn one_mistake_gives_one_report() {
-    let files = ["names", "dimensions", "values", "machines", "jobs", "contacts"];
+    let files = ["names", "dimensions", "values", "machines", "jobs", "contacts", "expectations"];
     let count: usize = files.iter().map(|file| check(&format!("meaning/mistakes/{file}.txt"), true, errors)).sum();
     assert!(count > 90, "{count}");
 }

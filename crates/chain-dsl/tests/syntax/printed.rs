@@ -69,7 +69,9 @@ fn machine_statement(statement: &MachineStatement) -> String {
                 if names.is_empty() { String::new() } else { format!(" {word} {}", names.join(" ")) }
             };
             let components = format!("{}{}", list("along", &it.along), list("about", &it.about));
-            format!("close {} {}{components}", it.first.node, it.second.node)
+            let keep = |kept: &KeptAxis| format!(" keep {}{}", kept.name.node, optional_range(Some(&kept.range)));
+            let keeps: String = it.keeps.iter().map(keep).collect();
+            format!("close {} {}{components}{keeps}", it.first.node, it.second.node)
         }
         MachineStatement::Fix(it) => assignment("fix", it),
         MachineStatement::Couple(it) => assignment("couple", it),
@@ -78,6 +80,7 @@ fn machine_statement(statement: &MachineStatement) -> String {
             format!("nc {} {}{by}", it.address.node, expression(&it.value))
         }
         MachineStatement::Require(it) => requirement(it),
+        MachineStatement::Expect(it) => expectation(it),
     }
 }
 
@@ -137,6 +140,10 @@ fn job_statement(statement: &JobStatement) -> String {
                 listed(&it.arguments, argument)
             )
         }
+        JobStatement::Want(it) => {
+            format!("{}want {} in {} {}", doc(&it.doc), it.name.node, path(&it.contact), expression(&it.value))
+        }
+        JobStatement::Mill(it) => milling(it),
         JobStatement::Drive(it) => {
             format!("drive {} {}", listed(&it.targets, path), listed(&it.values, expression))
         }
@@ -152,10 +159,71 @@ fn job_statement(statement: &JobStatement) -> String {
         JobStatement::Trim { surface, by } => format!("trim {} {}", path(surface), path(by)),
         JobStatement::Cut { surface, by } => format!("cut {} {}", path(surface), path(by)),
         JobStatement::Require(it) => requirement(it),
+        JobStatement::Expect(it) => expectation(it),
         JobStatement::Sample(it) => {
             let entries: Vec<String> = it.entries.iter().map(entry).collect();
             format!("sample {} {}", listed(&it.surfaces, sampled), entries.join(", "))
         }
+    }
+}
+
+fn milling(it: &Mill) -> String {
+    let run = |it: &MillRun| {
+        let definition = it.definition.as_ref().map_or(String::new(), |it| format!(" = {}", expression(it)));
+        format!("{}{definition}: {} {} {}", it.key.node, range(&it.range), it.word.node, expression(&it.value))
+    };
+    let clearance =
+        |it: &MillClearance| format!("clear {} {} {}", path(&it.surface), expression(&it.distance), path(&it.body));
+    format!(
+        "{}mill {} {} {} {} [{}] [{}] [{}] {} [{}]",
+        doc(&it.doc),
+        it.name.node,
+        path(&it.surface),
+        path(&it.cutter),
+        path(&it.frame),
+        listed(&it.passes, run),
+        listed(&it.along, run),
+        listed(&it.attitudes, |(word, value)| format!("{} {}", word.node, expression(value))),
+        it.both_ways.len(),
+        listed(&it.clearances, clearance),
+    )
+}
+
+fn expectation(it: &Expectation) -> String {
+    let of = |surface: &Option<Path>| surface.as_ref().map_or(String::new(), |surface| format!("{}: ", path(surface)));
+    match &it.what {
+        Expected::Error(code) => format!("expect error {}", code.node),
+        Expected::Nothing => "expect nothing".to_owned(),
+        Expected::Travel => "expect travel".to_owned(),
+        Expected::On { machine, within } => {
+            let settings = listed(&machine.settings, argument);
+            format!("expect on {}({settings}) within {}", machine.definition.node, expression(within))
+        }
+        Expected::Status { surface, status, at } => {
+            let at = at.as_ref().map_or(String::new(), |at| format!(" at {}", expression(at)));
+            format!("expect {} {}{at}", path(surface), status.node)
+        }
+        Expected::Near { surface, value, target, within } => format!(
+            "expect {}{} near {} within {}",
+            of(surface),
+            expression(value),
+            expression(target),
+            expression(within)
+        ),
+        Expected::InRange { surface, value, range } => format!(
+            "expect {}{} in {} .. {}",
+            of(surface),
+            expression(value),
+            expression(&range.low),
+            expression(&range.high)
+        ),
+        Expected::Pose { frames: [frame, reference], at, within, .. } => format!(
+            "expect {} in {} at {} within {}",
+            frame.node,
+            reference.node,
+            listed(at, argument),
+            expression(within)
+        ),
     }
 }
 

@@ -173,5 +173,5 @@ fn nothing_around_a_mistake_is_lost() {
     let (file, _) = read(&text.replace("job everything {", "job everything"));
     let job = file.items.iter().find_map(|item| if let Item::Job(job) = item { Some(job) } else { None });
     let Some(job) = job else { panic!("the job is lost") };
-    assert_eq!(job.statements.len(), 19);
+    assert_eq!(job.statements.len(), 20);
 }

@@ -120,6 +120,11 @@ fn everything() {
       fix X (- half)
       couple C (/ (* (^ 2 (- (^ 3 2))) X) feed)
     machine variant < α_machine
+      /Of the ways./ error sag: length in (- 1_um)..1_um
+      unknown rod Rotary in (- 80_deg)..80_deg
+      insert sagged in slide (translate_z! sag)
+      close slide bed along x y about z keep rod in 0_deg..80_deg keep rod in (- 1_deg)..90_deg
+      let area (+ (integral! (each t 0_mm X (sum! (each k 1 3 (^ t k))))) (root! (each x 0_mm half (- x X))))
     tool cutter
       param radius: length
       let c [radius 0_mm (- radius)]
@@ -157,6 +162,7 @@ fn everything() {
       sample concave z: 40_mm..62_mm by 45, rho: 70_mm..88_mm by 25
       sample concave.edge z: 40_mm..62_mm by 45, rho: [1_mm 2_mm], u: 3
       sample left, right.edge as root_row, as as as u: [3 4]
+      sample left, right u: (* side 3)
       let curve (table! "profile.csv")
       let choice (if (or (>= ratio 1) (< ratio 0.5)) "a" (if (!= ratio 0) "b" "c"))
     /As it was./ job again = everything()

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::{ToleratedAmount, WantedEaseOff};
+use flank::{KeptPlace, ToleratedAmount, WantedEaseOff};
 
 use super::measuring::Margin;
 use super::tolerance::amount;
@@ -20,23 +20,32 @@ With --ease-off, the surface shall lie off another one by a parabola in both dir
 from the middle to the ends), slope (rise from end to end), both first from root to tip, then along the tooth, and bias; um, plus is
 material, and what is not named is zero.
 
+With --want, a contact shall be at its vertex what the job says in `want NAME in CONTACT = vertex(…)`. Without --vary, as many settings of
+the first flank are taken as it has conditions, those that do most. The whole contact with the settings that are found is solved anew.
+
 Examples:
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv
-  flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --and convex=measured.csv
+  flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --and convex
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --vary radial_distance,machine_root_angle --share 0.7
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --write corrected.chain
-  flank fit specs/bevel/ease_off_19x62.chain pinion.concave --ease-off 'crowning: 50, 25' --from basic.concave --order 2")]
+  flank fit specs/bevel/ease_off_19x62.chain pinion.concave --ease-off 'crowning: 50, 25' --from basic.concave --order 2
+  flank fit specs/pairs/bevel_19x62.chain --want centred --vary p.radial_distance,p.ratio_of_roll,p.work_offset")]
 pub(crate) struct Fit {
     #[command(flatten)]
     pub(crate) which: JobArguments,
-    /// The surface
-    pub(crate) surface: String,
+    /// The surface; none with --want
+    #[arg(required_unless_present = "want", conflicts_with = "want")]
+    pub(crate) surface: Option<String>,
+    /// What a contact shall be like: a `want` of the job. Its settings are looked for
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["measured", "and", "ease_off", "from", "rows", "columns", "margin", "order", "noise",
+          "as_it_lies", "share", "within", "resolution"])]
+    pub(crate) want: Option<String>,
     /// Measured points of the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]
     pub(crate) measured: Option<PathBuf>,
-    /// A further surface of the job that was measured in the same position, with its file: the tooth's thickness counts
-    #[arg(long, value_name = "SURFACE=FILE", value_parser = surface_and_file, requires = "measured")]
-    pub(crate) and: Option<(String, PathBuf)>,
+    /// A further surface of the job that was measured in the same position, with its file if that is another one: the tooth's thickness counts
+    #[arg(long, value_name = "SURFACE[=FILE]", value_parser = surface_and_file, requires = "measured")]
+    pub(crate) and: Option<(String, Option<PathBuf>)>,
     /// Rows of the grid that was measured; the largest that the file names otherwise
     #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000), allow_hyphen_values = true)]
     pub(crate) rows: Option<u32>,
@@ -45,9 +54,9 @@ pub(crate) struct Fit {
     pub(crate) columns: Option<u32>,
     #[command(flatten)]
     pub(crate) margin: Margin,
-    /// The ease-off that is wanted, in um: 'crowning: 50, 25; slope: 0, 0; bias: 0'
-    #[arg(long, value_name = "WISH", value_parser = ease_off, conflicts_with = "measured", requires = "from")]
-    pub(crate) ease_off: Option<WantedEaseOff>,
+    /// The ease-off that is wanted, in um: 'crowning: 50, 25; slope: 0, 0; bias: 0'; or a CSV table of it, with row, column and deviation_um
+    #[arg(long, value_name = "WISH", value_parser = wish, conflicts_with = "measured", requires = "from")]
+    pub(crate) ease_off: Option<EaseOffWish>,
     /// The surface that the ease-off is one from; it is sampled in the spec
     #[arg(long, value_name = "SURFACE", requires = "ease_off")]
     pub(crate) from: Option<String>,
@@ -63,6 +72,9 @@ pub(crate) struct Fit {
     /// Round corrections to the steps of settings, several with commas: radial_distance=1um,machine_root_angle=1arcsec; the others are fitted again
     #[arg(long, value_name = "NAME=STEP", value_delimiter = ',', value_parser = amount)]
     pub(crate) round: Vec<(String, ToleratedAmount)>,
+    /// Leave a further surface of the job where it is in its middle, or at both ends of its middle row: root (the tooth's depth), root=line (the root line), convex (its thickness)
+    #[arg(long, value_name = "SURFACE[=line]", value_delimiter = ',', value_parser = kept, conflicts_with = "want")]
+    pub(crate) keep: Vec<(String, KeptPlace)>,
     /// Do not turn the points about z
     #[arg(long)]
     pub(crate) as_it_lies: bool,
@@ -88,12 +100,41 @@ pub(crate) struct Fit {
     pub(crate) evaluator: EvaluatorArguments,
 }
 
-fn surface_and_file(text: &str) -> Result<(String, PathBuf), String> {
-    let both = text.split_once('=').map(|(name, file)| (name.trim(), file.trim()));
-    let found = both.filter(|(name, file)| !name.is_empty() && !file.is_empty());
-    found
-        .map(|(name, file)| (name.to_string(), file.into()))
-        .ok_or("write SURFACE=FILE, for example convex=measured.csv".to_string())
+/// How a surface shall lie off another one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum EaseOffWish {
+    /// As a parabola.
+    Parabola(WantedEaseOff),
+    /// As a file says.
+    Table(PathBuf),
+}
+
+fn wish(text: &str) -> Result<EaseOffWish, String> {
+    let is_file = text.trim().to_lowercase().ends_with(".csv");
+    if is_file { Ok(EaseOffWish::Table(text.trim().into())) } else { ease_off(text).map(EaseOffWish::Parabola) }
+}
+
+/// Without a file it is the one of the first surface.
+fn surface_and_file(text: &str) -> Result<(String, Option<PathBuf>), String> {
+    let (name, file) = match text.split_once('=') {
+        Some((name, file)) => (name.trim(), Some(file.trim())),
+        None => (text.trim(), None),
+    };
+    if name.is_empty() || file.is_some_and(str::is_empty) {
+        return Err(
+            "write SURFACE=FILE, for example convex=measured.csv; or SURFACE, which is in the same file".to_string()
+        );
+    }
+    Ok((name.to_string(), file.map(PathBuf::from)))
+}
+
+fn kept(text: &str) -> Result<(String, KeptPlace), String> {
+    match text.trim().split_once('=') {
+        None if !text.trim().is_empty() => Ok((text.trim().to_string(), KeptPlace::Middle)),
+        Some((name, "line")) if !name.is_empty() => Ok((name.to_string(), KeptPlace::Line)),
+        Some((name, "middle")) if !name.is_empty() => Ok((name.to_string(), KeptPlace::Middle)),
+        _ => Err("write SURFACE, SURFACE=middle or SURFACE=line, for example root=line".to_string()),
+    }
 }
 
 fn share(text: &str) -> Result<f64, String> {

@@ -6,9 +6,11 @@ mod convert;
 mod fit;
 mod measuring;
 mod mesh;
+mod mill;
 mod plot;
 mod report;
 mod solid;
+mod test;
 mod tolerance;
 
 use std::num::NonZero;
@@ -23,12 +25,14 @@ use choice::{described, names};
 
 pub(crate) use contact::Contact;
 pub(crate) use convert::{Convert, Onto};
-pub(crate) use fit::Fit;
+pub(crate) use fit::{EaseOffWish, Fit};
 pub(crate) use measuring::{Deviation, Measure};
 pub(crate) use mesh::Mesh;
+pub(crate) use mill::Mill;
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
 pub(crate) use solid::SolidArguments;
+pub(crate) use test::Test;
 pub(crate) use tolerance::Tolerance;
 
 /// Tooth surfaces of any machine: describe frames, axes, a tool and motions; get the surface that the tool leaves.
@@ -40,6 +44,7 @@ pub(crate) use tolerance::Tolerance;
 Examples:
   flank solve specs/hobbing/helical_gear.chain          points and a picture into build/
   flank check specs/machines/*.chain                    is it right, and if not, where and why
+  flank test specs                                      does it make what it is to make
   flank view specs/bevel/pinion_19x62.chain             a page with the machine in 3-D
   flank derive specs/bevel/pinion_19x62.chain | less    what was built, stage by stage
   flank plot specs/bevel/pinion_19x62.chain             the pictures that matter for the job
@@ -62,6 +67,8 @@ pub(crate) enum Command {
     Solve(Solve),
     /// Parse, resolve and check dimensions
     Check(Check),
+    /// Check what specs expect of what is derived from them
+    Test(Test),
     /// Carry a job over to another machine: axis positions and polynomials that do the same
     Convert(Convert),
     /// Print what was built: matrices, vector parts, twists, the equation of meshing
@@ -82,6 +89,8 @@ pub(crate) enum Command {
     Measure(Measure),
     /// Cut the bodies of a job into bricks for finite elements: CalculiX, Abaqus, ParaView
     Mesh(Mesh),
+    /// Passes of a cutter over a surface on a five-axis machine: what they leave, cutter locations, NC programs; or what a program leaves
+    Mill(Mill),
     /// What an error means, with an example and how to mend it
     Explain(Explain),
     /// Make a job of a bevel gear's machine summary in a REXS file
@@ -106,10 +115,12 @@ impl Command {
         match self {
             Command::Solve(arguments) => arguments.json,
             Command::Check(arguments) => arguments.json,
+            Command::Test(arguments) => arguments.json,
             Command::Convert(arguments) => arguments.json,
             Command::Derive(arguments) => arguments.json,
             Command::Measure(arguments) => arguments.json,
             Command::Mesh(arguments) => arguments.json,
+            Command::Mill(arguments) => arguments.json,
             Command::Plot(arguments) => arguments.json,
             Command::Report(arguments) => arguments.json,
             Command::Deviation(arguments) => arguments.json,
@@ -143,7 +154,9 @@ impl Command {
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::Mesh(arguments) => Some(arguments.evaluator),
+            Command::Mill(arguments) => Some(arguments.evaluator),
             Command::View(arguments) => Some(arguments.evaluator),
+            Command::Test(arguments) => Some(arguments.evaluator),
             Command::Check(_)
             | Command::Explain(_)
             | Command::Import(_)

@@ -2,7 +2,9 @@
 
 use flank::{Answer, Failure as Refused, Monitor};
 
-use crate::arguments::{Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Plot, Report, Solve, Tolerance, View};
+use crate::arguments::{
+    Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Mill, Plot, Report, Solve, Tolerance, View,
+};
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -59,12 +61,21 @@ pub(crate) fn mesh(arguments: &Mesh) -> Result<Ending, Failure> {
     told(arguments.json, |monitor, each| flank::mesh(&request, monitor, each))
 }
 
+pub(crate) fn mill(arguments: &Mill) -> Result<Ending, Failure> {
+    let request = arguments.request()?;
+    told(arguments.json, |monitor, each| flank::mill(&request, monitor, each))
+}
+
 pub(crate) fn deviation(arguments: &Deviation) -> Result<Ending, Failure> {
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::deviation(&request, monitor).map(each))
 }
 
 pub(crate) fn fit(arguments: &Fit) -> Result<Ending, Failure> {
+    if let Some(want) = &arguments.want {
+        let request = arguments.synthesis(want)?;
+        return told(arguments.json, |monitor, each| flank::synthesis(&request, monitor).map(each));
+    }
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::fit(&request, monitor).map(each))
 }

@@ -46,14 +46,26 @@ async function share(colour, name) {
     }, [image, colour]);
 }
 
-// one surface alone, as large as it goes
+// the whole gear first: its generated faces, paler than the surfaces, and the blank
 await page.screenshot({ path: `${folder}/page.png` });
+const gear = await page.evaluate(() => {
+    const { flank } = window;
+    const shown = flank.bodies.filter((body) => body.visible);
+    return { teeth: shown.map((body) => body.children.length), frame: flank.seenFrom, work: flank.data.surfaces[0].frame_index };
+});
+assert.deepEqual(gear.teeth, [expected.teeth]);
+assert.equal(gear.frame, gear.work, "it is seen from its own frame");
+const steel = await share([199, 204, 212], "gear");
+assert(steel > 0.05, `the blank covers ${steel} of the view`);
+
+// one surface alone, as large as it goes
 const { surface, point } = expected;
 await page.evaluate(([surface]) => {
     const { flank } = window;
     flank.visible.forEach((mesh) => (mesh.object.visible = mesh.surface.name === surface));
     flank.toolOpacity.value = 0;
     flank.toolParts.forEach((part) => (part.visible = false));
+    flank.bodyBox.click();
     flank.fitWork();
     flank.stage.draw();
 }, [surface]);
@@ -102,8 +114,20 @@ assert.match(await page.locator("#legend").innerText(), new RegExp(expected.moti
 const [dark, light] = [await share(hex("#00224e"), "quantity"), await share(hex("#fee85c"), "quantity")];
 assert(dark > 1e-3 && light > 1e-3, `both ends of the scale are seen: ${dark}, ${light}`);
 
+// what is above and below zero has a palette with a middle, what is not has none
+const ends = () => page.evaluate(() => [window.flank.shared.range.value.toArray(), window.flank.shared.scale.value.map((c) => c.toArray())]);
+const [[, highest_roll], sequential] = await ends();
+await page.locator("#quantity").selectOption(expected.signed);
+const [[low, high], signed] = await ends();
+assert(low === -high && highest_roll !== high && signed[2].every((part) => part > 0.9), `${low} to ${high}, ${signed[2]}`);
+assert(sequential[2].every((part) => part < 0.6), `${sequential[2]}`);
+await page.locator("#quantity").selectOption(expected.motion);
+
 // a moved parameter moves the surface, exactly as the program does
-await page.locator("#parameters summary").click();
+await page.locator("#parameters > summary").click();
+// those at zero are folded away
+assert(await page.locator(".zeros summary").count() > 0);
+assert.equal(await page.locator(".zeros .slider").first().isVisible(), false);
 const number = page.locator(`[id="slider-${expected.parameter.name}"] + input`);
 await number.fill(String(expected.parameter.shown));
 await number.press("Enter");
@@ -160,6 +184,18 @@ await page.screenshot({ path: `${folder}/typed.png` });
 assert.equal((await type(expected.beyond.name, String(highest))).told, "");
 await page.locator("#reset").click();
 assert.equal(await page.evaluate(() => window.flank.surfaces.some((one) => one.isMoved)), false);
+
+// a telephone: nothing is wider than the screen, the gear is above, the controls are below
+await page.setViewportSize({ width: 420, height: 900 });
+await page.reload();
+await page.waitForSelector("body[data-ready]", { timeout: 60_000 });
+const narrow = await page.evaluate(() => {
+    const box = (id) => document.querySelector(id).getBoundingClientRect();
+    return { page: document.documentElement.scrollWidth, view: box("#view"), aside: box("aside"), slider: box("#motions input") };
+});
+assert(narrow.page <= 420 && narrow.view.width >= 400 && narrow.view.height > 300, JSON.stringify(narrow));
+assert(narrow.aside.top >= narrow.view.bottom && narrow.aside.width >= 400 && narrow.slider.height >= 24, JSON.stringify(narrow));
+await page.screenshot({ path: `${folder}/narrow.png` });
 
 assert.deepEqual(errors, []);
 const fetched = requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:") && !url.startsWith("blob:"));

@@ -52,7 +52,8 @@ pub fn endless(folder: &Path) -> [(String, &'static str); 3] {
 pub fn self_contained(specs: &[&str]) -> String {
     let read = |name: &&str| std::fs::read_to_string(top().join(format!("specs/{name}.chain"))).expect("it is shipped");
     let all: String = specs.iter().map(read).collect();
-    all.lines().filter(|line| !line.starts_with("use ")).map(|line| format!("{line}\n")).collect()
+    let needs_files = |line: &str| line.contains(" near table(") || line.trim_start().starts_with("expect on ");
+    all.lines().filter(|line| !line.starts_with("use ") && !needs_files(line)).map(|line| format!("{line}\n")).collect()
 }
 
 /// The pinion of the library as a REXS file; `COEFFICIENTS` and further tools are put in by the tests.

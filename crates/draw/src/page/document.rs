@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::body::{self, BodyOut};
 use super::contact::{self, ContactOut};
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
 use crate::base64::encoded;
-use crate::picture::{patch_colours, scale_colours};
+use crate::picture::{patch_colours, scale_colours, signed_colours};
 use flank_export::Tally;
 use flank_export::conventions as sentences;
 use flank_export::{Axis, Dataset, Field, Patch, Point, Values};
@@ -22,9 +23,10 @@ pub(super) struct Document<'a> {
     asked: usize,
     solved: usize,
     worst_residual: Option<f64>,
-    /// Colours of surfaces, and of a scale from its lowest to its highest value.
+    /// Colours of surfaces, of a scale from its lowest to its highest value, and of one from minus by zero to plus.
     colours: Vec<String>,
     scale: Vec<String>,
+    signed: Vec<String>,
     motions: &'a [PageMotion],
     parameters: &'a [PageParameter],
     definitions: Option<&'a str>,
@@ -32,6 +34,7 @@ pub(super) struct Document<'a> {
     tools: &'a [PageTool],
     surfaces: Vec<SurfaceOut<'a>>,
     lines: Vec<LineOut<'a>>,
+    bodies: Vec<BodyOut<'a>>,
     contacts: Vec<ContactOut<'a>>,
 }
 
@@ -99,6 +102,7 @@ impl<'a> Document<'a> {
             worst_residual: tally.worst_residual,
             colours: patch_colours(),
             scale: scale_colours(),
+            signed: signed_colours(),
             motions: &scene.motions,
             parameters: &scene.parameters,
             definitions: scene.definitions.as_deref(),
@@ -106,6 +110,7 @@ impl<'a> Document<'a> {
             tools: &scene.tools,
             surfaces: surfaces.iter().zip(&scene.surfaces).map(|(patch, scene)| surface(patch, scene)).collect(),
             lines: lines.iter().map(line).collect(),
+            bodies: scene.bodies.iter().map(body::out).collect(),
             contacts: scene.contacts.iter().map(|contact| contact::out(contact, surfaces)).collect(),
         }
     }

@@ -1,5 +1,6 @@
 //! A page to look at a job with: one HTML file that needs no network.
 
+mod body;
 mod contact;
 mod document;
 mod scene;
@@ -11,6 +12,7 @@ use flank_export::Dataset;
 use flank_export::WriteError;
 use flank_export::text::escaped;
 
+pub use body::{PageBody, PageFace};
 pub use contact::{PageContact, PageMember, PageNumber, PageTouch};
 pub use scene::{
     PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
@@ -22,7 +24,7 @@ const STYLE: &str = include_str!("web/style.css");
 /// The parts of three.js that the page uses, with its licence; `library/build.mjs` makes it.
 const LIBRARY: &str = include_str!("library/three.min.js");
 /// The page's own modules, each after those that it imports.
-const MODULES: [&str; 15] = [
+const MODULES: [&str; 16] = [
     include_str!("web/numbers.js"),
     include_str!("web/settings.js"),
     include_str!("web/newton.js"),
@@ -35,6 +37,7 @@ const MODULES: [&str; 15] = [
     include_str!("web/panel.js"),
     include_str!("web/flat.js"),
     include_str!("web/pair.js"),
+    include_str!("web/body.js"),
     include_str!("web/hanging.js"),
     include_str!("web/controls.js"),
     include_str!("web/main.js"),

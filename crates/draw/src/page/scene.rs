@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use flank_export::Unit;
 
+use super::body::PageBody;
 use super::contact::PageContact;
 
 /// Everything of a page that is not in its dataset.
@@ -24,6 +25,8 @@ pub struct Scene {
     pub tools: Vec<PageTool>,
     /// For each surface what is known beside its points.
     pub surfaces: Vec<PageSurface>,
+    /// The gears that they are of.
+    pub bodies: Vec<PageBody>,
     /// Pairs of them that roll on each other.
     pub contacts: Vec<PageContact>,
     /// JavaScript functions, each an `export function`.

@@ -65,6 +65,12 @@ impl Camera {
         Camera::with_up(towards, across(Z, towards))
     }
 
+    /// A camera that looks from somewhere, with a direction upwards.
+    pub(super) fn looking(towards: Vector, up: Vector) -> Self {
+        let towards = unit(towards).unwrap_or(Z);
+        Camera::with_up(towards, across(up, towards))
+    }
+
     fn with_up(towards: Vector, up: Vector) -> Self {
         let towards = unit(towards).unwrap_or(Z);
         let up = unit(up).or_else(|| unit(across([0.0, 1.0, 0.0], towards))).unwrap_or([1.0, 0.0, 0.0]);

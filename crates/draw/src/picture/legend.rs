@@ -2,7 +2,7 @@
 
 use super::figure::Drawn;
 use super::font;
-use super::paint::{Anchor, Rect, Sheet};
+use super::paint::{Anchor, Colour, Rect, Sheet};
 use super::palette::{self, GREY, INK};
 use flank_export::Patch;
 use flank_export::Tally;
@@ -29,6 +29,28 @@ pub(super) fn draw(drawn: &[Drawn<'_>], rect: Rect, sheet: &mut Sheet) {
     if shown < drawn.len() {
         let rest = format!("and {} more surfaces", drawn.len() - shown);
         sheet.text([rect.left, rect.top + entry * shown as f64 + 13.0], Anchor::Start, 14.0, GREY, &rest);
+    }
+}
+
+/// Lists names with their colours, as close as their number asks for.
+pub(super) fn draw_names(names: impl ExactSizeIterator<Item = (Colour, String)>, rect: Rect, sheet: &mut Sheet) {
+    let pitch = (rect.height() / names.len().max(1) as f64).clamp(15.0, 22.0);
+    let most = (rect.height() / pitch).max(1.0) as usize;
+    let count = names.len();
+    let shown = if count > most { most.saturating_sub(1) } else { count };
+    let left = rect.left + SWATCH[0] + 12.0;
+    let size = 0.65 * pitch;
+    let mut top = rect.top;
+    for (colour, name) in names.take(shown) {
+        let swatch = Rect { left: rect.left, top, right: rect.left + SWATCH[0], bottom: top + 0.65 * pitch };
+        sheet.polygon(&swatch.corners(), colour, colour.towards(INK, 0.85), 1.2);
+        let text = font::fitted(&name, size, rect.right - left);
+        sheet.text([left, swatch.bottom - 0.1 * pitch], Anchor::Start, size, INK, &text);
+        top += pitch;
+    }
+    if shown < count {
+        let rest = format!("and {} more surfaces", count - shown);
+        sheet.text([left, top + 0.55 * pitch], Anchor::Start, size, GREY, &rest);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Numbers over flanks, side by side: a panel for each field that is asked for, the flank turned into the axial plane.
+//! Numbers over flanks, side by side: a panel for each field that is asked for. Maps lie flat, lines and reliefs in the axial plane.
 
 use super::chart::{self, Chart, Title};
 use super::contours::ValueGrid;
@@ -12,6 +12,7 @@ use super::paint::{Anchor, Place, Rect, Sheet, text_rect};
 use super::palette::{GREY, INK, PALE, WHITE};
 use super::projection::{Projection, middle};
 use super::relief;
+use super::values;
 use flank_export::shape::{Mesh, node};
 use flank_export::text::one_line;
 use flank_export::text::{dimension, levelled, shown_unit, with_minus};
@@ -32,14 +33,28 @@ const LEAST: f64 = 160.0;
 /// A number of which all that it can change over a flank is so many units in the last place of 1 is rounding of the coordinates:
 /// curvatures come out of some ten operations on derivatives, each good to one.
 const UNITS_IN_LAST_PLACE: f64 = 64.0;
+/// A height below what points are solved to is none, um.
+const SOLVED_TO: f64 = 1e-6;
 /// Times as large as across, z or the radius may be drawn upwards where a flank is long.
 const STRETCHES: [f64; 5] = [10.0, 5.0, 3.0, 2.0, 1.0];
+/// From line to line of what is said above a map.
+const LINE: f64 = 18.0;
+
+/// What a sheet of maps says.
+pub(super) struct Words<'a> {
+    pub(super) title: &'a str,
+    pub(super) note: &'a str,
+    /// What stands on the right above the first map, line by line.
+    pub(super) numbers: &'a [String],
+}
 
 /// How the values of a field are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Style {
     /// Bands of colour with a key.
     Bands,
+    /// The same, and one key for all values of a unit.
+    BandsOfOneKey,
     /// Lines of equal values, each with its number.
     Lines,
     /// Heights above the grid, in bands of colour with a key.
@@ -48,7 +63,7 @@ pub(super) enum Style {
 
 /// One map.
 pub(super) struct Panel<'a> {
-    patch: &'a Patch,
+    pub(super) patch: &'a Patch,
     pub(super) field: &'a Field,
     pub(super) mesh: Mesh,
     /// Values at the nodes of the mesh.
@@ -57,20 +72,24 @@ pub(super) struct Panel<'a> {
     /// Whether all values are zero but for rounding; then they are taken as zero.
     is_rounding: bool,
     pub(super) projection: Projection,
+    /// Whether it is as large as there is room, in either direction.
+    fills: bool,
 }
 
 /// Arranges the maps of fields of numbers on a sheet of this size; fields of vectors are left out.
 pub(super) fn compose(
     dataset: &Dataset,
-    title: &str,
+    words: &Words<'_>,
     shown: &[(usize, usize)],
-    note: &str,
     (style, [width, height]): (Style, [f64; 2]),
 ) -> Figure {
-    let title = one_line(title);
+    let title = one_line(words.title);
     let mut sheet = Sheet::default();
     figure::write_heading(&title, &dataset.header, width - 2.0 * MARGIN, &mut sheet);
-    let panels: Vec<Panel<'_>> = shown.iter().filter_map(|at| Panel::of_field(dataset, *at, style)).collect();
+    let mut panels: Vec<Panel<'_>> = shown.iter().filter_map(|at| Panel::of_field(dataset, *at, style)).collect();
+    if style == Style::BandsOfOneKey {
+        give_one_key(&mut panels);
+    }
     let area = Rect { left: MARGIN, top: 118.0, right: width - MARGIN, bottom: height - 92.0 };
     if panels.is_empty() {
         sheet.text(area.middle(), Anchor::Middle, 20.0, GREY, "nothing to draw");
@@ -78,7 +97,11 @@ pub(super) fn compose(
     for (panel, rect) in panels.iter().zip(figure::places(panels.len(), area, GAP)) {
         panel.draw(rect, style, &mut sheet);
     }
-    let caption = with_minus(&caption(note, &panels));
+    for (line, text) in words.numbers.iter().enumerate() {
+        let at = [area.right, area.top + 15.0 + LINE * line as f64];
+        sheet.text(at, Anchor::End, 14.0, INK, &with_minus(&one_line(text)));
+    }
+    let caption = with_minus(&caption(words.note, &panels));
     figure::write_caption(&caption, [width, height], &mut sheet);
     Figure { title, caption, items: sheet.items }
 }
@@ -86,6 +109,16 @@ pub(super) fn compose(
 fn caption(note: &str, panels: &[Panel<'_>]) -> String {
     let thinned = panels.iter().filter_map(|panel| panel.mesh.thinned_from(panel.patch)).next();
     [Some(one_line(note)).filter(|note| !note.is_empty()), thinned].into_iter().flatten().collect::<Vec<_>>().join(" ")
+}
+
+/// Panels whose values have one unit get one key for all of them.
+fn give_one_key(panels: &mut [Panel<'_>]) {
+    let of_unit = |unit: &str| {
+        let values = panels.iter().filter(|panel| panel.field.unit == unit).flat_map(|panel| &panel.values);
+        Levels::over(values.flatten().copied(), BANDS)
+    };
+    let levels: Vec<Option<Levels>> = panels.iter().map(|panel| of_unit(&panel.field.unit)).collect();
+    panels.iter_mut().zip(levels).for_each(|(panel, levels)| panel.levels = levels);
 }
 
 impl<'a> Panel<'a> {
@@ -105,7 +138,11 @@ impl<'a> Panel<'a> {
         let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain(patch, field));
         let taken = |value: f64| if is_rounding { 0.0 } else { value };
         let mesh = Mesh::of_patch(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
-        let projection = Projection::of_patch(patch, &mesh);
+        let flat = Projection::laid_flat(patch, &mesh);
+        // a surface without root and tip has neither length nor profile
+        let has_profile = flat.words.iter().any(|(_, word)| word == "root" || word == "tip");
+        let fills = has_profile && matches!(style, Style::Bands | Style::BandsOfOneKey);
+        let projection = if fills { flat } else { Projection::of_patch(patch, &mesh) };
         let known_at =
             |at: usize| values.at(at).filter(|value| value.is_finite() && patch.points[at].is_solved()).map(taken);
         let picked = mesh.picked(patch).map(known_at).collect();
@@ -116,13 +153,14 @@ impl<'a> Panel<'a> {
             is_rounding,
             levels: Levels::over(known().map(taken), if style == Style::Lines { LINES } else { BANDS }),
             projection,
+            fills,
             mesh,
         })
     }
 
     /// The same laid flat as the side of a tooth: its length to the right, its tip up.
     pub(super) fn laid_flat(self) -> Panel<'a> {
-        Panel { projection: Projection::laid_flat(self.patch, &self.mesh), ..self }
+        Panel { projection: Projection::laid_flat(self.patch, &self.mesh), fills: false, ..self }
     }
 
     /// Draws it.
@@ -143,8 +181,8 @@ impl<'a> Panel<'a> {
                 let below = if style == Style::Lines { 0.0 } else { FOOT };
                 let chart = self.chart(Rect { bottom: rect.bottom - below, ..map });
                 self.draw_on(&chart, style, sheet);
-                if let (Some(levels), Style::Bands) = (&self.levels, style)
-                    && levels.single() != Some(0.0)
+                if let Some(levels) =
+                    self.levels.as_ref().filter(|levels| style != Style::Lines && levels.single() != Some(0.0))
                 {
                     let top = chart.rect.bottom + chart::MARGINS[3] + 6.0;
                     let key = Rect { left: chart.rect.left, top, right: key.right, bottom: top + KEY };
@@ -153,7 +191,10 @@ impl<'a> Panel<'a> {
                 self.about(&chart)
             }
         };
-        let about = format!("{}, {}; {about}", one_line(&self.patch.name), shown_unit(&self.field.unit));
+        let about = match style {
+            Style::BandsOfOneKey => format!("{} on {}", one_line(&self.field.meaning), one_line(&self.patch.name)),
+            _ => format!("{}, {}; {about}", one_line(&self.patch.name), shown_unit(&self.field.unit)),
+        };
         sheet.text([left, rect.top + 35.0], Anchor::Start, 13.0, GREY, &font::fitted(&about, 13.0, room));
     }
 
@@ -167,7 +208,10 @@ impl<'a> Panel<'a> {
                 self.draw_border(&grid, 1.2, sheet);
             }
             Some(levels) if style == Style::Lines => self.draw_lines(&grid, levels, chart.rect, sheet),
-            Some(levels) => self.draw_bands(&grid, levels, sheet),
+            Some(levels) => {
+                self.draw_bands(&grid, levels, sheet);
+                values::draw(self, chart, levels, sheet);
+            }
             None => {
                 sheet.text(chart.rect.middle(), Anchor::Middle, 15.0, GREY, "no point has a value");
             }
@@ -198,7 +242,7 @@ impl<'a> Panel<'a> {
         let aside = (widest + 26.0).min(0.24 * rect.width());
         let above = 30.0_f64.min(0.2 * rect.height());
         let room = rect.inside([aside, above, aside, above]);
-        if !self.projection.is_in_mm() {
+        if !self.projection.is_in_mm() || self.fills {
             return Chart::filling(room, bounds).moved_to(rect);
         }
         let [across, up] = bounds.map(|[low, high]| (high - low).max(1e-9));
@@ -214,7 +258,9 @@ impl<'a> Panel<'a> {
     /// How the flank is laid flat.
     pub(super) fn about(&self, chart: &Chart) -> String {
         let stretch = chart.scale[1] / chart.scale[0];
-        if !self.projection.is_axial() {
+        if self.fills && self.projection.is_in_mm() {
+            format!("laid flat, upwards {stretch:.1} times larger")
+        } else if !self.projection.is_axial() {
             if self.projection.is_in_mm() {
                 "laid by the lengths of rows and columns"
             } else {
@@ -331,6 +377,7 @@ fn grain(patch: &Patch, field: &Field) -> f64 {
     let power = match field.unit.as_str() {
         "1/mm" => 1,
         "1/mm^2" => 2,
+        "um" => return SOLVED_TO,
         _ => return 0.0,
     };
     // where nothing is away from the origin there is no curvature to bound

@@ -16,6 +16,7 @@ mod contours;
 mod error;
 mod figure;
 mod font;
+mod gear;
 mod inset;
 mod labels;
 mod legend;
@@ -34,8 +35,10 @@ mod relief;
 mod section;
 mod surface;
 mod svg;
+mod traces;
+mod values;
 
-pub(crate) use palette::{patch_colours, scale_colours};
+pub(crate) use palette::{patch_colours, scale_colours, signed_colours};
 
 pub use contact::{
     ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, ErrorCurves, MOST_CONTACTS, Station,
@@ -44,10 +47,12 @@ pub use contact::{
 pub use error::PictureError;
 use flank_export::Dataset;
 use flank_export::MotionTable;
+pub use gear::{GearDrawing, GearFace, GearFaceKind};
 pub use machine::{DrawnFrame, LinkKind, MachineDrawing, MachineLink};
-use maps::Style;
+use maps::{Style, Words};
 use paint::Item;
-pub use section::{Section, SectionLine, ToolPosition};
+pub use section::{Section, SectionCircle, SectionLine, ToolPosition};
+pub use traces::{TraceChart, TraceDrawing};
 
 /// Sizes of the sheets that line widths and letters are made for: wide and high ones.
 const SHEETS: [[f64; 2]; 2] = [[1200.0, 900.0], [900.0, 1200.0]];
@@ -111,11 +116,17 @@ pub fn picture(dataset: &Dataset, options: &PictureOptions) -> Picture {
     on_sheet(options, |[width, height]| figure::compose(dataset, width, height))
 }
 
+/// Draws a gear: some of its teeth large, their tips up, the whole of it beside them with its data and the names of its surfaces.
+#[must_use]
+pub fn gear(gear: &GearDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| gear::compose(gear, size))
+}
+
 /// Draws fields of numbers as maps over their grids, side by side: `shown` names each by the index of its patch and its own
 /// index among the patch's fields, `note` is written below.
 ///
-/// A flank is turned into the axial plane, the longer of z and radius across, and its sides are named: root and tip by the way
-/// it leans, toe and heel, or the faces. A surface that the axial plane does not show is laid by rows and columns.
+/// A flank lies flat, its length to the right and its tip up, as large as there is room, and its sides are named: root and tip by the
+/// way it leans, toe and heel, or the faces. Where there is room the values stand in it in numbers.
 ///
 /// Values are in bands with round bounds, the lower the darker, from blue to yellow: in grey and for colour-blind readers the
 /// order is the same. Where there are both signs, blue is minus and orange plus, and lines between bands are dashed below zero,
@@ -166,7 +177,34 @@ pub fn field_maps(
     note: &str,
     options: &PictureOptions,
 ) -> Picture {
-    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Bands, size)))
+    on_sheet(options, |size| maps::compose(dataset, &Words { title, note, numbers: &[] }, shown, (Style::Bands, size)))
+}
+
+/// The same with one scale for all fields of a unit, so that they can be held against each other; the meaning of a field stands below its
+/// name.
+#[must_use]
+pub fn comparable_maps(
+    dataset: &Dataset,
+    title: &str,
+    shown: &[(usize, usize)],
+    note: &str,
+    options: &PictureOptions,
+) -> Picture {
+    let words = Words { title, note, numbers: &[] };
+    on_sheet(options, |size| maps::compose(dataset, &words, shown, (Style::BandsOfOneKey, size)))
+}
+
+/// Draws one field as [`field_maps`] does, with lines that sum it up above it on the right: its slopes, its crownings.
+#[must_use]
+pub fn deviation_map(
+    dataset: &Dataset,
+    title: &str,
+    shown: (usize, usize),
+    (note, numbers): (&str, &[String]),
+    options: &PictureOptions,
+) -> Picture {
+    let words = Words { title, note, numbers };
+    on_sheet(options, |size| maps::compose(dataset, &words, &[shown], (Style::Bands, size)))
 }
 
 /// Draws fields of numbers as lines of equal values over their flanks, each with its number: contact lines are those of equal
@@ -179,7 +217,7 @@ pub fn field_lines(
     note: &str,
     options: &PictureOptions,
 ) -> Picture {
-    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Lines, size)))
+    on_sheet(options, |size| maps::compose(dataset, &Words { title, note, numbers: &[] }, shown, (Style::Lines, size)))
 }
 
 /// Draws fields of numbers as heights above their flanks, seen from aside: a topography. The largest of them is
@@ -192,11 +230,11 @@ pub fn topography(
     note: &str,
     options: &PictureOptions,
 ) -> Picture {
-    on_sheet(options, |size| maps::compose(dataset, title, shown, note, (Style::Relief, size)))
+    on_sheet(options, |size| maps::compose(dataset, &Words { title, note, numbers: &[] }, shown, (Style::Relief, size)))
 }
 
-/// Draws a section through a tooth space: the work with strokes on its side of the steel, the tool in each of its positions,
-/// dots where they touch, and a detail of it.
+/// Draws a section through a tooth space: the work with strokes on its side of the steel, circles about its axis, the tool in each of
+/// its positions, in the colour of the moment, dots where they touch, and a detail of it.
 ///
 /// ```
 /// use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
@@ -220,19 +258,27 @@ pub fn topography(
 ///             points: (-10..=10).map(|k| parabola(0.1 * f64::from(k))).collect(),
 ///             normals: (-10..=10).map(|k| [-0.2 * f64::from(k), 1.0]).collect(),
 ///         }],
+///         circles: Vec::new(),
+///         motion: "turn, deg".into(),
 ///         tools: vec![ToolPosition {
-///             label: "turn 3 deg".into(),
+///             value: 3.0,
 ///             lines: vec![tangent(0.5)],
 ///             contacts: vec![parabola(0.5)],
 ///         }],
 ///     },
 ///     &PictureOptions::default(),
 /// );
-/// assert!(drawn.svg().contains("aria-label=\"turn 3 deg\""));
+/// assert!(drawn.svg().contains("aria-label=\"tool at turn, deg\""));
 /// ```
 #[must_use]
 pub fn section(section: &Section, options: &PictureOptions) -> Picture {
     on_sheet(options, |size| section::compose(section, size))
+}
+
+/// Draws profile and helix traces of flanks with their mean lines and the numbers of their evaluation, on one scale.
+#[must_use]
+pub fn traces(drawing: &TraceDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| traces::compose(drawing, size))
 }
 
 /// Draws a machine as a kinematic diagram: on the left its frames, links and axes where they are in space, an arrow along what
@@ -242,8 +288,8 @@ pub fn machine(machine: &MachineDrawing, options: &PictureOptions) -> Picture {
     on_sheet(options, |size| machine::compose(machine, size))
 }
 
-/// Draws the positions of axes over motions: a chart for each axis that moves with each of the motions, and how far it is off a
-/// straight line; the others are named below.
+/// Draws the positions of axes over motions: a chart for each axis that moves along no straight line with a motion, with how far it is off
+/// one, and a table of the others.
 #[must_use]
 pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Picture {
     on_sheet(options, |size| positions::compose(tables, size))

@@ -41,6 +41,11 @@ pub(crate) fn scale_colours() -> Vec<String> {
     SCALE.iter().map(|colour| colour.hex()).collect()
 }
 
+/// Colours at even distances from minus by zero to plus.
+pub(crate) fn signed_colours() -> Vec<String> {
+    SIGNED.iter().map(|colour| colour.hex()).collect()
+}
+
 /// From minus by zero to plus: blue against orange, as light on the one side as on the other.
 const SIGNED: [Colour; 5] = [
     Colour([0, 62, 128]),
@@ -58,6 +63,16 @@ pub(super) fn of_share(share: f64) -> Colour {
 /// The colour of a signed share, from -1 to 1.
 pub(super) fn of_signed(share: f64) -> Colour {
     along(SIGNED, 0.5 * (share + 1.0))
+}
+
+/// Of letters on a ground.
+pub(super) fn on(ground: Colour) -> Colour {
+    if luma(ground) < 120.0 { WHITE } else { INK }
+}
+
+/// Rec. 709 luma, of 255.
+fn luma(colour: Colour) -> f64 {
+    colour.0.iter().zip([0.2126, 0.7152, 0.0722]).map(|(&channel, weight)| weight * f64::from(channel)).sum()
 }
 
 fn along(scale: [Colour; 5], share: f64) -> Colour {
@@ -115,11 +130,6 @@ fn byte(value: f64) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Rec. 709 luma, of 255.
-    fn luma(colour: Colour) -> f64 {
-        colour.0.iter().zip([0.2126, 0.7152, 0.0722]).map(|(&channel, weight)| weight * f64::from(channel)).sum()
-    }
 
     #[test]
     fn the_scale_is_a_scale_in_grey() {

@@ -3,13 +3,19 @@
 use super::chart::{self, Chart, Title};
 use super::figure::{self, Figure, MARGIN};
 use super::font;
-use super::paint::{Anchor, Colour, Place, Rect, Sheet, clipped};
+use super::levels::round_up;
+use super::paint::{Anchor, Colour, Place, Rect, Sheet, clipped, text_rect};
 use super::palette::{self, GREY, INK, WHITE};
 use flank_export::Header;
 use flank_export::text::one_line;
 use flank_export::text::{levelled, with_minus};
 
 const COLUMN: f64 = 300.0;
+/// From name to name in the list, and how high the bar of colours is.
+const PITCH: f64 = 22.0;
+const BAR: f64 = 14.0;
+/// Pieces of the bar.
+const SHADES: usize = 48;
 /// Between the strokes on the side of the steel, and how long they are; sheet units.
 const HATCH: [f64; 2] = [9.0, 10.0];
 /// How many distances between neighbouring contacts the detail is wide.
@@ -24,8 +30,23 @@ pub struct Section {
     pub note: String,
     /// The surfaces of the work.
     pub surfaces: Vec<SectionLine>,
-    /// The tool, position by position, in the order in which they are listed.
+    /// Circles about the axis that the plane cuts, such as those of tip and root.
+    pub circles: Vec<SectionCircle>,
+    /// The motion that the tool's positions differ by, with its unit.
+    pub motion: String,
+    /// The tool, position by position.
     pub tools: Vec<ToolPosition>,
+}
+
+/// Where a surface of revolution meets the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionCircle {
+    /// What stands beside it.
+    pub name: String,
+    /// Whether it stands above.
+    pub is_above: bool,
+    /// Points across and up in the plane, mm.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// Where a surface of the work meets the plane.
@@ -42,8 +63,8 @@ pub struct SectionLine {
 /// A tool where it stands at one moment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToolPosition {
-    /// The motions at that moment, such as `roll -3.2 deg`.
-    pub label: String,
+    /// The motion at that moment, in its unit.
+    pub value: f64,
     /// Where its surfaces meet the plane, mm.
     pub lines: Vec<Vec<[f64; 2]>>,
     /// Where it touches the work there.
@@ -122,10 +143,14 @@ fn draw(section: &Section, chart: &Chart, wide: f64, sheet: &mut Sheet) {
     for (number, line) in section.surfaces.iter().enumerate() {
         inside(&line.points, of_surface(number), 4.0 * wide, sheet);
     }
-    for (number, tool) in section.tools.iter().enumerate() {
+    let ends = ends(section);
+    for tool in &section.tools {
         for line in &tool.lines {
-            inside(line, of_tool(number, section.tools.len()), 1.1 * wide, sheet);
+            inside(line, of_tool(tool.value, ends), 1.1 * wide, sheet);
         }
+    }
+    for circle in &section.circles {
+        draw_circle(circle, chart, wide == 1.0, sheet);
     }
     for contact in section.tools.iter().flat_map(|tool| &tool.contacts) {
         let place = chart.place(*contact);
@@ -167,28 +192,76 @@ fn draw_steel(line: &SectionLine, chart: &Chart, sheet: &mut Sheet) {
     }
 }
 
-/// Surfaces and positions, as close as their number asks for.
+/// A circle dashed, with its name at its middle.
+fn draw_circle(circle: &SectionCircle, chart: &Chart, is_named: bool, sheet: &mut Sheet) {
+    let places: Vec<Place> = circle.points.iter().map(|point| chart.place(*point)).collect();
+    let inside = pieces(&places, chart.rect);
+    for piece in &inside {
+        sheet.dashes(piece, [14.0, 5.0], GREY, 1.0);
+    }
+    let middle = inside.first().map(|piece| piece[piece.len() / 2]);
+    if let Some([x, y]) = middle.filter(|_| is_named) {
+        let text = one_line(&circle.name);
+        // the tip's above it, the root's below: the tool is between
+        let at = [x, if circle.is_above { y - 8.0 } else { y + 19.0 }];
+        sheet.polygon(&text_rect(at, Anchor::Middle, 13.0, &text).shrunk(-1.0).corners(), WHITE, WHITE, 0.0);
+        sheet.text(at, Anchor::Middle, 13.0, GREY, &text);
+    }
+}
+
+/// The names of the surfaces, and the bar of colours of the tool's positions.
 fn draw_list(section: &Section, rect: Rect, sheet: &mut Sheet) {
-    let (surfaces, tools) = (section.surfaces.len(), section.tools.len());
-    let pitch = (rect.height() / (surfaces + tools).max(1) as f64).clamp(13.0, 20.0);
-    let most = (rect.height() / pitch).max(1.0) as usize;
-    let shown = if surfaces + tools > most { most.saturating_sub(surfaces + 1) } else { tools };
+    let count = section.surfaces.len() as f64;
+    let room = if section.tools.is_empty() { rect.height() } else { rect.height() - 70.0 };
+    let pitch = (room / count.max(1.0)).clamp(8.0, PITCH);
     let size = 0.7 * pitch;
-    let lines = section.surfaces.iter().enumerate().map(|(k, line)| (of_surface(k), 4.0, one_line(&line.name)));
-    let positions = section.tools.iter().take(shown).enumerate();
-    let positions = positions.map(|(k, tool)| (of_tool(k, tools), 1.6, with_minus(&one_line(&tool.label))));
-    let text_left = rect.left + 36.0;
-    let mut middle = rect.top + 0.3 * pitch;
-    for (colour, width, text) in lines.chain(positions) {
-        sheet.line(&[[rect.left, middle], [rect.left + 24.0, middle]], colour, width);
-        let text = font::fitted(&text, size, rect.right - text_left);
-        sheet.text([text_left, middle + 0.35 * size], Anchor::Start, size, INK, &text);
-        middle += pitch;
+    let left = rect.left + 36.0;
+    for (k, line) in section.surfaces.iter().enumerate() {
+        let middle = rect.top + (k as f64 + 0.3) * pitch;
+        sheet.line(&[[rect.left, middle], [rect.left + 24.0, middle]], of_surface(k), 4.0);
+        let text = font::fitted(&one_line(&line.name), size, rect.right - left);
+        sheet.text([left, middle + 0.35 * size], Anchor::Start, size, INK, &text);
     }
-    if shown < tools {
-        let rest = format!("and {} more positions", tools - shown);
-        sheet.text([text_left, middle + 0.35 * size], Anchor::Start, size, GREY, &rest);
+    let top = rect.top + count * pitch + 34.0;
+    draw_bar(section, Rect { top, bottom: top + BAR, ..rect }, sheet);
+}
+
+/// What colour the tool has at which moment, with a stroke for each position that is drawn.
+fn draw_bar(section: &Section, bar: Rect, sheet: &mut Sheet) {
+    let ends = ends(section);
+    let [low, high] = ends;
+    if section.tools.is_empty() {
+        return;
     }
+    let title = font::fitted(&format!("tool at {}", one_line(&section.motion)), 14.0, bar.width());
+    sheet.text([bar.left, bar.top - 12.0], Anchor::Start, 14.0, INK, &title);
+    let bar = bar.inside([14.0, 0.0, 14.0, 0.0]);
+    let place =
+        |value: f64| if high > low { bar.left + bar.width() * (value - low) / (high - low) } else { bar.middle()[0] };
+    for k in 0..SHADES {
+        let at = |k: usize| bar.left + bar.width() * k as f64 / SHADES as f64;
+        let colour = of_tool(low + (high - low) * (k as f64 + 0.5) / SHADES as f64, ends);
+        sheet.polygon(&Rect { left: at(k), right: at(k + 1), ..bar }.corners(), colour, colour, 1.0);
+    }
+    for tool in &section.tools {
+        sheet.line(&[[place(tool.value), bar.top], [place(tool.value), bar.bottom]], WHITE, 1.4);
+    }
+    let frame = bar.corners();
+    sheet.line(&[frame[0], frame[1], frame[2], frame[3], frame[0]], INK, 0.8);
+    let step = round_up((high - low).max(1e-9) / 4.0);
+    let [from, to] = [(low / step).ceil() as i64, (high / step).floor() as i64];
+    for value in (from..=to).map(|k| k as f64 * step) {
+        sheet.line(&[[place(value), bar.bottom], [place(value), bar.bottom + 4.0]], INK, 0.8);
+        let text = levelled(value, step);
+        sheet.text([place(value), bar.bottom + 18.0], Anchor::Middle, 12.0, INK, &text);
+    }
+}
+
+/// The least and the greatest moment.
+fn ends(section: &Section) -> [f64; 2] {
+    let values = section.tools.iter().map(|tool| tool.value);
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
 /// Dark enough for a line on white.
@@ -197,8 +270,8 @@ fn of_surface(number: usize) -> Colour {
 }
 
 /// From dark blue to a yellow that still shows on white.
-fn of_tool(number: usize, count: usize) -> Colour {
-    let share = number as f64 / count.saturating_sub(1).max(1) as f64;
+fn of_tool(value: f64, [low, high]: [f64; 2]) -> Colour {
+    let share = if high > low { (value - low) / (high - low) } else { 0.5 };
     palette::of_share(0.06 + 0.7 * share)
 }
 

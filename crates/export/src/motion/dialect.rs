@@ -74,6 +74,16 @@ impl Dialect {
         }
     }
 
+    /// The words that turn tool-centre control on and off.
+    pub(super) fn tip_control(self) -> [&'static str; 2] {
+        match self {
+            // the tip's place in the work, the tool's length as it is
+            Dialect::Fanuc => ["G43.4 H1", "G49"],
+            Dialect::Siemens840D => ["TRAORI", "TRAFOOF"],
+            Dialect::LinuxCnc => ["M428", "M429"],
+        }
+    }
+
     /// An axis word.
     pub(super) fn word(self, address: &str, position: &str) -> String {
         let is_extended = address.len() > 1;

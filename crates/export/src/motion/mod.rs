@@ -4,6 +4,7 @@ mod csv;
 mod dialect;
 mod json;
 mod nc;
+mod passes;
 mod table;
 
 pub use self::csv::write_motion_csv;
@@ -11,4 +12,5 @@ pub use dialect::Dialect;
 pub(crate) use json::schema as json_schema;
 pub use json::write_motion_json;
 pub use nc::{NcError, write_nc};
+pub use passes::{PassProgram, ProgramPass, WordsOf, write_passes};
 pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Rates, Series};

@@ -139,7 +139,7 @@ pub fn write_nc(
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
     table.check()?;
-    check_axes(table, dialect)?;
+    check_axes(&table.axes, dialect)?;
     let blocks = blocks(table, dialect, cutting_time)?;
     let step = dialect.numbering(blocks.len());
     for line in dialect.opening() {
@@ -160,8 +160,8 @@ pub fn write_nc(
     Ok(())
 }
 
-fn check_axes(table: &MotionTable, dialect: Dialect) -> Result<(), NcError> {
-    for (index, axis) in table.axes.iter().enumerate() {
+pub(super) fn check_axes(axes: &[MachineAxis], dialect: Dialect) -> Result<(), NcError> {
+    for (index, axis) in axes.iter().enumerate() {
         if !dialect.has_axis(&axis.address) {
             return Err(NcError::Address {
                 axis: axis.name.clone(),
@@ -173,7 +173,7 @@ fn check_axes(table: &MotionTable, dialect: Dialect) -> Result<(), NcError> {
                 },
             });
         }
-        if let Some(other) = table.axes[..index].iter().find(|other| other.address == axis.address) {
+        if let Some(other) = axes[..index].iter().find(|other| other.address == axis.address) {
             return Err(NcError::SameAddress {
                 first: other.name.clone(),
                 second: axis.name.clone(),
@@ -208,8 +208,12 @@ fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String>
 }
 
 fn axis_line(table: &MotionTable, index: usize, axis: &MachineAxis) -> String {
+    extent_line(axis, table.extent(index).unwrap_or_default())
+}
+
+/// What is said of an axis in the head.
+pub(super) fn extent_line(axis: &MachineAxis, mut ends: [f64; 2]) -> String {
     let unit = axis.unit().symbol();
-    let mut ends = table.extent(index).unwrap_or_default();
     if axis.reversed {
         ends.reverse();
     }
@@ -251,25 +255,35 @@ fn blocks(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Ve
 
 /// The axis words of a row.
 fn positions(table: &MotionTable, dialect: Dialect, row: usize) -> Result<Vec<String>, NcError> {
-    /// What conversion to degrees may add to an end of the travel.
-    const ROUNDING: f64 = 1e-9;
     let row = &table.rows[row];
     let word = |(axis, position): (&MachineAxis, &f64)| {
-        let (printed, unit) = (axis.printed(*position), axis.unit().symbol());
-        let travel = axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let [low, high] = axis.written(axis.programmed_ends(travel));
-        let is_within = |value: f64| value >= low - ROUNDING && value <= high + ROUNDING;
-        if !printed.parse().is_ok_and(is_within) {
-            return Err(NcError::BeyondTravel {
-                axis: axis.name.clone(),
-                position: format!("{printed} {unit}"),
-                motion: motion_text(table, row.motion),
-                travel: format!("{} .. {} {unit}", shortest(low), shortest(high)),
-            });
-        }
-        Ok(dialect.word(&axis.address, &printed))
+        axis_word(axis, *position, dialect, &|| motion_text(table, row.motion))
     };
     table.axes.iter().zip(&row.axes).map(word).collect()
+}
+
+/// The word of an axis within its travel; `place` says where it would not be.
+pub(super) fn axis_word(
+    axis: &MachineAxis,
+    position: f64,
+    dialect: Dialect,
+    place: &dyn Fn() -> String,
+) -> Result<String, NcError> {
+    /// What conversion to degrees may add to an end of the travel.
+    const ROUNDING: f64 = 1e-9;
+    let (printed, unit) = (axis.printed(position), axis.unit().symbol());
+    let travel = axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let [low, high] = axis.written(axis.programmed_ends(travel));
+    let is_within = |value: f64| value >= low - ROUNDING && value <= high + ROUNDING;
+    if !printed.parse().is_ok_and(is_within) {
+        return Err(NcError::BeyondTravel {
+            axis: axis.name.clone(),
+            position: format!("{printed} {unit}"),
+            motion: place(),
+            travel: format!("{} .. {} {unit}", shortest(low), shortest(high)),
+        });
+    }
+    Ok(dialect.word(&axis.address, &printed))
 }
 
 /// The inverse-time feed of each block but the first, 1/min.

@@ -26,6 +26,21 @@ pub struct BodyMesh<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
+/// Where the frame of a body stands in another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedFrame {
+    /// Its origin, mm.
+    pub origin: [f64; 3],
+    /// The directions of its x, y and z.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl Default for PlacedFrame {
+    fn default() -> PlacedFrame {
+        PlacedFrame { origin: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+}
+
 /// What a reader must know to use a closed mesh, then the caller's own sentences.
 fn sentences(header: &Header) -> Vec<String> {
     let own = header.conventions.iter().map(|sentence| one_line(sentence));

@@ -7,7 +7,7 @@ mod spline;
 use std::io::Write;
 
 pub use face::{Deviation, Face};
-pub use solid::{GearBody, TurnedSegment, spline_deviation, write_step_body};
+pub use solid::{GearBody, PlacedBody, TurnedSegment, spline_deviation, write_step_assembly, write_step_body};
 
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;

@@ -7,6 +7,7 @@ use super::spline::SplineSurface;
 use super::{DataSection, knots, numbers, real, text};
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
+use crate::solid::PlacedFrame;
 use crate::vector::Vector;
 
 /// A line or an arc `[z, rho]` of the outline of a turned blank, the material on its left.
@@ -32,6 +33,8 @@ pub struct GearBody {
     /// The surfaces of one space in the order of the angle about z, each with its name and a grid of points, row by row, mm: rows across the
     /// space, columns from where it begins to where it ends. Neighbours have a row in common, and all have as many columns.
     pub space: Vec<(String, Vec<Vector>, [usize; 2])>,
+    /// Whether the last surface of a space ends in the line where the first one of the next begins: then no tooth has a land of the blank.
+    pub has_edge: bool,
     /// The segments of the outline that spaces begin at, leave the blank by, and end at.
     pub ends: [TurnedSegment; 3],
     /// The others, from the end of the spaces round to their beginning.
@@ -56,39 +59,99 @@ pub fn spline_deviation(points: Vec<Vector>, counts: [usize; 2], doubled: &[Vect
     SplineSurface::through(points, counts).off(doubled)
 }
 
+/// A gear where it is mounted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedBody<'b> {
+    /// In its own frame.
+    pub body: &'b GearBody,
+    /// That frame in the one of the assembly.
+    pub place: PlacedFrame,
+}
+
 /// Writes a gear as one STEP AP242 file, mm: a `MANIFOLD_SOLID_BREP` whose edges are splines that both their faces have, with volume, area
 /// and centre as geometric validation properties (CAx-IF recommended practices, version 4.3). The same body gives the same bytes.
 ///
 /// # Errors
 /// When the stream refuses.
 pub fn write_step_body(header: &Header, body: &GearBody, out: &mut dyn Write) -> Result<(), WriteError> {
-    let told = format!(
+    super::write_head(header, &[told(body)], out)?;
+    let mut part = DataSection { out, last: 0 };
+    part.product_of_body(body)?;
+    super::write_end(part.out)
+}
+
+/// Writes gears where they are mounted as an assembly in one STEP AP242 file, mm: a product with its `MANIFOLD_SOLID_BREP` for each, and their
+/// places in the product that they are parts of.
+///
+/// # Errors
+/// When the stream refuses.
+pub fn write_step_assembly(header: &Header, bodies: &[PlacedBody<'_>], out: &mut dyn Write) -> Result<(), WriteError> {
+    let told: Vec<String> = bodies.iter().map(|placed| told(placed.body)).collect();
+    super::write_head(header, &told, out)?;
+    let mut part = DataSection { out, last: 0 };
+    let [product, shape] = part.product_and_shape(&header.job)?;
+    let (context, _) = part.units_of(LEAST_UNCERTAINTY)?;
+    let own = part.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])?;
+    let mut places = Vec::new();
+    for PlacedBody { place: PlacedFrame { origin, axes }, .. } in bodies {
+        places.push(part.placement(*origin, axes[2], axes[0])?);
+    }
+    let items = numbers(&[&[own][..], &places].concat());
+    let whole = part.add(&format!("SHAPE_REPRESENTATION({},{items},#{context})", text(&header.job)))?;
+    part.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#{shape},#{whole})"))?;
+    for (k, (placed, place)) in bodies.iter().zip(places).enumerate() {
+        let BodyProduct { definition, place: from, representation } = part.product_of_body(placed.body)?;
+        let name = text(&placed.body.name);
+        let usage = format!("NEXT_ASSEMBLY_USAGE_OCCURRENCE('{}',{name},'',#{product},#{definition},$)", k + 1);
+        let usage = part.add(&usage)?;
+        let shape = part.add(&format!("PRODUCT_DEFINITION_SHAPE('','',#{usage})"))?;
+        let moved = part.add(&format!("ITEM_DEFINED_TRANSFORMATION('','',#{from},#{place})"))?;
+        let related = part.add(&format!(
+            "(REPRESENTATION_RELATIONSHIP('','',#{representation},#{whole})REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{moved})SHAPE_REPRESENTATION_RELATIONSHIP())"
+        ))?;
+        part.add(&format!("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{related},#{shape})"))?;
+    }
+    super::write_end(part.out)
+}
+
+/// What a body is and how far its faces are off, in one line.
+fn told(body: &GearBody) -> String {
+    format!(
         "`{}`: {} spaces of {} faces, off by at most {:.2e} um; volume {:.4} mm3",
         body.name,
         body.teeth,
         body.space.len(),
         1e3 * body.deviation,
         body.volume
-    );
-    super::write_head(header, &[told], out)?;
-    let mut part = DataSection { out, last: 0 };
-    let [product, shape] = part.product_and_shape(&body.name)?;
-    let (context, length) = part.units_of(body.deviation.max(LEAST_UNCERTAINTY))?;
-    let faces = Shell::new(&mut part, body)?.faces()?;
-    let shell = part.add(&format!("CLOSED_SHELL('',{})", numbers(&faces)))?;
-    let name = text(&body.name);
-    let solid = part.add(&format!("MANIFOLD_SOLID_BREP({name},#{shell})"))?;
-    let place = part.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])?;
-    let made = part.add(&format!("ADVANCED_BREP_SHAPE_REPRESENTATION({name},(#{place},#{solid}),#{context})"))?;
-    part.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#{shape},#{made})"))?;
-    part.validation(product, (context, length), body)?;
-    super::write_end(part.out)
+    )
+}
+
+/// A product that is a body.
+struct BodyProduct {
+    definition: usize,
+    place: usize,
+    representation: usize,
 }
 
 /// What readers take for one point at the least, mm.
 const LEAST_UNCERTAINTY: f64 = 1e-7;
 
 impl DataSection<'_> {
+    fn product_of_body(&mut self, body: &GearBody) -> Result<BodyProduct, WriteError> {
+        let [definition, shape] = self.product_and_shape(&body.name)?;
+        let (context, length) = self.units_of(body.deviation.max(LEAST_UNCERTAINTY))?;
+        let faces = Shell::new(self, body)?.faces()?;
+        let shell = self.add(&format!("CLOSED_SHELL('',{})", numbers(&faces)))?;
+        let name = text(&body.name);
+        let solid = self.add(&format!("MANIFOLD_SOLID_BREP({name},#{shell})"))?;
+        let place = self.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])?;
+        let made = format!("ADVANCED_BREP_SHAPE_REPRESENTATION({name},(#{place},#{solid}),#{context})");
+        let representation = self.add(&made)?;
+        self.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})"))?;
+        self.validation(definition, (context, length), body)?;
+        Ok(BodyProduct { definition, place, representation })
+    }
+
     fn direction(&mut self, [x, y, z]: Vector) -> Result<usize, WriteError> {
         self.add(&format!("DIRECTION('',({},{},{}))", real(x), real(y), real(z)))
     }
@@ -213,41 +276,32 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
 
     /// Points, vertices and edges of all spaces.
     fn spaces(&mut self) -> Result<(), WriteError> {
-        let pitch = TAU / self.body.teeth as f64;
         let count = self.splines.len();
         let mut corners: Vec<[[usize; 2]; 2]> = Vec::new();
         for tooth in 0..self.body.teeth {
-            let mut all: Vec<Vec<usize>> = Vec::new();
-            for k in 0..count {
-                let columns = self.splines[k].directions[1].count;
-                // the first row is the last one of the surface before
-                let mut points: Vec<usize> = match all.last() {
-                    Some(before) => before[before.len() - columns..].to_vec(),
-                    None => Vec::new(),
-                };
-                for at in points.len()..self.splines[k].poles.len() {
-                    let pole = turned(self.splines[k].poles[at], pitch * tooth as f64);
-                    points.push(self.part.point(pole)?);
-                }
-                all.push(points);
-            }
-            let columns = self.splines[0].directions[1].count;
-            let row = |k: usize| -> Vec<usize> {
-                if k == 0 { all[0][..columns].to_vec() } else { all[k - 1][all[k - 1].len() - columns..].to_vec() }
-            };
+            let poles = self.poles_of(tooth)?;
+            // where teeth end in an edge, it is one line of both spaces
+            let before =
+                corners.last().filter(|_| self.body.has_edge).map(|[_, last]| (self.rows[tooth - 1][count], *last));
+            let is_last = self.body.has_edge && tooth + 1 == self.body.teeth;
+            let behind = corners.first().filter(|_| is_last).map(|[first, _]| (self.rows[0][0], *first));
             let (mut rows, mut vertices) = (Vec::new(), Vec::new());
             for k in 0..=count {
-                let poles = row(k);
-                let ends = [self.vertex(poles[0])?, self.vertex(poles[columns - 1])?];
-                rows.push(self.spline_edge(ends, &poles, (k.min(count - 1), 1))?);
+                let there = if k == 0 { before } else { behind.filter(|_| k == count) };
+                let (row, ends) = match there {
+                    Some(there) => there,
+                    None => self.row(&poles, k)?,
+                };
+                rows.push(row);
                 vertices.push(ends);
             }
+            let columns = self.splines[0].directions[1].count;
             let mut sides = Vec::new();
             for k in 0..count {
                 let mut both = [Edge(0); 2];
                 for (end, column) in [0, columns - 1].into_iter().enumerate() {
-                    let poles: Vec<usize> = all[k].iter().skip(column).step_by(columns).copied().collect();
-                    both[end] = self.spline_edge([vertices[k][end], vertices[k + 1][end]], &poles, (k, 0))?;
+                    let line: Vec<usize> = poles[k].iter().skip(column).step_by(columns).copied().collect();
+                    both[end] = self.spline_edge([vertices[k][end], vertices[k + 1][end]], &line, (k, 0))?;
                 }
                 sides.push(both);
             }
@@ -259,7 +313,10 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
             corners.push([vertices[0], vertices[count]]);
             self.rows.push(rows);
             self.columns.push(sides);
-            self.poles.push(all);
+            self.poles.push(poles);
+        }
+        if self.body.has_edge {
+            return Ok(());
         }
         let tip = &self.body.ends[1];
         for tooth in 0..self.body.teeth {
@@ -269,6 +326,43 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
             self.tips.push(both);
         }
         Ok(())
+    }
+
+    /// The poles of a space's surfaces as points: a row that two have in common is there once.
+    fn poles_of(&mut self, tooth: usize) -> Result<Vec<Vec<usize>>, WriteError> {
+        let angle = TAU / self.body.teeth as f64 * tooth as f64;
+        let columns = self.splines[0].directions[1].count;
+        let is_last = self.body.has_edge && tooth > 0 && tooth + 1 == self.body.teeth;
+        let mut all: Vec<Vec<usize>> = Vec::new();
+        for k in 0..self.splines.len() {
+            let before = match all.last() {
+                Some(before) => Some(before),
+                None => self.poles.last().filter(|_| self.body.has_edge).and_then(|space| space.last()),
+            };
+            let mut points: Vec<usize> = before.map_or(Vec::new(), |before| before[before.len() - columns..].to_vec());
+            let behind = is_last && k + 1 == self.splines.len();
+            let own = self.splines[k].poles.len() - if behind { columns } else { 0 };
+            for at in points.len()..own {
+                let pole = turned(self.splines[k].poles[at], angle);
+                points.push(self.part.point(pole)?);
+            }
+            if behind {
+                points.extend_from_slice(&self.poles[0][0][..columns]);
+            }
+            all.push(points);
+        }
+        Ok(all)
+    }
+
+    /// The line between a surface of a space and the one before, with its vertices.
+    fn row(&mut self, poles: &[Vec<usize>], k: usize) -> Result<(Edge, [usize; 2]), WriteError> {
+        let columns = self.splines[0].directions[1].count;
+        let line = match k.checked_sub(1) {
+            None => poles[0][..columns].to_vec(),
+            Some(before) => poles[before][poles[before].len() - columns..].to_vec(),
+        };
+        let ends = [self.vertex(line[0])?, self.vertex(line[columns - 1])?];
+        Ok((self.spline_edge(ends, &line, (k.min(self.splines.len() - 1), 1))?, ends))
     }
 
     /// The circles of the rest of the outline. Seams of the rest lie at the angle of the end's first vertex, that of a beginning which is
@@ -305,13 +399,19 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
             }
         }
         let [begin, tip, end] = self.body.ends.clone();
-        let (surface, sense) = self.surface(&tip, self.first[0].0)?;
-        for tooth in 0..self.body.teeth {
+        let mut land = None;
+        for tooth in 0..self.tips.len() {
+            // all lands lie on one surface of revolution
+            let surface = match land {
+                Some(surface) => surface,
+                None => self.surface(&tip, self.first[0].0)?,
+            };
+            land = Some(surface);
             let next = (tooth + 1) % self.body.teeth;
             let own = *self.rows[tooth].last().expect("a line at the tip");
             let [at_begin, at_end] = self.tips[tooth];
             let sides = [(own, true), (at_end, true), (self.rows[next][0], false), (at_begin, false)];
-            faces.push(self.face(&tip.name, &[sides.to_vec()], (surface, sense))?);
+            faces.push(self.face(&tip.name, &[sides.to_vec()], surface)?);
         }
         faces.push(self.end_face(&begin, 0)?);
         faces.push(self.end_face(&end, 1)?);
@@ -357,7 +457,7 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
         let mut profile = Vec::new();
         for tooth in 0..self.body.teeth {
             profile.extend(self.columns[tooth].iter().map(|ends| (ends[end], is_begin)));
-            profile.push((self.tips[tooth][end], is_begin));
+            profile.extend(self.tips.get(tooth).map(|ends| (ends[end], is_begin)));
         }
         let (angle, vertex) = self.first[end];
         let ring = if is_begin { self.rings.len() - 1 } else { 0 };

@@ -57,7 +57,8 @@ fn registers(language: Language, scope: &Scope, tape: &Tape) -> Vec<String> {
 fn unread<'a>(scope: &'a Scope, tape: &Tape) -> impl Iterator<Item = &'a String> {
     let reads = tape.instructions().iter().flat_map(|step| match step.operation {
         Operation::Binary(_) | Operation::Settled => [step.a, step.b],
-        Operation::Middle | Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => [step.a; 2],
+        Operation::Middle | Operation::Widened => [step.a; 2],
+        Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => [step.a; 2],
     });
     let read: Vec<u32> = reads.chain(tape.outputs().iter().copied()).collect();
     (0u32..).zip(scope.arguments()).filter(move |(register, _)| !read.contains(register)).map(|(_, name)| name)
@@ -109,7 +110,7 @@ impl Writer<'_> {
                 let text = self.call(Helper::Curve, &[&pieces, &domain, &order.to_string(), &x]);
                 self.define(out, &text);
             }
-            Operation::Middle => self.registers[out as usize] = x,
+            Operation::Middle | Operation::Widened => self.registers[out as usize] = x,
             Operation::Settled => {
                 let size = self.unary(Unary::Abs, &y);
                 let root = self.library("sqrt", &[&format!("{} - {size}", self.language.number(1.0))]);

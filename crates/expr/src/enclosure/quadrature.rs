@@ -3,17 +3,23 @@
 use super::interval::{Interval, IntervalEvaluator};
 use super::taylor::TaylorEvaluator;
 use crate::symbolic::graph::Expr;
+use crate::symbolic::integral;
 use crate::tape::Tape;
 
 /// Nodes of a piece, at most.
 const MOST_NODES: usize = 16;
+/// Coefficients of the integrand's power series that are bounded.
+const TERMS: usize = 2 * MOST_NODES + 1;
 /// Pieces of the range, at most.
 const MOST_PIECES: u32 = 64;
 /// Parts of the range in which the integrand is bounded: at first, and at most.
 const FEWEST_PARTS: u32 = 16;
-const MOST_PARTS: u32 = 4096;
+const MOST_PARTS: u32 = 256;
 /// What may be left, over the length of the range times the greatest magnitude of the integrand: a few roundings.
 const ALLOWED: f64 = 4.0 * f64::EPSILON;
+
+/// How far the numbers of a rule may be off, its places over the length of the range and its weights together over their sum.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
 
 /// An end of an integral.
 #[derive(Clone, Copy, Debug)]
@@ -38,15 +44,23 @@ pub enum Unproven {
     TooLong,
 }
 
-/// The integral of an integrand over a variable as a sum over the nodes of Gauss–Legendre quadrature, which differentiates, encloses and
-/// runs like any other sum.
+impl Unproven {
+    /// Parts after which it stays so. The bounds are sharp early, while a pole or a kink is looked for more closely.
+    fn most_parts(self) -> u32 {
+        if self == Unproven::TooLong { MOST_PARTS / 4 } else { MOST_PARTS }
+    }
+}
+
+/// The integral of an integrand over a variable, by a sum over the nodes of Gauss–Legendre quadrature. Over intervals it is enclosed, with
+/// what the sum leaves.
 ///
 /// With `n` nodes on each of `p` pieces of a range of length L, `κ L²ⁿ⁺¹ p⁻²ⁿ M` bounds what is left, M being a bound on the
 /// integrand's Taylor coefficient of order 2n over the range, and κ = n!⁴ / ((2n + 1) (2n)!²). The fewest nodes are taken for which
 /// this is proven to be at most 1e-15 L max |integrand| for all values in the given ranges. Where the integrand stands still but for
 /// the variable, and so does the lower end, the middle of the upper end's range splits the integral: the part up to it is a constant.
 ///
-/// By a variable that moves the ends alone, its derivative is the integrand there: no sum.
+/// By a variable that moves the ends alone, its derivative is the integrand there: no sum. By one that moves the integrand, it is the
+/// derivative of the sum.
 ///
 /// `ranges` has the variables that the integrand depends on beside its own; those that stand still as points.
 ///
@@ -76,12 +90,15 @@ pub fn integral<'g>(
     let slopes = Tape::new(&slopes, &inputs).expect("every variable of the integrand has a range");
     let integrand = Integrand { expr: integrand, variable, tape, slopes, ranges };
     let stands = integrand.ranges.iter().chain([&from.range]).all(|range| is_point(*range));
-    if !stands || is_point(to.range) {
-        return integrand.between(from, to);
-    }
-    let middle = to.range.middle();
-    let middle = End { expr: variable.graph().constant(middle), range: Interval::point(middle) };
-    Ok(integrand.between(from, middle)? + integrand.between(middle, to)?)
+    let value = if !stands || is_point(to.range) {
+        integrand.between(from, to)?
+    } else {
+        let middle = to.range.middle();
+        let middle = End { expr: variable.graph().constant(middle), range: Interval::point(middle) };
+        let (first, second) = (integrand.between(from, middle)?, integrand.between(middle, to)?);
+        (first.0 + second.0, first.1 + second.1)
+    };
+    Ok(integral::integral(integrand.expr, variable, [from.expr, to.expr], value))
 }
 
 /// Narrow enough to be one number that was rounded.
@@ -99,18 +116,21 @@ struct Integrand<'g> {
 }
 
 impl<'g> Integrand<'g> {
-    fn between(&self, from: End<'g>, to: End<'g>) -> Result<Expr<'g>, Unproven> {
+    /// The sum over the nodes, and how far it is off at the most.
+    fn between(&self, from: End<'g>, to: End<'g>) -> Result<(Expr<'g>, f64), Unproven> {
         let (low, high) = (from.range.lo.min(to.range.lo), from.range.hi.max(to.range.hi));
         let length = (to.range - from.range).magnitude();
         if low == high || from.expr == to.expr {
-            return Ok(self.variable.graph().constant(0.0));
+            return Ok((self.variable.graph().constant(0.0), 0.0));
         }
         let mut parts = FEWEST_PARTS;
         loop {
             let found = self.bounds(low, high, parts).and_then(|bounds| bounds.fewest(length).ok_or(Unproven::TooLong));
             match found {
-                Ok((nodes, pieces)) => return Ok(self.written_out(from.expr, to.expr, nodes, pieces)),
-                Err(reason) if parts >= MOST_PARTS => return Err(reason),
+                Ok(Rule { nodes, pieces, left }) => {
+                    return Ok((self.written_out(from.expr, to.expr, nodes, pieces), length * left));
+                }
+                Err(reason) if parts >= reason.most_parts() => return Err(reason),
                 Err(_) => parts *= 4,
             }
         }
@@ -118,7 +138,6 @@ impl<'g> Integrand<'g> {
 
     /// Bounds on the integrand's even Taylor coefficients over a range, from those over its parts.
     fn bounds(&self, low: f64, high: f64, parts: u32) -> Result<Bounds, Unproven> {
-        const TERMS: usize = 2 * MOST_NODES + 1;
         let mut series = TaylorEvaluator::new(&self.tape, TERMS - 1);
         let (mut values, mut slopes) = (IntervalEvaluator::new(&self.tape), IntervalEvaluator::new(&self.slopes));
         let mut inputs = vec![Interval::point(0.0); TERMS * (self.ranges.len() + 1)];
@@ -129,8 +148,8 @@ impl<'g> Integrand<'g> {
         }
         let own = TERMS * self.ranges.len();
         inputs[own + 1] = Interval::point(1.0);
-        let mut out = vec![Interval::WHOLE; TERMS];
-        let mut bounds = Bounds { value: 0.0, even: [0.0; MOST_NODES] };
+        let (mut out, mut at_middle) = (vec![Interval::WHOLE; TERMS], vec![Interval::WHOLE; TERMS]);
+        let mut bounds = Bounds { value: 0.0, slope: 0.0, even: [0.0; MOST_NODES] };
         let end = |k: u32| low + (high - low) * (f64::from(k) / f64::from(parts));
         for k in 0..parts {
             let last = if k + 1 == parts { high } else { end(k + 1) };
@@ -141,14 +160,19 @@ impl<'g> Integrand<'g> {
             slopes.run(&at, &mut slope);
             inputs[own] = part;
             series.run(&inputs, &mut out);
+            let middle = part.middle();
+            inputs[own] = Interval::point(middle);
+            series.run(&inputs, &mut at_middle);
             let is_smooth = value.iter().chain(&slope).all(|found| found.continuous)
                 && out.iter().all(|term| term.magnitude().is_finite());
             if !is_smooth {
-                return Err(Unproven::Unbounded(part.middle()));
+                return Err(Unproven::Unbounded(middle));
             }
             bounds.value = bounds.value.max(value[0].magnitude());
+            bounds.slope = bounds.slope.max(slope[0].magnitude());
+            let reach = (middle - part.lo).max(part.hi - middle);
             for (n, bound) in bounds.even.iter_mut().enumerate() {
-                *bound = bound.max(out[2 * (n + 1)].magnitude());
+                *bound = bound.max(over_part(2 * (n + 1), &at_middle, reach, out[TERMS - 1]));
             }
         }
         Ok(bounds)
@@ -168,34 +192,43 @@ impl<'g> Integrand<'g> {
                 sum = sum + graph.constant(0.5 * weight / f64::from(pieces)) * value;
             }
         }
-        let integral = whole * sum;
-        self.remember_slopes(integral, from, to);
-        integral
-    }
-
-    /// By what moves the ends alone, an integral changes as its integrand there says: no sum over nodes.
-    fn remember_slopes(&self, integral: Expr<'g>, from: Expr<'g>, to: Expr<'g>) {
-        let graph = self.variable.graph();
-        let [at_from, at_to] = [from, to].map(|end| graph.substitute(&[self.expr], &[(self.variable, end)])[0]);
-        let fixed = graph.variables_of(&[self.expr]);
-        for variable in graph.variables_of(&[from, to]).into_iter().filter(|variable| !fixed.contains(variable)) {
-            let by = graph.expr_of(variable);
-            let slope = at_to * to.derivative(by) - at_from * from.derivative(by);
-            graph.remember_derivative(variable, integral.id, slope.id);
-        }
+        whole * sum
     }
 }
 
-/// Bounds on the magnitude of an integrand and of its Taylor coefficients of order 2, 4, ….
+/// A bound on the coefficient of an order over a part, from the series at its middle and the coefficient of the last order over it: far
+/// less than what the recurrence says of the whole part.
+fn over_part(order: usize, at_middle: &[Interval], reach: f64, last: Interval) -> f64 {
+    let (mut power, mut sum) = (1.0, 0.0);
+    let coefficients = at_middle[..TERMS - 1].iter().chain([&last]);
+    for (k, coefficient) in coefficients.enumerate().skip(order) {
+        sum += power * coefficient.magnitude();
+        power *= reach * (k + 1) as f64 / (k + 1 - order) as f64;
+    }
+    sum
+}
+
+/// How an integral is written out.
+#[derive(Clone, Copy)]
+struct Rule {
+    /// Of each piece.
+    nodes: usize,
+    pieces: u32,
+    /// What it leaves at the most, over the length of the range.
+    left: f64,
+}
+
+/// Bounds on the magnitude of an integrand, of its slope, and of its Taylor coefficients of order 2, 4, ….
 struct Bounds {
     value: f64,
+    slope: f64,
     even: [f64; MOST_NODES],
 }
 
 impl Bounds {
     /// The numbers of nodes and of pieces with the fewest nodes in all for which the bound is small enough.
-    fn fewest(&self, length: f64) -> Option<(usize, u32)> {
-        let mut best: Option<(usize, u32)> = None;
+    fn fewest(&self, length: f64) -> Option<Rule> {
+        let mut best: Option<Rule> = None;
         let mut pieces = 1;
         while pieces <= MOST_PIECES {
             // n!⁴ / (2n)!² grows by the factor (n / (2 (2n − 1)))² · … from n − 1 to n
@@ -206,10 +239,12 @@ impl Bounds {
                 let left =
                     ratio / (2.0 * count + 1.0) * (length / f64::from(pieces)).powi(2 * n as i32) * self.even[n - 1];
                 // the bound itself is rounded a few times
-                if left * 1.001 <= ALLOWED * self.value {
-                    let is_fewer = best.is_none_or(|(nodes, others)| n as u32 * pieces < nodes as u32 * others);
+                let left = left * 1.001;
+                if left <= ALLOWED * self.value {
+                    let is_fewer = best.is_none_or(|best| n as u32 * pieces < best.nodes as u32 * best.pieces);
                     if is_fewer {
-                        best = Some((n, pieces));
+                        let rounded = ROUNDED * (self.value + length * self.slope);
+                        best = Some(Rule { nodes: n, pieces, left: left + rounded });
                     }
                     break;
                 }

@@ -6,6 +6,7 @@ use crate::symbolic::curve::Curve;
 use crate::symbolic::graph::{CurveId, Expr, Graph, Node, NodeId, Placed, VariableId, Way};
 use crate::symbolic::hash::NodeMap;
 use crate::symbolic::implicit;
+use crate::symbolic::integral;
 use crate::symbolic::op::{Binary, Unary};
 
 impl<'g> Expr<'g> {
@@ -83,6 +84,7 @@ fn rule<'g>(graph: &'g Graph, node: NodeId, variable: VariableId) -> Expr<'g> {
         // it moves as what it is the middle of: a node that is a point
         Node::Middle(a) => known(graph, a, variable),
         Node::Root(root, ..) => implicit::slope(graph, root, graph.expr_of(variable)),
+        Node::Integral(id, ..) => integral::slope(graph, id, graph.expr_of(variable)),
         Node::Unary(op, a) => {
             let slope = known(graph, a, variable);
             if slope.is_zero() { slope } else { unary_rule(op, graph.expr(a), y, slope) }
@@ -178,6 +180,8 @@ impl Graph {
                     implicit::substitute(self, root, table);
                     table[&id]
                 }
+                Node::Integral(_, value, _) if image[a].id == value => self.expr(id),
+                Node::Integral(known, ..) => integral::substitute(self, known, table),
                 Node::Constant(_) | Node::Variable(_) => self.expr(id),
                 Node::Unary(op, _) => image[a].unary(op),
                 Node::Curve(curve, order, _) => image[a].on_curve(curve, order),

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::symbolic::curve::Curve;
 use crate::symbolic::hash::NodeMap;
 use crate::symbolic::implicit::{Implicit, RootId};
+use crate::symbolic::integral::{Integral, IntegralId};
 use crate::symbolic::op::{Binary, Unary};
 use crate::symbolic::rules;
 
@@ -47,6 +48,8 @@ pub enum Node {
     Middle(NodeId),
     /// An unknown that equations give: its value, and how far the last step went over how far it may go.
     Root(RootId, NodeId, NodeId),
+    /// An integral: its value, and how far that is off at the most.
+    Integral(IntegralId, NodeId, NodeId),
 }
 
 impl Node {
@@ -66,7 +69,7 @@ impl Node {
         let (a, b) = match self {
             Node::Constant(_) | Node::Variable(_) => (None, None),
             Node::Unary(_, a) | Node::Curve(_, _, a) | Node::Middle(a) => (Some(a), None),
-            Node::Binary(_, a, b) | Node::Root(_, a, b) => (Some(a), Some(b)),
+            Node::Binary(_, a, b) | Node::Root(_, a, b) | Node::Integral(_, a, b) => (Some(a), Some(b)),
         };
         a.into_iter().chain(b)
     }
@@ -80,6 +83,7 @@ impl Node {
             Node::Curve(curve, order, a) => Node::Curve(curve, order, other(a)),
             Node::Middle(a) => Node::Middle(other(a)),
             Node::Root(root, a, b) => Node::Root(root, other(a), other(b)),
+            Node::Integral(integral, a, b) => Node::Integral(integral, other(a), other(b)),
         }
     }
 }
@@ -91,6 +95,7 @@ struct Store {
     variables: Vec<String>,
     curves: Vec<Arc<Curve>>,
     implicits: Vec<Arc<Implicit>>,
+    integrals: Vec<Arc<Integral>>,
     /// Operations asked for so far, new or not.
     operations: usize,
     room: Option<usize>,
@@ -160,14 +165,14 @@ impl Visits {
     }
 }
 
-/// What an unknown that equations give is taken for on a walk through the graph.
+/// What an unknown that equations give, or an integral, is taken for on a walk through the graph.
 #[derive(Clone, Copy)]
 pub(crate) enum Way {
     /// The steps that compute it.
     Values,
-    /// A leaf: its derivatives come from the equations.
+    /// A leaf: its derivatives come from the equations, or from what is integrated.
     Slopes,
-    /// The equations.
+    /// The equations, or what is integrated.
     Words,
 }
 
@@ -257,6 +262,21 @@ impl Graph {
             store.implicits.push(Arc::new(implicit));
         }
         place as u32
+    }
+
+    /// Takes in an integral; the same one is kept once.
+    pub(crate) fn integral(&self, integral: Integral) -> IntegralId {
+        let mut store = self.store.borrow_mut();
+        let known = store.integrals.iter().position(|other| **other == integral);
+        let place = known.unwrap_or(store.integrals.len());
+        if known.is_none() {
+            store.integrals.push(Arc::new(integral));
+        }
+        IntegralId(place as u32)
+    }
+
+    pub(crate) fn integral_of(&self, integral: IntegralId) -> Arc<Integral> {
+        Arc::clone(&self.store.borrow().integrals[integral.0 as usize])
     }
 
     pub(crate) fn implicit_of(&self, root: RootId) -> Arc<Implicit> {
@@ -349,9 +369,12 @@ impl Graph {
             if is_wanted(id) {
                 found.push(id);
                 match (way, store.nodes[id.0 as usize]) {
-                    (Way::Slopes, Node::Root(..)) => {}
+                    (Way::Slopes, Node::Root(..) | Node::Integral(..)) => {}
                     (Way::Words, Node::Root(root, ..)) => {
                         stack.extend(store.implicits[root.system as usize].written());
+                    }
+                    (Way::Words, Node::Integral(integral, ..)) => {
+                        stack.extend(store.integrals[integral.0 as usize].written());
                     }
                     (_, node) => stack.extend(node.operands()),
                 }

@@ -5,6 +5,7 @@ pub(crate) mod derivative;
 pub(crate) mod graph;
 pub(crate) mod hash;
 pub(crate) mod implicit;
+pub(crate) mod integral;
 pub(crate) mod op;
 pub(crate) mod print;
 pub(crate) mod rules;

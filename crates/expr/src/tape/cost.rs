@@ -28,7 +28,7 @@ impl Cost {
             Operation::Binary(Binary::Div) => &mut self.divisions,
             Operation::Unary(Unary::Sqrt) => &mut self.roots,
             Operation::SinCos | Operation::Unary(Unary::Sin | Unary::Cos) => &mut self.sincos,
-            Operation::Middle => return,
+            Operation::Middle | Operation::Widened => return,
             Operation::Unary(_) | Operation::Binary(_) | Operation::Curve(_) | Operation::Settled => &mut self.others,
         };
         *counter += 1;
@@ -59,7 +59,8 @@ impl Tape {
             let a = stage_of[step.a as usize];
             let stage = match step.operation {
                 Operation::Binary(_) | Operation::Settled => a.max(stage_of[step.b as usize]),
-                Operation::Unary(_) | Operation::Curve(_) | Operation::Middle | Operation::SinCos => a,
+                Operation::Unary(_) | Operation::Curve(_) | Operation::SinCos => a,
+                Operation::Middle | Operation::Widened => a,
             };
             costs[stage].count(step.operation);
             stage_of[step.out as usize] = stage;

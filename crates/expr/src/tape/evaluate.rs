@@ -56,7 +56,7 @@ pub(crate) fn execute(instructions: &[Instruction], curves: &[Arc<Curve>], regis
             Operation::Binary(Binary::Mul) => a * registers[step.b as usize],
             Operation::Binary(Binary::Div) => a / registers[step.b as usize],
             Operation::Binary(op) => op.apply(a, registers[step.b as usize]),
-            Operation::Middle => a,
+            Operation::Middle | Operation::Widened => a,
             Operation::Settled => seldom_settled(a, registers[step.b as usize]),
             Operation::SinCos => {
                 let (sine, cosine) = kernel::sin_cos(a);

@@ -19,7 +19,7 @@ impl Graph {
                 Node::Variable(variable) => values[variable.index()],
                 Node::Unary(op, _) => op.apply(known[a]),
                 Node::Curve(curve, order, _) => self.curve_of(curve).value(order, known[a]),
-                Node::Middle(_) => known[a],
+                Node::Middle(_) | Node::Integral(..) => known[a],
                 Node::Root(..) => kernel::settled(known[a], known[b]),
                 Node::Binary(op, ..) => op.apply(known[a], known[b]),
             });

@@ -28,6 +28,8 @@ pub enum Operation {
     Middle,
     /// `out = a` where |b| ≤ 1, else NaN.
     Settled,
+    /// `out = a`; of an interval, all that lies within `b` of it.
+    Widened,
     /// `out = sin(a)` and register `b` = `cos(a)`, together at little more than the cost of one.
     SinCos,
 }
@@ -263,6 +265,7 @@ impl Registers {
             Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
             Node::Middle(a) => (Operation::Middle, a, a),
             Node::Root(_, a, b) => (Operation::Settled, a, b),
+            Node::Integral(_, a, b) => (Operation::Widened, a, b),
             Node::Curve(curve, order, a) => return Some(self.curve_step(id, curve, order, a)),
             Node::Constant(_) | Node::Variable(_) => return None,
         };

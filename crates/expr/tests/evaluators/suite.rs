@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use flank_expr::{Binary, Curve, Expr, Graph, Interval, Tape, TapeError, Unary, Unknown, roots};
+use flank_expr::{Binary, Curve, End, Expr, Graph, Interval, Tape, TapeError, Unary, Unknown, integral, roots};
 
 use crate::support::{Program, Random, reference_point};
 
@@ -23,7 +23,7 @@ pub(crate) trait Subject {
 macro_rules! evaluator_suite {
     ($name:ident, $subject:ident) => {
         $crate::evaluator_suite!($name, $subject:
-            every_unary_alone every_binary_alone curves roots_of_equations combinations constants_only outputs_that_are_inputs
+            every_unary_alone every_binary_alone curves roots_of_equations integrals combinations constants_only outputs_that_are_inputs
             one_output_twice outputs_used_later no_outputs unused_inputs unbound_variable random_programs
             random_tame_programs many_points);
     };
@@ -145,6 +145,20 @@ pub(crate) fn roots_of_equations<S: Subject>() {
     let beyond = [vec![f64::NAN], vec![25.0], vec![-1e9]];
     let points: Vec<Vec<f64>> = (-5..=10).map(|k| vec![0.2 * f64::from(k)]).chain(beyond).collect();
     check::<S>(&outputs, &[a], &points);
+}
+
+/// What moves moves an end, the integrand, or both.
+pub(crate) fn integrals<S: Subject>() {
+    let graph = Graph::new();
+    let (x, y, t) = (graph.variable("x"), graph.variable("y"), graph.variable("t"));
+    let [to_x, to_y] = [(x, 1.0), (y, 2.0)].map(|(expr, most)| End { expr, range: Interval::new(-1.0, most) });
+    let from = End { expr: graph.constant(0.25), range: Interval::point(0.25) };
+    let within = [(y, Interval::new(-1.0, 2.0))];
+    let one = integral((1.0 + t.squared()).sqrt(), t, [from, to_x], &[]).expect("smooth");
+    let two = integral((y * t).sin(), t, [to_y, to_x], &within).expect("smooth");
+    let outputs = [one, one.derivative(x), two, two.derivative(x), two.derivative(y), one * two.derivative(y)];
+    let points: Vec<Vec<f64>> = (-5..=5).map(|k| vec![0.2 * f64::from(k), 0.5 - 0.3 * f64::from(k)]).collect();
+    check::<S>(&outputs, &[x, y, t], &points.into_iter().map(|point| [point, vec![0.0]].concat()).collect::<Vec<_>>());
 }
 
 pub(crate) fn combinations<S: Subject>() {

@@ -41,8 +41,10 @@ impl Digits {
                     registers[step.b as usize] = a.as_ref().and_then(|a| a.unary(Unary::Cos));
                     a.and_then(|a| a.unary(Unary::Sin))
                 }
+                // the sum over the nodes, which the bound of an integral widens
+                Operation::Widened => a,
                 Operation::Curve(_) | Operation::Middle | Operation::Settled => {
-                    unreachable!("the tapes that are tested here have no curves and no roots")
+                    unreachable!("the tapes that are tested here have no curves and roots")
                 }
             };
         }

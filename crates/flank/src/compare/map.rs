@@ -1,7 +1,7 @@
 //! A surface, or what was measured of it, compared with a surface: what is known of it, and how it is written.
 
 use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_draw::{PictureOptions, field_maps};
+use flank_draw::{Picture, PictureOptions, deviation_map};
 use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
 use flank_solver::{EaseOff, Outcome, SurfacePoint};
 
@@ -185,7 +185,7 @@ impl DeviationMap<'_, '_> {
     }
 
     /// The result, with the files that were written.
-    pub(super) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
+    pub(crate) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
         let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
         let direction = |k: usize| {
             ease_off.map(|of| EaseOffDirection {
@@ -304,6 +304,19 @@ impl DeviationMap<'_, '_> {
         format!("{} from {}", self.held.whole_name(), self.from.whole_name())
     }
 
+    /// The map of its dataset, with what sums it up.
+    pub(crate) fn picture(&self, dataset: &Dataset, options: &PictureOptions) -> Picture {
+        let um = |value: f64| fixed(value, 2);
+        let line = |of: &EaseOff, k: usize| {
+            let way = self.labels[k].replace("->", "to");
+            format!("{way}: slope {} \u{b5}m, crowning {} \u{b5}m", um(of.slopes[k]), um(of.crownings[k]))
+        };
+        let numbers = self
+            .ease_off()
+            .map_or(Vec::new(), |of| vec![line(&of, 0), line(&of, 1), format!("bias {} \u{b5}m", um(of.bias))]);
+        deviation_map(dataset, &self.title(), (0, 0), (&self.note(), &numbers), options)
+    }
+
     pub(super) fn write(
         &self,
         request: &DeviationRequest,
@@ -312,7 +325,7 @@ impl DeviationMap<'_, '_> {
     ) -> Result<Vec<String>, Failure> {
         let dataset = self.dataset(&request.jobs, origin);
         let mut folder = Folder::at(&request.out, origin, monitor)?;
-        let map = || field_maps(&dataset, &self.title(), &[(0, 0)], &self.note(), &PictureOptions::default());
+        let map = || self.picture(&dataset, &PictureOptions::default());
         let map = (!request.no_picture).then(map);
         folder.picture_after(&self.name(), map.as_ref(), |folder| {
             folder.data(&self.name(), &dataset.surfaces(), &request.format)

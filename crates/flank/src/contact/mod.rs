@@ -3,7 +3,7 @@
 pub(crate) mod drawn;
 pub(crate) mod files;
 pub(crate) mod influence;
-mod interference;
+pub(crate) mod interference;
 pub(crate) mod pair;
 pub(crate) mod patches;
 pub(crate) mod pattern;

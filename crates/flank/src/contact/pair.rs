@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use flank_chain_dsl::{Contact, GeneratedSurface, Job, Solid};
+use flank_chain_dsl::{Contact, GeneratedSurface, Job, Parameter, Solid};
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{BoundSurface, ContactProblem, Range, RollingPair, SurfacePoint};
@@ -141,6 +141,35 @@ impl<'j, 'g> Members<'j, 'g> {
         let mut pair = self.mounted(bound.each_ref(), &counts, (errors, &axes));
         pair.parameters.extend(settings.iter().map(|setting| (setting.variable, setting.value)));
         ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound")
+    }
+
+    /// The equations of the pair as it is mounted, in some settings; what is defined by them follows.
+    pub(crate) fn problem_in(&self, job: &Job<'g>, settings: &[&Parameter<'g>]) -> ContactProblem {
+        let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
+        let values = job.bindings_beside(&open);
+        let bound = self.surfaces.map(|surface| BoundSurface::new(&surface.surface, ranges(surface), &values));
+        let errors = vec![0.0; self.contact.errors.len()];
+        let mut pair = self.mounted(bound.each_ref(), &values, (&errors, &[]));
+        pair.parameters = settings.iter().map(|setting| (setting.variable, setting.value)).collect();
+        ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound")
+    }
+
+    /// Of settings, those that change the first flank alone: neither the second one nor how both are mounted.
+    pub(crate) fn of_first<'p>(&self, job: &Job<'g>, settings: &[&'p Parameter<'g>]) -> Vec<&'p Parameter<'g>> {
+        let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
+        let values = job.bindings_beside(&open);
+        let surface = self.surfaces[1];
+        let second = BoundSurface::new(&surface.surface, ranges(surface), &values);
+        let second = second.surface();
+        let all = [&second.position.0[..], &second.normal.0, &second.constraints].concat();
+        let known = self.contact.roll.variable.graph().variables_of(&all);
+        let placements = self.contact.placements.each_ref().map(|placement| placement.substituted(&values));
+        let moves = |variable: Expr<'g>| placements.iter().any(|placement| !placement.twist(variable).is_zero());
+        let is_free = |setting: &&&'p Parameter<'g>| {
+            let changes = setting.variable.as_variable().is_some_and(|variable| known.contains(&variable));
+            !changes && !moves(setting.variable)
+        };
+        settings.iter().filter(is_free).copied().collect()
     }
 
     /// How far the members roll from one pair of teeth to the next: as the spec says, or by the teeth of both solids, which turn evenly.

@@ -1,21 +1,23 @@
 //! Places on the flanks of a contact, and units of its error.
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, SampleGrid};
-use flank_solver::{ContactPoint, Outcome};
+use flank_solver::{ContactPoint, FlankCorners, FlankDirections, Outcome};
 
 use crate::contact::pair::Members;
 use crate::project::units;
 
-/// Directions on a flank at a place, in its frame.
-pub(crate) struct OnFlank {
-    /// Along the rows of its sample.
-    pub(crate) lengthwise: [f64; 3],
-    /// In the flank, square to that, towards later rows.
-    pub(crate) profilewise: [f64; 3],
+/// The corners of a flank, where its sample is one of shares.
+pub(crate) fn corners(surface: &GeneratedSurface<'_>) -> Option<FlankCorners> {
+    let SampleGrid::Shares { corners, .. } = surface.sample.as_ref()?.grid else { return None };
+    Some(FlankCorners(corners))
 }
 
-/// Directions of the sample of a member's flank where it touches: those of its points around the nearest one.
-pub(crate) fn rows_at(members: &Members<'_, '_>, member: usize, point: &ContactPoint) -> Option<OnFlank> {
+/// Directions of the rows of a member's flank where it touches: of a sample of shares exactly, else those of its points around the nearest
+/// one.
+pub(crate) fn rows_at(members: &Members<'_, '_>, member: usize, point: &ContactPoint) -> Option<FlankDirections> {
+    if let Some(corners) = corners(members.surfaces[member]) {
+        return corners.directions(point.in_members[member], point.normals[member]);
+    }
     let [rows, columns] = members.surfaces[member].sample.as_ref()?.counts;
     let points = &members.points[member];
     let apart = |at: usize| {
@@ -35,7 +37,7 @@ pub(crate) fn rows_at(members: &Members<'_, '_>, member: usize, point: &ContactP
     let up = between(at(row.saturating_sub(1), column), at((row + 1).min(rows - 1), column))?;
     let along = dot(&up, &lengthwise);
     let profilewise = unit(std::array::from_fn(|k| up[k] - along * lengthwise[k]))?;
-    Some(OnFlank { lengthwise, profilewise })
+    Some(FlankDirections { lengthwise, profilewise })
 }
 
 fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
@@ -55,31 +57,7 @@ pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Steps until the shares of a point between the corners of a blank are settled.
-const MOST_STEPS: usize = 30;
-
 /// Shares from root to tip and from toe to heel at a point `[z, rho]`, where the sample of a surface is one of shares.
 pub(crate) fn shares(surface: &GeneratedSurface<'_>, point: [f64; 2]) -> Option<[f64; 2]> {
-    let SampleGrid::Shares { corners, .. } = surface.sample.as_ref()?.grid else { return None };
-    let at = |shares: [f64; 2]| SampleGrid::Shares { shares: shares.map(|share| vec![share]), corners }.at(0, 0);
-    let mut shares = [0.5, 0.5];
-    for _ in 0..MOST_STEPS {
-        let here = at(shares);
-        let off = [0, 1].map(|k| point[k] - here[k]);
-        // bilinear: differences over a whole unit are its derivatives
-        let by = [[1.0, 0.0], [0.0, 1.0]].map(|step: [f64; 2]| {
-            let there = at([0, 1].map(|k| shares[k] + step[k]));
-            [0, 1].map(|k| there[k] - here[k])
-        });
-        let determinant = by[0][0] * by[1][1] - by[0][1] * by[1][0];
-        let step = [
-            (off[0] * by[1][1] - off[1] * by[1][0]) / determinant,
-            (off[1] * by[0][0] - off[0] * by[0][1]) / determinant,
-        ];
-        shares = [0, 1].map(|k| shares[k] + step[k]);
-        if step.iter().all(|step| step.abs() < 1e-14) {
-            break;
-        }
-    }
-    shares.iter().all(|share| share.is_finite()).then_some(shares)
+    corners(surface)?.shares(point)
 }

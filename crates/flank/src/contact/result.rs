@@ -142,7 +142,8 @@ pub struct PlaceOnFlank {
     pub rho: f64,
     /// Shares of the way from toe to heel and from root to tip, where the sample is one of shares.
     pub shares: Option<[f64; 2]>,
-    /// The path against the rows of the flank's sample; null where it cannot be told.
+    /// The path against the rows of the flank's sample, above -90 and up to 90: positive where it comes nearer to the tip on its way to the
+    /// heel. Null where it cannot be told.
     pub path_angle: Option<f64>,
 }
 

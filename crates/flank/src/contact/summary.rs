@@ -5,7 +5,7 @@ use flank_solver::{ContactPoint, ContactState, FlankEdge, Outcome};
 
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
-use crate::contact::place::{dot, fine, fine_unit, rows_at, shares};
+use crate::contact::place::{fine, fine_unit, rows_at, shares};
 use crate::contact::result::{
     Backlash, ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError,
     PlaceOnFlank, TransmissionError,
@@ -148,11 +148,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let [x, y, z] = point.in_members[member];
         let rho = x.hypot(y);
         let along = rows_at(self.members, member, point);
-        let path_angle = along.map(|along| {
-            let path = point.path[member];
-            let [dot, length] = [dot(&path, &along.lengthwise), dot(&path, &path).sqrt()];
-            (dot.abs() / length).min(1.0).acos().to_degrees()
-        });
+        let path_angle = along.map(|along| along.angle(point.path[member]).to_degrees());
         PlaceOnFlank {
             z,
             rho,

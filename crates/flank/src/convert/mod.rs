@@ -3,6 +3,7 @@
 mod blocks;
 mod failures;
 mod files;
+pub(crate) mod milling;
 mod rates;
 pub(crate) mod result;
 mod series;
@@ -15,7 +16,7 @@ use std::path::Path;
 
 use flank_chain_dsl::{Axis, Job, Machine, RangedVariable, Request, compile_request};
 use flank_expr::geometry::{Chain, Step};
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::{
     Explicit, ExplicitProblem, Outcome, PoseError, PoseProblem, Posture, Range, Screw, TargetAxis, unseen_motion,
 };
@@ -34,6 +35,8 @@ use series::Series;
 use source::{Chosen, Source};
 use table::Table;
 
+/// Points of each flank that are followed from one machine to the other.
+const POINTS_FOLLOWED: usize = 16;
 /// No linear axis without travel goes farther, mm.
 const REACH: f64 = 10_000.0;
 
@@ -396,16 +399,41 @@ impl<'j, 'g> Conversion<'j, 'g> {
         (onto, session): (&Onto, Session<'j>),
         positions: u32,
     ) -> Result<Conversion<'j, 'g>, Failure> {
+        Conversion::at_positions(graph, (job, target), (onto, session), |source| source.positions(positions as usize))
+    }
+
+    /// The same at positions of the motions that `choose` makes of those that are spread over them.
+    ///
+    /// # Errors
+    /// As [`Conversion::new`].
+    pub(crate) fn at_positions(
+        graph: &'g Graph,
+        (job, target): (&'j Job<'g>, &'j Job<'g>),
+        (onto, session): (&Onto, Session<'j>),
+        choose: impl FnOnce(&Source<'j, 'g>) -> Vec<Vec<f64>>,
+    ) -> Result<Conversion<'j, 'g>, Failure> {
         let plan = Plan::of_job(graph, job, target, onto, &[])?;
         match plan.settings.first() {
             Some(open) => Err(format!("{} has no value: option `set {}=…`", open.name, open.name).into()),
-            None => Conversion::on(plan.solved(session)?, positions, session),
+            None => {
+                let target = plan.solved(session)?;
+                let positions = choose(&target.source);
+                Conversion::over(target, positions, session)
+            }
         }
     }
 
-    fn on(mut target: Target<'j, 'g>, positions: u32, session: Session<'_>) -> Result<Conversion<'j, 'g>, Failure> {
-        let _working = session.begin(format!("following the tool on {}", target.machine.name))?;
+    fn on(target: Target<'j, 'g>, positions: u32, session: Session<'_>) -> Result<Conversion<'j, 'g>, Failure> {
         let positions = target.source.positions(positions as usize);
+        Conversion::over(target, positions, session)
+    }
+
+    fn over(
+        mut target: Target<'j, 'g>,
+        positions: Vec<Vec<f64>>,
+        session: Session<'_>,
+    ) -> Result<Conversion<'j, 'g>, Failure> {
+        let _working = session.begin(format!("following the tool on {}", target.machine.name))?;
         let (problem, line) = target.postures(&positions)?;
         let Target { source, machine, free, chain, bindings, .. } = target;
         Ok(Conversion { source, machine, free, chain, bindings, problem, positions, line })
@@ -434,6 +462,29 @@ impl<'j, 'g> Conversion<'j, 'g> {
         problem
             .solve()
             .map_err(|reason| format!("no explicit form; {} is solved numerically: {reason}", self.machine.name))
+    }
+
+    /// How far the points of the tool that touch the flanks are off at most, over all positions, mm: the tool stands against the work as on
+    /// the job's machine, but for motions that leave it unchanged.
+    pub(crate) fn off(&self) -> f64 {
+        let (target, source) = (self.problem.chain(), self.source.driven.substituted(&self.bindings));
+        let motions: Vec<Expr<'g>> = self.source.motions.iter().map(|motion| motion.variable).collect();
+        let mut most: f64 = 0.0;
+        for flank in &self.source.flanks {
+            let apart = target.point(flank.tool.position) - source.point(flank.tool.position);
+            let inputs = [self.problem.unknowns(), &motions[..], &flank.tool.unknowns[..]].concat();
+            let tape = Tape::new(&apart.0, &inputs).expect("a job without errors leaves nothing unbound");
+            let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0; 3]);
+            let every = flank.points.len().div_ceil(POINTS_FOLLOWED).max(1);
+            for point in flank.solved().step_by(every) {
+                for (position, posture) in self.positions.iter().zip(&self.line) {
+                    let own = &point.unknowns[..flank.tool.unknowns.len()];
+                    evaluator.run(&[posture.unknowns(), position, own].concat(), &mut out);
+                    most = most.max(out.iter().map(|x| x * x).sum::<f64>().sqrt());
+                }
+            }
+        }
+        most
     }
 
     /// What the target cannot do, each kind once with its first place.

@@ -1,7 +1,7 @@
 //! One surface compared with another one, as a map and as a topography.
 
 use flank_chain_dsl::Job;
-use flank_draw::{PictureOptions, field_maps, topography};
+use flank_draw::{PictureOptions, topography};
 use flank_export::Dataset;
 
 use super::result::PlotResult;
@@ -63,7 +63,7 @@ fn draw(
     let title = measured.title();
     let picture = match what {
         PlotKind::Topography => topography(&dataset, &title, &[(0, 0)], &measured.note(), options),
-        _ => field_maps(&dataset, &title, &[(0, 0)], &measured.note(), options),
+        _ => measured.picture(&dataset, options),
     };
     Drawing { picture, shows: format!("deviation of {title}") }
 }

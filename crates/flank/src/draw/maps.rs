@@ -1,12 +1,14 @@
 //! Numbers over flanks: maps, lines, reliefs.
 
 use flank_chain_dsl::Dimension;
-use flank_draw::{PictureOptions, field_lines, field_maps, topography as relief};
+use flank_draw::{PictureOptions, comparable_maps, field_lines, field_maps, topography as relief};
 use flank_export::{Dataset, Field, Patch, Values};
 use flank_solver::Outcome;
 
 use super::subject::Subject;
+use super::traces as words;
 use super::{Drawing, Unfit, counted};
+use crate::compare::traces;
 use crate::project::units;
 use crate::solve::cut;
 use crate::solve::sensitivity as influence;
@@ -109,7 +111,6 @@ pub(super) fn sensitivity(
     options: &PictureOptions,
 ) -> Result<Drawing, Unfit> {
     let known = subject.first().sensitivity.as_ref().ok_or("it is asked for with option `what sensitivity`")?;
-    let before = subject.first().fields.len();
     let parameters: Vec<&str> = known.parameters().collect();
     let place = |name: &String| {
         let found = parameters.iter().position(|parameter| parameter == name);
@@ -126,9 +127,10 @@ pub(super) fn sensitivity(
     if places.is_empty() {
         return Err("no parameter and no setting moves the surface".to_string());
     }
-    let shown = Shown::existing(subject, |_| places.iter().map(|place| before + place).collect());
+    let fields = |at: usize| subject.solved[at].sensitivity.as_ref().map_or(Vec::new(), |of| of.plain_fields(&places));
+    let shown = Shown::of_surfaces(subject, fields);
     let title = title(subject, "what moves points");
-    let picture = field_maps(&shown.dataset, &title, shown.first(), &shown.note(influence::NOTE), options);
+    let picture = comparable_maps(&shown.dataset, &title, shown.first(), &shown.note(influence::NOTE), options);
     let names: Vec<&str> = places.iter().map(|place| parameters[*place]).collect();
     Ok(Drawing { picture, shows: format!("normal displacement for changes of {}", names.join(", ")) })
 }
@@ -210,65 +212,36 @@ pub(super) fn contact_lines(subject: &Subject<'_, '_>, options: &PictureOptions)
     Ok(Drawing { picture, shows: format!("lines of equal {}", names.join(" and of equal ")) })
 }
 
-/// Heights: of what single edges leave, if the job has them, else over the plane that fits the flank best.
+/// Heights: of what single edges leave, if the job has them, else over the involute of a cylindrical flank.
 pub(super) fn topography(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
     if subject.first().sample.counts.contains(&1) {
         return Err(format!("`{}` is sampled on a line; a topography takes a grid", subject.first().surface.name));
     }
     let (shown, note, shows) = match left_fields(subject) {
-        Ok(shown) => (shown, cut::NOTE, "heights that single edges leave, above the measuring grid"),
+        Ok(shown) => (shown, cut::NOTE.to_string(), "heights that single edges leave, above the measuring grid"),
         Err(_) => {
-            subject.middle()?;
-            let shown = Shown::of_surfaces(subject, |at| {
-                heights_over_plane(&subject.dataset.patches[at]).into_iter().collect()
-            });
-            let note = "Heights of the flank over the plane that fits its points best, plus is material. The grid below is \
-                the flank turned into the axial plane.";
-            (shown, note, "heights over the plane that fits best")
+            let (_, reference) = traces::topography(subject.job, subject.first())
+                .ok_or("its flank is no involute: say with option `reference` which surface it is held against")?;
+            let shown = Shown::of_surfaces(subject, |at| over_involute(subject, at).into_iter().collect());
+            let note = format!(
+                "Along the normal from {}, zero in the middle, plus is material. The grid below is the flank turned into the axial plane.",
+                words::involute(&reference)
+            );
+            (shown, note, "deviation from the involute")
         }
     };
-    let picture = relief(&shown.dataset, &title(subject, "topography"), shown.first(), &shown.note(note), options);
+    let picture = relief(&shown.dataset, &title(subject, "topography"), shown.first(), &shown.note(&note), options);
     Ok(Drawing { picture, shows: shows.to_string() })
 }
 
-/// How far each point lies outside the plane through the middle of all of them, square to their average normal and then turned to
-/// where the sum of squares is least.
-fn heights_over_plane(patch: &Patch) -> Option<Field> {
-    let solved: Vec<&flank_export::Point> = patch.points.iter().filter(|point| point.is_solved()).collect();
-    let share = 1.0 / solved.len() as f64;
-    let mean = |of: &dyn Fn(&flank_export::Point) -> [f64; 3]| {
-        solved.iter().fold([0.0; 3], |sum, point| {
-            let of = of(point);
-            [0, 1, 2].map(|k| sum[k] + share * of[k])
-        })
-    };
-    let centre = mean(&|point| point.position);
-    let normal = unit(mean(&|point| point.normal))?;
-    let aside = if normal[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
-    let across = unit(cross(normal, aside))?;
-    let up = cross(normal, across);
-    // height = a x + b y, least squares
-    let local = |point: &flank_export::Point| {
-        let off = [0, 1, 2].map(|k| point.position[k] - centre[k]);
-        [across, up, normal].map(|direction| dot(direction, off))
-    };
-    let sums = solved
-        .iter()
-        .map(|point| local(point))
-        .fold([0.0; 5], |s, [x, y, h]| [s[0] + x * x, s[1] + x * y, s[2] + y * y, s[3] + x * h, s[4] + y * h]);
-    let [xx, xy, yy, xh, yh] = sums;
-    let determinant = xx * yy - xy * xy;
-    let [a, b] = [(xh * yy - yh * xy) / determinant, (yh * xx - xh * xy) / determinant];
-    let slope = (1.0 + a * a + b * b).sqrt();
-    let height = |point: &flank_export::Point| {
-        let [x, y, h] = local(point);
-        Some((h - a * x - b * y) / slope).filter(|height| point.is_solved() && height.is_finite())
-    };
+/// How far the points of a surface lie off an involute helicoid.
+fn over_involute(subject: &Subject<'_, '_>, at: usize) -> Option<Field> {
+    let (values, _) = traces::topography(subject.job, &subject.solved[at])?;
     Some(Field {
-        name: "height over the plane".to_string(),
-        unit: "mm".to_string(),
-        meaning: "plus is material".to_string(),
-        values: Values::Scalars(patch.points.iter().map(height).collect()),
+        name: "deviation from the involute".to_string(),
+        unit: "um".to_string(),
+        meaning: "along the normal, plus is material".to_string(),
+        values: Values::Scalars(values.into_iter().collect()),
     })
 }
 

@@ -2,6 +2,7 @@
 
 mod comparison;
 pub(crate) mod contacts;
+mod gear;
 mod machine;
 mod maps;
 mod motion;
@@ -9,6 +10,7 @@ pub(crate) mod result;
 mod section;
 mod subject;
 mod tool;
+pub(crate) mod traces;
 
 use flank_chain_dsl::Job;
 use flank_draw::{Picture, PictureOptions};
@@ -34,7 +36,8 @@ use result::{PlotResult, WrittenPicture};
 pub(crate) use subject::Subject;
 
 /// Unless kinds are named, the first of these that fit are drawn, and no more than so many.
-const DEFAULTS: [PlotKind; 6] = [
+const DEFAULTS: [PlotKind; 7] = [
+    PlotKind::Gear,
     PlotKind::Left,
     PlotKind::Surface,
     PlotKind::Section,
@@ -164,8 +167,15 @@ fn drawings(
 
 /// Those that matter for a job.
 pub(crate) fn defaults(subject: &Subject<'_, '_>, options: PictureOptions) -> Vec<(PlotKind, Drawing)> {
-    let fitting = DEFAULTS.into_iter().filter_map(|what| Some((what, draw(subject, what, &[], options).ok()?)));
-    fitting.take(MOST_DEFAULTS).collect()
+    let mut drawn: Vec<(PlotKind, Drawing)> = Vec::new();
+    for what in DEFAULTS {
+        // the gear shows its surfaces too
+        let is_shown = what == PlotKind::Surface && drawn.iter().any(|(other, _)| *other == PlotKind::Gear);
+        if drawn.len() < MOST_DEFAULTS && !is_shown {
+            drawn.extend(draw(subject, what, &[], options).ok().map(|drawing| (what, drawing)));
+        }
+    }
+    drawn
 }
 
 /// One picture; `of` names the parameters that sensitivities are to.
@@ -176,6 +186,7 @@ pub(crate) fn draw(
     options: PictureOptions,
 ) -> Result<Drawing, Unfit> {
     match what {
+        PlotKind::Gear => gear::draw(subject, &options),
         PlotKind::Surface => {
             let patches = subject.in_space.iter().map(|at| subject.dataset.patches[*at].clone()).collect();
             let shown = Dataset { header: subject.dataset.header.clone(), patches };
@@ -183,6 +194,7 @@ pub(crate) fn draw(
             Ok(Drawing { picture, shows: format!("{} in space", counted(shown.patches.len(), "surface")) })
         }
         PlotKind::Topography => maps::topography(subject, &options),
+        PlotKind::Traces => traces::draw(subject, &options),
         PlotKind::Curvature => maps::curvature(subject, &options),
         PlotKind::Sensitivity => maps::sensitivity(subject, of, &options),
         PlotKind::Deviation => Err(SECOND.to_string()),
@@ -212,7 +224,11 @@ fn unfit(subject: &Subject<'_, '_>, what: PlotKind, why: &str, request: &PlotReq
 }
 
 fn counted(count: usize, of: &str) -> String {
-    let plural = if of == "axis" { "axes".to_string() } else { format!("{of}s") };
+    let plural = match of {
+        "axis" => "axes".to_string(),
+        "tooth" => "teeth".to_string(),
+        _ => format!("{of}s"),
+    };
     if count == 1 { format!("1 {of}") } else { format!("{count} {plural}") }
 }
 

@@ -1,7 +1,7 @@
 //! A section through the tooth space, square to the tooth, with the tool at some moments.
 
 use flank_chain_dsl::GeneratedSurface;
-use flank_draw::{PictureOptions, Section, SectionLine, ToolPosition, section};
+use flank_draw::{PictureOptions, Section, SectionCircle, SectionLine, ToolPosition, section};
 use flank_export::shape::rows_follow_profile;
 use flank_export::{Patch, fixed};
 use flank_solver::{Outcome, SectionPlane, SurfacePoint};
@@ -53,8 +53,19 @@ fn across_tooth(subject: &Subject<'_, '_>) -> Result<Section, Unfit> {
         header: subject.dataset.header.clone(),
         note: cut.note(subject),
         surfaces: mates.iter().zip(&lines).map(|(&at, line)| cut.line(subject.solved[at].surface, line)).collect(),
+        circles: cut.circles(subject, &mates, &lines),
+        motion: motion(subject),
         tools: cut.positions(subject, &mates, &lines, &tools),
     })
+}
+
+/// The first motion of the first surface with its unit.
+fn motion(subject: &Subject<'_, '_>) -> String {
+    let of = &subject.first().surface.unknowns[2];
+    match units::symbol(of.dimension) {
+        "" => of.name.clone(),
+        unit => format!("{}, {unit}", of.name),
+    }
 }
 
 /// The plane of the section; its axes go across and up on paper.
@@ -120,6 +131,79 @@ impl Cut {
         }
     }
 
+    /// Circles about the axis through the highest and the deepest point of the lines.
+    fn circles(&self, subject: &Subject<'_, '_>, mates: &[usize], lines: &[Vec<SurfacePoint>]) -> Vec<SectionCircle> {
+        let points = mates.iter().zip(lines).flat_map(|(at, line)| line.iter().map(move |point| (*at, point)));
+        let places: Vec<(usize, [f64; 2])> = points.map(|(at, point)| (at, self.0.in_axes(point.position))).collect();
+        let ends = |k: usize| {
+            let all = || places.iter().map(|(_, place)| place[k]);
+            [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let across = ends(0);
+        let [low, high] = ends(1);
+        [("tip circle", high), ("root circle", low)]
+            .into_iter()
+            .filter_map(|(name, up)| {
+                let (at, place) = places.iter().find(|(_, place)| place[1] == up)?;
+                let cone = self.cone(&subject.dataset.patches[*at], *place)?;
+                let wide = 0.2 * (across[1] - across[0]);
+                let step = |k: i32| across[0] - wide + (across[1] - across[0] + 2.0 * wide) * f64::from(k) / 40.0;
+                let line = (0..=40).filter_map(|k| self.on_cone(cone, [step(k), place[1]]));
+                let rho = cone[0] + cone[1] * self.position(*place)[2];
+                Some(SectionCircle {
+                    name: format!("{name}, {} mm", fixed(2.0 * rho, 3)),
+                    is_above: up == high,
+                    points: line.collect(),
+                })
+            })
+            .collect()
+    }
+
+    fn position(&self, [across, up]: [f64; 2]) -> [f64; 3] {
+        let SectionPlane { point, axes, .. } = &self.0;
+        [0, 1, 2].map(|k| point[k] + across * axes[0][k] + up * axes[1][k])
+    }
+
+    /// The cone through a place of the section that a patch runs along there: `rho` at z 0, and its rise by z.
+    fn cone(&self, patch: &Patch, place: [f64; 2]) -> Option<[f64; 2]> {
+        let along_rows = rows_follow_profile(patch)?;
+        let [rows, columns] = [patch.rows.count, patch.columns.count];
+        let (lines, length) = if along_rows { (rows, columns) } else { (columns, rows) };
+        let point = |line: usize, k: usize| {
+            let found = if along_rows { patch.point(line, k) } else { patch.point(k, line) };
+            found.filter(|point| point.is_solved()).map(|point| point.position)
+        };
+        let here = self.position(place);
+        let off = |line: &usize| {
+            let apart = |k: usize| point(*line, k).map(|at| (0..3).map(|k| (at[k] - here[k]).powi(2)).sum::<f64>());
+            (0..length).filter_map(apart).fold(f64::INFINITY, f64::min)
+        };
+        let line = (0..lines).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let mut known = (0..length).filter_map(|k| point(line, k));
+        let from = known.next()?;
+        let to = known.next_back().unwrap_or(from);
+        let rho = |[x, y, _]: [f64; 3]| x.hypot(y);
+        let rise = if (to[2] - from[2]).abs() > 1e-9 { (rho(to) - rho(from)) / (to[2] - from[2]) } else { 0.0 };
+        rise.is_finite().then(|| [rho(here) - rise * here[2], rise])
+    }
+
+    /// The point of the plane on a cone above or below a place, by Newton's method.
+    fn on_cone(&self, [rho, rise]: [f64; 2], [across, mut up]: [f64; 2]) -> Option<[f64; 2]> {
+        let height = |up: f64| {
+            let [x, y, z] = self.position([across, up]);
+            x.hypot(y) - rho - rise * z
+        };
+        for _ in 0..20 {
+            let by = 1e-6;
+            let step = height(up) * by / (height(up + by) - height(up));
+            up -= step;
+            if step.abs() < 1e-9 {
+                return Some([across, up]);
+            }
+        }
+        None
+    }
+
     /// The tool where it touches at points spread evenly over each line, in the order of the first motion.
     fn positions(
         &self,
@@ -139,11 +223,8 @@ impl Cut {
                 let touching = &line[(2 * k + 1) * line.len() / (2 * each)];
                 let rest = &touching.unknowns[2..];
                 let pieces = tools.iter().flat_map(|tool| tool.cut(rest, &self.0));
-                let values = surface.unknowns[2..].iter().zip(rest);
-                let label: Vec<String> =
-                    values.map(|(of, x)| format!("{} {}", of.name, units::text(of.dimension, *x, 2))).collect();
                 let position = ToolPosition {
-                    label: label.join(", "),
+                    value: units::shown(surface.unknowns[2].dimension, rest[0]),
                     lines: pieces.map(|ends| ends.map(|end| self.0.in_axes(end)).to_vec()).collect(),
                     contacts: vec![self.0.in_axes(touching.position)],
                 };
@@ -229,7 +310,7 @@ mod tests {
                 for contact in &tool.contacts {
                     let near = pieces().map(|(from, to)| from_piece(*contact, from, to, [0.0, 1.0]).0);
                     let near = near.fold(f64::INFINITY, f64::min);
-                    assert!(near < 2e-3, "{spec}, {}: the tool is {near} mm from where it touches", tool.label);
+                    assert!(near < 2e-3, "{spec}, {}: the tool is {near} mm from where it touches", tool.value);
                 }
                 let ends = pieces().flat_map(|(from, to)| [from, to]);
                 for end in ends {
@@ -240,7 +321,7 @@ mod tests {
                     let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are surfaces");
                     // beyond the ends of the lines nothing is known
                     if nearest.0 < 0.5 && nearest.1.abs() > 0.99 * nearest.0 {
-                        assert!(nearest.1 > -2e-3, "{spec}, {}: {} mm deep at {end:?}", tool.label, nearest.1);
+                        assert!(nearest.1 > -2e-3, "{spec}, {}: {} mm deep at {end:?}", tool.value, nearest.1);
                     }
                 }
             }

@@ -21,6 +21,8 @@ pub(crate) struct Subject<'j, 'g> {
     pub(super) chosen: Vec<usize>,
     /// The surfaces that are drawn in space.
     pub(super) in_space: Vec<usize>,
+    /// For what pictures solve beside the samples.
+    pub(super) session: Session<'j>,
 }
 
 impl<'j, 'g> Subject<'j, 'g> {
@@ -52,7 +54,7 @@ impl<'j, 'g> Subject<'j, 'g> {
             solve::solve_surface(job, &job.surfaces[surface], if is_chosen { wanted } else { points_only })
         };
         let solved = (0..job.surfaces.len()).filter_map(solve_one).collect::<Result<_, Failure>>()?;
-        Ok(Subject::of_solved(job, solved, names, header)?)
+        Ok(Subject::of_solved(job, solved, names, header, session)?)
     }
 
     /// Of surfaces that are solved; all of them if none is named.
@@ -64,6 +66,7 @@ impl<'j, 'g> Subject<'j, 'g> {
         solved: Vec<Solved<'j, 'g>>,
         names: &[&'j str],
         header: Header,
+        session: Session<'j>,
     ) -> Result<Subject<'j, 'g>, String> {
         let place = |name: &&str| {
             let found = solved.iter().position(|solved| solved.surface.name == *name);
@@ -72,7 +75,17 @@ impl<'j, 'g> Subject<'j, 'g> {
         let chosen = mapped(job, names).iter().map(place).collect::<Result<Vec<usize>, String>>()?;
         let in_space = if names.is_empty() { (0..solved.len()).collect() } else { chosen.clone() };
         let dataset = solve::dataset(job, &solved, &[], header);
-        Ok(Subject { job, solved, dataset, chosen, in_space })
+        Ok(Subject { job, solved, dataset, chosen, in_space, session })
+    }
+
+    /// The job.
+    pub(crate) fn job(&self) -> &'j Job<'g> {
+        self.job
+    }
+
+    /// What pictures solve with.
+    pub(crate) fn session(&self) -> Session<'j> {
+        self.session
     }
 
     /// The first of the surfaces that maps show.

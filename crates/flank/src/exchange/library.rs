@@ -18,9 +18,9 @@ pub(crate) fn defines(path: &str, name: &str) -> bool {
     parse(text, FileId(0)).0.items.iter().filter_map(Item::name).any(|known| known.node == name)
 }
 
-/// All files with their paths within the library.
+/// All specs with their paths within the library.
 pub(super) fn texts() -> impl Iterator<Item = (&'static Path, &'static str)> {
-    files(&LIBRARY)
+    files(&LIBRARY).filter(|(path, _)| path.extension().is_some_and(|extension| extension == "chain"))
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {
@@ -28,9 +28,17 @@ fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, 
     folder.files().filter_map(|file| Some((file.path(), file.contents_utf8()?))).chain(inner)
 }
 
-/// Adds what a file of the library uses, and what that uses.
+/// Adds what a file of the library uses, and what that uses; also the tables that they are tested by.
 pub(super) fn used_by(path: &Path, text: &str, all: &mut Vec<(PathBuf, String)>) -> Result<(), String> {
     let (file, _) = parse(text, FileId(0));
+    for table in file.expected_tables() {
+        let path = plain(&path.with_file_name(table));
+        if all.iter().any(|(known, _)| *known == path) {
+            continue;
+        }
+        let text = LIBRARY.get_file(&path).and_then(|file| file.contents_utf8());
+        all.push((path.clone(), text.ok_or_else(|| format!("the library lacks {}", shown_path(&path)))?.to_owned()));
+    }
     for item in file.items {
         let Item::Use(used) = item else { continue };
         let path = plain(&path.with_file_name(used.node));

@@ -258,25 +258,53 @@ impl Source {
         let (text, job) = self.with_places(&values.iter().map(|(name, _)| *name).collect::<Vec<_>>());
         let places = values.into_iter().filter_map(|(parameter, value)| Some((place(&job, parameter)?, value)));
         let changes = Changes::new(places.chain([(job.name.span, Given::name(name))]).collect());
-        let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), changes.applied(&text))];
-        used_by(self.path, self.text, &mut files).map_err(Failure::Input)?;
+        let text = changes.applied(&text);
+        let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), text.clone())];
+        used_by(self.path, &text, &mut files).map_err(Failure::Input)?;
         Ok(Made { files, changes })
     }
 
     /// The job with the values of these parameters written in it, also where it takes them from the one that it extends.
     fn with_places(&self, parameters: &[&str]) -> (Cow<'static, str>, Job) {
-        let lacking = parameters.iter().filter(|name| place(&self.job, name).is_none());
+        let (text, job) = self.without_own_values(!parameters.is_empty());
+        let lacking = parameters.iter().filter(|name| place(&job, name).is_none());
         let lacking = self.parameters.iter().filter(|known| lacking.clone().any(|name| *name == known.name));
         let changes: Vec<String> = lacking.map(|known| format!("{}: {}", known.name, known.default)).collect();
-        let (Some(parent), [_, ..]) = (&self.job.extends, &changes[..]) else {
-            return (Cow::Borrowed(self.text), self.job.clone());
+        let (Some(parent), [_, ..]) = (&job.extends, &changes[..]) else {
+            return (text, job);
         };
-        let (end, changes) = match self.job.changes.last() {
+        let (end, changes) = match job.changes.last() {
             Some(last) => (last.value.span.end, format!(", {}", changes.join(", "))),
             None => (parent.span.end, format!("({})", changes.join(", "))),
         };
-        let mut text = self.text.to_owned();
+        let mut text = text.into_owned();
         text.insert_str(end as usize, &changes);
+        self.parsed(text)
+    }
+
+    /// The job without expectations that are meant for the values which it has here, if it gets others.
+    fn without_own_values(&self, gets_others: bool) -> (Cow<'static, str>, Job) {
+        let own = |statement: &JobStatement| match statement {
+            JobStatement::Expect(expected) if expected.is_of_values() => Some(expected.span),
+            _ => None,
+        };
+        let places: Vec<Span> = self.job.statements.iter().filter_map(own).collect();
+        if !gets_others || places.is_empty() {
+            return (Cow::Borrowed(self.text), self.job.clone());
+        }
+        let mut text = self.text.to_owned();
+        for place in places.iter().rev() {
+            let (start, end) = (place.start as usize, place.end as usize);
+            // with the line that it stands on
+            let start = text[..start]
+                .rfind('\n')
+                .map_or(start, |at| if text[at..start].trim().is_empty() { at } else { start });
+            text.replace_range(start..end, "");
+        }
+        self.parsed(text)
+    }
+
+    fn parsed(&self, text: String) -> (Cow<'static, str>, Job) {
         let jobs = parse(&text, FileId(0)).0.items.into_iter();
         let job = jobs.filter_map(|item| if let Item::Job(job) = item { Some(job) } else { None }).next();
         (Cow::Owned(text), job.unwrap_or_else(|| self.job.clone()))

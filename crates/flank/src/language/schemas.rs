@@ -9,20 +9,23 @@ use serde_json::Value;
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::fit::result::FitResult;
 use crate::compare::measure_result::MeasureResult;
+use crate::compare::synthesis::result::SynthesisResult;
 use crate::compare::tolerance::result::ToleranceResult;
 use crate::contact::result::ContactResult;
+use crate::convert::milling::result::MillResult;
 use crate::convert::result::{AxisMotion, FoundSettings};
-use crate::derive::result::{CostTable, Derivation};
 use crate::draw::result::PlotResult;
 use crate::exchange::import::Imported;
 use crate::exchange::templates::{FromLibrary, TemplateList};
 use crate::language::check::CheckResult;
+use crate::language::derive::result::{CostTable, Derivation};
 use crate::language::errors::Explanation;
 use crate::page::result::ViewResult;
 use crate::report::result::ReportResult;
 use crate::solve::body::bricks_result::MeshResult;
 use crate::solve::body::result::SolidResult;
 use crate::solve::result::SolveResult;
+use crate::testing::result::TestResult;
 
 /// A schema.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
@@ -48,8 +51,10 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<DeviationResult>(),
         schema_of::<ContactResult>(),
         schema_of::<FitResult>(),
+        schema_of::<SynthesisResult>(),
         schema_of::<ToleranceResult>(),
         schema_of::<MeasureResult>(),
+        schema_of::<MillResult>(),
         schema_of::<AxisMotion>(),
         schema_of::<FoundSettings>(),
         schema_of::<Derivation>(),
@@ -57,6 +62,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<PlotResult>(),
         schema_of::<ViewResult>(),
         schema_of::<ReportResult>(),
+        schema_of::<TestResult>(),
         schema_of::<Imported>(),
         schema_of::<FromLibrary>(),
         schema_of::<TemplateList>(),

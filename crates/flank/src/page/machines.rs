@@ -23,7 +23,9 @@ pub(super) fn page_machine<'g>(
     }
     outputs.extend(joints.iter().flat_map(|joint| joint.point.0.into_iter().chain(joint.direction.0)));
     outputs.extend(machine.axes.iter().map(|axis| axis.variable));
-    let laws: Vec<(Expr<'g>, Expr<'g>)> = machine.axes.iter().map(|axis| (axis.variable, axis.law)).collect();
+    // what cutter paths move stands at zero while the job generates
+    let law = |axis: &Axis<'g>| if axis.source == LawSource::Free { graph.constant(0.0) } else { axis.law };
+    let laws: Vec<(Expr<'g>, Expr<'g>)> = machine.axes.iter().map(|axis| (axis.variable, law(axis))).collect();
     let driven = graph.substitute(&outputs, &laws);
     let titled: Vec<_> = driven.into_iter().map(|output| ("poses of frames, joints, axes", output)).collect();
     let motions: Vec<Expr<'g>> = job.motions.iter().map(|motion| motion.variable).collect();

@@ -1,5 +1,6 @@
 //! `flank view`
 
+mod bodies;
 mod contacts;
 mod functions;
 mod machines;
@@ -10,7 +11,7 @@ mod thin;
 mod tools;
 
 use flank_chain_dsl::{Job, RangedVariable};
-use flank_draw::{PageMotion, Scene};
+use flank_draw::{PageBody, PageMotion, Scene};
 use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
 
@@ -66,7 +67,8 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
             not_done.push(NotDone::new(NotDoneKind::NoPage, &job.name, message));
             None
         } else {
-            let page = write(&graph, job, (&solved, &contacts), &dataset, (request, &origin, monitor))?;
+            let bodies = bodies::page_bodies(job, &solved, wanted.session)?;
+            let page = write(&graph, job, (&solved, &contacts, bodies), &dataset, (request, &origin, monitor))?;
             remarks.extend(page.shown_in_part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
             Some(page)
         };
@@ -115,13 +117,13 @@ struct Written {
 fn write<'g>(
     graph: &'g Graph,
     job: &Job<'g>,
-    (solved, contacts): (&[Solved<'_, 'g>], &[contacts::Shown<'_, 'g>]),
+    (solved, contacts, bodies): (&[Solved<'_, 'g>], &[contacts::Shown<'_, 'g>], Vec<PageBody>),
     dataset: &Dataset,
     (request, origin, monitor): (&ViewRequest, &Origin, &dyn Monitor),
 ) -> Result<Written, Failure> {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
-    let mut scene = scene(graph, job, solved, contacts);
+    let mut scene = Scene { bodies, ..scene(graph, job, solved, contacts) };
     let is_part = solved.iter().any(|solved| solved.streamed.is_some());
     let shown_in_part = if is_part {
         let asked: usize = solved.iter().map(|solved| solved.summary.asked).sum();
@@ -175,6 +177,7 @@ fn scene<'g>(
             .collect(),
         tools: tools::page_tools(job, solved, &mut functions),
         surfaces,
+        bodies: Vec::new(),
         contacts: contacts.iter().filter_map(|contact| contact.page(job, solved)).collect(),
         definitions: parameters::definitions(job, &mut functions),
         notes: Vec::new(),

@@ -182,10 +182,14 @@ choices! {
     #[derive(Serialize, JsonSchema)]
     #[serde(rename_all = "kebab-case")]
     PlotKind {
+        /// The whole gear, and three of its teeth large, with its data: of a job with a `solid`.
+        Gear = "gear",
         /// All surfaces in space, with axis, frame and dimensions.
         Surface = "surface",
-        /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the plane that fits best.
+        /// Heights above the flank's measuring grid: of the deviation, of what single edges leave, or over the involute.
         Topography = "topography",
+        /// Profile and helix traces of involute flanks with their evaluation by ISO 1328-1.
+        Traces = "traces",
         /// Maps of the principal curvatures, their product and their mean.
         Curvature = "curvature",
         /// Maps of how far parameters and settings move the surface.
@@ -224,6 +228,16 @@ choices! {
         Siemens = "siemens",
         /// LinuxCNC.
         LinuxCnc = "linuxcnc",
+    }
+}
+
+choices! {
+    /// A format of cutter locations.
+    CutterFormat {
+        /// A table with contact, normal, tip, axis and the axes of the machine.
+        Csv = "csv",
+        /// APT: GOTO with tip and axis.
+        Apt = "apt",
     }
 }
 

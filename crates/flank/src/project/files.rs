@@ -4,10 +4,10 @@ use std::path::Path;
 
 use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
-    BodyMesh, BrickBody, Dataset, Dialect, Face, FileSet, GearBody, Header, MeasuringGrid, MotionTable, Surfaces,
-    Target, WriteError, make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl, write_csv,
-    write_grid_csv, write_grid_json, write_inp, write_json, write_motion_csv, write_motion_json, write_nc, write_obj,
-    write_parquet, write_step, write_step_body, write_stl, write_vtp, write_vtu,
+    BodyMesh, BrickBody, Dataset, Dialect, Face, FileSet, GearBody, Header, MeasuringGrid, MotionTable, PlacedBody,
+    PlacedFrame, Surfaces, Target, WriteError, make_folder, write_3mf, write_body_3mf, write_body_obj, write_body_stl,
+    write_csv, write_grid_csv, write_grid_json, write_inp, write_json, write_motion_csv, write_motion_json, write_nc,
+    write_obj, write_parquet, write_step, write_step_assembly, write_step_body, write_stl, write_vtp, write_vtu,
 };
 
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
@@ -97,14 +97,29 @@ impl<'a> Folder<'a> {
         self.write(&format!("{name}.step"), |out| write_step_body(header, body, out))
     }
 
+    /// Bodies with smooth faces where they are mounted.
+    pub(crate) fn body_assembly(
+        &mut self,
+        name: &str,
+        header: &Header,
+        bodies: &[PlacedBody<'_>],
+    ) -> Result<(), Failure> {
+        self.write(&format!("{name}.step"), |out| write_step_assembly(header, bodies, out))
+    }
+
     /// The same with shared corners.
     pub(crate) fn body_obj(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
         self.write(&format!("{name}.obj"), |out| write_body_obj(header, body, out))
     }
 
-    /// The same, packed.
-    pub(crate) fn body_3mf(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
-        self.write(&format!("{name}.3mf"), |out| write_body_3mf(header, body, out))
+    /// Bodies where they stand, packed.
+    pub(crate) fn body_3mf(
+        &mut self,
+        name: &str,
+        header: &Header,
+        bodies: &[(BodyMesh<'_>, PlacedFrame)],
+    ) -> Result<(), Failure> {
+        self.write(&format!("{name}.3mf"), |out| write_body_3mf(header, bodies, out))
     }
 
     /// Bricks for Abaqus and CalculiX.

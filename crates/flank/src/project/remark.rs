@@ -67,6 +67,12 @@ pub enum NotDoneKind {
     NoBody,
     /// A body is not cut into bricks.
     NoBricks,
+    /// A cutter cannot mill a surface as it should.
+    NotMilled,
+    /// A cutter cuts too deep.
+    TooDeep,
+    /// A part of a cutter comes too near to a surface.
+    NotClear,
 }
 
 /// Kinds of remarks.
@@ -119,6 +125,10 @@ pub enum RemarkKind {
     NotShown,
     /// Over tolerances a result is not proportional to them.
     NotLinear,
+    /// The axes of a machine are not worked out.
+    NoAxes,
+    /// A surface is continued beyond what its tool makes.
+    Continued,
 }
 
 impl<Kind> Message<Kind> {

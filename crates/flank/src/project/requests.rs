@@ -8,8 +8,8 @@ use flank_solver::MOST_BOXES;
 
 use crate::project::Project;
 use crate::project::choices::{
-    BrickFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat, PlotKind, PointFormat,
-    ReportFormat, SolidPart, TableFormat,
+    BrickFormat, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
+    PlotKind, PointFormat, ReportFormat, SolidPart, TableFormat,
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
@@ -38,7 +38,7 @@ impl JobSelection {
 
     pub(crate) fn request(&self) -> Request<'_> {
         let files = self.project.shared_files();
-        Request { files, job: self.job.as_deref(), set: &self.set, ..Request::default() }
+        Request { files, job: self.job.as_deref(), set: &self.set, expectations: false, ..Request::default() }
     }
 
     /// # Errors
@@ -347,6 +347,8 @@ pub struct FitRequest {
     pub margin: Option<[f64; 2]>,
     /// How the surface shall lie off another one, which `from` names.
     pub ease_off: Option<WantedEaseOff>,
+    /// The same as a table of deviations, as measured ones are given, of the surface that `from` names.
+    pub ease_off_table: Option<PathBuf>,
     /// The surface that the ease-off is one from; it is sampled in the spec.
     pub from: Option<String>,
     /// The parameters and settings that may change; some of those that the job gives a value, if none is named.
@@ -357,6 +359,8 @@ pub struct FitRequest {
     pub noise: Option<f64>,
     /// Settings that are set in steps, with these: corrections are multiples of them.
     pub round: Vec<(String, ToleratedAmount)>,
+    /// Further surfaces of the job that corrected settings leave where they are, in these places of their samples.
+    pub keep: Vec<(String, KeptPlace)>,
     /// Whether the points are not turned about z.
     pub as_it_lies: bool,
     /// The share of the deviation that the corrected settings take away.
@@ -386,11 +390,13 @@ impl FitRequest {
             columns: None,
             margin: None,
             ease_off: None,
+            ease_off_table: None,
             from: None,
             vary: Vec::new(),
             order: None,
             noise: None,
             round: Vec::new(),
+            keep: Vec::new(),
             as_it_lies: false,
             share: 1.0,
             within: 1e-3,
@@ -401,8 +407,56 @@ impl FitRequest {
         }
     }
 
+    /// Whether a flank is wanted, and none was measured.
+    pub(crate) fn is_wish(&self) -> bool {
+        self.ease_off.is_some() || self.ease_off_table.is_some()
+    }
+
     pub(crate) fn margins(&self) -> [f64; 2] {
         self.margin.unwrap_or([MARGIN; 2])
+    }
+}
+
+/// Where corrected settings leave a surface as it is: its distance along the normal from where it was is zero there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPlace {
+    /// In the middle of its sample: of a root the depth of the tooth, of the opposite flank its thickness.
+    Middle,
+    /// At both ends of the row through the middle: of a root the root line.
+    Line,
+}
+
+/// Which settings bring a contact where it is wanted.
+#[derive(Clone, Debug)]
+pub struct SynthesisRequest {
+    /// The jobs that the wanted contact is looked for in.
+    pub jobs: JobSelection,
+    /// What is wanted of a contact, as its job names it.
+    pub want: String,
+    /// The parameters and settings that may change; of the first flank those that do most, as many as conditions, if none is named.
+    pub vary: Vec<String>,
+    /// Settings that are set in steps, with these: what is found are multiples of them.
+    pub round: Vec<(String, ToleratedAmount)>,
+    /// A file for a spec with the settings.
+    pub write: Option<PathBuf>,
+    /// Whether that spec is told and not written.
+    pub dry: bool,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl SynthesisRequest {
+    /// By settings that are chosen, and without a file.
+    pub fn new(jobs: impl Into<JobSelection>, want: &str) -> SynthesisRequest {
+        SynthesisRequest {
+            jobs: jobs.into(),
+            want: want.to_string(),
+            vary: Vec::new(),
+            round: Vec::new(),
+            write: None,
+            dry: false,
+            evaluator: EvaluatorOptions::default(),
+        }
     }
 }
 
@@ -525,6 +579,55 @@ impl ContactRequest {
             out: "build".into(),
             format: vec![PointFormat::Csv],
             no_picture: false,
+            evaluator: EvaluatorOptions::default(),
+        }
+    }
+}
+
+/// Passes of cutters over surfaces.
+#[derive(Clone, Debug)]
+pub struct MillRequest {
+    /// Of which jobs.
+    pub jobs: JobSelection,
+    /// The milling; all if none is named.
+    pub milling: Option<String>,
+    /// Folder for the files; made if it is not there.
+    pub out: PathBuf,
+    /// Files with cutter locations.
+    pub format: Vec<CutterFormat>,
+    /// Controls that programs are written for.
+    pub nc: Vec<NcDialect>,
+    /// Whether the control keeps the tip on its way, so that blocks are straight in the work.
+    pub tool_centre_control: bool,
+    /// Of the cutter along the surface, mm/min.
+    pub feed: f64,
+    /// Revolutions of the cutter a minute, if programs are to say that.
+    pub spindle: Option<f64>,
+    /// How far above a pass the cutter comes down and is lifted with feed, mm.
+    pub approach: f64,
+    /// Spaces of the work that a program mills, one after the other.
+    pub spaces: u32,
+    /// A program whose blocks are measured on the surface.
+    pub verify: Option<PathBuf>,
+    /// How the numbers are worked out.
+    pub evaluator: EvaluatorOptions,
+}
+
+impl MillRequest {
+    /// All millings, cutter locations as a table into the folder `build`, 600 mm/min, one space.
+    pub fn new(jobs: impl Into<JobSelection>) -> MillRequest {
+        MillRequest {
+            jobs: jobs.into(),
+            milling: None,
+            out: "build".into(),
+            format: vec![CutterFormat::Csv],
+            nc: Vec::new(),
+            tool_centre_control: false,
+            feed: 600.0,
+            spindle: None,
+            approach: 5.0,
+            spaces: 1,
+            verify: None,
             evaluator: EvaluatorOptions::default(),
         }
     }

@@ -4,6 +4,7 @@ mod contacts;
 mod conventions;
 mod ends;
 mod extremes;
+mod gear;
 mod influences;
 mod inputs;
 mod machines;
@@ -20,6 +21,7 @@ use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
 
+use crate::compare::trace_result::FlankTraces;
 use crate::contact::{self, result::ContactResult};
 use crate::draw::{self, Drawing, Subject};
 use crate::project::choices::PlotKind;
@@ -85,6 +87,9 @@ struct Findings<'j, 'g> {
     faces: Vec<Smooth>,
     is_certified: bool,
     contacts: Vec<ShownContact>,
+    gears: Vec<gear::Gear<'j>>,
+    /// Of involute flanks.
+    traces: Vec<FlankTraces>,
 }
 
 /// What is known of a contact, and what pictures show of it.
@@ -124,8 +129,10 @@ impl<'j, 'g> Findings<'j, 'g> {
         let of_contacts = ContactRequest { sensitivity: true, ..ContactRequest::new(request.jobs.clone()) };
         let shown = |contact| contact::shown(job, contact, &of_contacts, wanted.session);
         let contacts = job.contacts.iter().map(shown).collect::<Result<_, Failure>>()?;
-        let subject = Subject::of_solved(job, solved, &[], unsigned)?;
+        let subject = Subject::of_solved(job, solved, &[], unsigned, wanted.session)?;
         let drawings = draw::defaults(&subject, PictureOptions::default());
+        let gears = gear::gears(&subject)?;
+        let traces = draw::traces::of_subject(&subject).unwrap_or_default();
         Ok(Findings {
             job,
             sources,
@@ -140,6 +147,8 @@ impl<'j, 'g> Findings<'j, 'g> {
             faces,
             is_certified: request.certify,
             contacts,
+            gears,
+            traces,
         })
     }
 
@@ -171,7 +180,8 @@ impl<'j, 'g> Findings<'j, 'g> {
     }
 
     fn document(&self) -> Document {
-        let mut sections = vec![inputs::section(self), machines::section(self)];
+        let mut sections: Vec<ReportSection> = gear::section(self).into_iter().collect();
+        sections.extend([inputs::section(self), machines::section(self)]);
         sections.extend(solids::section(self));
         sections.push(results::section(self));
         sections.extend([extremes::section(self), ends::section(self)]);
@@ -258,6 +268,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             motions: inputs::motions_told(self),
             machines: machines::told(self),
             solids: solids::all(self),
+            traces: self.traces.clone(),
             contacts: self.contacts.iter().map(|(contact, _)| contact.clone()).collect(),
             surfaces: results::told(self),
             lines: ends::told(self),

@@ -5,10 +5,12 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::compare::trace_result::FlankTraces;
 use crate::contact::result::ContactResult;
 use crate::project::answer::Answer;
 use crate::project::quantity::{NamedValue, Travel, UnitSymbol};
 use crate::project::remark::NotDone;
+use crate::solve::body::result::GaugeNumbers;
 use crate::solve::result::{Certified, PointSummary, SmoothFace, SurfaceResult};
 
 /// What stands on the page of `flank report`: inputs, machines, results of one job. Lengths are mm, angles degrees.
@@ -45,6 +47,8 @@ pub struct ReportResult {
     pub machines: Vec<BuiltMachine>,
     /// Bodies whose outlines say where teeth end.
     pub solids: Vec<BuiltSolid>,
+    /// Of the flanks of cylindrical gears, against an involute helicoid.
+    pub traces: Vec<FlankTraces>,
     /// As in flank.contact/1.
     pub contacts: Vec<ContactResult>,
     /// Surfaces with a sample: as in flank.solve/3, and more.
@@ -136,6 +140,12 @@ pub struct BuiltSolid {
     pub space: Vec<String>,
     /// Closed, the material on the left.
     pub outline: Vec<SolidEdge>,
+    /// Of the body; null where none could be built.
+    pub volume_mm3: Option<f64>,
+    /// What gauges find on the body, as in flank.solid/1; null where none could be built.
+    pub gauges: Option<GaugeNumbers>,
+    /// Why there is no body.
+    pub no_body: Option<String>,
 }
 
 /// A segment of a solid's outline in its axial section: points are `[z, rho]`, mm.

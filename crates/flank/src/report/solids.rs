@@ -5,6 +5,7 @@ use flank_draw::{Block, Column, ReportSection};
 use flank_export::fixed;
 
 use super::Findings;
+use super::gear::Gear;
 use super::result::{BuiltSolid, SolidEdge};
 
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
@@ -13,7 +14,7 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
 }
 
 fn of_solid(findings: &Findings<'_, '_>, solid: &Solid) -> [Block; 3] {
-    let BuiltSolid { name, frame, teeth, space, outline } = built(findings, solid);
+    let BuiltSolid { name, frame, teeth, space, outline, .. } = built(findings, solid, None);
     let columns = ["z, mm", "rho, mm", "to z, mm", "to rho, mm", "radius, mm"].map(Column::numbers);
     let columns: Vec<Column> = [Column::words("edge")].into_iter().chain(columns).collect();
     let row = |edge: SolidEdge| {
@@ -35,10 +36,11 @@ fn of_solid(findings: &Findings<'_, '_>, solid: &Solid) -> [Block; 3] {
 }
 
 pub(super) fn all(findings: &Findings<'_, '_>) -> Vec<BuiltSolid> {
-    findings.job.solids.iter().map(|solid| built(findings, solid)).collect()
+    findings.job.solids.iter().zip(&findings.gears).map(|(solid, gear)| built(findings, solid, Some(gear))).collect()
 }
 
-fn built(findings: &Findings<'_, '_>, solid: &Solid) -> BuiltSolid {
+fn built(findings: &Findings<'_, '_>, solid: &Solid, gear: Option<&Gear<'_>>) -> BuiltSolid {
+    let measured = gear.map(|gear| &gear.measured);
     let edge = |segment: &flank_chain_dsl::OutlineSegment| SolidEdge {
         name: segment.name.clone(),
         from: segment.from,
@@ -54,5 +56,8 @@ fn built(findings: &Findings<'_, '_>, solid: &Solid) -> BuiltSolid {
         teeth: solid.teeth,
         space: solid.space.iter().map(|at| findings.job.surfaces[*at].name.clone()).collect(),
         outline: solid.outline.iter().map(edge).collect(),
+        volume_mm3: measured.and_then(|of| of.as_ref().ok()).map(|(volume, _)| *volume),
+        gauges: measured.and_then(|of| of.as_ref().ok()).map(|(_, gauges)| gauges.clone()),
+        no_body: measured.and_then(|of| of.as_ref().err()).cloned(),
     }
 }

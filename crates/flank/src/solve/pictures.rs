@@ -1,7 +1,7 @@
 //! Pictures beside the one of the points.
 
-use flank_draw::{Picture, PictureOptions, field_maps};
-use flank_export::Dataset;
+use flank_draw::{Picture, PictureOptions, comparable_maps, field_maps};
+use flank_export::{Dataset, Patch};
 
 use crate::solve::cut;
 use crate::solve::sensitivity::{self, MAPS};
@@ -13,10 +13,12 @@ pub(super) fn sensitivities(solved: &[Solved<'_, '_>], dataset: &Dataset) -> Vec
     // the surfaces come first among the patches
     for (patch, solved) in solved.iter().enumerate() {
         let Some(sensitivity) = &solved.sensitivity else { continue };
-        let most = sensitivity.most_moving(MAPS).into_iter();
-        let shown: Vec<(usize, usize)> = most.map(|k| (patch, solved.fields.len() + k)).collect();
+        let fields = sensitivity.plain_fields(&sensitivity.most_moving(MAPS));
+        let shown: Vec<(usize, usize)> = (0..fields.len()).map(|field| (0, field)).collect();
+        let patch = Patch { fields, ..dataset.patches[patch].clone() };
+        let drawn = Dataset { header: dataset.header.clone(), patches: vec![patch] };
         let title = format!("{}: what moves {}", dataset.header.job, solved.surface.name);
-        let picture = field_maps(dataset, &title, &shown, sensitivity::NOTE, &PictureOptions::default());
+        let picture = comparable_maps(&drawn, &title, &shown, sensitivity::NOTE, &PictureOptions::default());
         pictures.push((solved.surface.name.clone(), picture));
     }
     pictures

@@ -111,8 +111,8 @@ fn in_bands<'j, 'g>(
 pub(crate) struct Found<'j, 'g> {
     problem: SurfaceProblem,
     pub(crate) points: Vec<SurfacePoint>,
-    effort: GridReport,
-    trims: Vec<Line<'j, 'g>>,
+    pub(crate) effort: GridReport,
+    pub(crate) trims: Vec<Line<'j, 'g>>,
     positions: Positions,
 }
 

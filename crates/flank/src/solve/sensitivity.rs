@@ -14,7 +14,7 @@ pub(crate) const MAPS: usize = 6;
 
 /// What the numbers are, for pictures.
 pub(crate) const NOTE: &str = "Normal displacement of the surface per unit of a parameter, exact derivative; plus is more \
-    material. Parameters whose definition contains it follow; to first order it does not matter whether the points that are \
+    material. One scale for all parameters of a unit. Parameters whose definition contains it follow; to first order it does not matter whether the points that are \
     asked for move with it.";
 
 /// How the points of a surface move with each parameter of the job that is no count.
@@ -73,6 +73,13 @@ impl Influence {
             largest,
             moves,
         }
+    }
+
+    /// As pictures show it: with its name in words.
+    fn plain_field(&self) -> Field {
+        let name = self.parameter.rsplit('.').next().unwrap_or_default().replace('_', " ");
+        let unit = self.unit.replacen("um/", "\u{b5}m per ", 1);
+        Field { name: format!("{name}, {unit}"), meaning: self.parameter.clone(), ..self.field() }
     }
 
     fn field(&self) -> Field {
@@ -145,6 +152,11 @@ impl Sensitivity {
     /// A field for each parameter, in the order of the job.
     pub(crate) fn fields(&self) -> impl Iterator<Item = Field> {
         self.influences.iter().map(Influence::field)
+    }
+
+    /// Those of some places in that order, with names in words.
+    pub(crate) fn plain_fields(&self, places: &[usize]) -> Vec<Field> {
+        places.iter().map(|place| self.influences[*place].plain_field()).collect()
     }
 
     /// The parameters that move the surface, the one whose usual change does most first, each by its place in the job.

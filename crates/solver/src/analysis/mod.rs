@@ -8,6 +8,7 @@ pub(crate) mod geometry;
 pub(crate) mod inspection;
 pub(crate) mod integer_points;
 pub(crate) mod intersection;
+pub(crate) mod involute;
 pub(crate) mod scatter;
 pub(crate) mod secondary;
 pub(crate) mod section;

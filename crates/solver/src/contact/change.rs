@@ -4,6 +4,7 @@
 //! directions: of those along (1, t) and (1, −t) the part that is odd in t.
 
 use flank_expr::TaylorEvaluator;
+use nalgebra::DMatrix;
 
 use crate::contact::ContactProblem;
 use crate::contact::point::ContactPoint;
@@ -24,69 +25,135 @@ pub struct ContactChange {
     pub lag_curvature: f64,
     /// How the point moves, in the frame of each member, mm.
     pub moved: [[f64; 3]; 2],
+    /// How the unit vectors out of each member turn, in its frame.
+    pub normals: [[f64; 3]; 2],
+    /// Of the way of the point over each member, in its frame, mm per radian of roll.
+    pub path: [[f64; 3]; 2],
     /// Of the curvatures of the gap, 1/mm, the greater first; `None` where an edge touches.
     pub gap: Option<[f64; 2]>,
 }
 
-/// How a point of contact moves over both members, and what becomes of the gap.
-struct Moved {
-    over: [[f64; 3]; 2],
-    gap: Option<[f64; 2]>,
+/// Series of all unknowns in the roll, to the third order.
+type Rolled = Vec<Vec<f64>>;
+
+/// How the unknowns change with a direction of roll and parameters, and the derivatives of the lag with them.
+struct Rates {
+    /// Of the unknowns.
+    unknowns: Vec<f64>,
+    /// Of their derivatives by the roll.
+    slopes: Vec<f64>,
+    /// Of the second derivative of the lag by the roll.
+    lag_curvature: f64,
+}
+
+impl ContactChange {
+    /// With a share of another change added.
+    fn plus(self, share: f64, other: &ContactChange) -> ContactChange {
+        let add = |a: [[f64; 3]; 2], b: &[[f64; 3]; 2]| [0, 1].map(|k| [0, 1, 2].map(|i| a[k][i] + share * b[k][i]));
+        let gap = self.gap.zip(other.gap);
+        ContactChange {
+            roll: self.roll + share * other.roll,
+            lag: self.lag + share * other.lag,
+            lag_slope: self.lag_slope + share * other.lag_slope,
+            lag_curvature: self.lag_curvature + share * other.lag_curvature,
+            moved: add(self.moved, &other.moved),
+            normals: add(self.normals, &other.normals),
+            path: add(self.path, &other.path),
+            gap: gap.map(|(a, b)| [a[0] + share * b[0], a[1] + share * b[1]]),
+        }
+    }
 }
 
 impl ContactProblem {
     /// What a change of parameters changes, each by its number with its share in the change: at the vertex of the lag, if the point is it
     /// and stays it, else at the same roll position. `None` where the contact is singular.
     pub fn change(&self, at: &ContactPoint, of: &[(usize, f64)], is_vertex: bool) -> Option<ContactChange> {
+        let (by_roll, mut changes) = self.changes(at, &[of.to_vec()])?;
+        let held = changes.pop()?;
+        let roll = if is_vertex { -held.lag_slope / by_roll.lag_slope } else { 0.0 };
+        let lag_slope = held.lag_slope;
+        Some(ContactChange { lag_slope, ..held.plus(roll, &by_roll) })
+    }
+
+    /// What the roll changes of a contact, and what each of several changes of parameters does at the same roll position; each by its number
+    /// with its share in the change. `None` where the contact is singular.
+    pub fn changes(&self, at: &ContactPoint, of: &[Vec<(usize, f64)>]) -> Option<(ContactChange, Vec<ContactChange>)> {
         let (unknowns, lag) = (at.all_unknowns(), self.lag_at());
         let (system, parameters) = self.equations(&at.edges, at.roll, &at.first_normal.into())?;
-        let along = |roll: f64, change: f64| {
+        let along = |roll: f64, change: f64, of: &[(usize, f64)]| {
             let changed = of.iter().map(|(parameter, share)| (1 + parameter, share * change));
             let rates: Vec<(usize, f64)> = [(0, roll)].into_iter().chain(changed).collect();
             system.series(&unknowns, &parameters, &rates, 3)
         };
-        let (rolled, changed) = (along(1.0, 0.0)?, along(0.0, 1.0)?);
-        let (both, against) = (along(1.0, 1.0)?, along(1.0, -1.0)?);
-        let lag_slope = 0.5 * (both[lag][2] - against[lag][2]);
-        let at_roll = both[lag][3] - against[lag][3] - 2.0 * changed[lag][3];
-        let roll = if is_vertex { -lag_slope / (2.0 * rolled[lag][2]) } else { 0.0 };
-        let rates: Vec<f64> =
-            rolled.iter().zip(&changed).map(|(rolled, changed)| changed[1] + roll * rolled[1]).collect();
-        let Moved { over: moved, gap } = self.moved(at, of, roll, &rates)?;
-        Some(ContactChange {
-            roll,
-            lag: rates[lag],
-            lag_slope,
-            lag_curvature: at_roll + 6.0 * rolled[lag][3] * roll,
-            moved,
-            gap,
-        })
+        let rolled: Rolled = along(1.0, 0.0, &[])?;
+        let by_roll = Rates {
+            unknowns: rolled.iter().map(|of| of[1]).collect(),
+            slopes: rolled.iter().map(|of| 2.0 * of[2]).collect(),
+            lag_curvature: 6.0 * rolled[lag][3],
+        };
+        let own = |of: &Vec<(usize, f64)>| {
+            let (changed, both, against) = (along(0.0, 1.0, of)?, along(1.0, 1.0, of)?, along(1.0, -1.0, of)?);
+            let rates = Rates {
+                unknowns: changed.iter().map(|of| of[1]).collect(),
+                slopes: both.iter().zip(&against).map(|(both, against)| 0.5 * (both[2] - against[2])).collect(),
+                lag_curvature: both[lag][3] - against[lag][3] - 2.0 * changed[lag][3],
+            };
+            self.changed_by(at, (0.0, of), &rates, &rolled)
+        };
+        Some((self.changed_by(at, (1.0, &[]), &by_roll, &rolled)?, of.iter().map(own).collect::<Option<_>>()?))
     }
 
-    /// How the point moves over both members, and what becomes of the gap, where the unknowns change at these rates.
-    fn moved(&self, at: &ContactPoint, of: &[(usize, f64)], roll: f64, rates: &[f64]) -> Option<Moved> {
+    /// What becomes of a contact where roll, parameters and unknowns change at these rates.
+    fn changed_by(
+        &self,
+        at: &ContactPoint,
+        (roll, of): (f64, &[(usize, f64)]),
+        rates: &Rates,
+        rolled: &Rolled,
+    ) -> Option<ContactChange> {
         let values = at.all_unknowns().into_iter().chain(self.given(at.roll));
         let share = |k: usize| of.iter().find(|(parameter, _)| *parameter == k).map_or(0.0, |(_, share)| *share);
-        let speeds = rates.iter().copied().chain([roll]).chain((0..self.values.len()).map(share));
+        let speeds = rates.unknowns.iter().copied().chain([roll]).chain((0..self.values.len()).map(share));
         let inputs: Vec<f64> = values.zip(speeds).flat_map(|(value, speed)| [value, speed]).collect();
         let mut outputs = vec![0.0; 2 * self.state.output_count()];
         TaylorEvaluator::new(&self.state, 1).run(&inputs, &mut outputs);
-        let members = |step: f64| {
-            let out: Vec<f64> = outputs.chunks(2).map(|series| series[0] + step * series[1]).collect();
-            self.members_from(&out)
+        let part = |order: usize| outputs.chunks(2).map(|series| series[order]).collect::<Vec<f64>>();
+        let (here, speeds) = (self.members_from(&part(0)), self.members_from(&part(1)));
+        // of the unknowns of each flank
+        let own = |member: usize, of: &dyn Fn(usize) -> f64| {
+            let from = member * self.unknowns[0];
+            DMatrix::from_fn(self.unknowns[member], 1, |row, _| of(from + row))
         };
-        let fastest =
-            rates.iter().zip(&self.ranges).map(|(rate, range)| (rate / range.width()).abs()).fold(0.0, f64::max);
+        let path = [0, 1].map(|k| {
+            let (first, second) = (own(k, &|at| rolled[at][1]), own(k, &|at| rates.slopes[at]));
+            let path = &speeds[k].own_slopes * first + &here[k].own_slopes * second;
+            [path[(0, 0)], path[(1, 0)], path[(2, 0)]]
+        });
+        let gap = if at.edges.is_empty() { self.gap_change(rates, [&part(0), &part(1)]) } else { None };
+        let lag = self.lag_at();
+        let change = ContactChange {
+            roll,
+            lag: rates.unknowns[lag],
+            lag_slope: rates.slopes[lag],
+            lag_curvature: rates.lag_curvature,
+            moved: speeds.each_ref().map(|speeds| speeds.own.into()),
+            normals: speeds.each_ref().map(|speeds| speeds.own_normal.into()),
+            path,
+            gap,
+        };
+        change.moved.iter().chain(&change.path).flatten().all(|x| x.is_finite()).then_some(change)
+    }
+
+    /// Of the curvatures of the gap, where what they follow from changes so.
+    fn gap_change(&self, rates: &Rates, [here, speeds]: [&[f64]; 2]) -> Option<[f64; 2]> {
+        let ranges = rates.unknowns.iter().zip(&self.ranges);
+        let fastest = ranges.map(|(rate, range)| (rate / range.width()).abs()).fold(0.0, f64::max);
         let step = STEP / fastest.max(f64::MIN_POSITIVE);
-        let [before, after] = [-step, step].map(members);
-        let moved = [0, 1].map(|k| <[f64; 3]>::from((after[k].own - before[k].own) / (2.0 * step)));
-        let gaps = [&before, &after].map(|members| self.gap(members).map(|gap| gap.principal()));
-        let gap = match gaps {
-            [Some(before), Some(after)] if at.edges.is_empty() => {
-                Some([after.k1 - before.k1, after.k2 - before.k2].map(|change| change / (2.0 * step)))
-            }
-            _ => None,
+        let gap = |step: f64| {
+            let out: Vec<f64> = here.iter().zip(speeds).map(|(value, speed)| value + step * speed).collect();
+            Some(self.gap(&self.members_from(&out))?.principal())
         };
-        moved.iter().flatten().all(|x| x.is_finite()).then_some(Moved { over: moved, gap })
+        let (before, after) = (gap(-step)?, gap(step)?);
+        Some([after.k1 - before.k1, after.k2 - before.k2].map(|change| change / (2.0 * step)))
     }
 }

@@ -5,6 +5,7 @@
 //! a contact is a curve over the roll.
 
 mod change;
+mod corners;
 mod edge;
 mod mesh;
 mod outline;
@@ -13,6 +14,7 @@ mod pattern;
 mod point;
 mod proof;
 mod start;
+mod synthesis;
 mod touching;
 
 use flank_expr::geometry::{Chain, Surface, Vector3};
@@ -22,6 +24,7 @@ use crate::equations::solution::Range;
 use crate::equations::system::System;
 use crate::surface::bound::BoundSurface;
 pub use change::ContactChange;
+pub use corners::{FlankCorners, FlankDirections};
 use edge::EdgeSystems;
 pub use edge::FlankEdge;
 pub use mesh::{Carried, Engagement};
@@ -31,6 +34,7 @@ pub use pattern::{Gap, GapProblem};
 pub use point::{ContactPoint, ContactState};
 pub use proof::ContactProof;
 pub use start::NoContact;
+pub use synthesis::{ContactNumber, ContactSynthesis, ContactWish, SynthesizedContact};
 
 /// Two surfaces that roll on each other.
 #[derive(Clone, Debug)]

@@ -97,6 +97,13 @@ impl ContactProblem {
         self.touching_near(roll, &near.all_unknowns(), &near.edges, near.first_normal.into())
     }
 
+    /// Where the flanks touch at a roll position, near a contact that is known of the same pair with other values of its parameters: flank on
+    /// flank, however far beyond the outlines of both and the ranges of their tools.
+    pub fn of_flanks(&self, near: &ContactPoint, roll: f64) -> Option<ContactPoint> {
+        let (root, members) = self.root(roll, &near.all_unknowns(), &[], near.first_normal.into())?;
+        Some(self.point(root, roll, Vec::new(), &members))
+    }
+
     /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has not
     /// different signs at two roll positions.
     pub fn vertex(&self, near: &ContactPoint, between: [f64; 2]) -> Option<ContactPoint> {

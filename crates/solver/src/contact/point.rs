@@ -130,10 +130,10 @@ pub(super) struct Member {
     pub(super) position: Vector3<f64>,
     pub(super) normal: Vector3<f64>,
     pub(super) own: Vector3<f64>,
-    own_normal: Vector3<f64>,
+    pub(super) own_normal: Vector3<f64>,
     /// Derivatives of the position by the roll and by the lag.
     pub(super) moved: [Vector3<f64>; 2],
-    own_slopes: DMatrix<f64>,
+    pub(super) own_slopes: DMatrix<f64>,
     slopes: DMatrix<f64>,
     normal_slopes: DMatrix<f64>,
     constraint_slopes: DMatrix<f64>,

@@ -77,6 +77,18 @@ impl<'g> Given<'g> {
     }
 }
 
+/// Axes on both elbows.
+pub(crate) struct BothElbows<'g> {
+    /// Of each elbow all unknowns, in the variables of `given`.
+    pub(crate) formulas: [Vec<Expr<'g>>; 2],
+    /// Variables for [`Given`]: direction, direction across, origin.
+    pub(crate) given: [Vector3<'g>; 3],
+    /// The first rotary axis as seen from the work: where the tool's axis is parallel to it, that axis is free.
+    pub(crate) pole: [f64; 3],
+    /// The length of the direction across.
+    pub(crate) across: f64,
+}
+
 /// Why there is no closed form.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotExplicit {
@@ -192,6 +204,25 @@ impl<'g> ExplicitProblem<'_, 'g> {
         let (solved, by) = if off <= other { (right?, off) } else { (left?, other) };
         let off = if by <= SAME { self.off(&solved, false) } else { by };
         if off <= SAME { Ok(Explicit { off, ..solved }) } else { Err(NotExplicit::Differs { by: off }) }
+    }
+
+    /// The axes in closed form on both elbows, angles within half a turn to both sides of zero; the postures are not looked at.
+    ///
+    /// # Errors
+    /// Where the target is not of the form that this way takes.
+    pub(crate) fn both_elbows(&self) -> Result<BothElbows<'g>, NotExplicit> {
+        let form = Form::of_problem(self)?;
+        let [right, left] = [1.0, -1.0].map(|side| form.principal(self, side));
+        let axis = form.joints[0].axis;
+        let numbers = self.numbers(&[axis.0.to_vec(), form.across.0.to_vec()].concat(), &self.line.0[..1]);
+        let [pole, across] = [0, 3].map(|from| [0, 1, 2].map(|k| numbers[0][from + k]));
+        let given = [form.given.f, form.given.g, form.given.o].map(|[variable, _]| variable);
+        Ok(BothElbows {
+            formulas: [right?, left?],
+            given,
+            pole,
+            across: across.iter().map(|x| x * x).sum::<f64>().sqrt(),
+        })
     }
 
     fn graph(&self) -> &'g Graph {
@@ -333,33 +364,50 @@ impl<'g> Form<'g> {
 
     /// With γ of one sign.
     fn on_side(&self, problem: &ExplicitProblem<'_, 'g>, side: f64) -> Result<Explicit<'g>, NotExplicit> {
-        let Given { f: [f, _], g: [g, _], o: [o, _] } = self.given;
-        let [first, second] = self.carrying(f, side);
-        let image = turned(g, self.joints[0].axis, first.cos(), -first.sin());
-        let image = turned(image, self.joints[1].axis, second.cos(), -second.sin());
-        let last = Angle::between(self.joints[2].axis, self.across, image, self.across.dot(self.across));
-        let angles = [first, second, last];
-        let lengths = self.lengths(problem, angles, o)?;
-        let all = |angle: &dyn Fn(usize) -> Result<Expr<'g>, NotExplicit>| {
-            let mut values = problem.unknowns.to_vec();
-            for (k, joint) in self.joints.iter().enumerate() {
-                values[joint.unknown] = angle(k)? / joint.slope;
-            }
-            // a tool that screws along itself shifts by its angle
-            let turns = self.joints.map(|joint| (problem.unknowns[joint.unknown], values[joint.unknown]));
-            for (unknown, length) in self.linear.into_iter().zip(lengths) {
-                values[unknown] = problem.graph().substitute(&[length], &turns)[0];
-            }
-            Ok(values)
-        };
+        let angles = self.angles(side);
         let near_its_law = |k: usize| Ok(angles[k].about(problem.law(self.joints[k])?));
         Ok(Explicit {
             turns: self.joints.map(|joint| joint.unknown),
             given: self.given,
-            formulas: all(&|k| Ok(angles[k].principal()))?,
-            continuous: self.given.put_into(&all(&near_its_law)?),
+            formulas: self.principal(problem, side)?,
+            continuous: self.given.put_into(&self.all(problem, angles, &near_its_law)?),
             off: f64::NAN,
         })
+    }
+
+    /// All unknowns on an elbow, angles within half a turn to both sides of zero.
+    fn principal(&self, problem: &ExplicitProblem<'_, 'g>, side: f64) -> Result<Vec<Expr<'g>>, NotExplicit> {
+        let angles = self.angles(side);
+        self.all(problem, angles, &|k| Ok(angles[k].principal()))
+    }
+
+    fn angles(&self, side: f64) -> [Angle<'g>; 3] {
+        let Given { f: [f, _], g: [g, _], .. } = self.given;
+        let [first, second] = self.carrying(f, side);
+        let image = turned(g, self.joints[0].axis, first.cos(), -first.sin());
+        let image = turned(image, self.joints[1].axis, second.cos(), -second.sin());
+        let last = Angle::between(self.joints[2].axis, self.across, image, self.across.dot(self.across));
+        [first, second, last]
+    }
+
+    /// All unknowns where each angle is written in one of its ways.
+    fn all(
+        &self,
+        problem: &ExplicitProblem<'_, 'g>,
+        angles: [Angle<'g>; 3],
+        angle: &dyn Fn(usize) -> Result<Expr<'g>, NotExplicit>,
+    ) -> Result<Vec<Expr<'g>>, NotExplicit> {
+        let lengths = self.lengths(problem, angles, self.given.o[0])?;
+        let mut values = problem.unknowns.to_vec();
+        for (k, joint) in self.joints.iter().enumerate() {
+            values[joint.unknown] = angle(k)? / joint.slope;
+        }
+        // a tool that screws along itself shifts by its angle
+        let turns = self.joints.map(|joint| (problem.unknowns[joint.unknown], values[joint.unknown]));
+        for (unknown, length) in self.linear.into_iter().zip(lengths) {
+            values[unknown] = problem.graph().substitute(&[length], &turns)[0];
+        }
+        Ok(values)
     }
 
     /// The angles of the first two joints that bring the third one into a direction.

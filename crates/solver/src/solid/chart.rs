@@ -62,6 +62,22 @@ impl Chart {
         &self.points[row * self.counts[1]..][..self.counts[1]]
     }
 
+    /// What the value at each of so many shares counts in that of the polynomial through them.
+    pub(crate) fn weights(count: usize, share: f64) -> Vec<f64> {
+        Chart::weights_at(&Chart::shares(count), share)
+    }
+
+    /// The same at shares that are known.
+    pub(crate) fn weights_at(nodes: &[f64], share: f64) -> Vec<f64> {
+        let count = nodes.len();
+        if let Some(node) = nodes.iter().position(|node| *node == share) {
+            return (0..count).map(|k| if k == node { 1.0 } else { 0.0 }).collect();
+        }
+        let terms: Vec<f64> = (0..count).map(|k| barycentric_weight(count, k) / (share - nodes[k])).collect();
+        let sum: f64 = terms.iter().sum();
+        terms.iter().map(|term| term / sum).collect()
+    }
+
     /// The position at two shares, mm.
     pub fn at(&self, shares: [f64; 2]) -> [f64; 3] {
         self.summed([0, 1].map(|k| Basis::at(self.counts[k], shares[k]).values))
@@ -132,24 +148,18 @@ struct Basis {
     slopes: Vec<f64>,
 }
 
+/// Of Chebyshev's nodes of the second kind (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004, eq. 5.4).
+fn barycentric_weight(count: usize, k: usize) -> f64 {
+    let end = if k == 0 || k + 1 == count { 0.5 } else { 1.0 };
+    if k.is_multiple_of(2) { end } else { -end }
+}
+
 impl Basis {
-    /// Barycentric weights of Chebyshev's nodes of the second kind (Berrut and Trefethen, Barycentric Lagrange Interpolation, 2004, eqs.
-    /// 5.4 and 9.4).
+    /// Values by barycentric weights, slopes by eq. 9.4 there.
     fn at(count: usize, share: f64) -> Basis {
         let nodes = Chart::shares(count);
-        let weight = |k: usize| {
-            let end = if k == 0 || k + 1 == count { 0.5 } else { 1.0 };
-            if k.is_multiple_of(2) { end } else { -end }
-        };
-        let node = nodes.iter().position(|node| *node == share);
-        let values: Vec<f64> = match node {
-            Some(node) => (0..count).map(|k| if k == node { 1.0 } else { 0.0 }).collect(),
-            None => {
-                let terms: Vec<f64> = (0..count).map(|k| weight(k) / (share - nodes[k])).collect();
-                let sum: f64 = terms.iter().sum();
-                terms.iter().map(|term| term / sum).collect()
-            }
-        };
+        let weight = |k: usize| barycentric_weight(count, k);
+        let values = Chart::weights(count, share);
         let mut slopes = vec![0.0; count];
         for (k, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
             for j in (0..count).filter(|j| *j != k) {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::solid::body::Body;
+use crate::solid::body::{Body, Polar};
 use crate::solid::chart::Chart;
 
 /// Halvings of a search along a flank: as many as a number has binary digits.
@@ -17,14 +17,18 @@ const LAST_STEP: f64 = 1e-9;
 const TOUCHES: f64 = 1e-6;
 /// Step of the differences that Newton's method takes for slopes, in shares.
 const STEP: f64 = 1e-6;
+/// The tip of a face gear is this flat: its slope against a plane across the axis.
+const FLAT: f64 = 0.1;
 /// Singular values below this share of the largest are directions in which a gauge may slide.
 const SLIDES: f64 = 1e-5;
 
-/// A tooth at a distance from the axis.
+/// A tooth on a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thickness {
-    /// Distance from the axis, mm.
+    /// Distance of the circle from the axis, mm.
     pub rho: f64,
+    /// Its place along the axis, mm.
+    pub z: f64,
     /// Along the circle, mm.
     pub arc: f64,
     /// Straight, as a tooth caliper measures it, mm.
@@ -58,43 +62,73 @@ pub struct BallGauge {
 }
 
 impl Body {
-    /// Whether the tip is farther from the axis than the root.
-    pub fn is_external(&self) -> bool {
-        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
-        line[0][1] > line[line.len() / 2][1]
+    /// Whether its teeth stand on a face, along the axis, and not around it: then their depth is measured by z, else by the distance from the
+    /// axis.
+    pub fn is_face_gear(&self) -> bool {
+        let [_, tip, _] = self.blank().bounds();
+        (tip.to[0] - tip.from[0]).abs() < FLAT * (tip.to[1] - tip.from[1]).abs()
     }
 
-    /// The distance from the axis of the tip and of the deepest point of the space, half-way along, mm.
+    /// How far the edges in which teeth end lie below the tip of the blank, half-way along, mm; nothing where teeth have lands.
+    pub fn edge_below_tip(&self) -> Option<f64> {
+        let [z, rho, _] = polar(self.charts[0].at([0.0, 0.5]));
+        let tip = self.blank().tip(0.5);
+        self.has_edge().then(|| (z - tip[0]).hypot(rho - tip[1]))
+    }
+
+    /// By what the depth of teeth is measured, of a place `[z, rho, …]`.
+    fn depth(&self, place: Polar) -> f64 {
+        if self.is_face_gear() { place[0] } else { place[1] }
+    }
+
+    /// Whether the depth grows from the root to the tip: of external gears.
+    pub fn is_external(&self) -> bool {
+        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
+        self.depth(line[0]) > self.depth(line[line.len() / 2])
+    }
+
+    /// The distance from the axis (of a face gear the z) of the tip and of the deepest point of the space, half-way along, mm.
     pub fn tip_and_root(&self) -> [f64; 2] {
         let shares: Vec<f64> = (0..=64).map(|k| f64::from(k) / 64.0).collect();
         let line = &self.lines(&vec![shares; self.charts.len()], &[0.5])[0];
         let deeper = |a: f64, b: f64| if self.is_external() { a.min(b) } else { a.max(b) };
-        [line[0][1], line.iter().map(|place| place[1]).reduce(deeper).unwrap_or(line[0][1])]
+        let tip = self.depth(line[0]);
+        [tip, line.iter().map(|place| self.depth(*place)).reduce(deeper).unwrap_or(tip)]
     }
 
-    /// The distance from the axis at which both flanks end towards the root, half-way along, mm.
+    /// The distance from the axis (of a face gear the z) at which both flanks end towards the root, half-way along, mm.
     pub fn form(&self) -> [f64; 2] {
-        let last = self.charts.len() - 1;
-        [(0, 1.0), (last, 0.0)].map(|(k, share)| rho(self.charts[k].at([share, 0.5])))
+        let [low, high] = self.flanks();
+        [(low, 1.0), (high, 0.0)].map(|(k, share)| self.depth(polar(self.charts[k].at([share, 0.5]))))
     }
 
-    /// The tooth's thickness at a distance from the axis, half-way along; `None` where a flank does not reach there.
-    pub fn thickness(&self, rho: f64) -> Option<Thickness> {
-        let last = self.charts.len() - 1;
-        let angle = |k: usize| -> Option<f64> {
-            let [x, y, _] = self.charts[k].at([self.on_flank(k, rho)?, 0.5]);
-            Some(y.atan2(x))
+    /// The charts that are the flanks: on each side the deepest one.
+    fn flanks(&self) -> [usize; 2] {
+        let depth = |k: &usize| {
+            let [from, to] = [0.0, 1.0].map(|share| self.depth(polar(self.charts[*k].at([share, 0.5]))));
+            (to - from).abs()
         };
-        let angle = self.pitch() - (angle(last)? - angle(0)?).rem_euclid(TAU);
-        let tip = self.tip_and_root()[0];
-        let chord_height = tip - rho * (0.5 * angle).cos();
-        let chord_height = if self.is_external() { chord_height } else { -chord_height };
-        Some(Thickness { rho, arc: rho * angle, chord: 2.0 * rho * (0.5 * angle).sin(), chord_height })
+        let count = self.charts.len();
+        let deepest = |side: std::ops::Range<usize>| side.max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
+        [deepest(0..count.div_ceil(2)), deepest(count / 2..count)]
     }
 
-    /// The share across a chart at which it has a distance from the axis, half-way along.
+    /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
+    pub fn thickness(&self, depth: f64) -> Option<Thickness> {
+        let place = |k: usize| Some(polar(self.charts[k].at([self.on_flank(k, depth)?, 0.5])));
+        // flank, or chamfer beside it
+        let ([z, rho, low], [_, _, high]) =
+            ((0..self.charts.len()).find_map(place)?, (0..self.charts.len()).rev().find_map(place)?);
+        let angle = self.pitch() - (high - low).rem_euclid(TAU);
+        let tip = self.tip_and_root()[0];
+        let middle = if self.is_face_gear() { z } else { rho * (0.5 * angle).cos() };
+        let chord_height = if self.is_external() { tip - middle } else { middle - tip };
+        Some(Thickness { rho, z, arc: rho * angle, chord: 2.0 * rho * (0.5 * angle).sin(), chord_height })
+    }
+
+    /// The share across a chart at which it has a depth, half-way along.
     fn on_flank(&self, k: usize, wanted: f64) -> Option<f64> {
-        let at = |share: f64| rho(self.charts[k].at([share, 0.5])) - wanted;
+        let at = |share: f64| self.depth(polar(self.charts[k].at([share, 0.5]))) - wanted;
         let (mut low, mut high) = (0.0, 1.0);
         if at(low) == 0.0 {
             return Some(low);
@@ -114,7 +148,8 @@ impl Body {
         if !self.is_external() || teeth == 0 || teeth >= self.teeth() {
             return None;
         }
-        let (near, far) = (&self.charts[self.charts.len() - 1], &self.charts[0]);
+        let [low, high] = self.flanks();
+        let (near, far) = (&self.charts[high], &self.charts[low]);
         let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(teeth) * self.pitch());
         let residual = |x: &[f64]| {
             let (p, n) = touched(near, [x[0], x[1]]);
@@ -126,12 +161,17 @@ impl Body {
         };
         let chord = (turned * touched(far, [0.5; 2]).0 - touched(near, [0.5; 2]).0).norm();
         let x = solved(residual, vec![0.5, 0.5, 0.5, 0.5, chord])?;
-        Some(Span { teeth, width: x[4], rho: [rho(near.at([x[0], x[1]])), rho(far.at([x[2], x[3]]))] })
+        // where both flanks meet in an edge, planes would touch there
+        (x[4] > TOUCHES).then(|| Span {
+            teeth,
+            width: x[4],
+            rho: [rho(near.at([x[0], x[1]])), rho(far.at([x[2], x[3]]))],
+        })
     }
 
     /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends.
     pub fn ball(&self, diameter: f64) -> Option<BallGauge> {
-        let (low, high) = (&self.charts[0], &self.charts[self.charts.len() - 1]);
+        let [low, high] = self.flanks().map(|k| &self.charts[k]);
         let z = low.at([0.5; 2])[2];
         let starts = [touched(low, [0.5; 2]), touched(high, [0.5; 2])];
         let start = 0.5 * (starts[0].0 + starts[1].0 + 0.5 * diameter * (starts[0].1 + starts[1].1));
@@ -160,6 +200,10 @@ impl Body {
 
 fn rho([x, y, _]: [f64; 3]) -> f64 {
     x.hypot(y)
+}
+
+fn polar([x, y, z]: [f64; 3]) -> Polar {
+    [z, x.hypot(y), y.atan2(x)]
 }
 
 /// A point of a chart, and the normal there out of the body.

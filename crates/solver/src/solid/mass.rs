@@ -5,9 +5,12 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Vector3;
+
 use crate::contact::OutlineSegment;
 use crate::solid::blank::Blank;
 use crate::solid::body::Body;
+use crate::solid::chart::Chart;
 
 /// Nodes of the quadrature along each direction of a chart, and along a segment of the outline.
 const NODES: usize = 32;
@@ -54,26 +57,55 @@ impl Body {
         let shares: Vec<f64> = nodes.iter().map(|(share, _)| *share).collect();
         let lines = self.lines(&vec![shares.clone(); self.charts.len()], &shares);
         let (mut sums, mut area) = ([0.0; 10], 0.0);
+        let mut add = |[x, y, z]: [f64; 3], normal: Vector3<f64>, angle: f64| {
+            let rho = x.hypot(y);
+            let around = (normal.y * x - normal.x * y) / rho;
+            let (sin, cos) = angle.sin_cos();
+            for (sum, part) in sums.iter_mut().zip(around_integrals(rho, z, [angle, sin, cos])) {
+                *sum += around * part;
+            }
+        };
         for (j, (along, by_along)) in nodes.iter().enumerate() {
             for (k, chart) in self.charts.iter().enumerate() {
                 for (i, (across, by_across)) in nodes.iter().enumerate() {
-                    let [[x, y, z], by_u, by_w] = chart.frame([*across, *along]);
-                    let [_, rho, angle] = lines[j][k * NODES + i];
-                    let weight = by_along * by_across;
-                    let [a, b] = [by_u, by_w].map(nalgebra::Vector3::from);
-                    let normal = a.cross(&b);
-                    area += weight * normal.norm();
-                    let (sin, cos) = angle.sin_cos();
-                    let around = weight * (normal.y * x - normal.x * y) / rho;
-                    for (sum, part) in sums.iter_mut().zip(around_integrals(rho, z, [angle, sin, cos])) {
-                        *sum += around * part;
-                    }
+                    let [at, by_u, by_w] = chart.frame([*across, *along]);
+                    let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
+                    area += normal.norm();
+                    add(at, normal, lines[j][k * NODES + i][2]);
+                }
+            }
+            if let Some(wall) = self.wall() {
+                // of the space before the edge and of the one behind it, which lies a pitch farther on
+                let first = lines[j][0][2];
+                for (across, by_across) in &nodes {
+                    let [at, by_u, by_w] = wall.frame([*across, *along]);
+                    let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
+                    let near = at[1].atan2(at[0]);
+                    let angle = first + (near - first + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+                    add(at, normal, angle);
+                    add(
+                        turned_by(at, self.pitch()),
+                        -Vector3::from(turned_by(normal.into(), self.pitch())),
+                        angle + self.pitch(),
+                    );
                 }
             }
         }
         // the charts' normals point out of the space or into it, all of them
         let sign = sums[0].signum();
         (sums.map(|sum| sign * sum), area)
+    }
+
+    /// Where teeth end in an edge: what parts a space from the next between the edge and the tip of the blank.
+    fn wall(&self) -> Option<Chart> {
+        let [_, columns] = self.charts[0].counts();
+        let edge = self.charts[0].row(0);
+        let above = edge.iter().zip(Chart::shares(columns)).map(|([x, y, _], share)| {
+            let [z, rho] = self.blank().tip(share);
+            let scale = rho / x.hypot(*y);
+            [scale * x, scale * y, z]
+        });
+        self.has_edge.then(|| Chart::through(above.chain(edge.iter().copied()).collect(), [2, columns]))
     }
 
     fn of_blank(&self) -> Moments {
@@ -98,7 +130,7 @@ impl Body {
     fn turned_area(&self) -> f64 {
         let whole: f64 = self.blank().outline.segments().iter().map(ring_area).sum();
         let nodes = gauss_legendre(NODES);
-        let ends = vec![vec![0.0, 1.0]; self.charts.len()];
+        let ends = vec![vec![0.0, 0.5, 1.0]; self.charts.len()];
         let [begin, tip, end] = self.blank().bounds();
         // the tip, open over the space's angle
         let open: f64 = along(tip)
@@ -153,6 +185,11 @@ fn around_integrals(rho: f64, z: f64, [angle, sin, cos]: [f64; 3]) -> Moments {
         r2 * z * sin,
         -r2 * z * cos,
     ]
+}
+
+fn turned_by([x, y, z]: [f64; 3], by: f64) -> [f64; 3] {
+    let (sin, cos) = by.sin_cos();
+    [cos * x - sin * y, sin * x + cos * y, z]
 }
 
 /// The moments of the same turned about the axis.

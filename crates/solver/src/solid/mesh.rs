@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use nalgebra::Vector3;
+
 use crate::solid::body::{Body, Polar, position};
 use crate::solid::section::{Fineness, Layout};
 
@@ -160,7 +162,7 @@ impl Body {
             let both = charts[k].max(charts[last - k]);
             (charts[k], charts[last - k]) = (both, both);
         }
-        let line = &self.lines(&vec![vec![0.0, 1.0]; self.charts.len()], &[0.5])[0];
+        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
         let (tip, land) = (line[0][1], line[0][2] + self.pitch() - line[line.len() - 1][2]);
         let steps = |rho: f64, angle: f64| (angle * (rho / (8.0 * tolerance)).sqrt()).ceil() as usize;
         let widest = rest.iter().flat_map(|segment| [segment.from[1], segment.to[1]]).fold(0.0, f64::max);
@@ -168,7 +170,44 @@ impl Body {
         // twice as many, since they are not even
         let below = (2 * steps(widest, self.pitch())).saturating_sub(of_charts);
         let tooth = steps(tip, land).max(below).max(2).next_multiple_of(2);
-        Fineness { charts, tooth, rim: 1, along }
+        let mut fineness = Fineness { charts, tooth, rim: 1, along };
+        loop {
+            let [around, down] = self.sag_of_ends(&fineness);
+            if around > tolerance && fineness.tooth < MOST_CELLS {
+                fineness.tooth *= 2;
+            } else if down > tolerance && fineness.rim < MOST_CELLS {
+                fineness.rim *= 2;
+            } else {
+                return fineness;
+            }
+        }
+    }
+
+    /// How far the sides of cells on curved ends lie off these in their middles, mm: those along the angle, and those across.
+    fn sag_of_ends(&self, fineness: &Fineness) -> [f64; 2] {
+        let (across, _) = Body::shares_of(fineness);
+        let layout = Layout::new(fineness);
+        let lines = self.lines(&across, &[0.0, 0.5, 1.0]);
+        let shares = layout.shares(&layout.top(&lines[1], self.pitch()));
+        let [begin, _, end] = self.blank().bounds();
+        let mut most = [0.0_f64; 2];
+        for (line, segment, below) in [(&lines[0], begin, begin.from), (&lines[2], end, end.to)] {
+            if segment.center.is_none() && segment.from[0] == segment.to[0] {
+                continue;
+            }
+            let places = layout.places(line, self.pitch(), below, &shares);
+            let sag = |a: usize, b: usize| {
+                let [p, q] = [places[a], places[b]];
+                let middle = [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
+                let [p, q, middle] = [p, q, middle].map(|place| Vector3::from(position(place)));
+                (0.5 * (p + q) - middle).norm()
+            };
+            for [a, b, c, d] in layout.cells() {
+                most[0] = most[0].max(sag(a, b)).max(sag(d, c));
+                most[1] = most[1].max(sag(a, d)).max(sag(b, c));
+            }
+        }
+        most
     }
 }
 
@@ -197,6 +236,8 @@ struct Surface<'b> {
     /// The places of the rest of the outline, below the nodes of one tooth.
     rest: Vec<Vec<Polar>>,
     first_below: usize,
+    /// Columns of the tooth's block at the tip that are one line, where teeth end in an edge.
+    one_at_tip: usize,
     /// Vertices of nodes at places along, then of nodes at places of the rest.
     vertices: [Vec<u32>; 2],
     mesh: ClosedMesh,
@@ -213,6 +254,16 @@ impl<'b> Surface<'b> {
         let (pitch, last) = (body.pitch(), lines.len() - 1);
         let places = lines.iter().zip(body.blank().below(last));
         let places: Vec<Vec<Polar>> = places.map(|(line, below)| layout.places(line, pitch, below, shares)).collect();
+        let [begin, _, end] = body.blank().bounds();
+        let mut places = places;
+        for (nodes, segment) in [(0, begin), (last, end)] {
+            if segment.center.is_some() {
+                places[nodes].iter_mut().for_each(|place| {
+                    let [z, rho] = segment.nearest([place[0], place[1]]);
+                    *place = [z, rho, place[2]];
+                });
+            }
+        }
         let middle = |line: &[Polar]| line[layout.middle][2];
         let (from, to) = (middle(&lines[last]), middle(&lines[0]));
         let rest = around_rest(body, to - from, last).into_iter().map(|([z, rho], share)| {
@@ -222,11 +273,14 @@ impl<'b> Surface<'b> {
         let rest: Vec<Vec<Polar>> = rest.collect();
         let vertices = [vec![NONE; cells.count() * lines.len()], vec![NONE; cells.count() * rest.len()]];
         let mesh = ClosedMesh { vertices: Vec::new(), triangles: Vec::new() };
-        Surface { cells, pitch, places, rest, first_below: layout.in_rim(layout.rim, 0), vertices, mesh }
+        let one_at_tip = if body.has_edge { layout.tooth + 1 } else { 0 };
+        let first_below = layout.in_rim(layout.rim, 0);
+        Surface { cells, pitch, places, rest, first_below, one_at_tip, vertices, mesh }
     }
 
     fn vertex(&mut self, (node, j): (usize, usize)) -> u32 {
         let (tooth, own) = self.cells.of(node);
+        let (node, own) = if own < self.one_at_tip { (node - own, 0) } else { (node, own) };
         let place = self.places[j][own];
         let slot = node * self.places.len() + j;
         self.numbered(0, slot, tooth, place)
@@ -265,12 +319,12 @@ impl<'b> Surface<'b> {
         }
     }
 
-    /// Two triangles along the shorter diagonal.
+    /// Two triangles along the shorter diagonal; one, or none, where corners are the same.
     fn split(&mut self, [a, b, c, d]: [u32; 4]) {
         let at = |vertex: u32| self.mesh.vertices[vertex as usize];
         let squared = |p: u32, q: u32| [0, 1, 2].map(|k| at(p)[k] - at(q)[k]).iter().map(|x| x * x).sum::<f64>();
         let triangles = if squared(a, c) <= squared(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
-        self.mesh.triangles.extend(triangles);
+        self.mesh.triangles.extend(triangles.into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
     }
 }
 

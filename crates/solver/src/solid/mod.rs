@@ -8,3 +8,4 @@ pub(crate) mod gauge;
 pub(crate) mod mass;
 pub(crate) mod mesh;
 pub(crate) mod section;
+pub(crate) mod sheets;

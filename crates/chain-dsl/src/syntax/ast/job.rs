@@ -1,6 +1,9 @@
 //! What a job says, and its variants.
 
-use super::{Argument, EachSide, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range, Requirement};
+use super::{
+    Argument, EachSide, Expectation, Expression, ExpressionKind, Let, Param, Parameter, Path, Profile, Range,
+    Requirement,
+};
 use crate::diagnostics::source::{Name, Span};
 
 /// A job: machine, tool, motions, the surfaces asked for.
@@ -88,10 +91,16 @@ pub enum JobStatement {
     Solid(Solid),
     /// `contact drive_side = left with right, over: turn, for: lag`
     Contact(Contact),
+    /// `want centred in drive_side = vertex(z: 21 mm, rho: 106 mm)`
+    Want(Want),
+    /// `mill finish of flank with e.cutting in m.work { … }`
+    Mill(Mill),
     /// `sample name, other { … }`
     Sample(Sample),
     /// `require a < b, "…"`
     Require(Requirement),
+    /// `expect all solved`
+    Expect(Expectation),
 }
 
 /// Keeps those that stay; there may be more, or fewer, in a text with mistakes.
@@ -123,13 +132,18 @@ impl JobStatement {
             JobStatement::Profile(profile) => defined(&profile.name),
             JobStatement::Solid(solid) => defined(&solid.name),
             JobStatement::Contact(contact) => defined(&contact.name),
+            JobStatement::Want(want) => defined(&want.name),
+            JobStatement::Mill(mill) => defined(&mill.name),
             JobStatement::Surface(surface) => surface.names.iter().flat_map(defined).collect(),
             JobStatement::Mount { names, .. } => {
                 names.iter().map(|name| (Subject::Mounted, name.node.clone())).collect()
             }
             JobStatement::Drive(drive) => drive.targets.iter().map(|axis| (Subject::Axis, axis.joined())).collect(),
             JobStatement::Sample(sample) => sample.surfaces.iter().map(Sampled::about).collect(),
-            JobStatement::Trim { .. } | JobStatement::Cut { .. } | JobStatement::Require(_) => Vec::new(),
+            JobStatement::Trim { .. }
+            | JobStatement::Cut { .. }
+            | JobStatement::Require(_)
+            | JobStatement::Expect(_) => Vec::new(),
         }
     }
 
@@ -183,6 +197,19 @@ pub struct Solid {
     /// The frame that it stands in.
     pub frame: Path,
     /// `turned(blank, spaces: 19, of: [left, right])`
+    pub value: Expression,
+}
+
+/// `want name in contact = vertex(…)`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Want {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The contact that it is about.
+    pub contact: Path,
+    /// `vertex(z: 21 mm, rho: 106 mm, path: 30 deg)`
     pub value: Expression,
 }
 
@@ -308,4 +335,57 @@ pub enum SampleValues {
     Range(Range, Expression),
     /// One value, or a vector: several values, or a point.
     Value(Expression),
+}
+
+/// `mill name of surface with cutter in frame { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mill {
+    /// `///` lines above it.
+    pub doc: Vec<String>,
+    /// Its name.
+    pub name: Name,
+    /// The surface that is milled.
+    pub surface: Path,
+    /// The surface of the cutter that touches it.
+    pub cutter: Path,
+    /// The frame of the milling machine in which the work is clamped.
+    pub frame: Path,
+    /// `passes profilewise: 0 .. 1, scallop 2 um`
+    pub passes: Vec<MillRun>,
+    /// `along lengthwise: 0 .. 1, chord 0.5 um`
+    pub along: Vec<MillRun>,
+    /// `lead`, `tilt`, `stock`, each with its value.
+    pub attitudes: Vec<(Name, Expression)>,
+    /// Where `both ways` stands.
+    pub both_ways: Vec<Span>,
+    /// `clear of other by 0.2 mm with e.whole`
+    pub clearances: Vec<MillClearance>,
+    /// Whether something in it could not be read, which has been reported.
+    pub broken: bool,
+}
+
+/// `name: range, word value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MillRun {
+    /// A coordinate.
+    pub key: Name,
+    /// What it is, if it is defined here.
+    pub definition: Option<Expression>,
+    /// Its values.
+    pub range: Range,
+    /// `scallop`, `step`, `chord` or `by`.
+    pub word: Name,
+    /// A height, a distance or a number.
+    pub value: Expression,
+}
+
+/// `clear of surface by distance with body`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MillClearance {
+    /// The surface that is kept clear of.
+    pub surface: Path,
+    /// How far.
+    pub distance: Expression,
+    /// The surface of the cutter.
+    pub body: Path,
 }

@@ -1,6 +1,7 @@
 //! From the grammar's pairs to the tree. What the grammar cannot say (each once, not too deep, commas or new lines) is
 //! reported here.
 
+mod expectations;
 mod expressions;
 mod items;
 mod statements;
@@ -177,12 +178,24 @@ fn is_mark(rule: Rule) -> bool {
             | kw_unknown
             | kw_solid
             | kw_contact
+            | kw_want
             | kw_with
+            | kw_mill
+            | kw_of
+            | kw_passes
+            | kw_both
+            | kw_ways
+            | kw_clear
             | kw_drive
             | kw_trim
             | kw_cut
             | kw_sample
             | kw_as
+            | kw_expect
+            | kw_near
+            | kw_within
+            | kw_travel
+            | kw_nothing
             | kw_keep
             | kw_in
             | kw_runs

@@ -8,8 +8,8 @@ use crate::diagnostics::source::{Name, Span};
 
 use super::super::ast::{
     Argument, Assignment, Axis, AxisKind, Close, Contact, Drive, Expression, Frame, GeneratedSurface, Instance,
-    JobStatement, Keep, Let, MachineStatement, NcWord, Param, Parameter, Path, PointRequirement, Range, Requirement,
-    Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement,
+    JobStatement, Keep, KeptAxis, Let, MachineStatement, Mill, MillClearance, MillRun, NcWord, Param, Parameter, Path,
+    PointRequirement, Range, Requirement, Sample, SampleEntry, SampleValues, Sampled, Solid, ToolStatement, Want,
 };
 use super::super::grammar::Rule;
 use super::{Build, Parts};
@@ -28,6 +28,7 @@ impl Build<'_> {
             Rule::couple => MachineStatement::Couple(self.assignment(pair)),
             Rule::nc_word => MachineStatement::Nc(self.nc_word(pair)),
             Rule::requirement => MachineStatement::Require(self.requirement(pair)),
+            Rule::machine_expectation => MachineStatement::Expect(self.expectation(pair)),
             _ => return None,
         })
     }
@@ -58,6 +59,8 @@ impl Build<'_> {
             Rule::profile => JobStatement::Profile(self.profile(pair)),
             Rule::solid => JobStatement::Solid(self.solid(pair)),
             Rule::contact => JobStatement::Contact(self.contact(pair)),
+            Rule::want => JobStatement::Want(self.want(pair)),
+            Rule::mill => JobStatement::Mill(self.mill(pair)),
             Rule::surface => JobStatement::Surface(self.generated_surface(pair)),
             Rule::trim => {
                 let [surface, by] = self.two_surfaces(pair);
@@ -69,6 +72,7 @@ impl Build<'_> {
             }
             Rule::sample => JobStatement::Sample(self.sample(pair)),
             Rule::requirement => JobStatement::Require(self.requirement(pair)),
+            Rule::expectation => JobStatement::Expect(self.expectation(pair)),
             _ => return None,
         })
     }
@@ -106,7 +110,12 @@ impl Build<'_> {
             let names = list.map_or_else(Vec::new, |mut list| list.all(Rule::name));
             names.into_iter().map(|name| self.name(name)).collect()
         };
-        Close { first, second, along: listed(Rule::closed_along), about: listed(Rule::closed_about) }
+        let (along, about) = (listed(Rule::closed_along), listed(Rule::closed_about));
+        let keeps = parts.all(Rule::kept_axis).into_iter().map(|pair| {
+            let mut parts = Parts::of(pair);
+            KeptAxis { name: self.name(parts.required(Rule::name)), range: self.range(parts.required(Rule::range)) }
+        });
+        Close { first, second, along, about, keeps: keeps.collect() }
     }
 
     fn axis(&mut self, pair: Pair<'_, Rule>) -> Axis {
@@ -171,6 +180,68 @@ impl Build<'_> {
         }
     }
 
+    fn want(&mut self, pair: Pair<'_, Rule>) -> Want {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        Want {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            contact: self.path(parts.required(Rule::path)),
+            value: self.expression(parts.required(Rule::expression)),
+        }
+    }
+
+    fn mill(&mut self, pair: Pair<'_, Rule>) -> Mill {
+        let doc = self.doc(&pair);
+        let mut parts = Parts::of(pair);
+        let mut mill = Mill {
+            doc,
+            name: self.name(parts.required(Rule::name)),
+            surface: self.path(parts.required(Rule::path)),
+            cutter: self.path(parts.required(Rule::path)),
+            frame: self.path(parts.required(Rule::path)),
+            passes: Vec::new(),
+            along: Vec::new(),
+            attitudes: Vec::new(),
+            both_ways: Vec::new(),
+            clearances: Vec::new(),
+            broken: false,
+        };
+        let said = [Rule::passes, Rule::along_passes, Rule::attitude, Rule::both_ways, Rule::clearance];
+        while let Some(pair) = said.into_iter().find_map(|rule| parts.optional(rule)) {
+            match pair.as_rule() {
+                Rule::passes => mill.passes.push(self.mill_run(pair)),
+                Rule::along_passes => mill.along.push(self.mill_run(pair)),
+                Rule::attitude => {
+                    let mut parts = Parts::of(pair);
+                    let word = self.name(parts.required(Rule::attitude_word));
+                    mill.attitudes.push((word, self.expression(parts.required(Rule::expression))));
+                }
+                Rule::both_ways => mill.both_ways.push(self.span(&pair)),
+                _ => mill.clearances.push(self.mill_clearance(pair)),
+            }
+        }
+        mill
+    }
+
+    fn mill_run(&mut self, pair: Pair<'_, Rule>) -> MillRun {
+        let mut parts = Parts::of(pair);
+        let (key, definition) = self.coordinate(&mut parts);
+        let range = self.range(parts.required(Rule::range));
+        let mut parts = Parts::of(parts.required(Rule::spacing));
+        let word = self.name(parts.required(Rule::spacing_word));
+        MillRun { key, definition, range, word, value: self.expression(parts.required(Rule::expression)) }
+    }
+
+    fn mill_clearance(&mut self, pair: Pair<'_, Rule>) -> MillClearance {
+        let mut parts = Parts::of(pair);
+        MillClearance {
+            surface: self.path(parts.required(Rule::path)),
+            distance: self.expression(parts.required(Rule::expression)),
+            body: self.path(parts.required(Rule::path)),
+        }
+    }
+
     fn drive(&mut self, pair: Pair<'_, Rule>) -> Drive {
         let mut parts = Parts::of(pair);
         Drive {
@@ -182,12 +253,20 @@ impl Build<'_> {
     fn instance(&mut self, pair: Pair<'_, Rule>) -> Instance {
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
-        let mut parts = Parts::of(parts.required(Rule::definition));
-        let definition = self.name(parts.required(Rule::name));
-        let settings = parts.optional(Rule::settings).map_or_else(Vec::new, |settings| {
-            Parts::of(settings).all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect()
-        });
+        let (definition, settings) = self.definition(parts.required(Rule::definition));
         Instance { name, definition, settings }
+    }
+
+    /// A definition, and the settings that it is given.
+    pub(super) fn definition(&mut self, pair: Pair<'_, Rule>) -> (Name, Vec<Argument>) {
+        let mut parts = Parts::of(pair);
+        let definition = self.name(parts.required(Rule::name));
+        let settings = parts.optional(Rule::settings).map_or_else(Vec::new, |settings| self.settings(settings));
+        (definition, settings)
+    }
+
+    pub(super) fn settings(&mut self, pair: Pair<'_, Rule>) -> Vec<Argument> {
+        Parts::of(pair).all(Rule::setting).into_iter().map(|setting| self.setting(setting)).collect()
     }
 
     fn setting(&mut self, pair: Pair<'_, Rule>) -> Argument {

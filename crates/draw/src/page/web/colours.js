@@ -29,7 +29,15 @@ export function rangeOf(surfaces, name) {
             if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
         }
     }
-    return low <= high ? { low, high } : null;
+    if (low > high) return null;
+    const most = Math.max(-low, high);
+    return { low, high, about: { low: -most, high: most, ends: [low, high] } };
+}
+
+/** Whether a quantity has a middle: one that is above and below zero, and neither a place nor a motion, has it there. */
+export function isSigned(quantity, range) {
+    const hasZero = quantity && !["place", "place on the tool", "motion"].includes(quantity.kind);
+    return Boolean(hasZero && range && range.low < 0 && range.high > 0);
 }
 
 /** Fills the legend: title, a bar of the scale, its ticks in the quantity's unit. */
@@ -46,7 +54,7 @@ export function drawLegend(element, quantity, range, scale) {
         element.append("not known for the moved parameters");
         return;
     }
-    const { low, high } = range;
+    const { low, high, ends: [least, most] = [range.low, range.high] } = range;
     const bar = document.createElement("div");
     bar.className = "bar";
     bar.style.background = `linear-gradient(to right, ${scale.join(", ")})`;
@@ -61,6 +69,6 @@ export function drawLegend(element, quantity, range, scale) {
     }
     const ends = document.createElement("div");
     ends.className = "ends";
-    ends.textContent = `${digits(low)} to ${digits(high)}`;
+    ends.textContent = `${digits(least)} to ${digits(most)}`;
     element.append(bar, marks, ends);
 }

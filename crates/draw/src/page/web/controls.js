@@ -1,10 +1,13 @@
 // The controls: what is written into the page's empty sections at the start.
 
+import { showBodies } from "./body.js";
 import { Slider, command, element } from "./panel.js";
 import { withUnit } from "./numbers.js";
 
 /** Seconds that a motion takes from end to end when it plays. */
 const PLAY = 8;
+/** A setting that is no larger is zero. */
+const ZERO = 1e-12;
 
 export const byId = (id) => document.getElementById(id);
 
@@ -80,7 +83,8 @@ export function buildChoices(page) {
     page.framesChoice = select("frames", (value) => page.showFrames(value));
     page.framesChoice.append(new Option("all", "all"), new Option("of tool and work", "some"), new Option("none", "none"));
     choice("frames", page.framesChoice);
-    tick("blank", "outline of revolution", true, (isOn) => {
+    page.bodyBox = tick("body", "whole gear", true, () => showBodies(page));
+    tick("blank", "outline of revolution", false, (isOn) => {
         page.blanks.forEach((blank) => (blank.visible = isOn));
         page.stage.request();
     });
@@ -89,7 +93,9 @@ export function buildChoices(page) {
         made.addEventListener("click", act);
         return made;
     };
-    const fits = element("div", { className: "choice" }, button("Fit all", () => page.fitAll()), button("Fit work", () => page.fitWork()));
+    const fits = element("div", { className: "choice" });
+    if (page.data.bodies.length > 0) fits.append(button("Fit gear", () => page.fitGear()));
+    fits.append(button("Fit all", () => page.fitAll()), button("Fit work", () => page.fitWork()));
     show.append(fits);
 }
 
@@ -109,9 +115,16 @@ export function buildParameters(page) {
         const slider = new Slider({ ...parameter, low, high }, (value) => page.setParameter(k, value));
         slider.set(parameter.value);
         slider.row.classList.add("wide");
-        box.append(slider.row);
         return [k, slider];
     }));
+    for (const [owner, group] of Map.groupBy(moved, ([{ name }]) => name.split(".").slice(0, -1).join("."))) {
+        const rows = (of) => of.map(([, k]) => page.parameterSliders.get(k).row);
+        const zeros = group.filter(([{ value }]) => Math.abs(value) < ZERO);
+        box.append(element("h3", { textContent: owner || "job" }), ...rows(group.filter((one) => !zeros.includes(one))));
+        if (zeros.length === 0) continue;
+        const summary = element("summary", { textContent: `${zeros.length} at zero` });
+        box.append(element("details", { className: "zeros" }, summary, ...rows(zeros)));
+    }
     const reset = element("button", { textContent: "As in the job", type: "button", id: "reset" });
     reset.addEventListener("click", () => page.resetParameters());
     page.state = element("div", { id: "state", role: "status" });
@@ -194,5 +207,7 @@ export function listen(page) {
             event.preventDefault();
         } else if (event.key === "f") page.fitAll();
         else if (event.key === "w") page.fitWork();
+        else if (event.key === "g") page.fitGear();
+        else if (event.key === "g") page.fitGear();
     });
 }

@@ -1,6 +1,7 @@
 // The page as a whole: what happens when something is moved, chosen or clicked.
 
-import { components, drawLegend, rangeOf } from "./colours.js";
+import { eyeOfBody, hangBodies, showBodies } from "./body.js";
+import { components, drawLegend, isSigned, rangeOf } from "./colours.js";
 import { buildAbout, buildChoices, buildHeader, buildMotions, buildParameters, byId, listFrames, listQuantities, listSurfaces, listen, tellState } from "./controls.js";
 import { eye, hangBlank, hangLines, hangTools, markLost, newMarker, triadSize } from "./hanging.js";
 import { Machine } from "./machine.js";
@@ -90,6 +91,7 @@ class Page {
         for (const mesh of this.visible) this.groupOf(mesh.surface).add(mesh.object);
         hangTools(this);
         hangBlank(this);
+        hangBodies(this);
         hangLines(this);
         listSurfaces(this);
         listQuantities(this);
@@ -98,7 +100,20 @@ class Page {
         this.showFrames(this.framesChoice.value);
         this.colourBy(this.quantity);
         this.update();
-        this.fitAll(new THREE.Vector3(...(this.pair?.eye() ?? eye(this))));
+        this.open();
+    }
+
+    /** The gear first, seen from its own frame; without one, tool and work. */
+    open() {
+        const body = this.pair ? undefined : this.data.bodies.find(({ machine }) => machine === this.number);
+        if (!body) {
+            this.fitAll(new THREE.Vector3(...(this.pair?.eye() ?? eye(this))));
+            return;
+        }
+        this.seenFrom = body.frame_index;
+        byId("seen-from").value = body.frame_index;
+        this.stage.place(this.seenFrom);
+        this.fitGear(new THREE.Vector3(...eyeOfBody(body, this.meshes)));
     }
 
     /** The motions at which a point is generated; those that it does not depend on as they are. */
@@ -129,19 +144,22 @@ class Page {
         byId("quantity").value = name;
         const surfaces = this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.surface);
         const of = (surface) => surface.quantities().find((one) => one.name === name);
-        const range = name && name === this.pair?.data.gap ? this.pair.range : name ? rangeOf(surfaces, name) : null;
+        const quantity = surfaces.map(of).find(Boolean);
+        const found = name && name === this.pair?.data.gap ? this.pair.range : name ? rangeOf(surfaces, name) : null;
+        const [range, scale] = isSigned(quantity, found) ? [found.about, this.data.signed] : [found, this.data.scale];
+        this.shared.scale.value = scale.map((hex) => new THREE.Vector3(...components(hex)));
         this.shared.isColoured.value = name !== "";
         this.shared.range.value.set(range?.low ?? 0, range?.high ?? 1);
         for (const mesh of this.visible) mesh.colour(of(mesh.surface));
         this.pair?.follow();
-        drawLegend(byId("legend"), surfaces.map(of).find(Boolean), range, this.data.scale);
+        drawLegend(byId("legend"), quantity, range, scale);
         this.stage.request();
     }
 
     showCut(isOn) {
         this.cutBox.checked = isOn;
         this.shared.isCut.value = isOn;
-        this.stage.request();
+        showBodies(this);
     }
 
     /** A motion moved by hand: from then on what is not yet cut is pale. */
@@ -195,6 +213,7 @@ class Page {
         this.machine.move(this.motions, this.settings);
         hangTools(this);
         hangBlank(this);
+        hangBodies(this);
         this.lines.forEach((line) => (line.visible = !this.settings.areMoved));
         listQuantities(this);
         this.colourBy(this.quantity);
@@ -246,6 +265,13 @@ class Page {
         const work = this.pair?.teeth ?? this.visible.filter((mesh) => mesh.object.visible).map((mesh) => mesh.object);
         const around = this.pair || this.toolParts.some((part) => part.isMesh) ? [] : this.blanks;
         this.stage.fit([...work, ...this.toolParts, ...around], towards);
+    }
+
+    /** Whole gears; without any, the surfaces of the work. */
+    fitGear(towards) {
+        const bodies = this.bodies.filter((body) => body.visible);
+        if (bodies.length > 0) this.stage.fit(bodies, towards);
+        else this.fitWork();
     }
 
     fitWork() {

@@ -111,7 +111,7 @@ function gridOf(evaluate, u, v) {
     return positions;
 }
 
-function indices(rows, columns, isThere) {
+export function indices(rows, columns, isThere) {
     const corners = [];
     for (let i = 0; i + 1 < rows; ++i) {
         for (let j = 0; j + 1 < columns; ++j) {

@@ -107,3 +107,39 @@ export function toolMaterial(plain, opacity) {
         depthWrite: false,
     });
 }
+
+const BODY_VERTEX = `
+attribute vec3 tint;
+varying vec3 vTint;
+varying vec3 vNormal;
+varying vec3 vToEye;
+void main() {
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    vTint = tint;
+    vNormal = normalMatrix * normal;
+    vToEye = -seen.xyz;
+    gl_Position = projectionMatrix * seen;
+}`;
+
+const BODY_FRAGMENT = `
+varying vec3 vTint;
+varying vec3 vNormal;
+varying vec3 vToEye;
+void main() {
+    vec3 normal = normalize(vNormal);
+    if (dot(normal, normalize(vToEye)) < 0.0) normal = -normal;
+    float light = max(dot(normal, normalize(vec3(-0.45, 0.6, 0.66))), 0.0);
+    gl_FragColor = vec4(vTint * (0.6 + 0.4 * light) + 0.08 * pow(light, 14.0), 1.0);
+}`;
+
+/** Of whole gears; behind the surfaces that lie on them. */
+export function bodyMaterial() {
+    return new THREE.ShaderMaterial({
+        vertexShader: BODY_VERTEX,
+        fragmentShader: BODY_FRAGMENT,
+        side: THREE.DoubleSide,
+        polygonOffset: true,
+        polygonOffsetFactor: 2,
+        polygonOffsetUnits: 2,
+    });
+}

@@ -111,7 +111,7 @@ pub fn roots<'g>(
     others: &[(Expr<'g>, Interval)],
 ) -> Result<Vec<Expr<'g>>, NoRoot> {
     let system = System::new(residuals, unknowns, others);
-    unique::prove(&system)?;
+    unique::prove(&system, unique::MOST_IN_ALL)?;
     let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
     let moving: Vec<Expr<'g>> = system.moving().into_iter().map(|k| others[k].0).collect();
     let starts = start::polynomials(&system).ok_or(NoRoot::TooFast)?;
@@ -121,6 +121,36 @@ pub fn roots<'g>(
     let ranges: Vec<(f64, f64)> = unknowns.iter().map(|unknown| ends(&unknown.range)).collect();
     let reach: Vec<f64> = limits.iter().map(|(low, high)| REACH * (high - low)).collect();
     Ok(implicit::roots(residuals, &variables, [&ranges, &limits], starts, &reach))
+}
+
+/// Whether [`roots`] is likely to find the unknowns: what it proves is tried with a tenth of its effort.
+///
+/// # Panics
+/// As [`roots`].
+pub fn has_one_root<'g>(residuals: &[Expr<'g>], unknowns: &[Unknown<'g>], others: &[(Expr<'g>, Interval)]) -> bool {
+    unique::prove(&System::new(residuals, unknowns, others), unique::MOST_IN_ALL / 10).is_ok()
+}
+
+/// All solutions of equations in the ranges of their unknowns, in order, where the others have these values; none where that is not
+/// decided.
+///
+/// ```
+/// use flank_expr::{Graph, Interval, Unknown, every_root};
+///
+/// let graph = Graph::new();
+/// let (x, a) = (graph.variable("x"), graph.variable("a"));
+/// let unknown = Unknown { variable: x, range: Interval::new(-3.0, 3.0) };
+/// let found = every_root(&[x * x - a], &[unknown], &[(a, 4.0)]);
+/// assert!(found.len() == 2 && (found[0][0] + 2.0).abs() < 1e-15 && (found[1][0] - 2.0).abs() < 1e-15);
+/// ```
+///
+/// # Panics
+/// As [`roots`].
+pub fn every_root<'g>(residuals: &[Expr<'g>], unknowns: &[Unknown<'g>], others: &[(Expr<'g>, f64)]) -> Vec<Vec<f64>> {
+    let values: Vec<f64> = others.iter().map(|other| other.1).collect();
+    let others: Vec<(Expr<'g>, Interval)> =
+        others.iter().map(|(other, value)| (*other, Interval::point(*value))).collect();
+    unique::every(&System::new(residuals, unknowns, &others), &values)
 }
 
 /// The only solutions of equations in ranges, for one set of numbers after another. All together look at no more boxes than a proof for

@@ -1,6 +1,8 @@
 //! Proof that equations have one solution in a box, whatever their other inputs are.
 
-use super::{NoRoot, System};
+use std::cmp::Ordering;
+
+use super::{NoRoot, System, start};
 use crate::enclosure::interval::{Interval, IntervalEvaluator};
 
 /// Boxes of the unknowns that are looked at, at most: for the whole ranges of the other inputs, as many more each time that these are
@@ -8,6 +10,10 @@ use crate::enclosure::interval::{Interval, IntervalEvaluator};
 const FIRST_BOXES: usize = 32;
 const MORE_BOXES: usize = 16;
 pub(super) const MOST_IN_ALL: usize = 40_000;
+/// The same for one place of the other inputs.
+const MOST_AT_A_PLACE: usize = 2_000;
+/// Solutions are one where they lie no farther apart, over the widths of the ranges.
+const SAME: f64 = 1e-7;
 /// Steps that narrow the place of a solution, at most.
 const MOST_REFINED: usize = 16;
 /// A box of unknowns is so narrow, over the widths of the ranges, that its border is no reason to divide it again.
@@ -47,8 +53,9 @@ fn lies_in(place: &[Interval], within: &[Interval]) -> bool {
     place.iter().zip(within).all(|(place, within)| within.lo <= place.lo && place.hi <= within.hi)
 }
 
-/// Proves it.
-pub(super) fn prove(system: &System) -> Result<(), NoRoot> {
+/// Proves it, with so many boxes at the most.
+pub(super) fn prove(system: &System, boxes: usize) -> Result<(), NoRoot> {
+    let most = boxes;
     let moving = system.moving();
     let mut search = Search::new(system);
     let mut left = vec![(system.others.clone(), FIRST_BOXES)];
@@ -63,7 +70,7 @@ pub(super) fn prove(system: &System) -> Result<(), NoRoot> {
         }
         let relative = |k: &usize| (part[*k].hi - part[*k].lo) / (system.others[*k].hi - system.others[*k].lo);
         let widest = moving.iter().copied().max_by(|a, b| relative(a).total_cmp(&relative(b)));
-        let Some(widest) = widest.filter(|_| search.looked_at < MOST_IN_ALL) else {
+        let Some(widest) = widest.filter(|_| search.looked_at < most) else {
             return Err(search.elsewhere(&moving).unwrap_or_else(|| NoRoot::Unproven(at())));
         };
         let [low, high] = halves(part[widest]);
@@ -88,6 +95,25 @@ pub(super) fn solution(system: &System, others: &[f64], boxes: &mut usize) -> Re
         Known::Several => Err(NoRoot::Several(Vec::new())),
         Known::Nothing => Err(NoRoot::Unproven(Vec::new())),
     }
+}
+
+/// All solutions for numbers of the other inputs that can be told apart; none where that is not decided.
+pub(super) fn every(system: &System, others: &[f64]) -> Vec<Vec<f64>> {
+    let points: Vec<Interval> = others.iter().map(|other| Interval::point(*other)).collect();
+    let found = Search::new(system).isolated(&points, MOST_AT_A_PLACE).unwrap_or_default();
+    let mut solutions: Vec<Vec<f64>> = Vec::new();
+    for only in found {
+        let middle = only.place.iter().map(|side| side.middle()).collect();
+        let Some(solution) = start::settled(system, middle, others) else { continue };
+        let is_near = |(k, (one, other)): (usize, (&f64, &f64))| (one - other).abs() < SAME * system.width(k);
+        let is_known = |known: &Vec<f64>| known.iter().zip(&solution).enumerate().all(is_near);
+        let is_inside = solution.iter().zip(&system.unknowns).all(|(value, range)| range.contains(*value));
+        if is_inside && !solutions.iter().any(is_known) {
+            solutions.push(solution);
+        }
+    }
+    solutions.sort_by(|one, other| one.partial_cmp(other).unwrap_or(Ordering::Equal));
+    solutions
 }
 
 impl System {
@@ -131,12 +157,20 @@ impl<'s> Search<'s> {
     }
 
     fn solutions(&mut self, others: &[Interval], boxes: usize) -> Known {
+        match self.isolated(others, boxes) {
+            Some(found) => self.together(found, others),
+            None => Known::Nothing,
+        }
+    }
+
+    /// Boxes that hold one solution each, and together all; one solution may lie in several of them. `None` if it is not decided.
+    fn isolated(&mut self, others: &[Interval], boxes: usize) -> Option<Vec<Only>> {
         let most = self.looked_at + boxes;
         let mut left = vec![self.system.unknowns.clone()];
         let mut found: Vec<Only> = Vec::new();
         while let Some(place) = left.pop() {
             if self.looked_at >= most {
-                return Known::Nothing;
+                return None;
             }
             let (inner, image) = match self.held(&place, others) {
                 Held::None => continue,
@@ -158,7 +192,7 @@ impl<'s> Search<'s> {
             match self.settled(&inner, image, others) {
                 Held::None => {}
                 Held::One(only) => found.push(only),
-                Held::Within(..) if width(widest, &inner) < NARROW => return Known::Nothing,
+                Held::Within(..) if width(widest, &inner) < NARROW => return None,
                 Held::Within(..) => {
                     for half in halves(inner[widest]) {
                         let mut inner = inner.clone();
@@ -168,7 +202,7 @@ impl<'s> Search<'s> {
                 }
             }
         }
-        self.together(found, others)
+        Some(found)
     }
 
     /// Looks at wider and wider boxes about where the operator leads.

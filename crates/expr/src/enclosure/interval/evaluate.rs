@@ -56,7 +56,7 @@ impl<'t> IntervalEvaluator<'t> {
         let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
         let (mut done, mut left) = (Vec::new(), Vec::new());
         for step in tape.instructions() {
-            let is_binary = matches!(step.operation, Operation::Binary(_) | Operation::Settled);
+            let is_binary = matches!(step.operation, Operation::Binary(_) | Operation::Settled | Operation::Widened);
             let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
             if is_binary {
                 moved.b = register_of[step.b as usize];
@@ -103,6 +103,7 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
             Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
             Operation::Middle => Interval::point(a.middle()),
             Operation::Settled => a.settled(registers[step.b as usize]),
+            Operation::Widened => a.widened(registers[step.b as usize]),
             Operation::SinCos => {
                 registers[step.b as usize] = a.cos();
                 a.sin()
@@ -128,6 +129,11 @@ impl Interval {
         let value = self + Interval::new(-width, width);
         let settles = !last.intersection(Interval::new(-1.0, 1.0)).is_empty();
         if settles { value } else { value.partial() }
+    }
+
+    /// All that lies within a bound of it.
+    pub(crate) fn widened(self, bound: Interval) -> Interval {
+        self + Interval::new(-bound.hi, bound.hi)
     }
 }
 

@@ -24,6 +24,8 @@ pub trait Coefficient:
     fn on_curve(self, curve: &Curve, order: u8) -> Self;
     /// The value of a root, if the last step to it was short enough.
     fn settled(self, last: Self) -> Self;
+    /// A value that is off by a bound at the most.
+    fn widened(self, bound: Self) -> Self;
     /// The value if it is a single number.
     fn single(self) -> Option<f64>;
 }
@@ -47,6 +49,10 @@ impl Coefficient for f64 {
 
     fn settled(self, last: f64) -> f64 {
         kernel::settled(self, last)
+    }
+
+    fn widened(self, _bound: f64) -> f64 {
+        self
     }
 
     fn single(self) -> Option<f64> {
@@ -73,6 +79,10 @@ impl Coefficient for Interval {
 
     fn settled(self, last: Interval) -> Interval {
         Interval::settled(self, last)
+    }
+
+    fn widened(self, bound: Interval) -> Interval {
+        Interval::widened(self, bound)
     }
 
     fn single(self) -> Option<f64> {
@@ -153,6 +163,10 @@ impl<'t, N: Coefficient> TaylorEvaluator<'t, N> {
                 Operation::Settled => {
                     out.copy_from_slice(a);
                     out[0] = a[0].settled(self.registers[place(step.b)][0]);
+                }
+                Operation::Widened => {
+                    out.copy_from_slice(a);
+                    out[0] = a[0].widened(self.registers[place(step.b)][0]);
                 }
                 Operation::SinCos => {
                     series::sin_cos(a, out, other);

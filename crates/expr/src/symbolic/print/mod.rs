@@ -62,6 +62,7 @@ impl Graph {
     fn words(&self, id: NodeId) -> Vec<NodeId> {
         match self.node(id) {
             Node::Root(root, ..) => self.implicit_of(root).written().collect(),
+            Node::Integral(integral, ..) => self.integral_of(integral).written().to_vec(),
             node => node.operands().collect(),
         }
     }

@@ -53,7 +53,7 @@ pub(super) fn shape(graph: &Graph, style: Style, node: Node, known: &HashMap<Nod
         Node::Constant(bits) => number(f64::from_bits(bits), style),
         Node::Variable(_) => Shape::NAME,
         Node::Unary(Unary::Neg, _) => product(Shape { minus: true, ..Shape::NAME }),
-        Node::Unary(..) | Node::Curve(..) | Node::Middle(_) | Node::Root(..) => Shape::NAME,
+        Node::Unary(..) | Node::Curve(..) | Node::Middle(_) | Node::Root(..) | Node::Integral(..) => Shape::NAME,
         Node::Binary(Binary::Add, a, b) => Shape { binding: Binding::Sum, ..known[&terms(graph, a, b).0] },
         Node::Binary(Binary::Sub, a, _) => Shape { binding: Binding::Sum, ..known[&a] },
         Node::Binary(Binary::Mul, a, b) if a == b => power(graph, style, a, known),

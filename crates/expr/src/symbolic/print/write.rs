@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use crate::symbolic::graph::{Graph, Node, NodeId};
 use crate::symbolic::implicit::RootId;
+use crate::symbolic::integral::IntegralId;
 use crate::symbolic::op::{Binary, Unary};
 use crate::symbolic::print::Style;
 use crate::symbolic::print::name;
@@ -98,6 +99,7 @@ impl<'g> Writer<'g> {
             Node::Curve(curve, order, a) => self.on_curve(self.graph.curve_of(curve).name(), order, a),
             Node::Middle(a) => vec![Part::Node(a, Binding::Atom)],
             Node::Root(root, ..) => self.root(root),
+            Node::Integral(integral, ..) => self.integral(integral),
             Node::Binary(Binary::Add, a, b) => {
                 let (a, b) = terms(self.graph, a, b);
                 let mut parts = vec![first(a, Binding::Sum)];
@@ -218,6 +220,34 @@ impl<'g> Writer<'g> {
             parts.push(format!("[{}]", root.component).into());
         }
         parts
+    }
+
+    /// `integral(t in a .. b: f)`
+    fn integral(&self, integral: IntegralId) -> Vec<Part> {
+        let [variable, integrand, from, to] = self.graph.integral_of(integral).written();
+        let [variable, integrand, from, to] =
+            [variable, integrand, from, to].map(|part| Part::Node(part, Binding::Sum));
+        match self.style {
+            Style::Text => {
+                vec![
+                    "integral(".into(),
+                    variable,
+                    " in ".into(),
+                    from,
+                    " .. ".into(),
+                    to,
+                    ": ".into(),
+                    integrand,
+                    ")".into(),
+                ]
+            }
+            Style::Latex => {
+                let (open, close) = self.parentheses();
+                let signs = ["\\int_{", "}^{", "} ", " \\, d"].map(Part::from);
+                let [sign, above, behind, by] = signs;
+                vec![open.into(), sign, from, above, to, behind, integrand, by, variable, close.into()]
+            }
+        }
     }
 
     fn call(&self, function: &'static str, arguments: &[NodeId]) -> Vec<Part> {

@@ -243,7 +243,7 @@ impl Division {
         let operation = match step.operation {
             Operation::Binary(op) => return self.binary(op, step.out, step.a, step.b),
             Operation::Settled => return self.settled(step),
-            Operation::Middle => LaneOperation::Copy,
+            Operation::Middle | Operation::Widened => LaneOperation::Copy,
             Operation::SinCos => LaneOperation::SinCos,
             Operation::Unary(op) => LaneOperation::Unary(op),
             Operation::Curve(order) => LaneOperation::Curve(order),

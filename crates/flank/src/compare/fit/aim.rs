@@ -80,13 +80,22 @@ impl<'j, 'g> Aim<'j, 'g> {
     /// If there is no such surface, one of both has no points or several branches, or they do not meet.
     pub(super) fn ease_off(
         of: Named<'j, 'g>,
-        (wish, from): (WantedEaseOff, &str),
+        from: &str,
         jobs: &'j [Job<'g>],
-        session: Session<'_>,
+        (request, session): (&FitRequest, Session<'_>),
+        origin: &mut Origin,
     ) -> Result<Aim<'j, 'g>, Failure> {
         let from = find(jobs, from)?;
-        let placed = Placed::new(from.job, from.surface, [0.0; 2], session)?;
-        let counts = placed.counts();
+        let table = match &request.ease_off_table {
+            Some(file) => {
+                let area = GaugedArea { rows: request.rows, columns: request.columns, margins: request.margins() };
+                Some(Gauged::read(from, (request.jobs.project.files(), file), area, session, origin)?)
+            }
+            None => None,
+        };
+        let margins = if table.is_some() { request.margins() } else { [0.0; 2] };
+        let placed = Placed::new(from.job, from.surface, margins, session)?;
+        let counts = table.as_ref().map_or_else(|| placed.counts(), |table| table.counts);
         let [profile, length] = placed.shares(counts);
         let sample = placed.sample(&profile, &length);
         let points = placed.solved(&sample)?;
@@ -99,14 +108,22 @@ impl<'j, 'g> Aim<'j, 'g> {
             .expect("a job without errors leaves nothing unbound");
         let middle = starts::middle(counts);
         let turn = deviation.turn_to(points[middle].position, &near[middle]).unwrap_or(0.0);
+        let wished = |at: usize, point: &SurfacePoint| match &table {
+            Some(table) => {
+                let wanted = table.positions[at]?;
+                Some((0..3).map(|k| (wanted[k] - point.position[k]) * point.normal[k]).sum())
+            }
+            None => Some(1e-3 * request.ease_off?.at([at / counts[1], at % counts[1]], counts)),
+        };
         let aimed = |(at, (point, near)): (usize, (&SurfacePoint, &SurfacePoint))| {
             let are_solved = [point, near].iter().all(|of| of.outcome == Outcome::Solved);
-            let off = 1e-3 * wish.at([at / counts[1], at % counts[1]], counts);
+            let off: f64 = wished(at, point)?;
             let position = std::array::from_fn(|k| point.position[k] + off * point.normal[k]);
             are_solved.then(|| Aimed { position, near: NearFoot { unknowns: near.unknowns.clone(), distance: off } })
         };
         let aimed: Vec<Option<Aimed>> = points.iter().zip(&near).enumerate().map(aimed).collect();
-        let (all, lost) = (aimed.len(), aimed.iter().filter(|point| point.is_none()).count());
+        let all = points.iter().enumerate().filter(|(at, point)| wished(*at, point).is_some()).count();
+        let lost = all.saturating_sub(aimed.iter().flatten().count());
         let name = of.whole_name();
         let message = format!("not solved: {lost} of {all} points of {} or of {name} beside them", from.whole_name());
         let missing = (lost > 0).then(|| NotDone::new(NotDoneKind::NotSolved, &of.surface.name, message));

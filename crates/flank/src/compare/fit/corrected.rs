@@ -9,7 +9,7 @@ use flank_expr::Graph;
 
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
-use crate::project::requests::FitRequest;
+use crate::project::requests::JobSelection;
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 use crate::project::units;
@@ -18,12 +18,12 @@ use crate::project::units;
 ///
 /// # Errors
 /// If the file cannot use the job's spec.
-pub(super) fn text(
-    request: &FitRequest,
+pub(in crate::compare) fn text(
+    selection: &JobSelection,
     (job, values): (&Job<'_>, &[(String, String)]),
     file: &Path,
 ) -> Result<String, Failure> {
-    let spec = request.jobs.file();
+    let spec = selection.file();
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(Failure::Input(format!("there is no folder `{}` for option `write`", shown_path(folder))));
@@ -36,7 +36,7 @@ pub(super) fn text(
         ))
     })?;
     let own = format!("{}.", job.name);
-    let by_hand = request.jobs.set_in(&[job]).into_iter();
+    let by_hand = selection.set_in(&[job]).into_iter();
     let by_hand = by_hand.map(|(name, value)| (name.strip_prefix(&own).unwrap_or(name).to_string(), value.clone()));
     let kept = by_hand.filter(|(name, _)| !values.iter().any(|(known, _)| known == name));
     let all: Vec<String> = kept.chain(values.iter().cloned()).map(|(name, value)| format!("{name}: {value}")).collect();
@@ -45,19 +45,19 @@ pub(super) fn text(
         "//! `{name}` with corrected settings.\n\nuse \"{used}\"\n\njob {name}_corrected = {name}({})\n",
         all.join(", ")
     );
-    laid_out(request, file, &text)
+    laid_out(selection, file, &text)
 }
 
 /// The text in the settled layout, of which it is certain that it is right.
-fn laid_out(request: &FitRequest, file: &Path, text: &str) -> Result<String, Failure> {
-    let files = Buffers::over(request.jobs.project.shared_files()).with(file, text.to_string());
+fn laid_out(selection: &JobSelection, file: &Path, text: &str) -> Result<String, Failure> {
+    let files = Buffers::over(selection.project.shared_files()).with(file, text.to_string());
     let mut sources = Sources::default();
     let told = |findings: &[flank_chain_dsl::Diagnostic], sources: &Sources| {
         Failure::Findings(Findings::new(findings, sources))
     };
     let id = read_file(&files, &mut sources, file).map_err(|finding| told(&[finding], &sources))?;
     let laid_out = format(text, id).map_err(|findings| told(&findings, &sources))?;
-    let files = Buffers::over(request.jobs.project.shared_files()).with(file, laid_out.clone());
+    let files = Buffers::over(selection.project.shared_files()).with(file, laid_out.clone());
     let graph = Graph::new();
     let compiled = compile_request(&graph, file, &Request { files: Arc::new(files), ..Request::default() });
     if compiled.has_errors() {
@@ -67,7 +67,7 @@ fn laid_out(request: &FitRequest, file: &Path, text: &str) -> Result<String, Fai
 }
 
 /// A value with its unit, as the language has it.
-pub(super) fn value(dimension: Dimension, value: f64) -> String {
+pub(in crate::compare) fn value(dimension: Dimension, value: f64) -> String {
     if [Dimension::LENGTH, Dimension::ANGLE, Dimension::NUMBER].contains(&dimension) {
         return units::as_given(dimension, value);
     }
@@ -82,7 +82,7 @@ pub(super) fn value(dimension: Dimension, value: f64) -> String {
 ///
 /// # Errors
 /// If the file is one that was read, or cannot be written.
-pub(super) fn write(file: &Path, text: &str, origin: &Origin) -> Result<String, Failure> {
+pub(in crate::compare) fn write(file: &Path, text: &str, origin: &Origin) -> Result<String, Failure> {
     let shown = shown_path(file);
     if origin.holds(file) {
         return Err(Failure::Input(format!(

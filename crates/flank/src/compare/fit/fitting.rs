@@ -4,13 +4,13 @@ use flank_chain_dsl::Parameter;
 use flank_solver::{AdjustedSurfaces, EaseOff, RangeEnd, SearchEnd, SingularDirection, linear_rest, most_effective};
 
 use super::aim::Aim;
-use super::corrected;
 use super::problem::{self, Problem};
 use super::result::{
     AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
     RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
 use super::words::{self, SHARE, Unknown};
+use super::{corrected, keep};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::remark::{Remark, RemarkKind};
@@ -59,7 +59,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             own.pop();
             // a wish does not scatter
             let of_points = || scatter(all_leave, off.len(), own.len() + 1);
-            let noise = request.noise.unwrap_or_else(|| if request.ease_off.is_some() { 0.0 } else { of_points() });
+            let noise = request.noise.unwrap_or_else(|| if request.is_wish() { 0.0 } else { of_points() });
             let mut free: Vec<usize> =
                 most_effective(off, &own, &turn, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
@@ -114,7 +114,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let predicted = self.predicted(request, correction);
         let turn = (!request.as_it_lies).then(|| turn_of(self.now));
         let radius = self.problem.turn.scale.recip() * problem::TURN;
-        let is_wish = request.ease_off.is_some();
+        let is_wish = request.is_wish();
         FitResult {
             job: self.aims[0].of.job.name.clone(),
             spec: shown_path(request.jobs.file()),
@@ -141,6 +141,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             scatter_um: variance(main).map(|variance| 1e3 * variance.sqrt()),
             // of points one by one nothing is asked where only shapes are fitted
             leave_out_um: self.leave_out(main).filter(|_| request.order.is_none()).map(|error| 1e3 * error),
+            kept: keep::told(&self.problem.keeps, &correction.fit.exact),
             outliers: if is_wish || request.order.is_some() { vec![] } else { self.outliers(main) },
             corrected: None,
             files: Vec::new(),
@@ -227,9 +228,9 @@ impl<'a, 'g> Fitting<'a, 'g> {
     /// The deviations to be expected after the correction, mm.
     fn predicted(&self, request: &FitRequest, correction: &AdjustedSurfaces) -> Vec<f64> {
         let left = &correction.distances();
-        match request.ease_off {
-            Some(_) => left.iter().map(|off| -off).collect(),
-            None => {
+        match request.is_wish() {
+            true => left.iter().map(|off| -off).collect(),
+            false => {
                 self.now.distances().iter().zip(left).map(|(off, left)| (1.0 - request.share) * off - left).collect()
             }
         }

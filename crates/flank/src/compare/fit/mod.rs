@@ -1,8 +1,9 @@
 //! `flank fit`: from a measured or a wanted flank to settings.
 
 mod aim;
-mod corrected;
+pub(super) mod corrected;
 mod fitting;
+mod keep;
 mod problem;
 pub(crate) mod result;
 pub(super) mod settings;
@@ -41,7 +42,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let mut origin = Origin::of_compilation(&compilation);
     let session = Session::new(request.evaluator, monitor);
     let of = find(&jobs, &request.surface)?;
-    let aims = match (&request.measured, request.ease_off, &request.from) {
+    let aims = match (&request.measured, request.is_wish(), &request.from) {
         (Some(file), ..) => {
             let first = Aim::measured(of, file, (request, session), &mut origin)?;
             let second = request.and.iter().map(|(name, file)| {
@@ -51,11 +52,11 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
             let second = second.collect::<Result<Vec<_>, Failure>>()?;
             [first].into_iter().chain(second).collect()
         }
-        (None, Some(wish), Some(from)) => vec![Aim::ease_off(of, (wish, from), &jobs, session)?],
+        (None, true, Some(from)) => vec![Aim::ease_off(of, from, &jobs, (request, session), &mut origin)?],
         _ => return Err(Failure::Request(NO_AIM.to_string())),
     };
     let open = settings::open(of.job, &request.vary)?;
-    if let Some(error) = open.iter().find(|setting| setting.is_error && request.ease_off.is_some()) {
+    if let Some(error) = open.iter().find(|setting| setting.is_error && request.is_wish()) {
         let message = format!(
             "option `vary` names `{}`, an error of the machine: a wanted ease-off is made by what can be set",
             error.name
@@ -63,7 +64,8 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         return Err(Failure::Input(message));
     }
     let _working = session.begin(format!("fitting {}", of.surface.name))?;
-    let problem = Problem::new(&aims, open, request)?;
+    let keeps = keep::keeps(of.job, &open, request, session)?;
+    let problem = Problem::new(&aims, open, keeps, request)?;
     let Found { now, free, choice, identification, correction } = Found::of(&aims, &problem, request)?;
     let fitting = Fitting { aims: &aims, problem: &problem, now: &now };
     let result = fitting.result(request, (&free, choice), (identification.as_ref(), &correction));
@@ -73,7 +75,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         problem.settable(&free).iter().map(|&k| fitting.new_value(k, &correction)).collect();
     let (corrected, files) = match &request.write {
         Some(file) if !values.is_empty() => {
-            let text = corrected::text(request, (of.job, &values), file)?;
+            let text = corrected::text(&request.jobs, (of.job, &values), file)?;
             if request.dry { (Some(text), vec![]) } else { (None, vec![corrected::write(file, &text, &origin)?]) }
         }
         _ => (None, vec![]),
@@ -102,9 +104,9 @@ impl Found {
         let now = problem.as_it_is()?;
         aims.iter().try_for_each(|aim| aim.check_places(turn_of(&now)))?;
         let (free, choice) = Fitting { aims, problem, now: &now }.chosen(request)?;
-        let (identification, correction) = match request.ease_off {
-            Some(_) => (None, problem.reached(&now, &free)?),
-            None => (
+        let (identification, correction) = match request.is_wish() {
+            true => (None, problem.reached(&now, &free)?),
+            false => (
                 Some(problem.identified(&now, &free)?),
                 problem.corrected(&now, &problem.settable(&free), request.share)?,
             ),
@@ -119,19 +121,24 @@ const NO_AIM: &str =
 /// What does not go together.
 fn check(request: &FitRequest) -> Result<(), Failure> {
     let refused = |message: &str| Err(Failure::Request(message.to_string()));
-    match (&request.measured, &request.ease_off, &request.from) {
-        (Some(_), Some(_), _) => {
+    let is_table = request.ease_off_table.is_some();
+    let has_area = request.rows.or(request.columns).is_some() || request.margin.is_some();
+    match (&request.measured, request.is_wish(), &request.from) {
+        (Some(_), true, _) => {
             refused("option `measured` and option `ease_off` do not go together: one flank is wanted")
         }
-        (Some(_), None, Some(_)) => refused("option `from` is the surface of option `ease_off`"),
+        (Some(_), false, Some(_)) => refused("option `from` is the surface of option `ease_off`"),
         (None, _, _) if request.and.is_some() => {
             refused("option `and` is a further measured surface beside option `measured`")
         }
-        (None, Some(_), None) => refused("an ease-off is one from another surface: name it with option `from`"),
-        (None, None, _) => refused(NO_AIM),
-        (None, Some(_), Some(_)) if request.rows.or(request.columns).is_some() || request.margin.is_some() => {
-            refused("option `rows`, option `columns` and option `margin` are those of option `measured`")
+        (None, true, None) => refused("an ease-off is one from another surface: name it with option `from`"),
+        (None, false, None) => refused(NO_AIM),
+        (None, true, _) if is_table && request.ease_off.is_some() => {
+            refused("option `ease_off` is a parabola or a table, and not both")
         }
+        (None, true, Some(_)) if has_area && !is_table => refused(
+            "option `rows`, option `columns` and option `margin` are those of a table: of option `measured`, or of option `ease_off`",
+        ),
         _ if !(request.share > 0.0 && request.share <= 1.0) => refused("option `share` is above 0 and 1 at the most"),
         _ if request.dry && request.write.is_none() => {
             refused("option `dry` tells the spec of option `write`: name its file")

@@ -9,7 +9,9 @@ use flank_solver::{
 };
 
 use super::aim::{Aim, Aimed};
+use super::keep::Keep;
 use super::settings::{held, unknown};
+use crate::compare::map::Named;
 use crate::project::failure::Failure;
 use crate::project::requests::FitRequest;
 use crate::project::units;
@@ -34,6 +36,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) places: Vec<Vec<usize>>,
     points: Vec<Vec<Aimed>>,
     pub(super) turn: ScaledUnknown,
+    /// What corrected settings leave where it is.
+    pub(super) keeps: Vec<Keep>,
     /// The parts of the distances that are fitted.
     shapes: Option<Shapes>,
     resolution: f64,
@@ -47,10 +51,11 @@ impl<'p, 'g> Problem<'p, 'g> {
     pub(super) fn new(
         aims: &[Aim<'_, 'g>],
         settings: Vec<&'p Parameter<'g>>,
+        keeps: Vec<Keep>,
         request: &FitRequest,
     ) -> Result<Problem<'p, 'g>, Failure> {
         let steps = super::settings::steps(&settings, &request.round)?;
-        let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim, &settings)).collect();
+        let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim.of, &settings)).collect();
         let (as_it_lies, resolution) = (request.as_it_lies, request.resolution);
         let start = if as_it_lies { 0.0 } else { Aim::first_turn(aims) };
         let now: Vec<f64> = settings.iter().map(|of| of.value).collect();
@@ -94,9 +99,10 @@ impl<'p, 'g> Problem<'p, 'g> {
             places,
             points,
             turn,
+            keeps,
             shapes,
             resolution,
-            is_measured: request.ease_off.is_none(),
+            is_measured: !request.is_wish(),
         })
     }
 
@@ -134,7 +140,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn as_it_is(&self) -> Result<AdjustedSurfaces, Failure> {
-        self.fitted(&self.points, self.turn, (&[], &[]))
+        self.fitted((&self.points, &[]), self.turn, (&[], &[]))
     }
 
     /// With some settings free, from where the points lie nearest to the surface as it is.
@@ -143,7 +149,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// If a point loses its foot.
     pub(super) fn identified(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
         let turn = now.fit.values.last().copied().unwrap_or_default();
-        self.fitted(&self.points, ScaledUnknown { start: turn, ..self.turn }, (free, &[]))
+        self.fitted((&self.points, &[]), ScaledUnknown { start: turn, ..self.turn }, (free, &[]))
     }
 
     /// The same for points that lie on the other side of the surface by a share of the way.
@@ -180,14 +186,14 @@ impl<'p, 'g> Problem<'p, 'g> {
     fn rounded(&self, points: &[Vec<Aimed>], turn: f64, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
         let turn = ScaledUnknown { start: turn, ..self.turn };
         let mut fixed = Vec::new();
-        let mut found = self.fitted(points, turn, (free, &fixed))?;
+        let mut found = self.fitted((points, &self.keeps), turn, (free, &fixed))?;
         for &k in free {
             let Some(step) = self.steps[k] else { continue };
             let Range { low, high } = self.unknowns[k].range;
             let whole = (found.fit.values[k] / step).round();
             let inside = whole.max((low / step).ceil()).min((high / step).floor());
             fixed.push((k, inside * step));
-            found = self.fitted(points, turn, (free, &fixed))?;
+            found = self.fitted((points, &self.keeps), turn, (free, &fixed))?;
         }
         Ok(found)
     }
@@ -195,15 +201,11 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// With settings free, some of which are fixed at values; all others stay as they are.
     fn fitted(
         &self,
-        points: &[Vec<Aimed>],
+        (points, keeps): (&[Vec<Aimed>], &[Keep]),
         turn: ScaledUnknown,
         (free, fixed): (&[usize], &[(usize, f64)]),
     ) -> Result<AdjustedSurfaces, Failure> {
-        let wanted = self.surfaces.iter().zip(points).map(|(surface, points)| WantedPoints {
-            surface,
-            points: points.iter().map(|point| point.position).collect(),
-            near: points.iter().map(|point| point.near.clone()).collect(),
-        });
+        let kept = keeps.iter().map(|keep| (&keep.surface, &keep.points)).map(wanted);
         let settings = self.unknowns.iter().enumerate();
         let settings = settings.map(|(k, of)| match fixed.iter().find(|(at, _)| *at == k) {
             Some((_, value)) => held(ScaledUnknown { start: *value, ..*of }),
@@ -211,7 +213,8 @@ impl<'p, 'g> Problem<'p, 'g> {
             None => held(*of),
         });
         let adjustment = SettingsAdjustment {
-            wanted: wanted.collect(),
+            wanted: self.surfaces.iter().zip(points).map(wanted).collect(),
+            kept: kept.collect(),
             settings: settings.collect(),
             turn,
             shapes: self.shapes.clone(),
@@ -267,10 +270,15 @@ fn is_in(range: Range, value: f64) -> bool {
     value >= range.low - margin && value <= range.high + margin
 }
 
+fn wanted<'s>((surface, points): (&'s AdjustableSurface, &Vec<Aimed>)) -> WantedPoints<'s> {
+    let near = points.iter().map(|point| point.near.clone()).collect();
+    WantedPoints { surface, points: points.iter().map(|point| point.position).collect(), near }
+}
+
 /// A surface with these settings open; what follows them does so. Feet are looked for beyond its ranges, which may move with the settings.
-fn adjustable<'g>(aim: &Aim<'_, 'g>, settings: &[&Parameter<'g>]) -> AdjustableSurface {
+pub(super) fn adjustable<'g>(of: Named<'_, 'g>, settings: &[&Parameter<'g>]) -> AdjustableSurface {
     let open: Vec<_> = settings.iter().map(|of| of.variable).collect();
-    let (job, surface) = (aim.of.job, aim.of.surface);
+    let Named { job, surface } = of;
     let bound = BoundSurface::new(&surface.surface, solve::followed(surface), &job.bindings_beside(&open));
     AdjustableSurface::new(&bound, &open).expect("a job without errors leaves nothing unbound")
 }

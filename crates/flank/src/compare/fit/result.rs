@@ -47,6 +47,8 @@ pub struct FitResult {
     pub scatter_um: Option<f64>,
     /// Root of the mean square of the error with which each row and each column is predicted from the others; null where they are too few.
     pub leave_out_um: Option<f64>,
+    /// Surfaces that the correction leaves where they are.
+    pub kept: Vec<KeptSurface>,
     /// Points that lie off more than four standard deviations of what the others predict. They are not left out.
     pub outliers: Vec<OutlyingPoint>,
     /// The spec with the corrected settings, if it was asked for and not written.
@@ -183,6 +185,17 @@ pub struct SettingsChoice {
     pub noise_um: f64,
     /// What all of them together would leave, by the linear model, root of the mean square.
     pub all_leave_um: f64,
+}
+
+/// A surface that the corrected settings leave where it is.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct KeptSurface {
+    /// Its name.
+    pub surface: String,
+    /// Whether it is kept at both ends of its row through the middle, and not in the middle alone.
+    pub is_line: bool,
+    /// The largest distance by which it is off there.
+    pub off_um: f64,
 }
 
 /// A measured point that does not go with the others.

@@ -14,12 +14,14 @@ const USUAL_CHANGES: f64 = 10.0;
 const SHARE: f64 = 0.01;
 /// ... of what moves the flank by less than this with usual changes, mm.
 const HARDLY: f64 = 1e-4;
+/// What a change by a scale from the range moves the flank by at the most, mm.
+const SHOWS: f64 = 1e-2;
 
 /// The settings that are named, or all that the job gives a value; in the order of the job.
 ///
 /// # Errors
 /// If there is none of a name, it is a count, or named twice.
-pub(super) fn open<'j, 'g>(job: &'j Job<'g>, vary: &[String]) -> Result<Vec<&'j Parameter<'g>>, Failure> {
+pub(in crate::compare) fn open<'j, 'g>(job: &'j Job<'g>, vary: &[String]) -> Result<Vec<&'j Parameter<'g>>, Failure> {
     if vary.is_empty() {
         let is_given = |of: &&Parameter<'_>| !of.is_count && !matches!(of.given_by, ValueSource::Definition(_));
         return Ok(job.parameters.iter().filter(is_given).collect());
@@ -66,7 +68,7 @@ pub(in crate::compare) fn find(job: &Job<'_>, name: &str) -> Result<usize, Failu
 ///
 /// # Errors
 /// If a step is named for a setting that does not vary, twice, or has another unit.
-pub(super) fn steps(
+pub(in crate::compare) fn steps(
     settings: &[&Parameter<'_>],
     round: &[(String, ToleratedAmount)],
 ) -> Result<Vec<Option<f64>>, Failure> {
@@ -96,16 +98,19 @@ pub(super) fn steps(
 }
 
 /// A setting as an unknown, within the range that it is said to have. `moved` is what one mm, radian or 1 of it moves the flank by, mm.
-/// What hardly moves the flank, as the radius of a blade that is almost straight, has a share of its value as scale.
-pub(super) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnknown {
+/// What hardly moves the flank, as the radius of a blade that is almost straight, has a share of its value as scale, or of its range.
+pub(in crate::compare) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnknown {
     let (low, high) = of.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let (usual, share) = (USUAL_CHANGES * usual_change(of), SHARE * of.value.abs());
-    let scale = if usual * moved < HARDLY { usual.max(share) } else { usual };
+    // of what is neither a length nor an angle, such as a curvature that is almost zero, the range says more than the value
+    let is_number = of.dimension != Dimension::LENGTH && !units::is_angle(of.dimension);
+    let of_range = if is_number && (high - low).is_finite() { (SHARE * (high - low)).min(SHOWS / moved) } else { 0.0 };
+    let scale = if usual * moved < HARDLY { usual.max(share).max(of_range) } else { usual };
     ScaledUnknown { start: of.value, scale, range: Range { low, high } }
 }
 
 /// A setting that stays as it is.
-pub(super) fn held(of: ScaledUnknown) -> ScaledUnknown {
+pub(in crate::compare) fn held(of: ScaledUnknown) -> ScaledUnknown {
     ScaledUnknown { range: Range { low: of.start, high: of.start }, ..of }
 }
 

@@ -40,6 +40,10 @@ impl fmt::Display for FitResult {
                 writeln!(f, "  {name:12}  slopes {slopes}, crownings {crownings}, bias {} um", um(of.bias_um))?;
             }
         }
+        for kept in &self.kept {
+            let where_it_is = if kept.is_line { "both ends of the row through its middle" } else { "its middle" };
+            writeln!(f, "  kept          {} at {where_it_is}, to {} um", kept.surface, um(kept.off_um))?;
+        }
         if let Some(order) = self.order {
             let what = if order == 1 { "slopes" } else { "slopes, crownings and bias" };
             writeln!(

@@ -3,12 +3,14 @@
 use flank_solver::{AdjustedSurfaces, linear_rest};
 
 use super::fitting::Fitting;
-use super::result::{FitResult, OutlyingPoint};
+use super::result::{FitResult, KeptSurface, OutlyingPoint};
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::FitRequest;
 
 /// Of a reversed grid that leaves less than this share it is asked whether it was meant.
 const REVERSED: f64 = 0.5;
+/// A surface that is left where it is to this, um, is kept.
+const KEPT_UM: f64 = 1e-3;
 /// Settings that leave more than this share of what chance leaves to as many unknowns explain nothing: one in a hundred times chance does
 /// as much, over 45 points and 5 unknowns.
 const CHANCE: f64 = 0.7;
@@ -44,6 +46,13 @@ pub(super) fn judged(
             ends.join(", ")
         );
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message));
+    }
+    for kept in result.kept.iter().filter(|kept| kept.off_um > KEPT_UM) {
+        let KeptSurface { surface: name, off_um, .. } = kept;
+        let message = format!(
+            "not kept: the corrected settings move {name} by {off_um:.3} um: they are too few to leave it where it is"
+        );
+        result.not_done.push(NotDone::new(NotDoneKind::NotMet, name, message));
     }
     result.remarks.extend(result.outliers.iter().map(|point| {
         let OutlyingPoint { surface, row, column, off_um, sigmas } = point;
@@ -127,7 +136,7 @@ impl Fitting<'_, '_> {
     /// Whether the same deviations from the other end, or upside down, go with the settings.
     fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<String> {
         let [aim] = self.aims else { return None };
-        let is_whole = self.problem.places[0].len() == aim.points.len() && request.ease_off.is_none();
+        let is_whole = self.problem.places[0].len() == aim.points.len() && !request.is_wish();
         let [rows, columns] = aim.counts;
         let mut effects: Vec<Vec<f64>> = (0..self.problem.settings.len())
             .filter(|k| main.fit.values[*k] != self.problem.settings[*k].value)

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Dimension, Parameter};
 use flank_export::fixed;
-use flank_solver::SingularDirection;
+use flank_solver::{SingularDirection, separated};
 
 use super::settings::change;
 use crate::project::units;
@@ -42,26 +42,6 @@ pub(super) fn untold(directions: &[SingularDirection], unknowns: &[Unknown<'_, '
     let nothing = separated(exact.iter().map(|of| of.shares.clone()).collect());
     let exactly = nothing.iter().map(|shares| sentence(shares, None, unknowns));
     exactly.chain(weak.iter().map(|of| sentence(&of.shares, Some(of.size), unknowns))).collect()
-}
-
-/// Directions in which as few unknowns as can be take part, by Gauss and Jordan: the same combinations of settings.
-fn separated(mut directions: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let mut done: Vec<Vec<f64>> = Vec::new();
-    while !directions.is_empty() {
-        let places = directions
-            .iter()
-            .enumerate()
-            .flat_map(|(row, of)| of.iter().enumerate().map(move |(k, x)| (row, k, x.abs())));
-        let largest = places.fold((0, 0, 0.0), |best, place| if place.2 > best.2 { place } else { best });
-        let (row, pivot, _) = largest;
-        let leading = directions.swap_remove(row);
-        for other in directions.iter_mut().chain(&mut done) {
-            let factor = other[pivot] / leading[pivot];
-            other.iter_mut().zip(&leading).for_each(|(x, by)| *x -= factor * by);
-        }
-        done.push(leading);
-    }
-    done
 }
 
 fn sentence(shares: &[f64], size: Option<f64>, unknowns: &[Unknown<'_, '_>]) -> String {

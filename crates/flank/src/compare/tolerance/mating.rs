@@ -1,13 +1,13 @@
 //! A contact that the surface takes part in, when settings and mounting change.
 
 use flank_chain_dsl::{Contact, Job};
-use flank_solver::{ContactPoint, ContactProblem};
+use flank_solver::{ContactPoint, ContactProblem, FlankDirections};
 
 use super::causes::{Cause, CausePlace};
 use super::quantity::Quantity;
 use crate::contact::influence;
 use crate::contact::pair::Members;
-use crate::contact::place::{OnFlank, dot, fine_unit, rows_at};
+use crate::contact::place::{dot, fine_unit, rows_at};
 use crate::contact::rolling::Rolling;
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
@@ -23,7 +23,7 @@ pub(super) struct Mating {
     middle: ContactPoint,
     is_vertex: bool,
     /// On the second flank.
-    along: OnFlank,
+    along: FlankDirections,
     /// What the second derivative of the error is worth as its height over a pitch, where that is known.
     height: Option<f64>,
     error_unit: &'static str,
@@ -114,7 +114,7 @@ impl Mating {
     }
 
     fn numbers(&self, moved: [f64; 3], [lag, curvature]: [f64; 2]) -> [f64; 4] {
-        let OnFlank { lengthwise, profilewise } = &self.along;
+        let FlankDirections { lengthwise, profilewise } = &self.along;
         [dot(&moved, lengthwise), dot(&moved, profilewise), lag, curvature * self.height.unwrap_or(0.0)]
     }
 

@@ -22,6 +22,10 @@ use crate::solve::dataset::header;
 
 /// Bytes that a mesh may take with what its files are made from: what machines of today can spare.
 const MOST_BYTES: usize = 1 << 30;
+/// The width of a tooth's tip that counts as none, mm: rounding of solved points.
+const LEAST_LAND: f64 = 1e-6;
+/// The scaled Jacobian below which bricks are good for nothing.
+const LEAST_SHAPE: f64 = 0.1;
 /// Bytes of a node, in sections and in place, and of a brick's node, in parts and together.
 const OF_NODE: usize = 3 * size_of::<[f64; 3]>();
 const OF_CORNER: usize = 2 * size_of::<u32>() + size_of::<i64>();
@@ -86,6 +90,9 @@ fn one(
     if teeth > body.teeth() {
         return Ok(Err(format!("`{}` has {} teeth: there are no {teeth} of them", solid.name, body.teeth())));
     }
+    if body.least_land() < LEAST_LAND {
+        return Ok(Err(format!("the teeth of `{}` end in an edge: bricks need a land at their tip", solid.name)));
+    }
     let order = match request.order {
         ElementOrder::First => BrickOrder::First,
         ElementOrder::Second => BrickOrder::Second,
@@ -95,9 +102,9 @@ fn one(
     check_size(&solid.name, size, order)?;
     let mesh = body.bricks(&counts, order, teeth as usize);
     let quality = mesh.quality();
-    if quality.least_scaled_jacobian <= 0.0 || quality.least_jacobian <= 0.0 {
+    if quality.least_scaled_jacobian < LEAST_SHAPE || quality.least_jacobian <= 0.0 {
         return Ok(Err(format!(
-            "the bricks of `{}` would be folded: their least scaled Jacobian is {:.3}, and has to be above 0; try other numbers with option `elements`",
+            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {:.3}, and has to be {LEAST_SHAPE} at the least; try other numbers with option `elements`",
             solid.name,
             quality.least_scaled_jacobian.min(quality.least_jacobian)
         )));

@@ -17,11 +17,18 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let count = segments.len();
     // flank and root both reach the ends of a space; the tip is far from the root, a bore from the flank
     let both = [&pieces[pieces.len() / 2].known, &pieces[0].known];
-    let off = |k: &usize| both.map(|known| nearest(&segments[*k], known)).into_iter().fold(0.0, f64::max);
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|a, b| off(a).total_cmp(&off(b)));
-    let [a, b, ..] = order[..] else {
-        return Err(format!("the outline of `{}` has one segment: tooth spaces run between two", solid.name).into());
+    let off = |k: usize| both.map(|known| nearest(&segments[k], known)).into_iter().fold(0.0, f64::max);
+    let off: Vec<f64> = (0..count).map(off).collect();
+    // of two ends that have the tip between them on one side, and the rest on the other
+    let apart = |a: usize, b: usize| (b - a) % count > 1 && (a + count - b) % count > 1;
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(|(a, b)| apart(*a, *b));
+    let Some((a, b)) = pairs.min_by(|(a, b), (c, d)| (off[*a] + off[*b]).total_cmp(&(off[*c] + off[*d]))) else {
+        return Err(format!(
+            "the outline of `{}` has {count} segments: tooth spaces run from one to another, with the tip between them on one side and \
+             the rest of the blank on the other",
+            solid.name
+        )
+        .into());
     };
     let between = |from: usize, to: usize| {
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()

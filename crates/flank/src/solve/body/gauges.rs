@@ -2,7 +2,7 @@
 
 use flank_solver::{BallGauge, Body, Span, Thickness};
 
-use crate::solve::body::result::{BallNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
+use crate::solve::body::result::{BallNumbers, FaceNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
 
 /// Circles from the form diameter to the tip on which the thickness is told.
 const CIRCLES: usize = 5;
@@ -21,13 +21,21 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
     let is_cylindrical = outline.center.is_none() && outline.from[1] == outline.to[1];
     let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
     let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
+    let thickness: Vec<ThicknessNumbers> = thickness.map(thickness_numbers).collect();
+    let face = body.is_face_gear().then_some(FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
+    let diameters = |of: f64| match &face {
+        Some(_) => thickness.first().map_or(0.0, |tooth| tooth.diameter_mm),
+        None => 2.0 * of,
+    };
     GaugeNumbers {
-        tip_diameter_mm: 2.0 * tip,
-        root_diameter_mm: 2.0 * root,
-        form_diameters_mm: form.map(|rho| 2.0 * rho),
-        thickness: thickness.map(thickness_numbers).collect(),
+        tip_diameter_mm: diameters(tip),
+        root_diameter_mm: diameters(root),
+        form_diameters_mm: form.map(diameters),
+        thickness,
         spans: (1..=most).filter_map(|teeth| body.span(teeth)).map(span_numbers).collect(),
         balls: is_cylindrical.then(|| body.ball(diameter())).flatten().map(ball_numbers),
+        edge_below_tip_mm: body.edge_below_tip(),
+        face,
     }
 }
 
@@ -38,7 +46,8 @@ fn middle_ball(body: &Body, rho: f64) -> f64 {
 }
 
 fn thickness_numbers(of: Thickness) -> ThicknessNumbers {
-    ThicknessNumbers { diameter_mm: 2.0 * of.rho, arc_mm: of.arc, chord_mm: of.chord, chord_height_mm: of.chord_height }
+    let Thickness { rho, z, arc, chord, chord_height } = of;
+    ThicknessNumbers { diameter_mm: 2.0 * rho, z_mm: z, arc_mm: arc, chord_mm: chord, chord_height_mm: chord_height }
 }
 
 fn span_numbers(of: Span) -> SpanNumbers {

@@ -5,15 +5,17 @@ pub(crate) mod bricks;
 pub(crate) mod bricks_result;
 pub(crate) mod ends;
 pub(crate) mod gauges;
+pub(crate) mod mounted;
 pub(crate) mod piece;
 pub(crate) mod result;
+pub(crate) mod shape;
 pub(crate) mod smooth;
 pub(crate) mod space;
 
 use flank_chain_dsl::{Job, Solid};
-use flank_export::{BodyMesh, Header};
+use flank_export::{BodyMesh, GearBody, Header, PlacedBody, PlacedFrame};
 use flank_expr::Graph;
-use flank_solver::BodyPart;
+use flank_solver::{BodyPart, ClosedMesh};
 
 use crate::project::choices::{MeshFormat, SolidPart};
 use crate::project::failure::Failure;
@@ -24,6 +26,7 @@ use crate::project::requests::{Session, SolidRequest};
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
+use crate::solve::body::mounted::{MountedSolid, Mounting};
 use crate::solve::body::result::{SolidNumbers, SolidResult};
 use crate::solve::dataset::header;
 
@@ -52,11 +55,11 @@ fn built(
 ) -> Result<SolidResult, Failure> {
     let header = header(&[job], &request.jobs, origin);
     let mut folder = Folder::at(&request.out, origin, session.monitor())?;
-    let (mut solids, mut not_done) = (Vec::new(), Vec::new());
+    let (mut solids, mut not_done, mut made) = (Vec::new(), Vec::new(), Vec::new());
     for solid in &job.solids {
         let _working = session.begin(format!("building {}", solid.name))?;
         match one(job, solid, (request, &header), (&mut folder, session)) {
-            Ok(numbers) => {
+            Ok((numbers, shapes)) => {
                 let too_far = numbers.step_deviation_mm.zip(request.step).filter(|(off, allowed)| off > allowed);
                 not_done.extend(too_far.map(|(off, allowed)| {
                     let message = format!(
@@ -68,15 +71,27 @@ fn built(
                     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
                 }));
                 solids.push(numbers);
+                made.push(shapes);
             }
             Err(Failure::Input(reason)) => not_done.push(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
             Err(other) => return Err(other),
         }
     }
+    let is_pair = request.part == SolidPart::Gear && made.len() > 1;
+    let mounting = if is_pair { mounted::mounting(job, session) } else { Ok(None) };
+    let mounting = mounting.unwrap_or_else(|reason| {
+        let message = format!("the bodies of {} are not put together: {reason}", job.name);
+        not_done.push(NotDone::new(NotDoneKind::NoContact, &job.name, message));
+        None
+    });
+    if let Some(mounting) = &mounting {
+        together(job, (mounting, &made), (request, &header), &mut folder)?;
+    }
     Ok(SolidResult {
         job: job.name.clone(),
         spec: shown_path(request.jobs.file()),
         solids,
+        mounting,
         files: folder.finish()?,
         not_done: origin.located(&[job], not_done),
     })
@@ -87,7 +102,7 @@ fn one(
     solid: &Solid,
     (request, header): (&SolidRequest, &Header),
     (folder, session): (&mut Folder<'_>, Session<'_>),
-) -> Result<SolidNumbers, Failure> {
+) -> Result<(SolidNumbers, Shapes), Failure> {
     let space::Space { body, names, off } = space::body(job, solid, session)?;
     let part = match request.part {
         SolidPart::Gear => BodyPart::Gear,
@@ -102,15 +117,15 @@ fn one(
         match format {
             MeshFormat::Stl => folder.body_stl(&file, header, &written)?,
             MeshFormat::Obj => folder.body_obj(&file, header, &written)?,
-            MeshFormat::ThreeMf => folder.body_3mf(&file, header, &written)?,
+            MeshFormat::ThreeMf => folder.body_3mf(&file, header, &[(written, PlacedFrame::default())])?,
         }
     }
     let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, &body, tolerance));
     if let Some(faces) = faces.as_ref().filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed)) {
         folder.body_step(&file, header, faces)?;
     }
-    Ok(SolidNumbers {
-        step_deviation_mm: faces.map(|faces| faces.deviation),
+    let numbers = SolidNumbers {
+        step_deviation_mm: faces.as_ref().map(|faces| faces.deviation),
         gauges: gauges::measured(&body, request.ball),
         ..SolidNumbers::new(
             (&solid.name, &solid.frame, names),
@@ -118,5 +133,49 @@ fn one(
             request.density,
             (&mesh, request.deviation),
         )
-    })
+    };
+    let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
+    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), mesh, faces }))
+}
+
+/// A body as it is written.
+struct Shapes {
+    name: String,
+    frame: String,
+    mesh: ClosedMesh,
+    faces: Option<GearBody>,
+}
+
+/// Files in which the members of a pair stand as they mesh.
+fn together(
+    job: &Job<'_>,
+    (mounting, made): (&Mounting, &[Shapes]),
+    (request, header): (&SolidRequest, &Header),
+    folder: &mut Folder<'_>,
+) -> Result<(), Failure> {
+    let of = |member: &MountedSolid| made.iter().find(|shapes| shapes.name == member.solid);
+    let places = |member: &MountedSolid| PlacedFrame { origin: member.origin_mm, axes: member.axes };
+    let Some(pair) =
+        mounting.members.iter().map(|member| Some((of(member)?, places(member)))).collect::<Option<Vec<_>>>()
+    else {
+        return Ok(());
+    };
+    let faces: Option<Vec<PlacedBody<'_>>> =
+        pair.iter().map(|(shapes, place)| Some(PlacedBody { body: shapes.faces.as_ref()?, place: *place })).collect();
+    if let Some(faces) = faces {
+        folder.body_assembly(&job.name, header, &faces)?;
+    }
+    if request.format.contains(&MeshFormat::ThreeMf) {
+        let meshes: Vec<(BodyMesh<'_>, PlacedFrame)> =
+            pair.iter().map(|(shapes, place)| (shapes.mesh(), *place)).collect();
+        folder.body_3mf(&job.name, header, &meshes)?;
+    }
+    Ok(())
+}
+
+impl Shapes {
+    fn mesh(&self) -> BodyMesh<'_> {
+        let ClosedMesh { vertices, triangles } = &self.mesh;
+        BodyMesh { name: &self.name, frame: &self.frame, vertices, triangles }
+    }
 }

@@ -1,7 +1,10 @@
 //! A surface of a tooth space, and the lines on which it ends.
 
+use std::borrow::Cow;
+
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_expr::Expr;
+use flank_expr::geometry::{Axis, Chain, Step};
 use flank_solver::{Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
@@ -12,11 +15,17 @@ use crate::solve::surface::{bound, problem};
 const MOST_LINES: usize = 9;
 /// Boxes that a search for a point of a line looks at: where Newton's method does not reach it there is mostly none.
 const BOXES: u64 = 200;
+/// An unknown whose known values lie this near to a function of the way along, as a share of their variance, tells rows of a space apart
+/// badly.
+const SCATTER: f64 = 1e-3;
+/// Points no farther apart are the same, mm: rounding of solved points.
+pub(crate) const SAME_LINE: f64 = 1e-6;
 
 /// A surface of a tooth space with some of its points.
+#[derive(Clone)]
 pub(crate) struct Piece<'j, 'g> {
     job: &'j Job<'g>,
-    pub(crate) surface: &'j GeneratedSurface<'g>,
+    pub(crate) surface: Cow<'j, GeneratedSurface<'g>>,
     session: Session<'j>,
     pub(crate) known: Vec<SurfacePoint>,
 }
@@ -29,6 +38,13 @@ pub(crate) struct EndLine {
     pub(crate) value: f64,
     /// Points at the shares along that were asked for.
     pub(crate) points: Vec<[f64; 3]>,
+}
+
+/// Whose ranges' ends are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EndsOf {
+    Tool,
+    Motions,
 }
 
 impl<'j, 'g> Piece<'j, 'g> {
@@ -50,7 +66,26 @@ impl<'j, 'g> Piece<'j, 'g> {
         if known.is_empty() {
             return Err(format!("`{name}` bounds the spaces of a solid, and no point of its sample is solved").into());
         }
-        Ok(Piece { job, surface, session, known })
+        Ok(Piece { job, surface: Cow::Borrowed(surface), session, known })
+    }
+
+    /// The same surface in another space: turned about the work's axis.
+    pub(crate) fn turned(&self, by: f64) -> Piece<'j, 'g> {
+        let graph = self.surface.surface.position.0[0].graph();
+        let turn = Chain::new(graph, vec![Step::Rotate(Axis::Z, graph.constant(by))]);
+        let moved = self.surface.surface.moved(&turn);
+        let (sin, cos) = by.sin_cos();
+        let rotated = |[x, y, z]: [f64; 3]| [cos * x - sin * y, sin * x + cos * y, z];
+        let known = self.known.iter().map(|point| SurfacePoint {
+            position: rotated(point.position),
+            normal: rotated(point.normal),
+            ..point.clone()
+        });
+        Piece {
+            known: known.collect(),
+            surface: Cow::Owned(GeneratedSurface { surface: moved, ..self.surface.clone().into_owned() }),
+            ..*self
+        }
     }
 
     /// The two coordinates of the axial section.
@@ -59,22 +94,46 @@ impl<'j, 'g> Piece<'j, 'g> {
         [z, (x * x + y * y).sqrt()]
     }
 
+    /// How far along the space, and the angle about the axis from a place on.
+    fn around(&self, [x, y, _]: [f64; 3], blank: &Blank) -> [Expr<'g>; 2] {
+        let [own_x, own_y, _] = self.surface.surface.position.0;
+        let (ahead, aside) = (own_x * x + own_y * y, own_y * x - own_x * y);
+        [blank.share_of(self.section()), aside.atan2(ahead)]
+    }
+
     /// The surface with the values of the job's parameters.
     pub(crate) fn bound(&self) -> BoundSurface<'g> {
-        bound(self.job, self.surface)
+        bound(self.job, &self.surface)
     }
 
-    /// The unknown that the tool's profile runs over.
-    pub(crate) fn across_tool(&self) -> Option<usize> {
-        let made = self.surface;
+    /// The unknown by which rows across the space are told apart best: the one that the tool's profile runs over, another one of the tool,
+    /// or a motion, unless it says no more than how far along the space a point lies.
+    pub(crate) fn across_tool(&self, blank: &Blank) -> Option<usize> {
+        let made = &self.surface;
         let of_profile = made.unknowns.iter().position(|unknown| unknown.piece.is_some());
-        of_profile.or_else(|| self.of_tool().next())
+        of_profile.or_else(|| {
+            self.of(EndsOf::Tool).chain(self.of(EndsOf::Motions)).find(|unknown| self.tells_rows(*unknown, blank))
+        })
     }
 
-    /// Its unknowns that are no motions.
-    fn of_tool(&self) -> impl Iterator<Item = usize> + use<'j, 'g> {
-        let made = self.surface;
-        (0..made.unknowns.len()).filter(|k| !made.generation.motions.contains(&made.unknowns[*k].variable))
+    /// Whether an unknown is more than a linear function of the way along at the known points.
+    fn tells_rows(&self, unknown: usize, blank: &Blank) -> bool {
+        let pairs: Vec<[f64; 2]> =
+            self.known.iter().map(|point| [along_of(blank, point), point.unknowns[unknown]]).collect();
+        let count = pairs.len() as f64;
+        let [along, value] = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).sum::<f64>() / count);
+        let sum = |a: usize, b: usize| -> f64 {
+            let mean = [along, value];
+            pairs.iter().map(|pair| (pair[a] - mean[a]) * (pair[b] - mean[b])).sum()
+        };
+        sum(1, 1) * sum(0, 0) > 0.0 && sum(1, 1) - sum(0, 1).powi(2) / sum(0, 0) > SCATTER * sum(1, 1)
+    }
+
+    /// Its unknowns that are motions, or those that are not.
+    fn of(&self, whose: EndsOf) -> impl Iterator<Item = usize> {
+        let made = &self.surface;
+        let is_motion = |k: &usize| made.generation.motions.contains(&made.unknowns[*k].variable);
+        (0..made.unknowns.len()).filter(move |k| is_motion(k) == (whose == EndsOf::Motions))
     }
 
     /// An unknown, and how far along the space a point lies.
@@ -90,26 +149,53 @@ impl<'j, 'g> Piece<'j, 'g> {
         far: impl Fn(&SurfacePoint) -> f64,
     ) -> SurfacePoints {
         let near = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        let problem = problem(self.job, self.surface, coordinates, self.session).boxes(BOXES);
+        let problem = problem(self.job, &self.surface, coordinates, self.session).boxes(BOXES);
         problem.solve_points(targets, counts, near.map(|point| &point.unknowns[..]), None).0
     }
 
-    /// The lines on which an unknown of the tool is at an end of its range, as far as they run along the space.
-    pub(crate) fn end_lines(&self, blank: &Blank, along: &[f64]) -> Vec<EndLine> {
-        let made = self.surface;
-        let ends = self.of_tool().flat_map(|k| [(k, made.unknowns[k].low), (k, made.unknowns[k].high)]);
+    /// Points of a line on which an unknown has a value.
+    pub(crate) fn on_line(&self, (unknown, value): (usize, f64), blank: &Blank, along: &[f64]) -> SurfacePoints {
+        let targets: Vec<[f64; 2]> = along.iter().map(|share| [value, *share]).collect();
+        let width = self.surface.unknowns[unknown].high - self.surface.unknowns[unknown].low;
+        let far = |point: &SurfacePoint| {
+            ((point.unknowns[unknown] - value) / width).abs() + (along_of(blank, point) - 0.5).abs()
+        };
+        self.solved(self.across(unknown, blank), (&targets, [1, along.len()]), far)
+    }
+
+    /// The lines on which an unknown is at an end of its range, as far as they run along the space.
+    pub(crate) fn end_lines(&self, whose: EndsOf, blank: &Blank, along: &[f64]) -> Vec<EndLine> {
+        let made = &self.surface;
+        let ends = self.of(whose).flat_map(|k| [(k, made.unknowns[k].low), (k, made.unknowns[k].high)]);
         ends.filter(|(_, value)| value.is_finite())
             .filter_map(|(unknown, value)| {
-                let targets: Vec<[f64; 2]> = along.iter().map(|share| [value, *share]).collect();
-                let width = made.unknowns[unknown].high - made.unknowns[unknown].low;
-                let far = |point: &SurfacePoint| {
-                    ((point.unknowns[unknown] - value) / width).abs() + (along_of(blank, point) - 0.5).abs()
-                };
-                let points = self.solved(self.across(unknown, blank), (&targets, [1, along.len()]), far);
+                let points = self.on_line((unknown, value), blank, along);
                 let is_whole = points.solved() == along.len();
                 is_whole.then(|| EndLine { unknown, value, points: positions(&points) })
             })
             .collect()
+    }
+
+    /// The values of an unknown at points of a line along the space; `None` where one is no point of the surface.
+    ///
+    /// They are found by their place in the axial section, or, where that has a turning point (on the ground of a space), by their angle.
+    pub(crate) fn values_at(&self, points: &[[f64; 3]], unknown: usize, blank: &Blank) -> Option<Vec<f64>> {
+        let middle = points[points.len() / 2];
+        let place = |[x, y, z]: [f64; 3]| [z, x.hypot(y)];
+        let turned = |[x, y, z]: [f64; 3]| {
+            let share = Blank::share(blank.bounds(), [z, x.hypot(y)]);
+            [share, (y * middle[0] - x * middle[1]).atan2(x * middle[0] + y * middle[1])]
+        };
+        let sections: Vec<[f64; 2]> = points.iter().map(|point| place(*point)).collect();
+        let angles: Vec<[f64; 2]> = points.iter().map(|point| turned(*point)).collect();
+        let tried = [(self.section(), sections), (self.around(middle, blank), angles)];
+        tried.into_iter().find_map(|(coordinates, targets)| {
+            let far = |point: &SurfacePoint| apart(point.position, middle);
+            let found = self.solved(coordinates, (&targets, [1, targets.len()]), far);
+            let is_whole = found.solved() == targets.len()
+                && positions(&found).iter().zip(points).all(|(a, b)| apart(*a, *b) <= SAME_LINE);
+            is_whole.then(|| (0..found.len()).map(|k| found.unknowns(k)[unknown]).collect())
+        })
     }
 }
 
@@ -121,6 +207,10 @@ pub(crate) fn along_of(blank: &Blank, point: &SurfacePoint) -> f64 {
 
 pub(crate) fn positions(points: &SurfacePoints) -> Vec<[f64; 3]> {
     (0..points.len()).map(|k| points.position_and_normal(k)).map(|[x, y, z, ..]| [x, y, z]).collect()
+}
+
+pub(crate) fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
 /// A few rows and columns of a sample, the outermost among them.

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::remark::NotDone;
+use crate::solve::body::mounted::Mounting;
 
 /// Bodies of a job, of `flank solve` with option `solid`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -19,6 +20,8 @@ pub struct SolidResult {
     pub spec: String,
     /// In the order of the spec; those that could not be built are not among them.
     pub solids: Vec<SolidNumbers>,
+    /// Where the members of a pair stand as they mesh, in the file that has both; null unless the job has a contact of two whole gears.
+    pub mounting: Option<Mounting>,
     /// Files written, in their order.
     pub files: Vec<String>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
@@ -83,6 +86,10 @@ pub struct GaugeNumbers {
     pub root_diameter_mm: f64,
     /// Where the flanks end towards the root, the first one of the space and the last.
     pub form_diameters_mm: [f64; 2],
+    /// How far the edges in which pointed teeth end lie below the tip of the blank; null where teeth have lands.
+    pub edge_below_tip_mm: Option<f64>,
+    /// Of a gear with teeth on its face, where the depth is measured along the axis; else null.
+    pub face: Option<FaceNumbers>,
     /// Of the tooth, from the form diameter to the tip.
     pub thickness: Vec<ThicknessNumbers>,
     /// Over some teeth of a cylindrical gear, all that planes can touch.
@@ -92,11 +99,24 @@ pub struct GaugeNumbers {
     pub balls: Option<BallNumbers>,
 }
 
+/// Places along the axis of a gear with teeth on its face.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct FaceNumbers {
+    /// Of the tip.
+    pub tip_z_mm: f64,
+    /// Of the deepest point of a space.
+    pub root_z_mm: f64,
+    /// Where the flanks end towards the root, the first one of the space and the last.
+    pub form_z_mm: [f64; 2],
+}
+
 /// The thickness of a tooth on a circle.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ThicknessNumbers {
     /// Of the circle.
     pub diameter_mm: f64,
+    /// Its place along the axis.
+    pub z_mm: f64,
     /// Along the circle.
     pub arc_mm: f64,
     /// Straight, as a tooth caliper measures it.
@@ -172,6 +192,10 @@ impl fmt::Display for SolidResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "job {} ({})", self.job, self.spec)?;
         self.solids.iter().try_for_each(|solid| write!(f, "\n{solid}"))?;
+        if let Some(Mounting { contact, members, .. }) = &self.mounting {
+            let names: Vec<&str> = members.iter().map(|member| member.solid.as_str()).collect();
+            writeln!(f, "\n{} stand as they mesh in the middle of contact {contact}", names.join(" and "))?;
+        }
         if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
     }
 }
@@ -203,10 +227,23 @@ impl fmt::Display for SolidNumbers {
 impl fmt::Display for GaugeNumbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [first, last] = self.form_diameters_mm;
-        writeln!(f, "  tip      {:.4} mm in diameter, root {:.4} mm", self.tip_diameter_mm, self.root_diameter_mm)?;
-        writeln!(f, "  form     {first:.4} mm and {last:.4} mm in diameter")?;
+        match &self.face {
+            None => {
+                let (tip, root) = (self.tip_diameter_mm, self.root_diameter_mm);
+                writeln!(f, "  tip      {tip:.4} mm in diameter, root {root:.4} mm")?;
+                writeln!(f, "  form     {first:.4} mm and {last:.4} mm in diameter")?;
+            }
+            Some(FaceNumbers { tip_z_mm, root_z_mm, form_z_mm: [first, last] }) => {
+                let diameter = self.tip_diameter_mm;
+                writeln!(f, "  tip      z {tip_z_mm:.4} mm, root z {root_z_mm:.4} mm at {diameter:.4} mm in diameter")?;
+                writeln!(f, "  form     z {first:.4} mm and z {last:.4} mm")?;
+            }
+        }
+        if let Some(below) = self.edge_below_tip_mm {
+            writeln!(f, "  edge     teeth are pointed: they end {below:.4} mm below the tip of the blank")?;
+        }
         for of in &self.thickness {
-            let ThicknessNumbers { diameter_mm, arc_mm, chord_mm, chord_height_mm } = of;
+            let ThicknessNumbers { diameter_mm, arc_mm, chord_mm, chord_height_mm, .. } = of;
             writeln!(
                 f,
                 "  tooth    {arc_mm:.4} mm thick at {diameter_mm:.3} mm, chord {chord_mm:.4} mm {chord_height_mm:.4} mm below the tip"

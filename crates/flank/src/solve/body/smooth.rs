@@ -1,5 +1,7 @@
 //! A body with smooth faces for a STEP file.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
 use flank_export::{GearBody, TurnedSegment, spline_deviation};
 use flank_solver::{Body, Chart, MassProperties, OutlineSegment};
 
@@ -11,6 +13,8 @@ const MOST: usize = 321;
 pub(crate) fn gear(name: &str, names: &[String], body: &Body, tolerance: f64) -> GearBody {
     let (charts, is_reversed) = body.charts();
     // neighbours have the same columns
+    let land = body.land().filter(winds);
+    let charts: Vec<&Chart> = charts.iter().chain(&land).collect();
     let along = charts.iter().map(|chart| fewest(chart, 1, tolerance)).max().unwrap_or(FEWEST);
     let mut deviation: f64 = 0.0;
     let mut space = Vec::new();
@@ -19,14 +23,16 @@ pub(crate) fn gear(name: &str, names: &[String], body: &Body, tolerance: f64) ->
         let points = lattice(chart, counts);
         let doubled = lattice(chart, counts.map(|count| 2 * count - 1));
         deviation = deviation.max(spline_deviation(points.clone(), counts, &doubled));
-        let own = if is_reversed { names.len() - 1 - k } else { k };
-        space.push((names[own].clone(), points, counts));
+        let own = if is_reversed { names.len().wrapping_sub(1 + k) } else { k };
+        let name = names.get(own).unwrap_or(&body.blank().bounds()[1].name);
+        space.push((name.clone(), points, counts));
     }
     let MassProperties { volume, area, centre, .. } = body.mass_properties();
     GearBody {
         name: name.to_string(),
         teeth: body.teeth() as usize,
         space,
+        has_edge: body.has_edge() || land.is_some(),
         ends: body.blank().bounds().map(segment),
         rest: body.blank().rest().into_iter().map(segment).collect(),
         deviation,
@@ -34,6 +40,15 @@ pub(crate) fn gear(name: &str, names: &[String], body: &Body, tolerance: f64) ->
         area,
         centre,
     }
+}
+
+/// Whether a land winds about the axis so far that it is no part of a surface of revolution that readers could tell: by a quarter turn or
+/// more.
+fn winds(land: &Chart) -> bool {
+    let angle = |[x, y, _]: [f64; 3]| y.atan2(x);
+    let row = land.row(0);
+    let steps = row.windows(2).map(|pair| (angle(pair[1]) - angle(pair[0]) + PI).rem_euclid(TAU) - PI);
+    steps.sum::<f64>().abs() >= FRAC_PI_2
 }
 
 fn segment(of: &OutlineSegment) -> TurnedSegment {

@@ -6,7 +6,7 @@ use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, Surface
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
 use crate::project::units;
-use crate::solve::body::borders::{Border, End, borders, lost, meeting};
+use crate::solve::body::borders::Borders;
 use crate::solve::body::ends;
 use crate::solve::body::piece::{Piece, along_of, positions};
 
@@ -40,21 +40,41 @@ pub(crate) fn with_solids<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>
 /// # Errors
 /// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
 pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>) -> Result<Space, Failure> {
-    if solid.space.len() < 2 {
+    let pieces = solid.space.iter().map(|at| Piece::new(job, &job.surfaces[*at], session));
+    let pieces: Vec<Piece<'_, '_>> = pieces.collect::<Result<_, Failure>>()?;
+    let blank = ends::blank(solid, &pieces)?;
+    let borders = Borders::new(solid, &pieces, &blank)?;
+    if pieces.len() < 2 && !borders.has_edge() {
         return Err(format!(
             "the space of `{}` is one surface: its body needs all of them from tip to tip, the root among them",
             solid.name
         )
         .into());
     }
-    let pieces = solid.space.iter().map(|at| Piece::new(job, &job.surfaces[*at], session));
-    let pieces: Vec<Piece<'_, '_>> = pieces.collect::<Result<_, Failure>>()?;
-    let blank = ends::blank(solid, &pieces)?;
-    let borders = borders(solid, &pieces, &blank)?;
+    let faulty = |fault: BodyFault| faulty(solid, &blank, fault);
+    let (body, off) = match between(solid, (&pieces, &borders, &blank), session)? {
+        (Ok(body), off) => (body, off),
+        (Err(fault), _) => {
+            let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
+            let borders = is_pointed.then(|| borders.meeting_in_an_edge(solid, &pieces, &blank)).flatten();
+            let borders = borders.ok_or_else(|| faulty(fault))?;
+            let (body, off) = between(solid, (&pieces, &borders, &blank), session)?;
+            (body.map_err(faulty)?, off)
+        }
+    };
+    Ok(Space { body, names: pieces.iter().map(|piece| piece.surface.name.clone()).collect(), off })
+}
+
+/// The body between borders, and how far its charts are off.
+fn between(
+    solid: &Solid,
+    (pieces, borders, blank): (&[Piece<'_, '_>], &Borders<'_, '_>, &Blank),
+    session: Session<'_>,
+) -> Result<(Result<Body, BodyFault>, f64), Failure> {
     let mut made = None;
     for count in COUNTS {
         session.check()?;
-        let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces, (&borders[k], &blank), count));
+        let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces[k], (borders, blank), count));
         let charts: Vec<Chart> = charts.collect::<Result<_, Failure>>()?;
         let off = charts.iter().map(Chart::tail).fold(0.0, f64::max);
         made = Some((charts, off));
@@ -63,27 +83,20 @@ pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>)
         }
     }
     let (charts, off) = made.expect("some counts are tried");
-    let body = Body::new(blank.clone(), solid.teeth, charts).map_err(|fault| faulty(solid, &blank, fault))?;
-    Ok(Space { body, names: pieces.iter().map(|piece| piece.surface.name.clone()).collect(), off })
+    Ok((Body::new(blank.clone(), solid.teeth, charts, borders.has_edge()), off))
 }
 
 /// The chart of a surface between its borders.
 fn chart(
     (solid, k): (&Solid, usize),
-    pieces: &[Piece<'_, '_>],
-    (border, blank): (&Border, &Blank),
+    piece: &Piece<'_, '_>,
+    (borders, blank): (&Borders<'_, '_>, &Blank),
     count: usize,
 ) -> Result<Chart, Failure> {
-    let (piece, shares) = (&pieces[k], Chart::shares(count));
-    let end = |side: usize| match &border.ends[side] {
-        End::Value(value) => Ok(vec![*value; count]),
-        End::Tip => at_tip(solid, piece, (border.unknown, blank), &shares),
-        End::Trimmed => {
-            let [first, second] = if side == 0 { [k - 1, k] } else { [k, k + 1] };
-            let met = meeting([&pieces[first], &pieces[second]], blank, &shares);
-            let values = met.map(|points| points.iter().map(|of| of[1 - side].unknowns[border.unknown]).collect());
-            values.ok_or_else(|| lost(solid, [&pieces[first], &pieces[second]]))
-        }
+    let (unknown, shares) = (borders.unknowns[k], Chart::shares(count));
+    let end = |side: usize| {
+        let shared = borders.values(solid, (k, side), blank, &shares);
+        shared.unwrap_or_else(|| at_tip(solid, piece, (unknown, blank), &shares))
     };
     let ends = [end(0)?, end(1)?];
     let value = |i: usize, j: usize| (1.0 - shares[i]) * ends[0][j] + shares[i] * ends[1][j];
@@ -91,10 +104,9 @@ fn chart(
         (0..count * count).map(|at| [value(at / count, at % count), shares[at % count]]).collect();
     let middle = value(count / 2, count / 2);
     let width = (ends[1][count / 2] - ends[0][count / 2]).abs();
-    let far = |point: &SurfacePoint| {
-        (point.unknowns[border.unknown] - middle).abs() / width + (along_of(blank, point) - 0.5).abs()
-    };
-    let points = piece.solved(piece.across(border.unknown, blank), (&targets, [count; 2]), far);
+    let far =
+        |point: &SurfacePoint| (point.unknowns[unknown] - middle).abs() / width + (along_of(blank, point) - 0.5).abs();
+    let points = piece.solved(piece.across(unknown, blank), (&targets, [count; 2]), far);
     all_solved(solid, piece, &points)?;
     Ok(Chart::through(positions(&points), [count; 2]))
 }
@@ -143,7 +155,7 @@ fn faulty(solid: &Solid, blank: &Blank, fault: BodyFault) -> Failure {
     let length = |mm: f64| units::scientific(mm, 2);
     let segments = blank.outline.segments();
     match fault {
-        BodyFault::Pointed { overlap, share } => format!(
+        BodyFault::Pointed { overlap, share, .. } => format!(
             "the teeth of `{}` are pointed below the tip: their flanks overlap by {} mm at `{}`, {:.0} % of the way from `{}` to `{}`",
             solid.name, length(overlap), segments[blank.ends[1]].name, 100.0 * share,
             segments[blank.ends[0]].name, segments[blank.ends[2]].name

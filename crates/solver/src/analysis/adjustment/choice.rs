@@ -1,5 +1,6 @@
 //! Which settings take most of a deviation away, few of them.
 
+use faer::linalg::solvers::Svd;
 use faer::{Col, ColRef, Mat};
 
 use crate::equations::solution::Range;
@@ -67,7 +68,7 @@ pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], l
 pub fn linear_rest(residuals: &[f64], effects: &[Vec<f64>], resolution: f64) -> f64 {
     let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
     let unknowns = vec![ScaledUnknown { start: 0.0, scale: 1.0, range: everywhere }; effects.len()];
-    let fit = LeastSquares { unknowns, resolution, uses_weak: false, settled: SETTLED }.solve(|at| {
+    let fit = LeastSquares { unknowns, exact: 0, resolution, uses_weak: false, settled: SETTLED }.solve(|at| {
         let left = residuals.iter().enumerate();
         let left = left.map(|(row, off)| off + effects.iter().zip(at).map(|(of, x)| of[row] * x).sum::<f64>());
         let jacobian = Mat::from_fn(residuals.len(), effects.len(), |row, k| effects[k][row]);
@@ -75,6 +76,77 @@ pub fn linear_rest(residuals: &[f64], effects: &[Vec<f64>], resolution: f64) -> 
     });
     let left = fit.map_or_else(|| residuals.to_vec(), |fit| fit.residuals);
     (left.iter().map(|x| x * x).sum::<f64>() / left.len().max(1) as f64).sqrt()
+}
+
+/// Settings that together do all that any of them can, one after the other the one that does most of its own; an entry of `effects` for each
+/// says what it does for its scale, `always` is done without them. What is done of its own by less than a `share` of all that a setting
+/// does is made up by others. Of two that do as much the first one is taken.
+///
+/// # Panics
+/// If entries are not as long as `always`.
+#[must_use]
+pub fn most_independent(effects: &[Vec<f64>], always: &[f64], share: f64) -> Vec<usize> {
+    let column = |of: &[f64]| Col::from_fn(always.len(), |row| of[row]);
+    let mut own: Vec<Col<f64>> = effects.iter().map(|of| column(of)).collect();
+    let whole: Vec<f64> = own.iter().map(Col::norm_l2).collect();
+    let mut taken = Vec::new();
+    let mut next = Some(column(always));
+    while let Some(column) = next {
+        let length = column.norm_l2();
+        if length > 0.0 {
+            let unit = &column * (1.0 / length);
+            own.iter_mut().for_each(|of| without(of, unit.as_ref()));
+        }
+        let most = |best: Option<(usize, f64)>, (k, of): (usize, f64)| match best {
+            Some((_, length)) if of <= length => best,
+            _ => Some((k, of)),
+        };
+        let left = (0..own.len()).filter(|k| !taken.contains(k)).map(|k| (k, own[k].norm_l2()));
+        next = left.filter(|(k, length)| *length > share * whole[*k]).fold(None, most).map(|(k, _)| {
+            taken.push(k);
+            own[k].clone()
+        });
+    }
+    taken
+}
+
+/// Combinations of residuals that no setting changes by more than a `share` of what it changes others by, in which as few residuals take
+/// part as can; an entry of `effects` for each setting.
+///
+/// # Panics
+/// If entries are not of one length.
+#[must_use]
+pub fn opposed(effects: &[Vec<f64>], share: f64) -> Vec<Vec<f64>> {
+    let rows = effects.first().map_or(0, Vec::len);
+    let effects = Mat::from_fn(rows, effects.len(), |row, k| effects[k][row]);
+    // all is finite, so that the values converge
+    let Ok(svd) = Svd::new(effects.as_ref()) else { return Vec::new() };
+    let sizes: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    let least = share * sizes.first().copied().unwrap_or_default();
+    let is_unmoved = |k: &usize| sizes.get(*k).is_none_or(|size| *size <= least);
+    let column = |k: usize| svd.U().col(k).iter().copied().collect::<Vec<f64>>();
+    separated((0..rows).filter(is_unmoved).map(column).collect())
+}
+
+/// The same directions as combinations in which as few entries as can take part, by Gauss and Jordan.
+#[must_use]
+pub fn separated(mut directions: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut done: Vec<Vec<f64>> = Vec::new();
+    while !directions.is_empty() {
+        let places = directions
+            .iter()
+            .enumerate()
+            .flat_map(|(row, of)| of.iter().enumerate().map(move |(k, x)| (row, k, x.abs())));
+        let largest = places.fold((0, 0, 0.0), |best, place| if place.2 > best.2 { place } else { best });
+        let (row, pivot, _) = largest;
+        let leading = directions.swap_remove(row);
+        for other in directions.iter_mut().chain(&mut done) {
+            let factor = other[pivot] / leading[pivot];
+            other.iter_mut().zip(&leading).for_each(|(x, by)| *x -= factor * by);
+        }
+        done.push(leading);
+    }
+    done
 }
 
 fn product(a: ColRef<'_, f64>, b: ColRef<'_, f64>) -> f64 {

@@ -25,6 +25,8 @@ pub struct WantedPoints<'s> {
 pub struct SettingsAdjustment<'s> {
     /// Surfaces of one body, all in the same settings.
     pub wanted: Vec<WantedPoints<'s>>,
+    /// Further surfaces of the body that are to go through these points whatever the others do; the points are turned with the body.
+    pub kept: Vec<WantedPoints<'s>>,
     /// The settings; of those that are held both ends of the range are the start.
     pub settings: Vec<ScaledUnknown>,
     /// About z, radians.
@@ -77,17 +79,27 @@ impl SettingsAdjustment<'_> {
     /// If a surface has not as many settings.
     #[must_use]
     pub fn solve(&self) -> Option<AdjustedSurfaces> {
-        let unknowns = self.settings.iter().copied().chain([self.turn]).collect();
-        let problem =
-            LeastSquares { unknowns, resolution: self.resolution, uses_weak: self.uses_weak, settled: SETTLED };
-        let mut near: Vec<Vec<NearFoot>> = self.wanted.iter().map(|wanted| wanted.near.clone()).collect();
+        let problem = LeastSquares {
+            unknowns: self.settings.iter().copied().chain([self.turn]).collect(),
+            exact: self.kept.iter().map(|kept| kept.points.len()).sum(),
+            resolution: self.resolution,
+            uses_weak: self.uses_weak,
+            settled: SETTLED,
+        };
+        let mut near: Vec<Vec<NearFoot>> = self.surfaces().map(|wanted| wanted.near.clone()).collect();
         let fit = problem.solve(|values| {
             let feet = self.feet(values, &near)?;
             near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
-            Some(linearized(&feet, self.shapes.as_ref()))
+            let (wanted, kept) = feet.split_at(self.wanted.len());
+            Some(linearized([wanted, kept], self.shapes.as_ref()))
         })?;
-        let feet = self.feet(&fit.values, &near)?;
+        let mut feet = self.feet(&fit.values, &near)?;
+        feet.truncate(self.wanted.len());
         Some(AdjustedSurfaces { fit, feet })
+    }
+
+    fn surfaces(&self) -> impl Iterator<Item = &WantedPoints<'_>> {
+        self.wanted.iter().chain(&self.kept)
     }
 
     /// All feet with these settings and this turn; `None` if one is missing.
@@ -97,20 +109,21 @@ impl SettingsAdjustment<'_> {
             let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, *turn)).collect();
             wanted.surface.feet(settings, &points, near).into_iter().collect::<Option<Vec<Foot>>>()
         };
-        self.wanted.iter().zip(near).map(of).collect()
+        self.surfaces().zip(near).map(of).collect()
     }
 }
 
-fn linearized(feet: &[Vec<Foot>], shapes: Option<&Shapes>) -> Linearized {
-    let all: Vec<&Foot> = feet.iter().flatten().collect();
-    let settings = all.first().map_or(0, |foot| foot.moved.len());
+/// Of points that are wanted, then of those that are kept.
+fn linearized([wanted, kept]: [&[Vec<Foot>]; 2], shapes: Option<&Shapes>) -> Linearized {
+    let settings = wanted.iter().flatten().next().map_or(0, |foot| foot.moved.len());
     let part = |of: Vec<f64>| shapes.map_or_else(|| of.clone(), |shapes| shapes.part(&of));
-    let columns: Vec<Vec<f64>> =
-        (0..=settings).map(|k| part(all.iter().map(|foot| slope(foot, k)).collect())).collect();
-    Linearized {
-        residuals: part(all.iter().map(|foot| foot.distance).collect()),
-        jacobian: Mat::from_fn(all.len(), settings + 1, |row, k| columns[k][row]),
-    }
+    let all = |of: &dyn Fn(&Foot) -> f64| -> Vec<f64> {
+        let own = part(wanted.iter().flatten().map(of).collect());
+        own.into_iter().chain(kept.iter().flatten().map(of)).collect()
+    };
+    let columns: Vec<Vec<f64>> = (0..=settings).map(|k| all(&|foot| slope(foot, k))).collect();
+    let residuals = all(&|foot| foot.distance);
+    Linearized { jacobian: Mat::from_fn(residuals.len(), settings + 1, |row, k| columns[k][row]), residuals }
 }
 
 /// Along the normal at its foot a point recedes as the surface comes, and comes as it is turned; where the foot goes is square to that.

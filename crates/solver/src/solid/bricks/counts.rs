@@ -12,6 +12,8 @@ const TURN: f64 = 0.21;
 const GROWTH: f64 = 1.5;
 /// The thickness of bricks in the middle of a tooth, of those at a flank.
 const GRADING: f64 = 2.25;
+/// Sections in which the land of a tooth is looked at.
+const LANDS: usize = 16;
 /// Bricks below the root at the most.
 const MOST_BELOW: usize = 256;
 
@@ -59,12 +61,29 @@ impl Body {
         BrickCounts { charts, band, core: thickness - 2 * band, rim, along }
     }
 
+    /// How wide the land of a tooth is where it is narrowest, mm: 0 where teeth end in an edge.
+    pub fn least_land(&self) -> f64 {
+        let along: Vec<f64> = (0..=LANDS).map(|k| k as f64 / LANDS as f64).collect();
+        let lines = self.lines(&vec![vec![0.0, 1.0]; self.charts.len()], &along);
+        let land = |line: &Vec<Polar>| {
+            let [z, rho, angle] = line[0];
+            polar_distance([z, rho, angle + self.pitch()], line[line.len() - 1])
+        };
+        lines.iter().map(land).fold(f64::INFINITY, f64::min)
+    }
+
     /// From the middle of the root to the rest of the outline, half-way along, mm.
     fn depth_below(&self) -> f64 {
         let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
         let [z, rho, _] = line[line.len() / 2];
-        let [below_z, below_rho] = self.blank().below(2 * self.blank().rest().len())[self.blank().rest().len()];
+        let [below_z, below_rho] = self.middle_below();
         (z - below_z).hypot(rho - below_rho)
+    }
+
+    /// A place `[z, rho]` about the middle of the rest of the outline, whatever the tooth is cut into.
+    pub(crate) fn middle_below(&self) -> [f64; 2] {
+        let segments = self.blank().rest().len();
+        self.blank().below(2 * segments)[segments]
     }
 }
 

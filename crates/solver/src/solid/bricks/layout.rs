@@ -224,8 +224,7 @@ fn chart_of_row(counts: &BrickCounts, profile: usize) -> impl Fn(Hand, usize) ->
 fn depth(body: &Body, counts: &BrickCounts, profile: usize) -> usize {
     let stations = counts.stations(body, BrickOrder::First);
     let line: Vec<Polar> = body.lines(&stations.across, &[0.5]).remove(0);
-    let below = stations.below[stations.below.len() / 2];
-    let normals = normals(&line, below);
+    let normals = normals(&line, body.middle_below());
     let turned = |row: usize| normals[row][1].max(normals[2 * profile - row][1]);
     (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1)
 }

@@ -67,7 +67,11 @@ fn of_brick(nodes: &[[f64; 3]], points: &[GaussPoint]) -> BrickQuality {
 
 fn scaled_jacobian(nodes: &[[f64; 3]]) -> f64 {
     let point = |node: usize| Vector3::from(nodes[node]);
-    let scaled = |[a, b, c]: [Vector3<f64>; 3]| a.cross(&b).dot(&c) / (a.norm() * b.norm() * c.norm());
+    let scaled = |[a, b, c]: [Vector3<f64>; 3]| {
+        let sizes = a.norm() * b.norm() * c.norm();
+        // an edge without length, or one that is not a number
+        if sizes > 0.0 { a.cross(&b).dot(&c) / sizes } else { 0.0 }
+    };
     let corner = |k: usize| scaled(BESIDE[k].map(|other| point(other) - point(k)));
     let axis =
         |plus: [usize; 4], minus: [usize; 4]| (0..4).map(|k| point(plus[k]) - point(minus[k])).sum::<Vector3<f64>>();

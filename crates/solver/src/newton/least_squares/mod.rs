@@ -1,7 +1,10 @@
 //! Nonlinear least squares with bounds: Levenberg and Marquardt, each step from the singular values of the Jacobian.
 
+mod decomposed;
+
 use faer::Mat;
-use faer::linalg::solvers::Svd;
+
+use decomposed::{Decomposed, Kept};
 
 use crate::equations::solution::Range;
 
@@ -27,6 +30,9 @@ const LARGEST_DAMPING: f64 = 1e8;
 const GROWTH: f64 = 2.0;
 /// What a step that did all that was promised leaves of it.
 const LEAST_DAMPED: f64 = 0.1;
+/// What is to be zero weighs so many times the force that it needs: twice for the sum of squares itself, of which the gradient is half, and
+/// as much again so that no step pays to leave it.
+const FORCED: f64 = 4.0;
 /// Residuals are known to this share of the change that settles them.
 const KNOWN: f64 = 0.1;
 
@@ -70,6 +76,8 @@ pub struct Linearized {
 pub struct LeastSquares {
     /// In this order.
     pub unknowns: Vec<ScaledUnknown>,
+    /// So many residuals, the last ones, are to be zero; the squares of all others are as small as that allows.
+    pub exact: usize,
     /// A direction in the unknowns, a scale long, that changes the residuals by less than this (root of the mean square) is weak.
     pub resolution: f64,
     /// Whether weak directions are used where they leave next to nothing of the residuals: these come from such values of the unknowns.
@@ -114,10 +122,12 @@ pub enum RangeEnd {
 pub struct LeastSquaresFit {
     /// Of the unknowns.
     pub values: Vec<f64>,
-    /// What is left.
+    /// What is left, without those that are to be zero.
     pub residuals: Vec<f64>,
-    /// The derivative of half the sum of squares by each unknown, one scale of it: zero within the bounds, at a bound such that it
-    /// pushes outwards.
+    /// What is left of those.
+    pub exact: Vec<f64>,
+    /// The derivative of half the sum of squares by each unknown, one scale of it, along what residuals that are to be zero allow: zero
+    /// within the bounds, at a bound such that it pushes outwards.
     pub gradient: Vec<f64>,
     /// Which unknowns are held at an end of their range.
     pub held: Vec<Option<RangeEnd>>,
@@ -139,7 +149,22 @@ struct State {
     values: Vec<f64>,
     residuals: Mat<f64>,
     jacobian: Mat<f64>,
-    cost: f64,
+    /// What is to be zero.
+    kept: Kept,
+    /// The sum of the squares of the residuals.
+    squares: f64,
+}
+
+impl State {
+    /// What a step has to lower: the sum of squares, and what is to be zero by a weight.
+    fn cost(&self, weight: f64) -> f64 {
+        self.squares + weight * size(&self.kept.residuals)
+    }
+}
+
+/// The sum of the amounts.
+fn size(of: &Mat<f64>) -> f64 {
+    of.col(0).iter().map(|x| x.abs()).sum()
 }
 
 /// A step with what the linear model says of it.
@@ -149,7 +174,9 @@ struct Step {
     values: Vec<f64>,
     /// The largest change of a residual.
     change: f64,
-    /// By how much the sum of squares falls.
+    /// What is to be zero counts by this against the sum of squares: by more than it costs to bring it there.
+    weight: f64,
+    /// By how much both together fall.
     fall: f64,
 }
 
@@ -174,16 +201,17 @@ impl LeastSquares {
             let trial = self.state(step.values.clone(), &mut linearized);
             let is_small = step.change <= self.settled;
             let error = KNOWN * self.settled * (state.residuals.nrows() as f64).sqrt();
-            let rounding = ROUNDING * state.cost + 2.0 * error * state.cost.sqrt();
+            let cost = state.cost(step.weight);
+            let rounding = ROUNDING * cost + 2.0 * error * cost.sqrt();
             // a fall that rounding hides is believed
             let mut is_slow = false;
-            let most = if step.fall < rounding { state.cost + rounding } else { state.cost };
-            match trial.filter(|trial| trial.cost < most) {
+            let most = if step.fall < rounding { cost + rounding } else { cost };
+            match trial.filter(|trial| trial.cost(step.weight) < most) {
                 Some(trial) => {
                     steps += 1;
-                    let gain = (state.cost - trial.cost + rounding) / (step.fall + rounding);
+                    let gain = (cost - trial.cost(step.weight) + rounding) / (step.fall + rounding);
                     (damping, growth) = (step.after(damping, gain), GROWTH);
-                    is_slow = trial.cost > SLOW * state.cost;
+                    is_slow = trial.cost(step.weight) > SLOW * cost;
                     state = trial;
                 }
                 None if is_small => {}
@@ -210,15 +238,36 @@ impl LeastSquares {
         for (k, unknown) in self.unknowns.iter().enumerate() {
             jacobian.col_mut(k).iter_mut().for_each(|slope| *slope *= unknown.scale);
         }
-        let cost = residuals.iter().map(|x| x * x).sum::<f64>();
-        let residuals = Mat::from_fn(residuals.len(), 1, |row, _| residuals[row]);
-        let is_finite = cost.is_finite() && jacobian.col_iter().all(|of| of.iter().all(|slope| slope.is_finite()));
-        is_finite.then_some(State { values, residuals, jacobian, cost })
+        let is_finite = residuals.iter().map(|x| x * x).sum::<f64>().is_finite()
+            && jacobian.col_iter().all(|of| of.iter().all(|slope| slope.is_finite()));
+        let count = residuals.len() - self.exact;
+        let column = |from: usize, count: usize| Mat::from_fn(count, 1, |row, _| residuals[from + row]);
+        let rows = |from: usize, count: usize| Mat::from_fn(count, values.len(), |row, k| jacobian[(from + row, k)]);
+        let kept = Kept { residuals: column(count, self.exact), jacobian: rows(count, self.exact) };
+        let (residuals, jacobian) = (column(0, count), rows(0, count));
+        let squares = residuals.squared_norm_l2();
+        is_finite.then_some(State { values, residuals, jacobian, kept, squares })
+    }
+
+    /// What the sum of squares changes by with each unknown, along what is to be zero: without the part of the gradient that only that
+    /// opposes.
+    fn gradient(&self, state: &State) -> Mat<f64> {
+        let gradient = state.jacobian.transpose() * &state.residuals;
+        let forces = self.forces(state, &gradient);
+        &gradient + state.kept.jacobian.transpose() * &forces
+    }
+
+    /// What residuals that are to be zero have to push with against a gradient, as the unknowns that are inside their ranges say it.
+    fn forces(&self, state: &State, gradient: &Mat<f64>) -> Mat<f64> {
+        state.kept.forces(gradient, |k| {
+            let (Range { low, high }, value) = (self.unknowns[k].range, state.values[k]);
+            value > low && value < high
+        })
     }
 
     /// The unknowns that stand at an end of their range and would leave it.
     fn held(&self, state: &State) -> Vec<Option<RangeEnd>> {
-        let gradient = state.jacobian.transpose() * &state.residuals;
+        let gradient = self.gradient(state);
         let of = |(k, unknown): (usize, &ScaledUnknown)| {
             let (value, slope) = (state.values[k], gradient[(k, 0)]);
             match unknown.range {
@@ -235,11 +284,11 @@ impl LeastSquares {
         let mut fixed: Vec<Option<f64>> = self.held(state).iter().map(|held| held.map(|_| 0.0)).collect();
         loop {
             let taken = Mat::from_fn(fixed.len(), 1, |k, _| fixed[k].unwrap_or(0.0));
-            let left = &state.residuals + &state.jacobian * &taken;
             let decomposed = Decomposed::new(state, |k| fixed[k].is_none());
             let used = self.count_used(&decomposed, rank);
-            let free = decomposed.step(&left, used, damping);
-            let step: Vec<f64> = (0..fixed.len()).map(|k| fixed[k].unwrap_or(free[k])).collect();
+            let begun = &taken + &decomposed.onto(&state.kept, &taken);
+            let free = decomposed.step(&(&state.residuals + &state.jacobian * &begun), used, damping);
+            let step: Vec<f64> = (0..fixed.len()).map(|k| fixed[k].unwrap_or(begun[(k, 0)] + free[k])).collect();
             let beyond = |k: usize| {
                 let ScaledUnknown { scale, range, .. } = self.unknowns[k];
                 let (from, to) = (state.values[k], state.values[k] + scale * step[k]);
@@ -257,12 +306,14 @@ impl LeastSquares {
 
     fn stepped(&self, state: &State, step: &[f64], squares: [f64; 2]) -> Step {
         let taken = Mat::from_fn(step.len(), 1, |k, _| step[k]);
-        let by = &state.jacobian * &taken;
-        let after = (&state.residuals + &by).squared_norm_l2();
+        let (by, of_kept) = (&state.jacobian * &taken, &state.kept.jacobian * &taken);
+        let forces = self.forces(state, &(state.jacobian.transpose() * &state.residuals));
+        let weight = FORCED * forces.col(0).iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let after = (&state.residuals + &by).squared_norm_l2() + weight * size(&(&state.kept.residuals + &of_kept));
         let values = self.unknowns.iter().zip(step).zip(&state.values);
         let values = values.map(|((of, step), from)| of.within(from + of.scale * step));
-        let change = by.col(0).iter().fold(0.0, |most: f64, by| most.max(by.abs()));
-        Step { squares, values: values.collect(), change, fall: state.cost - after }
+        let change = by.col(0).iter().chain(of_kept.col(0).iter()).fold(0.0, |most: f64, by| most.max(by.abs()));
+        Step { squares, values: values.collect(), change, weight, fall: state.cost(weight) - after }
     }
 
     /// How many directions are used: those above the resolution, and at least `rank` of them that are more than rounding.
@@ -280,12 +331,12 @@ impl LeastSquares {
         let held = self.held(state);
         let of = Decomposed::new(state, |k| held[k].is_none());
         let seen = of.sizes.iter().take_while(|size| **size > UNSEEN * of.sizes[0]).count();
-        let mut left = state.cost;
+        let mut left = state.squares;
         let mut is_enough = |k: &usize| {
             left -= of.part(&state.residuals, *k).powi(2);
-            left < SHOWN.powi(2) * state.cost
+            left < SHOWN.powi(2) * state.squares
         };
-        let is_known = state.cost > self.settled.powi(2) * of.rows as f64 && of.rows > seen;
+        let is_known = state.squares > self.settled.powi(2) * of.rows as f64 && of.rows > seen;
         (0..seen).filter(|_| is_known).find(|k| is_enough(k)).map_or(0, |last| last + 1)
     }
 
@@ -303,10 +354,11 @@ impl LeastSquares {
             scale(i) * scale(j) * terms.sum::<f64>()
         };
         let all = 0..held.len();
-        let gradient = state.jacobian.transpose() * &state.residuals;
+        let gradient = self.gradient(state);
         LeastSquaresFit {
             values: state.values.clone(),
             residuals: state.residuals.col(0).iter().copied().collect(),
+            exact: state.kept.residuals.col(0).iter().copied().collect(),
             gradient: gradient.col(0).iter().copied().collect(),
             directions,
             covariance: all.clone().map(|i| all.clone().map(|j| covariance(i, j)).collect()).collect(),
@@ -372,77 +424,5 @@ impl Step {
     fn after(&self, damping: f64, gain: f64) -> f64 {
         let lowered = damping * (1.0 - (2.0 * gain.min(1.0) - 1.0).powi(3)).clamp(LEAST_DAMPED, GROWTH);
         if lowered > self.squares[0] { lowered } else { 0.0 }
-    }
-}
-
-/// The singular values of the Jacobian by the free unknowns.
-struct Decomposed {
-    rows: usize,
-    /// The place of each unknown among the free ones.
-    columns: Vec<Option<usize>>,
-    left: Mat<f64>,
-    /// Falling.
-    sizes: Vec<f64>,
-    right: Mat<f64>,
-}
-
-impl Decomposed {
-    fn new(state: &State, is_free: impl Fn(usize) -> bool) -> Decomposed {
-        let count = state.values.len();
-        let free: Vec<usize> = (0..count).filter(|k| is_free(*k)).collect();
-        let columns = (0..count).map(|k| free.iter().position(|of| *of == k)).collect();
-        let rows = state.jacobian.nrows();
-        let jacobian = Mat::from_fn(rows, free.len(), |row, k| state.jacobian[(row, free[k])]);
-        let none =
-            || Decomposed { rows, columns: vec![None; count], left: Mat::new(), sizes: vec![], right: Mat::new() };
-        if free.is_empty() {
-            return none();
-        }
-        // all is finite, so that the values converge
-        let Ok(svd) = Svd::new_thin(jacobian.as_ref()) else { return none() };
-        let sizes: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-        let mut right = svd.V().to_owned();
-        let mut left = svd.U().to_owned();
-        // a direction and its opposite are the same: the one whose largest share is positive is told
-        for k in 0..sizes.len() {
-            let largest = right.col(k).iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
-            if largest < 0.0 {
-                right.col_mut(k).iter_mut().for_each(|x| *x = -*x);
-                left.col_mut(k).iter_mut().for_each(|x| *x = -*x);
-            }
-        }
-        Decomposed { rows, columns, left, sizes, right }
-    }
-
-    /// From a root of the mean square to a length.
-    fn root(&self) -> f64 {
-        (self.rows.max(1) as f64).sqrt()
-    }
-
-    /// Of the weakest and the strongest of so many singular values.
-    fn squares(&self, used: usize) -> [f64; 2] {
-        let square = |k: usize| self.sizes.get(k).map_or(0.0, |size| size.powi(2));
-        [square(used.saturating_sub(1)), square(0)]
-    }
-
-    /// Of residuals in the direction of one singular value.
-    fn part(&self, residuals: &Mat<f64>, k: usize) -> f64 {
-        self.left.col(k).iter().zip(residuals.col(0).iter()).map(|(a, b)| a * b).sum()
-    }
-
-    /// Of an unknown in a direction.
-    fn share(&self, k: usize, unknown: usize) -> f64 {
-        self.columns[unknown].map_or(0.0, |column| self.right[(column, k)])
-    }
-
-    /// Against residuals, along the first so many directions; zero for unknowns that are not free.
-    fn step(&self, residuals: &Mat<f64>, used: usize, damping: f64) -> Vec<f64> {
-        let mut step = vec![0.0; self.columns.len()];
-        for k in 0..used {
-            let size = self.sizes[k];
-            let along = -self.part(residuals, k) * size / (size.powi(2) + damping);
-            step.iter_mut().enumerate().for_each(|(unknown, step)| *step += along * self.share(k, unknown));
-        }
-        step
     }
 }

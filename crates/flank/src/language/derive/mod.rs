@@ -11,7 +11,9 @@ use flank_expr::{Graph, Style};
 use flank_solver::Explicit;
 
 use crate::convert::{self, Conversion};
-use crate::derive::result::{CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost};
+use crate::language::derive::result::{
+    CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, SurfaceCost,
+};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};

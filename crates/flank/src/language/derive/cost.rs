@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::Expr;
 use flank_solver::BoundSurface;
 
-use crate::derive::result::{Operations, SurfaceCost};
+use crate::language::derive::result::{Operations, SurfaceCost};
 use crate::solve::{bound, ranges};
 
 impl SurfaceCost {

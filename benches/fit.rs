@@ -1,0 +1,156 @@
+//! Settings of a measured flank, of a wanted ease-off, and of a wanted contact: compiled, and with the points known.
+
+use divan::{Bencher, black_box};
+use flank_chain_dsl::{Job, Parameter};
+use flank_expr::Graph;
+use flank_solver::{
+    AdjustableSurface, BoundSurface, ContactNumber, ContactProblem, ContactSynthesis, ContactWish, FlankCorners,
+    NearFoot, Outcome, Range, ScaledUnknown, SettingsAdjustment, SurfacePoint, WantedPoints,
+};
+use flank_tests::pairs::with_pair_in;
+use flank_tests::{job, problem, turned};
+
+const PINION: &str = "specs/bevel/pinion_19x62.chain";
+const PAIR: &str = "specs/pairs/bevel_19x62.chain";
+/// Settings of a measured grid, with the changes that it was made with.
+const MEASURED: [(&str, f64, &str); 9] = [
+    ("m.radial_distance", 0.0906, "mm"),
+    ("m.work_offset", 0.1, "mm"),
+    ("m.machine_root_angle", 0.099, "deg"),
+    ("m.machine_center_to_crossing_point", 0.05, "mm"),
+    ("m.ratio_of_roll", 0.001, ""),
+    ("m.cutter_tilt", 0.02, "deg"),
+    ("m.modified_roll_2c", 0.001, ""),
+    ("m.helical_motion_1", 0.02, "mm"),
+    ("c.blade_angle", 0.05, "deg"),
+];
+/// Settings of a contact.
+const OF_CONTACT: [&str; 6] = [
+    "p.radial_distance",
+    "p.work_offset",
+    "p.machine_center_to_crossing_point",
+    "p.ratio_of_roll",
+    "p.modified_roll_2c",
+    "pinion_cutter.blade_angle",
+];
+
+fn main() {
+    divan::main();
+}
+
+fn named<'j, 'g>(job: &'j Job<'g>, names: &[&str]) -> Vec<&'j Parameter<'g>> {
+    names.iter().map(|name| job.parameters.iter().find(|of| of.name == *name).expect("a parameter")).collect()
+}
+
+fn unknown(of: &Parameter<'_>) -> ScaledUnknown {
+    let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    let scale = if of.dimension == flank_chain_dsl::Dimension::LENGTH { 0.1 } else { 3e-3 };
+    ScaledUnknown { start: of.value, scale, range: everywhere }
+}
+
+fn adjustable(job: &Job<'_>, names: &[&str]) -> AdjustableSurface {
+    let open: Vec<_> = named(job, names).iter().map(|of| of.variable).collect();
+    let made = job.surfaces.iter().find(|surface| surface.name == "concave").expect("a surface");
+    let ranges = made.unknowns.iter().map(|of| Range { low: of.low, high: of.high }.beyond(0.0)).collect();
+    AdjustableSurface::new(&BoundSurface::new(&made.surface, ranges, &job.bindings_beside(&open)), &open)
+        .expect("all bound")
+}
+
+/// Rows and columns of the flank.
+fn points(job: &Job<'_>, [rows, columns]: [usize; 2]) -> Vec<SurfacePoint> {
+    let made = job.surfaces.iter().find(|surface| surface.name == "concave").expect("a surface");
+    let sample = made.sample.as_ref().expect("it is sampled");
+    let (all, [own_rows, own]) = (sample.targets(), sample.counts);
+    let spread = |k: usize, of: usize, count: usize| 1 + k * (count - 3) / (of - 1);
+    let places = (0..rows).flat_map(|i| (0..columns).map(move |j| [i, j]));
+    let targets: Vec<[f64; 2]> =
+        places.map(|[i, j]| all[spread(i, rows, own_rows) * own + spread(j, columns, own)]).collect();
+    problem(job, made, sample.coordinates.each_ref().map(|of| of.value)).solve(&targets, [rows, columns]).0
+}
+
+/// Nine settings and a turn from points, to the end of the search.
+fn fitted(bencher: Bencher, counts: [usize; 2]) {
+    let names = MEASURED.map(|(name, ..)| name);
+    let (graph, other) = (Graph::new(), Graph::new());
+    let nominal = job(&graph, PINION, &[]);
+    let settings = named(&nominal, &names);
+    let set: Vec<(String, String)> = settings
+        .iter()
+        .zip(MEASURED)
+        .map(|(of, (name, by, unit))| {
+            let shown = if unit == "deg" { of.value.to_degrees() } else { of.value };
+            (name.to_string(), format!("{:?} {unit}", shown + by).trim_end().to_string())
+        })
+        .collect();
+    let set: Vec<(&str, &str)> = set.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+    let made = points(&job(&other, PINION, &set), counts);
+    let from = points(&nominal, counts);
+    let known: Vec<(&SurfacePoint, &SurfacePoint)> =
+        made.iter().zip(&from).filter(|pair| [pair.0, pair.1].iter().all(|of| of.outcome == Outcome::Solved)).collect();
+    let surface = adjustable(&nominal, &names);
+    let adjustment = SettingsAdjustment {
+        wanted: vec![WantedPoints {
+            surface: &surface,
+            points: known.iter().map(|(made, _)| turned(made.position, 1e-3)).collect(),
+            near: known.iter().map(|(_, of)| NearFoot { unknowns: of.unknowns.clone(), distance: 0.0 }).collect(),
+        }],
+        kept: vec![],
+        settings: settings.iter().map(|of| unknown(of)).collect(),
+        turn: ScaledUnknown { start: 0.0, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
+        shapes: None,
+        resolution: 1e-4,
+        uses_weak: true,
+    };
+    bencher.bench_local(|| black_box(&adjustment).solve().expect("the points have feet"));
+}
+
+#[divan::bench]
+fn grid_5x9(bencher: Bencher) {
+    fitted(bencher, [5, 9]);
+}
+
+#[divan::bench]
+fn map_13x29(bencher: Bencher) {
+    fitted(bencher, [13, 29]);
+}
+
+/// The surface in nine open settings, as tapes.
+#[divan::bench]
+fn compiled(bencher: Bencher) {
+    let graph = Graph::new();
+    let nominal = job(&graph, PINION, &[]);
+    let names = MEASURED.map(|(name, ..)| name);
+    bencher.bench_local(|| adjustable(black_box(&nominal), &names));
+}
+
+/// Place, path, ellipse and error of a contact by six settings.
+#[divan::bench]
+fn contact_of_six(bencher: Bencher) {
+    let graph = Graph::new();
+    let of_pair = job(&graph, PAIR, &[]);
+    let settings = named(&of_pair, &OF_CONTACT);
+    let open: Vec<_> = settings.iter().map(|of| of.variable).collect();
+    let sample = of_pair.surfaces[1].sample.as_ref().expect("it is sampled");
+    let flank_chain_dsl::SampleGrid::Shares { corners, .. } = sample.grid else { panic!("a sample of shares") };
+    let corners = FlankCorners(corners);
+    with_pair_in(&of_pair, &open, |pair, points| {
+        let problem = ContactProblem::new(pair).expect("all bound");
+        let first = problem.find(-0.0357, points).expect("they touch");
+        let vertex = problem.vertex_near(&first).expect("the error is extreme");
+        let now = |of: ContactNumber| of.of(&vertex).expect("a number");
+        let wish = |of: ContactNumber, by: f64| ContactWish { of, wanted: now(of) + by, within: None };
+        let synthesis = ContactSynthesis {
+            problem: &problem,
+            vertex: &vertex,
+            wishes: vec![
+                wish(ContactNumber::Lengthwise(corners), 0.02),
+                wish(ContactNumber::Profilewise(corners), -0.03),
+                wish(ContactNumber::Path(corners), 0.01),
+                wish(ContactNumber::Ellipse { film: 0.00635 }, 0.2),
+                wish(ContactNumber::Curvature, 0.05 * now(ContactNumber::Curvature)),
+            ],
+            settings: settings.iter().map(|of| unknown(of)).collect(),
+        };
+        bencher.bench_local(|| black_box(&synthesis).solve().expect("they touch"));
+    });
+}

@@ -1,0 +1,375 @@
+//! What a job is tested by.
+
+mod machine;
+pub(crate) mod model;
+mod quantities;
+mod table;
+
+use flank_expr::Expr;
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::{Name, Span};
+use crate::job::sample;
+use crate::syntax::ast::{self, ExpressionKind, JobStatement};
+use crate::values::context::{Context, Role, did_you_mean};
+use crate::values::dimension::{Dimension, shown};
+use crate::values::value::{Scope, Value};
+
+use super::Builder;
+use model::{Expectation, Expected};
+use quantities::Named;
+
+pub(crate) use machine::of_machine;
+
+/// What becomes of points, in the words of tables.
+const STATUSES: [&str; 8] =
+    ["solved", "undercut", "trimmed", "out_of_range", "ambiguous", "undecided", "singular", "not_converged"];
+
+/// What stands for all sampled surfaces.
+const ALL: &str = "all";
+
+/// Curvatures of points, by their names in tables.
+const CURVATURES: [&str; 4] = ["k1", "k2", "induced_k1", "induced_k2"];
+
+/// Reports something wrong with an expectation.
+fn wrong(context: &mut Context<'_>, span: Span, message: String, help: impl Into<String>) {
+    context.report(Diagnostic::new(Code::Expectation, span, message).help(help));
+}
+
+/// An expectation that holds whatever the surface is like.
+fn never_fails(context: &mut Context<'_>, span: Span, why: &str) {
+    let message = format!("this expectation can never fail: {why}");
+    let help = "name something that is derived: points of a surface, a number of a contact or a solid, a parameter";
+    context.report(Diagnostic::new(Code::NeverFails, span, message).help(help));
+}
+
+/// The errors that a file is to have, with their places; reports codes that there are not.
+pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<(String, Span)> {
+    let mut found = Vec::new();
+    for statement in &job.statements {
+        let JobStatement::Expect(ast::Expectation { what: ast::Expected::Error(code), .. }) = statement else {
+            continue;
+        };
+        if Code::ALL.iter().any(|known| known.as_str() == code.node) {
+            found.push((code.node.clone(), code.span));
+        } else {
+            context.unknown(code, "error", Code::ALL.iter().map(|known| known.as_str()));
+        }
+    }
+    found
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// All that a job and its machines expect.
+    pub(super) fn expectations(&self, context: &mut Context<'g>, job: &ast::Job) -> Vec<Expectation<'g>> {
+        let mut found = self.of_machines(context);
+        for statement in &job.statements {
+            let JobStatement::Expect(written) = statement else { continue };
+            let what = self.expected(context, written, job);
+            found.extend(what.map(|what| Expectation { what, written: written.span }));
+        }
+        found
+    }
+
+    fn expected(&self, context: &mut Context<'g>, written: &ast::Expectation, job: &ast::Job) -> Option<Expected<'g>> {
+        match &written.what {
+            ast::Expected::Error(_) | ast::Expected::Nothing | ast::Expected::Pose { .. } => None,
+            ast::Expected::Travel => {
+                let mut axes = self.machines.iter().flat_map(|(_, _, built)| &built.axes);
+                if axes.all(|axis| axis.travel.is_none()) {
+                    never_fails(context, written.span, "no axis has a travel");
+                }
+                Some(Expected::Travel { machine: None })
+            }
+            ast::Expected::On { machine, within } => {
+                let onto = self.standing(context, &machine.definition, &machine.settings);
+                let within = self.tolerance(context, within, Dimension::LENGTH);
+                Some(Expected::On { onto: Box::new(onto?), machine: None, within: within? })
+            }
+            ast::Expected::Status { surface, status, at } => self.status(context, (surface, status, at.as_ref()), job),
+            ast::Expected::InRange { surface, value, range } => {
+                self.in_range(context, (surface.as_ref(), value, range), written.span, job)
+            }
+            ast::Expected::Near { surface, value, target, within } => {
+                self.near(context, (surface.as_ref(), value, target, within), written.span, job)
+            }
+        }
+    }
+
+    fn tolerance(&self, context: &mut Context<'g>, written: &ast::Expression, dimension: Dimension) -> Option<f64> {
+        let within = context.scalar(written, &self.scope, dimension, "the tolerance")?;
+        let within = context.require_constant(within, written.span, "the tolerance")?;
+        if within > 0.0 {
+            return Some(within);
+        }
+        let message = format!("a tolerance is above zero, this is {}", shown(within, dimension));
+        wrong(context, written.span, message, "say by how much the value may differ: `within 1 um`");
+        None
+    }
+
+    /// A surface with a sample.
+    fn sampled_surface(&self, context: &mut Context<'g>, path: &ast::Path, job: &ast::Job) -> Option<usize> {
+        let index = self.finished(context, path, job)?;
+        if self.surfaces[index].0.sample.is_some() {
+            return Some(index);
+        }
+        let message = format!("`{}` is not sampled: nothing says at which points it is expected", path.joined());
+        wrong(context, path.span, message, format!("add `sample {} {{ … }}`", path.joined()));
+        None
+    }
+
+    fn status(
+        &self,
+        context: &mut Context<'g>,
+        (surface, status, at): (&ast::Path, &Name, Option<&ast::Expression>),
+        job: &ast::Job,
+    ) -> Option<Expected<'g>> {
+        if !STATUSES.contains(&status.node.as_str()) {
+            context.unknown(status, "status of points", STATUSES.into_iter());
+            return None;
+        }
+        let is_all = surface.joined() == ALL && self.surfaces.iter().all(|(of, _)| of.name != ALL);
+        let surfaces: Vec<usize> = if is_all {
+            (0..self.surfaces.len()).filter(|k| self.surfaces[*k].0.sample.is_some()).collect()
+        } else {
+            vec![self.sampled_surface(context, surface, job)?]
+        };
+        if surfaces.is_empty() {
+            never_fails(context, surface.span, "no surface of the job is sampled");
+        }
+        let at = match at {
+            None => Vec::new(),
+            Some(at) if is_all => {
+                let help = "name the surface: `expect flank undercut at [46 mm, 0 mm]`";
+                wrong(context, at.span, "points are those of one surface".to_string(), help);
+                return None;
+            }
+            Some(at) => self.places(context, at, surfaces[0])?,
+        };
+        Some(Expected::Status { surfaces, status: status.node.clone(), at })
+    }
+
+    /// `[46 mm, 0 mm]`, or a list of such: values of the two coordinates of a sample.
+    fn places(&self, context: &mut Context<'g>, written: &ast::Expression, surface: usize) -> Option<Vec<[f64; 2]>> {
+        let sample = self.surfaces[surface].0.sample.as_ref()?;
+        let dimensions = sample.coordinates.each_ref().map(|coordinate| coordinate.dimension);
+        let names = sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone());
+        let list = match &written.kind {
+            ExpressionKind::Vector(parts)
+                if parts.iter().any(|part| matches!(part.kind, ExpressionKind::Vector(_))) =>
+            {
+                parts.iter().collect()
+            }
+            _ => vec![written],
+        };
+        let mut found = Vec::new();
+        for place in list {
+            let ExpressionKind::Vector(parts) = &place.kind else { return self.no_place(context, place, &names) };
+            let [first, second] = parts.as_slice() else { return self.no_place(context, place, &names) };
+            let mut at = [0.0; 2];
+            for (k, part) in [first, second].into_iter().enumerate() {
+                let what = format!("`{}`", names[k]);
+                let value = context.scalar(part, &self.scope, dimensions[k], &what)?;
+                at[k] = context.require_constant(value, part.span, &what)?;
+            }
+            found.push(at);
+        }
+        Some(found)
+    }
+
+    fn no_place<T>(&self, context: &mut Context<'g>, at: &ast::Expression, [one, other]: &[String; 2]) -> Option<T> {
+        if !matches!(at.kind, ExpressionKind::Error) {
+            let message = "a place is given by the two coordinates of the sample".to_string();
+            wrong(context, at.span, message, format!("write `at [{one}, {other}]` with their values"));
+        }
+        None
+    }
+
+    fn in_range(
+        &self,
+        context: &mut Context<'g>,
+        (surface, value, range): (Option<&ast::Path>, &ast::Expression, &ast::Range),
+        span: Span,
+        job: &ast::Job,
+    ) -> Option<Expected<'g>> {
+        if let Some(surface) = surface {
+            let surface = self.sampled_surface(context, surface, job)?;
+            let (scope, known) = self.scope_at_points(context, surface, value.span)?;
+            let (value, dimension) = scalar(context, value, &scope)?;
+            let (low, high) = context.range(range, &self.scope, dimension, "what is expected")?;
+            return Some(Expected::AtPoints { surface, value, known, dimension, ends: [low, high] });
+        }
+        let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
+        let [value, low, high] =
+            [value, &range.low, &range.high].map(|part| self.with_quantities(context, part, job, &mut named));
+        let (value, dimension) = scalar(context, &value, &named.scope)?;
+        let low = context.scalar(&low, &named.scope, dimension, "the lower end")?;
+        let high = context.scalar(&high, &named.scope, dimension, "the upper end")?;
+        self.value(context, (value, [low, high]), dimension, named, span)
+    }
+
+    fn value(
+        &self,
+        context: &mut Context<'g>,
+        (value, ends): (Expr<'g>, [Expr<'g>; 2]),
+        dimension: Dimension,
+        named: Named<'g>,
+        span: Span,
+    ) -> Option<Expected<'g>> {
+        let all = [value, ends[0], ends[1]];
+        if context.variables_of(&all).is_empty() {
+            let [value, low, high] = all.map(|expr| expr.as_constant().unwrap_or(f64::NAN));
+            if low <= value && value <= high {
+                never_fails(context, span, "it compares constants");
+            }
+        }
+        Some(Expected::Value { value, ends, quantities: named.list, dimension })
+    }
+
+    fn near(
+        &self,
+        context: &mut Context<'g>,
+        (surface, value, target, within): (Option<&ast::Path>, &ast::Expression, &ast::Expression, &ast::Expression),
+        span: Span,
+        job: &ast::Job,
+    ) -> Option<Expected<'g>> {
+        if let Some(surface) = surface {
+            let surface = self.sampled_surface(context, surface, job)?;
+            let (scope, known) = self.scope_at_points(context, surface, span)?;
+            let (value, dimension) = scalar(context, value, &scope)?;
+            let target = context.scalar(target, &scope, dimension, "what the value is compared with")?;
+            let within = self.tolerance(context, within, dimension)?;
+            let (value, ends) = (value - target, [-within, within]);
+            return Some(Expected::AtPoints { surface, value, known, dimension, ends });
+        }
+        if let Some(surface) = self.as_surface(value) {
+            return self.surface_near(context, (surface, target, within), span, job);
+        }
+        let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
+        let [value, target] = [value, target].map(|part| self.with_quantities(context, part, job, &mut named));
+        let (value, dimension) = scalar(context, &value, &named.scope)?;
+        let target = context.scalar(&target, &named.scope, dimension, "what the value is compared with")?;
+        let within = self.tolerance(context, within, dimension)?;
+        self.value(context, (value, [target - within, target + within]), dimension, named, span)
+    }
+
+    /// The path of a surface of the job, declared or built.
+    fn as_surface<'e>(&self, value: &'e ast::Expression) -> Option<&'e ast::Path> {
+        let ExpressionKind::Path(path) = &value.kind else { return None };
+        let owner = &path.segments[0].node;
+        let is_one = self.surfaces.iter().any(|(surface, _)| super::available::is_of(&surface.name, owner));
+        (is_one && !self.scope.contains_key(&path.joined())).then_some(path)
+    }
+
+    fn surface_near(
+        &self,
+        context: &mut Context<'g>,
+        (path, target, within): (&ast::Path, &ast::Expression, &ast::Expression),
+        span: Span,
+        job: &ast::Job,
+    ) -> Option<Expected<'g>> {
+        let surface = self.finished(context, path, job)?;
+        match &target.kind {
+            ExpressionKind::Call(call) if call.function.node == "table" => {
+                let (columns, rows, dimension) = table::read(context, call, &self.surfaces[surface].0)?;
+                let within = self.tolerance(context, within, dimension)?;
+                Some(Expected::Table { surface, columns, rows, within })
+            }
+            ExpressionKind::Path(other) if self.surface_named(other, job).is_some() => {
+                let other = self.surface_named(other, job)?;
+                let within = self.tolerance(context, within, Dimension::LENGTH)?;
+                // what a job inherits may compare it with itself
+                let is_own = other == format!("{}.{}", job.name.node, path.joined());
+                if is_own && self.user.is_none() {
+                    never_fails(context, span, "it compares a surface with itself");
+                }
+                Some(Expected::Surface { surface, other, within })
+            }
+            _ => {
+                let surface = self.sampled_surface(context, path, job)?;
+                let (scope, known) = self.scope_at_points(context, surface, span)?;
+                let wanted: [Expr<'g>; 3] = context.vector(target, &scope, Dimension::LENGTH, "a position")?;
+                let within = self.tolerance(context, within, Dimension::LENGTH)?;
+                let position = self.surfaces[surface].0.surface.position.0;
+                let apart = [0, 1, 2].map(|k| position[k] - wanted[k]);
+                let value = (apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]).sqrt();
+                if apart.iter().all(|part| part.as_constant() == Some(0.0)) {
+                    never_fails(context, span, "it compares a surface with its own coordinates");
+                }
+                let ends = [0.0, within];
+                Some(Expected::AtPoints { surface, value, known, dimension: Dimension::LENGTH, ends })
+            }
+        }
+    }
+
+    /// What an expression at the points of a surface may name: all that a sample's coordinates may, and curvatures.
+    fn scope_at_points(
+        &self,
+        context: &mut Context<'g>,
+        surface: usize,
+        span: Span,
+    ) -> Option<(Scope<'g>, Vec<(&'static str, Expr<'g>)>)> {
+        let mut scope = sample::scope_at_points(context, &self.surfaces[surface].0, &self.scope, span)?;
+        let known = CURVATURES.map(|name| (name, context.variable(name, Role::Quantity, f64::NAN)));
+        for (name, variable) in known {
+            scope.insert(name.to_string(), Value::Scalar(variable, Dimension::LENGTH.power(-1)));
+        }
+        Some((scope, known.to_vec()))
+    }
+
+    /// A function of the points of a surface.
+    fn at_points(
+        &self,
+        context: &mut Context<'g>,
+        surface: usize,
+        written: &ast::Expression,
+    ) -> Option<(Expr<'g>, Dimension)> {
+        let scope = sample::scope_at_points(context, &self.surfaces[surface].0, &self.scope, written.span)?;
+        scalar(context, written, &scope)
+    }
+}
+
+/// A scalar of any dimension.
+fn scalar<'g>(
+    context: &mut Context<'g>,
+    written: &ast::Expression,
+    scope: &Scope<'g>,
+) -> Option<(Expr<'g>, Dimension)> {
+    match context.evaluate(written, scope) {
+        Value::Scalar(value, dimension) => Some((value, dimension)),
+        Value::Poison => None,
+        other => {
+            let message = format!("what is expected is a number, a length or an angle, this is {}", other.described());
+            context.report(Diagnostic::new(Code::WrongDimension, written.span, message));
+            None
+        }
+    }
+}
+
+/// Whether surfaces of other jobs that expectations name are there; `known` has all of the file with their jobs.
+pub(crate) fn check_others<'e, 'g: 'e>(
+    context: &mut Context<'_>,
+    expectations: impl Iterator<Item = &'e Expectation<'g>>,
+    known: &[String],
+) {
+    for expectation in expectations {
+        let named: Vec<&String> = match &expectation.what {
+            Expected::Surface { other, .. } => vec![other],
+            Expected::Value { quantities, .. } => quantities
+                .iter()
+                .filter_map(|(_, quantity)| match quantity {
+                    model::Quantity::Deviation { surfaces, .. } => Some(&surfaces[1]),
+                    _ => None,
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        for name in named.into_iter().filter(|name| !known.contains(name)) {
+            let message = format!("there is no surface `{name}` in this file");
+            let mut diagnostic = Diagnostic::new(Code::UnknownName, expectation.written, message);
+            diagnostic.help = did_you_mean(name, known.iter().map(String::as_str));
+            context.report(diagnostic);
+        }
+    }
+}

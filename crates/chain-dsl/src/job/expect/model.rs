@@ -1,0 +1,217 @@
+//! What a spec is tested by, checked and symbolic.
+
+use flank_expr::Expr;
+
+use crate::diagnostics::source::Span;
+use crate::model::{Coordinate, Job};
+use crate::values::dimension::Dimension;
+
+/// Something that a job, or a machine, is to be like.
+#[derive(Clone, Debug)]
+pub struct Expectation<'g> {
+    /// What is expected.
+    pub what: Expected<'g>,
+    /// From `expect` to its end.
+    pub written: Span,
+}
+
+/// What is expected. Surfaces, contacts and solids are indices into those of the job.
+#[derive(Clone, Debug)]
+pub enum Expected<'g> {
+    /// What becomes of points.
+    Status {
+        /// The sampled surfaces.
+        surfaces: Vec<usize>,
+        /// As tables have it: `solved`, `undercut`.
+        status: String,
+        /// Values of the two coordinates of the sample; all of the sample if it is empty.
+        at: Vec<[f64; 2]>,
+    },
+    /// Values at points that a table lists.
+    Table {
+        /// The surface.
+        surface: usize,
+        /// What the table has of each point: two coordinates by which it is found, then what is compared.
+        columns: Vec<PointColumn<'g>>,
+        /// The numbers, mm and radians, row by row.
+        rows: Vec<Vec<f64>>,
+        /// By how much they may differ.
+        within: f64,
+    },
+    /// How far a surface lies off another one, along its normals, without a turn.
+    Surface {
+        /// The surface.
+        surface: usize,
+        /// The other one with its job, `gear.flank`, of the same file.
+        other: String,
+        /// mm
+        within: f64,
+    },
+    /// A function of the points of a surface.
+    AtPoints {
+        /// The surface.
+        surface: usize,
+        /// The function of its unknowns, and of what follows.
+        value: Expr<'g>,
+        /// What is known of points beside their unknowns: curvatures by their names in tables.
+        known: Vec<(&'static str, Expr<'g>)>,
+        /// Of the value.
+        dimension: Dimension,
+        /// Between which ends it lies.
+        ends: [f64; 2],
+    },
+    /// A number.
+    Value {
+        /// In quantities and parameters.
+        value: Expr<'g>,
+        /// Between which ends it lies, in the same.
+        ends: [Expr<'g>; 2],
+        /// What all of these are made of beside parameters.
+        quantities: Vec<(Expr<'g>, Quantity<'g>)>,
+        /// Of the value.
+        dimension: Dimension,
+    },
+    /// No axis leaves its travel.
+    Travel {
+        /// Of one machine; of all otherwise.
+        machine: Option<String>,
+    },
+    /// Another machine does the same.
+    On {
+        /// It, by itself.
+        onto: Box<Job<'g>>,
+        /// The machine of the job whose motions it makes; any otherwise.
+        machine: Option<String>,
+        /// How far the tool may be off, mm.
+        within: f64,
+    },
+    /// A frame of a machine stands where it should.
+    Pose {
+        /// How far its origin, and what lies 1 mm from it along its axes, is off at most, mm.
+        off: f64,
+        /// How far it may, mm.
+        within: f64,
+    },
+}
+
+/// A column of a table of points.
+#[derive(Clone, Debug)]
+pub enum PointColumn<'g> {
+    /// A coordinate of points, or an unknown.
+    Coordinate(Coordinate<'g>),
+    /// A curvature, by its name in tables, 1/mm.
+    Curvature(&'static str),
+}
+
+/// What is known of a job once it is solved.
+#[derive(Clone, Debug)]
+pub enum Quantity<'g> {
+    /// Of a contact.
+    Contact {
+        /// Which.
+        contact: usize,
+        /// The number.
+        number: ContactNumber,
+    },
+    /// Of a body.
+    Solid {
+        /// Which.
+        solid: usize,
+        /// The number.
+        number: SolidNumber,
+    },
+    /// How two surfaces lie to each other.
+    Deviation {
+        /// Both, each with its job, `gear.flank`; the second is the one whose normals are followed.
+        surfaces: [String; 2],
+        /// The number.
+        number: DeviationNumber,
+    },
+    /// The least or the largest value of a function over points.
+    Extreme {
+        /// The surface.
+        surface: usize,
+        /// Which points.
+        over: PointSet,
+        /// The function of its unknowns.
+        value: Expr<'g>,
+        /// Whether the largest is meant.
+        is_highest: bool,
+    },
+    /// The position of an axis of another machine that does the same.
+    Position {
+        /// It, by itself.
+        onto: Box<Job<'g>>,
+        /// The axis.
+        axis: String,
+        /// Values of the job's motions, in its order; the middle where nothing is said.
+        at: Vec<Option<f64>>,
+    },
+}
+
+/// Points of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointSet {
+    /// Those of its sample that are solved.
+    Sample,
+    /// Those of the line at which it turns back.
+    SingularLine,
+    /// Those of the line at which the tool's contact ends.
+    ContactLimit,
+    /// Those of the lines at which other surfaces cut it.
+    Trim,
+}
+
+/// A number of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)] // the names in specs, in `CONTACT_NUMBERS`
+pub enum ContactNumber {
+    Ratio,
+    PeakToPeak,
+    Turn,
+    Lag,
+    Parabola,
+    Backlash,
+    NormalBacklash,
+    Clearance,
+    HalfLength,
+    HalfWidth,
+    GapHigh,
+    GapLow,
+    Pairs,
+    Z(usize),
+    Rho(usize),
+}
+
+/// A number of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)] // the names in specs, in `SOLID_NUMBERS` and `SOLID_FUNCTIONS`
+pub enum SolidNumber {
+    Volume,
+    Area,
+    TipDiameter,
+    RootDiameter,
+    FormDiameter,
+    /// On a circle of this diameter, mm.
+    Thickness(f64),
+    /// Over so many teeth.
+    Span(u32),
+    /// Balls of this diameter, mm.
+    OverBalls(f64),
+}
+
+/// A number of two surfaces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)] // the names in specs, in `DEVIATION_FUNCTIONS`
+pub enum DeviationNumber {
+    /// The turn about z that brings both to meet in the middle of the grid.
+    Turn,
+    Rms,
+    Lowest,
+    Highest,
+    /// Along the rows (0) or the columns (1) of the grid.
+    Slope(usize),
+    /// The same.
+    Crowning(usize),
+    Bias,
+}

@@ -1,0 +1,63 @@
+//! The arguments of `flank mill`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use flank::{CutterFormat, NcDialect};
+
+use super::choice::{described, names};
+use super::{EvaluatorArguments, JobArguments, count, folder, length};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+What is milled is said in the spec: `mill finish of flank with e.cutting in m.work { … }` names a surface, a cutter, a machine, how far
+apart passes are and how long blocks, and how the cutter leans.
+
+Examples:
+  flank mill specs/bevel/milled_pinion.chain
+  flank mill specs/bevel/milled_pinion.chain --format csv,apt --nc linuxcnc,siemens --feed 800 --spindle 12000
+  flank mill specs/bevel/milled_pinion.chain --nc siemens --tcp --spaces 19
+  flank mill specs/bevel/milled_pinion.chain --verify build/milled_pinion.finish.ngc")]
+pub(crate) struct Mill {
+    #[command(flatten)]
+    pub(crate) which: JobArguments,
+    /// The milling, where a job has several; all of them otherwise
+    pub(crate) milling: Option<String>,
+    /// Folder for the files; made if it is not there
+    #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
+    pub(crate) out: PathBuf,
+    /// Files with cutter locations, several with commas
+    #[arg(long, value_parser = described::<CutterFormat>(), value_delimiter = ',', default_value = "csv")]
+    pub(crate) format: Vec<CutterFormat>,
+    /// Write an NC program: fanuc, siemens, linuxcnc
+    #[arg(long, value_parser = names::<NcDialect>(), value_delimiter = ',')]
+    pub(crate) nc: Vec<NcDialect>,
+    /// Blocks are straight in the work: the control keeps the tip on its way (tool-centre control)
+    #[arg(long = "tool-centre-control", visible_alias = "tcp")]
+    pub(crate) tool_centre_control: bool,
+    /// Of the cutter along the surface, mm/min
+    #[arg(long, value_name = "MM/MIN", default_value = "600", value_parser = positive)]
+    pub(crate) feed: f64,
+    /// Revolutions of the cutter a minute, for programs
+    #[arg(long, value_name = "RPM", value_parser = positive)]
+    pub(crate) spindle: Option<f64>,
+    /// How far above a pass the cutter comes down and is lifted with feed
+    #[arg(long, value_name = "LENGTH", default_value = "5mm", value_parser = length)]
+    pub(crate) approach: f64,
+    /// Spaces of the work that a program mills, one after the other
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]
+    pub(crate) spaces: u32,
+    /// Read a program and measure what its blocks leave on the surface
+    #[arg(long, value_name = "FILE")]
+    pub(crate) verify: Option<PathBuf>,
+    /// Print the numbers as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) evaluator: EvaluatorArguments,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let found = text.trim().parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0);
+    found.ok_or("write a number above zero, for example 600".to_string())
+}

@@ -1,0 +1,215 @@
+//! `flank test`
+
+use std::collections::HashMap;
+use std::io::{BufRead, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+use flank::{TestRequest, TestResult, TestedSpec, accept_snapshot, find_specs, junit, test, write_texts};
+
+use crate::arguments::Test;
+use crate::failure::{Failure, findings_in_full};
+use crate::progress::Terminal;
+use crate::spelling::with_flags;
+use crate::{Ending, document, eprint, print};
+
+/// How often saved files are looked for.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Servers that build software say so.
+const BUILD_SERVER: &str = "CI";
+
+pub(crate) fn run(arguments: &Test) -> Result<Ending, Failure> {
+    check_keeping(arguments)?;
+    let specs = find_specs(&arguments.paths)?;
+    let result = tested(arguments, &specs)?;
+    if arguments.watch {
+        return watch(arguments, result);
+    }
+    if arguments.accept {
+        accept_all(&result)?;
+    } else if arguments.review {
+        review(&result)?;
+    }
+    Ok(ending(arguments, &result))
+}
+
+/// # Errors
+/// If snapshots are to be kept where nobody looks at them.
+fn check_keeping(arguments: &Test) -> Result<(), Failure> {
+    let is_server = std::env::var_os(BUILD_SERVER).is_some_and(|value| !value.is_empty() && value != "false");
+    if is_server && (arguments.accept || arguments.review) {
+        let message = format!("the variable {BUILD_SERVER} says that a server runs this: nothing is accepted there");
+        return Err(Failure::of_usage(message));
+    }
+    if arguments.review && !std::io::stdin().is_terminal() {
+        return Err(Failure::of_usage("--review asks on a terminal, and there is none".to_string()));
+    }
+    Ok(())
+}
+
+fn ending(arguments: &Test, result: &TestResult) -> Ending {
+    let differs = |spec: &TestedSpec| spec.snapshot.as_ref().is_some_and(|snapshot| !snapshot.is_same);
+    let accepted = result.specs.iter().filter(|spec| arguments.accept && differs(spec)).count();
+    if result.failed == accepted { Ending::Done } else { Ending::Unsolved }
+}
+
+/// Tests specs, and says what became of them.
+fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
+    let start = Instant::now();
+    let requests: Vec<TestRequest> = specs
+        .iter()
+        .map(|spec| TestRequest {
+            filter: arguments.filter.clone(),
+            propose: arguments.accept,
+            evaluator: arguments.evaluator.evaluator(),
+            ..TestRequest::new(spec)
+        })
+        .collect();
+    let result = test(&requests, &Terminal)?;
+    if arguments.json {
+        print(&document::text(&result));
+    } else {
+        print(&with_flags(&result.to_string()));
+        result.specs.iter().filter(|spec| spec.is_wrong()).for_each(|spec| eprint(&findings_in_full(&spec.findings)));
+    }
+    if arguments.annotate {
+        result.specs.iter().for_each(annotate);
+    }
+    if let Some(file) = &arguments.junit {
+        write(file, junit(&result))?;
+    }
+    result.specs.iter().try_for_each(|spec| draw(arguments, spec))?;
+    eprint(&format!("tested in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3));
+    Ok(result)
+}
+
+fn write(file: &Path, text: String) -> Result<(), Failure> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    write_texts(folder, &[(name, text)])?;
+    Ok(())
+}
+
+/// Writes the map of what moved.
+fn draw(arguments: &Test, spec: &TestedSpec) -> Result<(), Failure> {
+    let Some(picture) = spec.snapshot.as_ref().and_then(|snapshot| snapshot.picture.as_ref()) else { return Ok(()) };
+    let stem = Path::new(&spec.file).file_stem().unwrap_or_default().to_string_lossy();
+    let written = write_texts(&arguments.out, &[(format!("{stem}.moved.svg"), picture.clone())])?;
+    eprint(&format!("wrote {}\n", written.join(", ")));
+    Ok(())
+}
+
+/// A line for each failure as forges read it.
+fn annotate(spec: &TestedSpec) {
+    let line = |at: &str, message: &str| {
+        let message = message.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
+        print(&format!("::error {at}::{message}\n"));
+    };
+    let file = |file: &str| format!("file={}", file.replace(['\n', '\r', ','], " "));
+    for expectation in spec.items.iter().flat_map(|item| &item.expectations).filter(|expectation| !expectation.holds) {
+        let place = &expectation.place;
+        let at = format!("{},line={},col={}", file(&place.file), place.line, place.column);
+        line(&at, &format!("{}: is {}", expectation.expected, expectation.found));
+    }
+    if spec.is_wrong() {
+        for finding in spec.findings.list() {
+            let at = format!("{},line={},col={}", file(&finding.place.file), finding.place.line, finding.place.column);
+            line(&at, &finding.message);
+        }
+    }
+    spec.failure.iter().for_each(|why| line(&file(&spec.file), why));
+    let differs = spec.snapshot.iter().filter(|snapshot| !snapshot.is_same);
+    differs.for_each(|snapshot| line(&file(&snapshot.file), &snapshot.differences.join("; ")));
+}
+
+fn accept_all(result: &TestResult) -> Result<(), Failure> {
+    for spec in &result.specs {
+        if let Some(written) = accept_snapshot(spec)? {
+            print(&format!("wrote {written}\n"));
+        }
+    }
+    Ok(())
+}
+
+/// Asks of each snapshot that differs.
+fn review(result: &TestResult) -> Result<(), Failure> {
+    let differ: Vec<&TestedSpec> =
+        result.specs.iter().filter(|spec| spec.snapshot.as_ref().is_some_and(|snapshot| !snapshot.is_same)).collect();
+    for (k, spec) in differ.iter().enumerate() {
+        let Some(snapshot) = &spec.snapshot else { continue };
+        print(&format!("\n{} of {}: {}\n{snapshot}", k + 1, differ.len(), spec.file));
+        match answer() {
+            Some('a') => {
+                accept_snapshot(spec)?;
+                print(&format!("wrote {}\n", snapshot.file));
+            }
+            Some('r') => print("rejected: the spec has to make what it made\n"),
+            Some(_) => print("skipped\n"),
+            None => break,
+        }
+    }
+    Ok(())
+}
+
+/// What is to become of a snapshot; nothing if nobody answers any more.
+fn answer() -> Option<char> {
+    loop {
+        eprint("accept, reject or skip? [a/r/s] ");
+        let mut line = String::new();
+        if !matches!(std::io::stdin().lock().read_line(&mut line), Ok(1..)) {
+            return None;
+        }
+        match line.trim().chars().next() {
+            Some(letter @ ('a' | 'r' | 's')) => return Some(letter),
+            None => return Some('s'),
+            _ => {}
+        }
+    }
+}
+
+/// When a file was saved last; nothing if it is not there.
+fn saved(file: &Path) -> Option<SystemTime> {
+    std::fs::metadata(file).and_then(|found| found.modified()).ok()
+}
+
+/// Tests again what saved files touch, for as long as the program runs.
+fn watch(arguments: &Test, result: TestResult) -> Result<Ending, Failure> {
+    let mut read: HashMap<PathBuf, Vec<PathBuf>> = HashMap::new();
+    let mut known: HashMap<PathBuf, Option<SystemTime>> = HashMap::new();
+    let mut told = result;
+    loop {
+        for spec in &told.specs {
+            let files = [vec![PathBuf::from(&spec.file)], spec.read.clone()].concat();
+            known.extend(files.iter().map(|file| (file.clone(), saved(file))));
+            read.insert(PathBuf::from(&spec.file), files);
+        }
+        eprint("waiting for files to be saved\n");
+        let touched = loop {
+            std::thread::sleep(LOOK);
+            let changed: Vec<&PathBuf> =
+                known.iter().filter(|(file, at)| saved(file) != **at).map(|(file, _)| file).collect();
+            let mut touched: Vec<PathBuf> = read
+                .iter()
+                .filter(|(_, files)| files.iter().any(|file| changed.contains(&file)))
+                .map(|(spec, _)| spec.clone())
+                .collect();
+            // a folder without specs at the moment is none to end at
+            let all = find_specs(&arguments.paths).unwrap_or_default();
+            touched.extend(all.into_iter().filter(|spec| !read.contains_key(spec)));
+            touched.retain(|spec| spec.exists());
+            touched.sort();
+            if !touched.is_empty() {
+                break touched;
+            }
+            read.retain(|spec, _| spec.exists());
+        };
+        told = match tested(arguments, &touched) {
+            Ok(result) => result,
+            Err(failure) => {
+                failure.tell(false);
+                continue;
+            }
+        };
+    }
+}

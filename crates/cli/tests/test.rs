@@ -1,0 +1,136 @@
+//! `flank test`: what it prints and writes, and how it ends.
+
+mod support;
+
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use support::{folder, text, top, written};
+
+/// In a folder, as if no server ran it, or as if one did.
+fn tested(folder: &Path, server: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flank"));
+    command.arg("test").args(arguments).current_dir(folder).env("CI", server);
+    command.output().expect("the binary runs")
+}
+
+fn gear() -> String {
+    std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped")
+}
+
+fn broken() -> String {
+    gear().replace("drive m.Y = reference_radius * roll", "drive m.Y = 1.001 * reference_radius * roll")
+}
+
+#[test]
+fn what_holds_and_what_does_not() {
+    let folder = folder("test_holds");
+    written(&folder, "gear.chain", &gear());
+    let run = tested(&folder, "", &[]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("gear.chain: 4 expectations hold"), "{}", text(&run.stdout));
+
+    written(&folder, "gear.chain", &broken());
+    let run = tested(&folder, "", &["gear.chain", "--junit", "out.xml", "--annotate"]);
+    assert_eq!(run.status.code(), Some(3));
+    let told = text(&run.stdout);
+    assert!(told.contains("gear.chain: 2 of 4 expectations failed"), "{told}");
+    assert!(told.contains("is off by up to") && told.contains("most at rho ="), "{told}");
+    assert!(told.contains("::error file=gear.chain,line="), "{told}");
+    let xml = std::fs::read_to_string(folder.join("out.xml")).expect("it is written");
+    assert!(xml.contains("tests=\"4\" failures=\"2\"") && xml.matches("<failure").count() == 2, "{xml}");
+
+    let run = tested(&folder, "", &["gear.chain", "--json"]);
+    let document: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!((&document["schema"], &document["failed"]), (&"flank.test/1".into(), &2.into()));
+    let run = tested(&folder, "", &["gear.chain", "--filter", "helical"]);
+    assert_eq!((run.status.code(), text(&run.stdout).contains("1 expectation")), (Some(0), true));
+}
+
+#[test]
+fn snapshots_are_accepted_and_differ_in_words() {
+    let folder = folder("test_snapshot");
+    written(&folder, "gear.chain", &gear());
+    let run = tested(&folder, "", &["--accept"]);
+    assert_eq!((run.status.code(), text(&run.stdout).contains("wrote ./gear.snapshot")), (Some(0), true));
+    assert_eq!(tested(&folder, "", &[]).status.code(), Some(0));
+
+    written(&folder, "gear.chain", &gear().replace("angle = 20 deg", "angle = 20.01 deg"));
+    let run = tested(&folder, "", &[]);
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(told.contains("first_gear.flank_plus moved along its normal by at most"), "{told}");
+    assert!(told.contains("pressure angle") && told.contains("explained best by r.pressure_angle"), "{told}");
+    assert!(folder.join("build/gear.moved.svg").exists(), "{}", text(&run.stderr));
+
+    // nothing is accepted where a server runs it, and nobody is asked where nobody sits
+    for arguments in [["--accept"], ["--review"]] {
+        let run = tested(&folder, "true", &arguments);
+        assert_eq!((run.status.code(), text(&run.stderr).contains("nothing is accepted")), (Some(2), true));
+    }
+    let run = tested(&folder, "", &["--review"]);
+    assert_eq!((run.status.code(), text(&run.stderr).contains("terminal")), (Some(2), true));
+}
+
+#[test]
+fn what_cannot_be_tested_says_so() {
+    let folder = folder("test_bad");
+    let run = tested(&folder, "", &[]);
+    assert_eq!((run.status.code(), text(&run.stderr).contains("holds no spec")), (Some(1), true));
+    written(&folder, "wrong.chain", &gear().replace("angle = 20 deg", "angle = 20"));
+    let run = tested(&folder, "", &[]);
+    assert_eq!((run.status.code(), text(&run.stderr).contains("E0301")), (Some(3), true));
+    // unless that is what is expected
+    let expected = gear().replace("angle = 20 deg", "angle = 20").replace("expect all solved", "expect error E0301");
+    written(&folder, "wrong.chain", &expected);
+    let run = tested(&folder, "", &[]);
+    assert_eq!((run.status.code(), text(&run.stdout).contains("hold")), (Some(0), true), "{}", text(&run.stdout));
+}
+
+/// Tests again what is saved.
+#[test]
+fn a_saved_file_is_tested_again() {
+    let folder = folder("test_watch");
+    written(&folder, "gear.chain", &gear());
+    let out = std::fs::File::create(folder.join("out.txt")).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flank"));
+    command.args(["test", "gear.chain", "--watch"]).current_dir(&folder).env("CI", "").stdout(out);
+    let mut running = command.spawn().expect("the binary runs");
+    let start = Instant::now();
+    let until = |what: &str| {
+        while start.elapsed() < Duration::from_secs(120) {
+            if std::fs::read_to_string(folder.join("out.txt")).is_ok_and(|told| told.contains(what)) {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        false
+    };
+    let is_first = until("4 expectations hold");
+    // the time of a file may have steps of some milliseconds
+    std::thread::sleep(Duration::from_millis(500));
+    written(&folder, "gear.chain", &broken());
+    let is_second = until("2 of 4 expectations failed");
+    running.kill().and_then(|()| running.wait()).expect("it is ended");
+    assert!(is_first && is_second);
+}
+
+/// The job of the library and what it is expected to be like go together; what is meant for its own values stays behind.
+#[test]
+fn a_new_job_brings_its_expectations() {
+    let folder = folder("test_new");
+    let new = |arguments: &[&str]| {
+        let run = Command::new(env!("CARGO_BIN_EXE_flank")).arg("new").args(arguments).current_dir(&folder).output();
+        let run = run.expect("the binary runs");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+    };
+    new(&["pinion_19x62", "--name", "my_pinion", "--out", "one"]);
+    assert!(folder.join("one/bevel/pinion_19x62.csv").exists());
+    new(&["spur_gear", "--name", "my_gear", "--out", "two", "--set", "teeth=31", "--set", "module=2 mm"]);
+    for place in ["one/bevel/my_pinion.chain", "two/hobbing/my_gear.chain"] {
+        let run = tested(&folder, "", &[place]);
+        assert_eq!((run.status.code(), text(&run.stdout).contains("hold")), (Some(0), true), "{}", text(&run.stdout));
+    }
+}

@@ -1,0 +1,154 @@
+//! Whether a contact is what was wanted, and what speaks against it.
+
+use flank_solver::{ContactPoint, ContactState, Outcome, SearchEnd, SynthesizedContact, opposed};
+
+use super::conditions::{beyond, off_the_tooth};
+use super::result::SynthesisResult;
+use super::{Checked, Condition, Problem};
+use crate::contact::pair::Members;
+use crate::project::remark::{NotDone, NotDoneKind};
+
+/// A combination of conditions that settings change by less than this share of what they change others by, they do not change.
+const UNMOVED: f64 = 1e-9;
+/// Shares of a combination that count.
+const SHARE: f64 = 1e-6;
+
+/// Says what is not as it was wanted, and why.
+pub(super) fn judge(
+    result: &mut SynthesisResult,
+    (members, conditions): (&Members<'_, '_>, &[Condition]),
+    (problem, found): (&Problem<'_, '_>, &SynthesizedContact),
+    checked: Option<&Checked>,
+) {
+    let name = result.want.clone();
+    let mut told = |kind: NotDoneKind, message: String, reasons: Vec<String>| {
+        result.not_done.push(NotDone::new(kind, &name, message).with(reasons));
+    };
+    let unmet: Vec<&str> = conditions
+        .iter()
+        .filter(|of| !of.value(&found.vertex).is_some_and(|value| of.is_met(value)))
+        .map(|of| of.of.of.name())
+        .collect();
+    let mut reasons = Vec::from_iter(off_the_tooth(members, conditions));
+    if !unmet.is_empty() {
+        let message = format!("{name} is not met: {}", unmet.join(", "));
+        if reasons.is_empty() {
+            reasons = why(conditions, problem, found);
+        }
+        told(NotDoneKind::NotMet, message, reasons);
+        return;
+    }
+    reasons.extend(none_of_flanks(members, &found.vertex));
+    if !reasons.is_empty() {
+        told(NotDoneKind::NotMet, format!("{name} is met where the flanks do not touch"), reasons);
+        return;
+    }
+    let Some(checked) = checked else { return };
+    result.remarks.extend(checked.result.remarks.iter().cloned());
+    result.not_done.extend(checked.result.not_done.iter().cloned());
+    let is_there =
+        |of: &&Condition| checked.vertex.as_ref().and_then(|at| of.value(at)).is_some_and(|value| of.is_met(value));
+    let elsewhere: Vec<&str> = conditions.iter().filter(|of| !is_there(of)).map(|of| of.of.of.name()).collect();
+    if checked.result.not_done.is_empty() && !elsewhere.is_empty() {
+        let message = format!(
+            "{name}: the whole contact has its middle elsewhere: {} is not what was found",
+            elsewhere.join(", ")
+        );
+        result.not_done.push(NotDone::new(NotDoneKind::NotMet, &name, message));
+    }
+}
+
+/// Why a vertex is no contact of the pair.
+fn none_of_flanks(members: &Members<'_, '_>, at: &ContactPoint) -> Vec<String> {
+    let mut reasons = Vec::new();
+    if at.state == Some(ContactState::Crossing) {
+        reasons.push(
+            "flanks: they run into each other beside the point: their gap is bent the wrong way along one direction"
+                .to_string(),
+        );
+    }
+    let section = |member: usize| {
+        let [x, y, z] = at.in_members[member];
+        [z, x.hypot(y)]
+    };
+    for member in [0, 1] {
+        if let Some((edge, off)) = beyond(members, member, section(member)) {
+            let name = &members.surfaces[member].name;
+            reasons.push(format!("place: the tooth ends before it: it lies {off:.3} mm beyond the {edge} of {name}"));
+        }
+    }
+    if let Outcome::Outside { unknown, .. } = at.outcome {
+        let own = members.surfaces.iter().flat_map(|surface| surface.unknowns.iter().map(|of| &of.name));
+        let name = own.chain([&members.contact.lag.name]).nth(unknown);
+        reasons.extend(name.map(|name| format!("range: `{name}` would have to leave its range")));
+    }
+    reasons
+}
+
+/// Why conditions are not met.
+fn why(conditions: &[Condition], problem: &Problem<'_, '_>, found: &SynthesizedContact) -> Vec<String> {
+    let mut reasons = unmoved(conditions, problem);
+    let bound = problem.settings.iter().zip(&found.fit.held).enumerate();
+    let bound = bound.filter(|(k, (_, held))| held.is_some() && !problem.is_rounded(*k)).map(|(_, (of, _))| of);
+    let bound: Vec<&str> = bound.map(|of| of.name.as_str()).collect();
+    if !bound.is_empty() {
+        reasons.push(format!("bounds: {} stands at the end of its range", bound.join(", ")));
+    }
+    if (0..problem.settings.len()).any(|k| problem.is_rounded(k)) {
+        reasons.push("steps: settings that are multiples of their steps come no nearer".to_string());
+    }
+    if reasons.is_empty() {
+        reasons.extend((0..conditions.len()).filter_map(|k| yielding(conditions, problem, k)));
+    }
+    if reasons.is_empty() && found.share < 1.0 {
+        let share = 100.0 * found.share;
+        reasons.push(format!(
+            "way: from what the contact is, all of it together is met up to {share:.0} % of the way to what is wanted, and no farther"
+        ));
+    }
+    if reasons.is_empty() && found.fit.end != SearchEnd::Settled {
+        reasons.push(
+            "search: it came to no end: on the way to what is wanted the flanks do not touch in a point".to_string(),
+        );
+    }
+    if reasons.is_empty() {
+        reasons.push("settings: these come no nearer to all of it together".to_string());
+    }
+    reasons
+}
+
+/// Conditions that the settings do not change, one by one or together.
+fn unmoved(conditions: &[Condition], problem: &Problem<'_, '_>) -> Vec<String> {
+    let told = opposed(&problem.effects(), UNMOVED).into_iter().map(|shares| {
+        let most = shares.iter().fold(0.0, |most: f64, share| most.max(share.abs()));
+        // residuals are of one size, so that a small part in a combination is one all the same
+        let takes_part = |k: &usize| shares[*k].abs() > SHARE * most;
+        let names: Vec<&str> = (0..conditions.len()).filter(takes_part).map(|k| conditions[k].of.of.name()).collect();
+        match names[..] {
+            [one] => format!("rank: none of these settings changes {one}"),
+            _ => format!(
+                "rank: these settings change {} together only: more of them with option `vary` may",
+                names.join(" and ")
+            ),
+        }
+    });
+    told.collect()
+}
+
+/// What one condition could be if all others hold.
+fn yielding(conditions: &[Condition], problem: &Problem<'_, '_>, k: usize) -> Option<String> {
+    let found = problem.yielding(k)?;
+    let is_met = |of: &Condition| of.value(&found.vertex).is_some_and(|value| of.is_met(value));
+    let others = (0..conditions.len()).filter(|other| *other != k);
+    let value = conditions[k].value(&found.vertex)?;
+    others.map(|other| &conditions[other]).all(is_met).then(|| {
+        let of = &conditions[k];
+        let shown = |value: f64| format!("{:.4} {}", of.shown(value), of.unit()).trim_end().to_string();
+        format!(
+            "{}: with all else as it is wanted it comes to {}, not to {}",
+            of.of.of.name(),
+            shown(value),
+            shown(of.of.value)
+        )
+    })
+}

@@ -1,0 +1,207 @@
+//! The axes of the milling machine along passes.
+
+use std::f64::consts::TAU;
+
+use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
+use flank_expr::Expr;
+use flank_solver::{CutterPose, MillAxes, NotExplicit, PoseSeries};
+
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::units;
+
+/// Points through which the motion of one block is known.
+const POINTS_OF_BLOCK: usize = 9;
+/// Axes that do not bring the cutter where it should be by more than this are no solution, mm or parts of a unit vector.
+const MET: f64 = 1e-8;
+/// A rotary axis that turns farther in one block goes through a pole.
+const FAR: f64 = 0.5;
+
+/// A machine that takes the cutter along passes.
+pub(super) struct Machine<'p, 'g> {
+    pub(super) machine: &'p JobMachine<'g>,
+    /// The axes that stand free.
+    pub(super) free: Vec<&'p Axis<'g>>,
+    /// The same in numbers.
+    pub(super) axes: FreeAxes,
+}
+
+/// Free axes in numbers.
+pub(super) struct FreeAxes {
+    closed: MillAxes,
+    elbow: usize,
+    is_rotary: Vec<bool>,
+    travels: Vec<Option<(f64, f64)>>,
+}
+
+/// Why there are no axes.
+pub(super) enum NoMachine {
+    NotExplicit(NotExplicit),
+    NoFreeAxis,
+}
+
+impl<'p, 'g> Machine<'p, 'g> {
+    pub(super) fn of_milling(job: &'p Job<'g>, milling: &Milling<'g>) -> Result<Machine<'p, 'g>, NoMachine> {
+        let machine = &job.machines[milling.machine];
+        let free: Vec<&Axis<'g>> = machine.axes.iter().filter(|axis| axis.source == LawSource::Free).collect();
+        let Some(first) = free.first() else { return Err(NoMachine::NoFreeAxis) };
+        let graph = first.variable.graph();
+        let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
+        let laws: Vec<(Expr<'g>, Expr<'g>)> = followers.map(|axis| (axis.variable, axis.law)).collect();
+        let chain = milling.t_work_tool.substituted(&laws).substituted(&job.bindings());
+        let variables: Vec<Expr<'g>> = free.iter().map(|axis| axis.variable).collect();
+        let closed = MillAxes::new(graph, &chain, &variables).map_err(NoMachine::NotExplicit)?;
+        let axes = FreeAxes {
+            closed,
+            elbow: 0,
+            is_rotary: free.iter().map(|axis| units::is_angle(axis.dimension)).collect(),
+            travels: free.iter().map(|axis| axis.travel).collect(),
+        };
+        Ok(Machine { machine, free, axes })
+    }
+
+    /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
+    pub(super) fn faults(
+        &self,
+        poses: &[[f64; 6]],
+        rows: &[Vec<f64>],
+        place: impl Fn(usize) -> String,
+    ) -> Vec<NotDone> {
+        let mut found = Vec::new();
+        let name = &self.machine.name;
+        let off = |k: &usize| {
+            let reached = self.axes.pose(&rows[*k]);
+            !(0..6).all(|i| (reached[i] - poses[*k][i]).abs() <= MET)
+        };
+        if let Some(k) = (0..rows.len()).find(off) {
+            let message = format!("{name} does not bring the cutter to its pose at {}", place(k));
+            let why = format!(
+                "{:.3} deg from where a rotary axis is free",
+                self.axes.angle_from_pole(&poses[k]).to_degrees()
+            );
+            found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why]));
+            return found;
+        }
+        for axis in 0..self.free.len() {
+            let Some((low, high)) = self.free[axis].travel else { continue };
+            let slack = 1e-9 * (high - low);
+            let beyond = |row: &Vec<f64>| (low - row[axis]).max(row[axis] - high);
+            let worst = (0..rows.len()).max_by(|a, b| beyond(&rows[*a]).total_cmp(&beyond(&rows[*b])));
+            if let Some(k) = worst.filter(|k| beyond(&rows[*k]) > slack) {
+                let dimension = self.free[axis].dimension;
+                let text = |value: f64| units::text(dimension, value, 3);
+                let message = format!(
+                    "{name} goes beyond the travel of {}: {} at {}, its travel is {} .. {}",
+                    self.free[axis].name,
+                    text(rows[k][axis]),
+                    place(k),
+                    text(low),
+                    text(high)
+                );
+                let way = "clamp the work elsewhere: change the settings of the machine".to_string();
+                found.push(NotDone::new(NotDoneKind::BeyondTravel, &self.free[axis].name, message).with(vec![way]));
+            }
+        }
+        for axis in self.axes.rotary() {
+            let turn = |k: usize| (rows[k + 1][axis] - rows[k][axis]).abs();
+            let Some(k) = (0..rows.len().saturating_sub(1)).max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else {
+                continue;
+            };
+            if turn(k) > FAR {
+                let message = format!(
+                    "{} of {name} turns by {:.1} deg in the block at {}: the cutter's axis passes the pole, {:.3} deg from it",
+                    self.free[axis].name,
+                    turn(k).to_degrees(),
+                    place(k),
+                    self.axes.angle_from_pole(&poses[k]).min(self.axes.angle_from_pole(&poses[k + 1])).to_degrees()
+                );
+                let way = "lean the cutter away with `lead` or `tilt`, or clamp the work at another angle".to_string();
+                found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![way]));
+            }
+        }
+        found
+    }
+}
+
+impl FreeAxes {
+    /// The same on the elbow on which these poses stay within the travels, and turn less.
+    pub(super) fn on_best_elbow(self, passes: &[Vec<[f64; 6]>]) -> FreeAxes {
+        let cost = |elbow: usize| {
+            let beyond = |row: &Vec<f64>| {
+                let each = row.iter().zip(&self.travels).map(|(at, travel)| match *travel {
+                    Some((low, high)) => (low - at).max(at - high).max(0.0),
+                    None => 0.0,
+                });
+                each.sum::<f64>()
+            };
+            let lines = passes.iter().map(|pass| self.on_elbow(pass, elbow));
+            lines.fold((0.0, 0.0), |(missed, turned): (f64, f64), line| {
+                let off: f64 = line.iter().map(beyond).sum();
+                let turns: f64 = line.iter().map(|row| self.rotary().map(|k| row[k].abs()).sum::<f64>()).sum();
+                (missed + off, turned + turns)
+            })
+        };
+        let [first, second] = [0, 1].map(cost);
+        let elbow = usize::from(second.0 < first.0 || second.0 == first.0 && second.1 < first.1);
+        FreeAxes { elbow, ..self }
+    }
+
+    fn rotary(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.is_rotary.len()).filter(|k| self.is_rotary(*k))
+    }
+
+    pub(super) fn is_rotary(&self, axis: usize) -> bool {
+        self.is_rotary[axis]
+    }
+
+    /// The axes at poses one after the other: angles go on without jumps, and begin within their travel if they can.
+    pub(super) fn along(&self, poses: &[[f64; 6]]) -> Vec<Vec<f64>> {
+        self.on_elbow(poses, self.elbow)
+    }
+
+    fn on_elbow(&self, poses: &[[f64; 6]], elbow: usize) -> Vec<Vec<f64>> {
+        let pose = |[x, y, z, i, j, k]: &[f64; 6]| CutterPose { tip: [*x, *y, *z], axis: [*i, *j, *k], feed: [0.0; 3] };
+        let mut rows: Vec<Vec<f64>> = poses.iter().map(|row| self.closed.at(&pose(row), elbow)).collect();
+        for axis in self.rotary() {
+            for k in 1..rows.len() {
+                let before = rows[k - 1][axis];
+                rows[k][axis] -= TAU * ((rows[k][axis] - before) / TAU).round();
+            }
+            let Some((low, high)) = self.travels[axis] else { continue };
+            let values = rows.iter().map(|row| row[axis]);
+            let (least, most) =
+                (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
+            let turns = [0.0, -1.0, 1.0, -2.0, 2.0];
+            let fits = turns.into_iter().map(|turn| turn * TAU).find(|by| least + by >= low && most + by <= high);
+            rows.iter_mut().for_each(|row| row[axis] += fits.unwrap_or(0.0));
+        }
+        rows
+    }
+
+    /// The cutter while all axes go straight from one position to another.
+    pub(super) fn straight(&self, from: &[f64], to: &[f64]) -> PoseSeries {
+        PoseSeries::sampled(POINTS_OF_BLOCK, |share| {
+            let at: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect();
+            self.closed.pose(&at)
+        })
+    }
+
+    /// The cutter while its tip goes straight and the rotary axes turn evenly: tool-centre control.
+    pub(super) fn straight_tip(&self, (from, to): (&[f64], &[f64]), (tip, end): (&[f64], &[f64])) -> PoseSeries {
+        PoseSeries::sampled(POINTS_OF_BLOCK, |share| {
+            let at: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect();
+            let mut pose = self.closed.pose(&at);
+            (0..3).for_each(|k| pose[k] = tip[k] + share * (end[k] - tip[k]));
+            pose
+        })
+    }
+
+    /// Where the axes bring the cutter.
+    pub(super) fn pose(&self, axes: &[f64]) -> [f64; 6] {
+        self.closed.pose(axes)
+    }
+
+    /// The angle of the cutter's axis from where a rotary axis is free, radians.
+    pub(super) fn angle_from_pole(&self, row: &[f64; 6]) -> f64 {
+        self.closed.from_pole([row[3], row[4], row[5]])
+    }
+}

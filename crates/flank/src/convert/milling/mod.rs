@@ -1,0 +1,332 @@
+//! `flank mill`
+
+mod cutter;
+mod files;
+mod machine;
+mod obstacles;
+mod patch;
+mod plan;
+mod program;
+pub(crate) mod result;
+mod target;
+mod text;
+mod verify;
+
+use std::time::Instant;
+
+use flank_chain_dsl::{Job, Milling};
+use flank_expr::Graph;
+use flank_solver::Bending;
+
+use self::cutter::MillingCutter;
+use self::machine::{Machine, NoMachine};
+use self::patch::Lattice;
+use self::plan::{LeftAt, Plan, Planner};
+use self::result::{BallAt, CurvatureAt, HeightLeft, MillResult, MilledAxis};
+use self::target::{Fields, Target};
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::monitor::Monitor;
+use crate::project::quantity::Travel;
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
+use crate::project::requests::{MillRequest, Session};
+use crate::project::spec;
+use crate::project::spec::Origin;
+use crate::project::units;
+
+/// Passes of cutters over surfaces, what these leave, and the axes of the machines. `each` is given the result of each milling.
+///
+/// # Errors
+/// What is wrong with the spec, that it mills nothing, that a cutter is none, or that a file cannot be read or written.
+pub fn mill(request: &MillRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(MillResult)) -> Result<(), Failure> {
+    let start = Instant::now();
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let origin = Origin::of_compilation(&compilation);
+    let session = Session::new(request.evaluator, monitor);
+    for (job, milling) in asked(&jobs, request)? {
+        let result = of_milling(job, milling, request, &origin, session)?;
+        each(MillResult { timing: Timing { points: result.timing.points, elapsed: start.elapsed() }, ..result });
+    }
+    Ok(())
+}
+
+/// The millings that are asked for, each with its job.
+fn asked<'j, 'g>(jobs: &'j [Job<'g>], request: &MillRequest) -> Result<Vec<(&'j Job<'g>, &'j Milling<'g>)>, Failure> {
+    let all: Vec<(&Job<'g>, &Milling<'g>)> =
+        jobs.iter().flat_map(|job| job.millings.iter().map(move |milling| (job, milling))).collect();
+    if all.is_empty() {
+        let message = "no job mills a surface: add `mill finish of SURFACE with CUTTER.cutting in MACHINE.work { … }`";
+        return Err(Failure::from(message.to_string()));
+    }
+    let Some(name) = &request.milling else { return Ok(all) };
+    let known: Vec<String> = all.iter().map(|(_, milling)| format!("`{}`", milling.name)).collect();
+    let found: Vec<_> = all.into_iter().filter(|(_, milling)| milling.name == *name).collect();
+    if found.is_empty() {
+        return Err(Failure::from(format!("there is no milling `{name}`; there is: {}", known.join(", "))));
+    }
+    Ok(found)
+}
+
+/// What is milled, with what is worked out of it.
+struct Milled<'p, 'g> {
+    plan: Plan,
+    /// The exact points of all positions.
+    lattice: Lattice,
+    /// Of each pass its poses, in the order in which they are passed.
+    poses: Vec<Vec<[f64; 6]>>,
+    /// Of each pass the positions of the axes; none without a machine.
+    axes: Vec<Vec<Vec<f64>>>,
+    machine: Option<Machine<'p, 'g>>,
+}
+
+impl Milled<'_, '_> {
+    /// The shares of a position in the order in which a pass is passed.
+    fn shares(&self, target: &Target<'_, '_>, pass: usize, position: usize) -> [f64; 2] {
+        [self.plan.shares[0][pass], self.plan.shares[1][self.column(target, pass, position)]]
+    }
+
+    /// Its column in the lattice.
+    fn column(&self, target: &Target<'_, '_>, pass: usize, position: usize) -> usize {
+        let backwards = target.milling.both_ways && pass % 2 == 1;
+        if backwards { self.plan.shares[1].len() - 1 - position } else { position }
+    }
+}
+
+fn of_milling(
+    job: &Job<'_>,
+    milling: &Milling<'_>,
+    request: &MillRequest,
+    origin: &Origin,
+    session: Session<'_>,
+) -> Result<MillResult, Failure> {
+    let cutter = MillingCutter::of_milling(job, milling)?;
+    let _working = session.begin(format!("milling {}", milling.name))?;
+    let target = Target::new(job, milling, session);
+    let mut result = nothing(job, &target, request);
+    let located = |result: MillResult| MillResult {
+        not_done: origin.located(&[job], result.not_done),
+        remarks: origin.located(&[job], result.remarks),
+        ..result
+    };
+    let (machine, remark) = machine_of(job, milling);
+    result.remarks.extend(remark);
+    if machine.is_none() && (!request.nc.is_empty() || request.verify.is_some()) {
+        let message =
+            format!("{} has no axes in closed form, and programs are made of them", job.machines[milling.machine].name);
+        result.not_done.push(NotDone::new(NotDoneKind::NoClosedForm, &milling.name, message));
+    }
+    let milled = match target
+        .fields(&cutter)
+        .and_then(|fields| milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)))
+    {
+        Ok(milled) => milled,
+        Err(missing) => {
+            result.not_done.push(missing);
+            return Ok(located(result));
+        }
+    };
+    session.check()?;
+    let (fields, milled) = milled;
+    describe(&mut result, &target, &cutter, &fields, &milled);
+    let (kept, missed) = obstacles::kept(job, &target, &milled, session)?;
+    result.clearances = kept;
+    result.not_done.extend(missed);
+    if let (Some(path), Some(machine)) = (&request.verify, &milled.machine) {
+        result.verified = Some(verify::program(path, &target, &cutter, machine, &fields)?);
+    }
+    result.files = files::write(job, &target, &milled, (request, origin, session), result.not_done.is_empty())?;
+    Ok(located(result))
+}
+
+/// The machine, or why its axes are not known.
+fn machine_of<'p, 'g>(job: &'p Job<'g>, milling: &Milling<'g>) -> (Option<Machine<'p, 'g>>, Option<Remark>) {
+    let name = &job.machines[milling.machine].name;
+    match Machine::of_milling(job, milling) {
+        Ok(machine) => (Some(machine), None),
+        Err(NoMachine::NoFreeAxis) => (None, None),
+        Err(NoMachine::NotExplicit(why)) => {
+            let message = format!("the axes of {name} are not worked out: {why}");
+            (None, Some(Remark::new(RemarkKind::NoAxes, name, message)))
+        }
+    }
+}
+
+/// Plans passes and blocks, and takes the machine along them.
+fn milled<'p, 'g>(
+    target: &Target<'_, 'g>,
+    cutter: &MillingCutter,
+    machine: Option<Machine<'p, 'g>>,
+    fields: &Fields,
+    request: &MillRequest,
+) -> Result<Milled<'p, 'g>, NotDone> {
+    let few: Vec<Vec<[f64; 6]>> = [0.0, 0.5, 1.0]
+        .iter()
+        .map(|pass| {
+            let pass = fields.of_pass(0).pass(*pass);
+            (0..=8).map(|k| pass.at(f64::from(k) / 8.0)).collect()
+        })
+        .collect();
+    let machine = machine.map(|machine| Machine { axes: machine.axes.on_best_elbow(&few), ..machine });
+    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
+    let plan = Planner { target, fields, cutter, axes }.plan()?;
+    let lattice = target.lattice(plan.shares.clone())?;
+    let columns = plan.shares[1].len();
+    let of_pass = |pass: usize| -> Result<Vec<[f64; 6]>, NotDone> {
+        let backwards = target.milling.both_ways && pass % 2 == 1;
+        let forward = if backwards { -1.0 } else { 1.0 };
+        let place = |k: usize| if backwards { columns - 1 - k } else { k };
+        let at = |k: usize| {
+            let shares = [plan.shares[0][pass], plan.shares[1][place(k)]];
+            Ok(target.pose(shares, lattice.at(pass, place(k)), cutter, forward)?.row())
+        };
+        (0..columns).map(at).collect()
+    };
+    let poses = (0..plan.shares[0].len()).map(of_pass).collect::<Result<Vec<_>, NotDone>>()?;
+    let axes = machine.iter().flat_map(|machine| poses.iter().map(|pass| machine.axes.along(pass))).collect();
+    Ok(Milled { plan, lattice, poses, axes, machine })
+}
+
+fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> MillResult {
+    MillResult {
+        job: job.name.clone(),
+        milling: target.milling.name.clone(),
+        surface: target.name().to_string(),
+        frame: target.frame().to_string(),
+        cutter: target.milling.cutter_name.clone(),
+        coordinates: target.milling.area.names.clone(),
+        passes: None,
+        positions: None,
+        pass_step: None,
+        block_length: None,
+        path_length: None,
+        cusp: None,
+        blocks: None,
+        tool_centre_control: request.tool_centre_control,
+        effective_radius: None,
+        least_gap_curvature: None,
+        largest_ball: None,
+        clearances: Vec::new(),
+        axes: Vec::new(),
+        least_from_pole: None,
+        polynomials_off: None,
+        verified: None,
+        files: Vec::new(),
+        not_done: Vec::new(),
+        remarks: Vec::new(),
+        timing: Timing::default(),
+    }
+}
+
+fn left(target: &Target<'_, '_>, left: LeftAt) -> HeightLeft {
+    let values = target.values(left.shares);
+    let dimensions = target.milling.area.dimensions;
+    HeightLeft {
+        height_um: left.height * 1e3,
+        at: [0, 1].map(|k| units::shown(dimensions[k], values[k])),
+        place: target.place(left.shares),
+    }
+}
+
+fn describe(
+    result: &mut MillResult,
+    target: &Target<'_, '_>,
+    cutter: &MillingCutter,
+    fields: &Fields,
+    milled: &Milled<'_, '_>,
+) {
+    let plan = &milled.plan;
+    let way = |pass: &Vec<[f64; 6]>| pass.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum::<f64>();
+    result.passes = Some(plan.shares[0].len());
+    result.positions = Some(plan.shares[1].len());
+    result.pass_step = Some(plan.step);
+    result.block_length = Some(plan.block);
+    result.path_length = Some(milled.poses.iter().map(way).sum());
+    result.cusp = Some(left(target, plan.cusp));
+    result.blocks = Some(plan.blocks.map(|ends| left(target, ends)));
+    result.polynomials_off = Some(fields.off);
+    result.timing.points = milled.lattice.frames.len();
+    if let Some((unknown, by)) = milled.lattice.beyond {
+        let message = target.beyond(unknown, by);
+        result.remarks.push(Remark::new(RemarkKind::Continued, target.name(), message));
+    }
+    bending(result, target, cutter, milled);
+    let Some(machine) = &milled.machine else { return };
+    let poles = milled.poses.iter().flatten().map(|row| machine.axes.angle_from_pole(row).to_degrees());
+    result.least_from_pole = poles.reduce(f64::min);
+    result.axes = axes(machine, milled);
+    for (pass, (poses, rows)) in milled.poses.iter().zip(&milled.axes).enumerate() {
+        let place = |k: usize| target.place(milled.shares(target, pass, k));
+        let faults = machine.faults(poses, rows, place);
+        if !faults.is_empty() {
+            result.not_done.extend(faults);
+            break;
+        }
+    }
+}
+
+/// How cutter and surface part beside their contact.
+fn bending(result: &mut MillResult, target: &Target<'_, '_>, cutter: &MillingCutter, milled: &Milled<'_, '_>) {
+    let columns = milled.plan.shares[1].len();
+    let known = milled.lattice.each().enumerate().filter_map(|(k, (shares, frame))| {
+        let backwards = target.milling.both_ways && (k / columns) % 2 == 1;
+        let forward = if backwards { -1.0 } else { 1.0 };
+        let pose = target.pose(shares, frame, cutter, forward).ok()?;
+        Some((shares, pose.bending(frame, &cutter.cutting)?))
+    });
+    let known: Vec<([f64; 2], Bending)> = known.collect();
+    let radii = known.iter().map(|(_, bending)| bending.effective_radius);
+    result.effective_radius =
+        radii.clone().reduce(f64::min).zip(radii.reduce(f64::max)).map(|(least, most)| [least, most]);
+    let least = known.iter().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
+    result.least_gap_curvature =
+        least.map(|(shares, bending)| CurvatureAt { curvature: bending.gap, place: target.place(*shares) });
+    let hollow =
+        known.iter().min_by(|a, b| a.1.hollow.total_cmp(&b.1.hollow)).filter(|(_, bending)| bending.hollow < 0.0);
+    result.largest_ball =
+        hollow.map(|(shares, bending)| BallAt { radius: -1.0 / bending.hollow, place: target.place(*shares) });
+    if let Some((shares, _)) = least.filter(|(_, bending)| bending.gap < 0.0) {
+        let deep = known.iter().filter(|(_, bending)| bending.gap < 0.0).count();
+        let message = format!(
+            "{} cuts too deep beside its contact at {} of {}, most at {}",
+            target.milling.cutter_name,
+            units::counted(deep, "position"),
+            known.len(),
+            target.place(*shares)
+        );
+        let ball = result
+            .largest_ball
+            .as_ref()
+            .map(|ball| format!("the hollow takes a ball of R {:.3} mm there at the most", ball.radius));
+        let details =
+            ball.into_iter().chain(["take a smaller cutter, or lean it more with `lead`".to_string()]).collect();
+        result.not_done.push(NotDone::new(NotDoneKind::TooDeep, target.name(), message).with(details));
+    }
+}
+
+fn distance(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+fn axes(machine: &Machine<'_, '_>, milled: &Milled<'_, '_>) -> Vec<MilledAxis> {
+    let of_axis = |axis: usize| {
+        let own = machine.free[axis];
+        let shown = |value: f64| units::shown(own.dimension, value);
+        let values = milled.axes.iter().flatten().map(|row| row[axis]);
+        let extent = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];
+        let rate = milled.axes.iter().zip(&milled.poses).flat_map(|(rows, poses)| {
+            rows.windows(2).zip(poses.windows(2)).map(move |(rows, poses)| {
+                let way = distance(&poses[0], &poses[1]);
+                if way > 0.0 { (rows[1][axis] - rows[0][axis]).abs() / way } else { 0.0 }
+            })
+        });
+        MilledAxis {
+            name: own.name.clone(),
+            unit: units::symbol(own.dimension).to_string(),
+            extent: extent.map(shown),
+            travel: own.travel.map(|(low, high)| Travel { low: shown(low), high: shown(high) }),
+            rate_per_mm: shown(rate.fold(0.0, f64::max)),
+        }
+    };
+    (0..machine.free.len()).map(of_axis).collect()
+}

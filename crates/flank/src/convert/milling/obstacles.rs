@@ -1,0 +1,134 @@
+//! How near the cutter comes to what it keeps clear of.
+
+use flank_chain_dsl::{Job, MilledArea, Milling, MillingClearance, SampleGrid};
+use flank_solver::{Obstacle, ToolBody};
+use rayon::prelude::*;
+
+use super::Milled;
+use super::cutter::outline;
+use super::patch::Patch;
+use super::result::ClearanceKept;
+use super::target::Target;
+use crate::project::failure::Failure;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::Session;
+
+/// The least distance of each pair over all positions, with what is missed.
+///
+/// # Errors
+/// If a surface is not sampled or a body is no outline.
+pub(super) fn kept(
+    job: &Job<'_>,
+    target: &Target<'_, '_>,
+    milled: &Milled<'_, '_>,
+    session: Session<'_>,
+) -> Result<(Vec<ClearanceKept>, Vec<NotDone>), Failure> {
+    let (mut kept, mut missed) = (Vec::new(), Vec::new());
+    for clearance in &target.milling.clearances {
+        let body = ToolBody { pieces: outline(job, &clearance.body)?.pieces };
+        let area = sampled(job, target.milling, clearance)?;
+        let patch = Patch::new(job, &job.surfaces[clearance.surface], area, session);
+        match patch.field() {
+            Err(missing) => missed.push(missing),
+            Ok(field) => {
+                let (found, not_clear) = least(target, milled, clearance, (&patch, &Obstacle::new(field), &body));
+                kept.push(found);
+                missed.extend(not_clear);
+            }
+        }
+        session.check()?;
+    }
+    Ok((kept, missed))
+}
+
+/// The part of a surface that its sample asks for.
+fn sampled<'g>(
+    job: &Job<'g>,
+    milling: &Milling<'g>,
+    clearance: &MillingClearance<'g>,
+) -> Result<MilledArea<'g>, Failure> {
+    let surface = &job.surfaces[clearance.surface];
+    let name = &surface.name;
+    let unsampled = || {
+        Failure::from(format!(
+            "milling `{}` keeps clear of `{name}`, which has no grid of points: add `sample {name} {{ … }}`",
+            milling.name
+        ))
+    };
+    let sample = surface.sample.as_ref().ok_or_else(unsampled)?;
+    let ends = |values: &[f64]| match values {
+        [first, .., last] => Ok((first.min(*last), first.max(*last))),
+        _ => Err(unsampled()),
+    };
+    let (ranges, shares) = match &sample.grid {
+        SampleGrid::Values([rows, columns]) => ([ends(rows)?, ends(columns)?], None),
+        SampleGrid::Shares { shares: [rows, columns], corners } => {
+            ([ends(rows)?, ends(columns)?], Some((*corners, false)))
+        }
+        SampleGrid::Points(_) => return Err(unsampled()),
+    };
+    let dimensions = match shares {
+        Some(_) => [flank_chain_dsl::Dimension::NUMBER; 2],
+        None => sample.coordinates.each_ref().map(|coordinate| coordinate.dimension),
+    };
+    Ok(MilledArea {
+        coordinates: sample.coordinates.clone(),
+        names: match shares {
+            Some(_) => ["profilewise", "lengthwise"].map(str::to_string),
+            None => sample.labels.clone(),
+        },
+        dimensions,
+        ranges,
+        shares,
+        variables: milling.area.variables,
+    })
+}
+
+/// A position, and what is nearest there.
+type Found = ([usize; 2], flank_solver::Nearest);
+
+fn least(
+    target: &Target<'_, '_>,
+    milled: &Milled<'_, '_>,
+    clearance: &MillingClearance<'_>,
+    (patch, obstacle, body): (&Patch<'_, '_>, &Obstacle, &ToolBody),
+) -> (ClearanceKept, Option<NotDone>) {
+    let of_pass = |(pass, poses): (usize, &Vec<[f64; 6]>)| -> Option<Found> {
+        let mut best: Option<Found> = None;
+        for (position, pose) in poses.iter().enumerate() {
+            let limit = best.map_or(f64::INFINITY, |(_, nearest)| nearest.distance);
+            let found = obstacle.nearest(body, pose, limit);
+            if let Some(found) = found.filter(|found| found.distance < limit) {
+                best = Some(([pass, position], found));
+            }
+        }
+        best
+    };
+    let found = milled.poses.par_iter().enumerate().filter_map(of_pass).collect::<Vec<Found>>();
+    let ([pass, position], nearest) =
+        found.into_iter().reduce(|a, b| if b.1.distance < a.1.distance { b } else { a }).expect("a milling has passes");
+    let place = target.place(milled.shares(target, pass, position));
+    let foot = patch.place(nearest.shares);
+    let kept = ClearanceKept {
+        surface: patch.name().to_string(),
+        body: clearance.body_name.clone(),
+        wanted: clearance.distance,
+        least: nearest.distance,
+        place: place.clone(),
+        foot: foot.clone(),
+    };
+    let not_clear = (nearest.distance < clearance.distance).then(|| {
+        let ClearanceKept { surface, body, wanted, least, .. } = &kept;
+        let message = if *least < 0.0 {
+            format!("{body} cuts {:.4} mm into {surface} while the cutter is at {place}", -least)
+        } else {
+            format!("{body} comes as near as {least:.4} mm to {surface} while the cutter is at {place}, {wanted} mm are wanted")
+        };
+        let details = vec![
+            format!("the nearest place of {surface} is at {foot}"),
+            "take a smaller or longer cutter, or lean it with `tilt`".to_string(),
+        ];
+        NotDone::new(NotDoneKind::NotClear, surface, message).with(details)
+    });
+    (kept, not_clear)
+}

@@ -1,0 +1,284 @@
+//! How many passes, how many blocks, and what these leave.
+
+use flank_chain_dsl::{BlockLength, PassSpacing};
+use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, peak};
+use rayon::prelude::*;
+
+use super::cutter::MillingCutter;
+use super::machine::FreeAxes;
+use super::target::{Fields, Target};
+use crate::project::remark::{NotDone, NotDoneKind};
+
+/// More passes, or positions on a pass, than anybody mills.
+const MOST: usize = 100_000;
+/// Places along the passes at which cusps are looked for.
+const COLUMNS: usize = 17;
+/// The same while the number of passes is looked for.
+const FEW_COLUMNS: usize = 5;
+/// Passes whose blocks are looked at while their number is looked for.
+const FEW_PASSES: usize = 5;
+/// Points through which the motion of one block is known.
+const POINTS_OF_BLOCK: usize = 9;
+
+/// A place and what is left there, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeftAt {
+    pub(super) shares: [f64; 2],
+    pub(super) height: f64,
+}
+
+/// Passes and blocks of a milling.
+pub(super) struct Plan {
+    /// The shares of the passes, and of the positions on each.
+    pub(super) shares: [Vec<f64>; 2],
+    /// The highest cusp.
+    pub(super) cusp: LeftAt,
+    /// What straight blocks leave at the most and at the least, less the stock.
+    pub(super) blocks: [LeftAt; 2],
+    /// Between neighbouring passes, mm, at the most.
+    pub(super) step: f64,
+    /// Between neighbouring positions, mm, at the most.
+    pub(super) block: f64,
+}
+
+fn evenly(count: usize) -> Vec<f64> {
+    (0..count).map(|k| k as f64 / (count - 1) as f64).collect()
+}
+
+/// What a plan is made from.
+pub(super) struct Planner<'p, 'j, 'g> {
+    pub(super) target: &'p Target<'j, 'g>,
+    pub(super) fields: &'p Fields,
+    pub(super) cutter: &'p MillingCutter,
+    /// The machine, where its axes go straight from position to position; nothing where the cutter does.
+    pub(super) axes: Option<&'p FreeAxes>,
+}
+
+impl Planner<'_, '_, '_> {
+    /// # Errors
+    /// What no number of passes or blocks reaches, with the place.
+    pub(super) fn plan(&self) -> Result<Plan, NotDone> {
+        let passes = evenly(self.passes()?);
+        let along = evenly(self.positions(&passes)?);
+        let cusp = self.highest_cusp(&passes)?;
+        let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
+        let steps = |k: usize, count: usize| {
+            let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[k])).fold(0.0, f64::max);
+            widest / (count - 1) as f64
+        };
+        let (step, block) = (steps(0, passes.len()), steps(1, along.len()));
+        Ok(Plan { shares: [passes, along], cusp, blocks, step, block })
+    }
+
+    fn stock(&self) -> f64 {
+        self.target.milling.stock
+    }
+
+    /// How many passes.
+    fn passes(&self) -> Result<usize, NotDone> {
+        let wanted = match self.target.milling.spacing {
+            PassSpacing::Count(count) => return Ok(count),
+            PassSpacing::Step(step) => {
+                let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[0]));
+                let count = (widest.fold(0.0, f64::max) / step).ceil() as usize + 1;
+                return if count > MOST { Err(self.too_many(count)) } else { Ok(count.max(2)) };
+            }
+            PassSpacing::Scallop(height) => height,
+        };
+        let highest = |count: usize| -> Result<f64, NotDone> {
+            let left = self.cusps(&evenly(count), &evenly(FEW_COLUMNS), None)?;
+            Ok(left.iter().map(|left| left.height - self.stock()).fold(0.0, f64::max))
+        };
+        // few passes may be too far apart to meet
+        let (mut count, mut height) = (33, highest(33));
+        while height.is_err() && count < 600 {
+            count = 2 * count - 1;
+            height = highest(count);
+        }
+        let mut height = height?;
+        let (mut low, mut high) = (1, None);
+        for _ in 0..40 {
+            if height <= wanted {
+                high = Some(count);
+            } else {
+                low = count;
+            }
+            // cusps grow with the square of the distance
+            let guess = ((count - 1) as f64 * (height / wanted).sqrt()).ceil() as usize + 1;
+            count = match high {
+                Some(high) if high <= low + 1 => return Ok(high),
+                Some(high) => guess.clamp(low + 1, high - 1),
+                None => guess.max(low + 1),
+            };
+            if count > MOST {
+                return Err(self.too_many(count));
+            }
+            if count < 2 {
+                return Ok(2);
+            }
+            // so few do not meet
+            height = highest(count).unwrap_or(f64::INFINITY);
+            if !height.is_finite() {
+                low = count;
+                count = high.map_or(2 * count, |high| (low + high).div_ceil(2).min(high));
+                height = if Some(count) == high { wanted } else { highest(count).unwrap_or(f64::INFINITY) };
+            }
+        }
+        Ok(high.unwrap_or(count))
+    }
+
+    fn too_many(&self, count: usize) -> NotDone {
+        let name = &self.target.milling.name;
+        let message = format!("{name}: it would take {count} passes; at most {MOST} are made");
+        let way = "allow a higher scallop or a wider step, or take a cutter with a larger radius".to_string();
+        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way])
+    }
+
+    /// The highest cusp between passes.
+    fn highest_cusp(&self, passes: &[f64]) -> Result<LeftAt, NotDone> {
+        let columns = evenly(COLUMNS);
+        let all = self.cusps(passes, &columns, None)?;
+        let (place, first) =
+            all.iter().enumerate().max_by(|a, b| a.1.height.total_cmp(&b.1.height)).expect("two passes");
+        let (gap, column) = (place / COLUMNS, place % COLUMNS);
+        let beside = [column.saturating_sub(1), (column + 1).min(COLUMNS - 1)].map(|k| columns[k]);
+        let of_gap = |along: f64| Some(self.cusps(passes, &[along], Some(gap)).ok()?.first()?.height);
+        let Some((along, height)) = peak(beside, of_gap).filter(|(_, height)| *height > first.height) else {
+            return Ok(*first);
+        };
+        let exact = self.cusps(passes, &[along], Some(gap))?;
+        Ok(LeftAt { shares: [exact[0].shares[0], along], height })
+    }
+
+    /// Cusps between all neighbouring passes, or the two of one gap, at places along them: gap by gap.
+    fn cusps(&self, passes: &[f64], columns: &[f64], gap: Option<usize>) -> Result<Vec<LeftAt>, NotDone> {
+        let across: Vec<PoseSeries> = columns.iter().map(|share| self.fields.surface.across(*share)).collect();
+        let gaps = gap.map_or(0..passes.len() - 1, |gap| gap..gap + 1);
+        let (fields, cutter) = (self.fields, &self.cutter.cutting);
+        // of each place the ridge, or where there is none
+        let of_gap = |gap: usize| -> Result<Vec<LeftAt>, [f64; 2]> {
+            let series = [gap, gap + 1].map(|pass| fields.of_pass(pass).pass(passes[pass]));
+            let at = |(column, along): (&PoseSeries, &f64)| {
+                let shares = [passes[gap], passes[gap + 1]];
+                let found = cusp(column, series.each_ref(), shares, *along, cutter).ok_or([passes[gap], *along])?;
+                Ok(LeftAt { shares: [found.share, *along], height: found.height })
+            };
+            across.iter().zip(columns).map(at).collect()
+        };
+        let found: Result<Vec<Vec<LeftAt>>, [f64; 2]> = gaps.into_par_iter().map(of_gap).collect();
+        found.map(|found| found.concat()).map_err(|shares| {
+            let place = self.target.place(shares);
+            let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
+            let way = "the cutter is too small for passes so far apart, or they run out of the surface".to_string();
+            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way])
+        })
+    }
+
+    /// How many positions on a pass.
+    fn positions(&self, passes: &[f64]) -> Result<usize, NotDone> {
+        let wanted = match self.target.milling.blocks {
+            BlockLength::Count(count) => return Ok(count),
+            BlockLength::Step(step) => {
+                let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[1]));
+                let count = (widest.fold(0.0, f64::max) / step).ceil() as usize + 1;
+                return if count > MOST { Err(self.too_many_blocks(count)) } else { Ok(count.max(2)) };
+            }
+            BlockLength::Chord(chord) => chord,
+        };
+        let few: Vec<usize> = few_of(passes.len());
+        let mut count: usize = 17;
+        for _ in 0..40 {
+            let [most, least] = self.left_by_blocks(passes, &evenly(count), &few)?;
+            let off = most.height.max(-least.height);
+            if off <= wanted {
+                return Ok(count);
+            }
+            count = (((count - 1) as f64 * (off / wanted).sqrt()).ceil() as usize + 1).max(count + 1);
+            if count > MOST {
+                return Err(self.too_many_blocks(count));
+            }
+        }
+        Ok(count)
+    }
+
+    fn too_many_blocks(&self, count: usize) -> NotDone {
+        let name = &self.target.milling.name;
+        let message = format!("{name}: it would take {count} positions on a pass; at most {MOST} are made");
+        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec!["allow a larger chord error".to_string()])
+    }
+
+    /// The most and the least that straight blocks leave on some passes.
+    fn left_by_blocks(&self, passes: &[f64], along: &[f64], which: &[usize]) -> Result<[LeftAt; 2], NotDone> {
+        let (fields, cutter, axes, stock) = (self.fields, &self.cutter.cutting, self.axes, self.stock());
+        let of_pass = |number: &usize| -> Result<[LeftAt; 2], [f64; 2]> {
+            let share = passes[*number];
+            let (surface, path) = (fields.surface.pass(share), fields.of_pass(*number).pass(share));
+            let blocks = blocks(axes, &path, along);
+            let mut ends = [LeftAt { shares: [share, 0.0], height: 0.0 }; 2];
+            for (pair, block) in along.windows(2).zip(&blocks) {
+                let found = left_by_block(&surface, block, [pair[0], pair[1]], cutter, stock);
+                let Cusp { share: at, height } = found.ok_or([share, pair[0]])?;
+                let left = LeftAt { shares: [share, at], height: height - stock };
+                ends = [higher(ends[0], left), lower(ends[1], left)];
+            }
+            Ok(ends)
+        };
+        let all: Result<Vec<[LeftAt; 2]>, [f64; 2]> = which.par_iter().map(of_pass).collect();
+        let all = all.map_err(|shares| {
+            let message = format!("the block at {} was not followed", self.target.place(shares));
+            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message)
+        })?;
+        Ok(all.into_iter().reduce(|a, b| [higher(a[0], b[0]), lower(a[1], b[1])]).expect("there are passes"))
+    }
+}
+
+/// The motion of the cutter in each block between positions on a pass.
+fn blocks(axes: Option<&FreeAxes>, path: &PoseSeries, along: &[f64]) -> Vec<PoseSeries> {
+    let rows: Vec<[f64; 6]> = along.iter().map(|share| path.at(*share)).collect();
+    match axes {
+        None => rows.windows(2).map(|pair| straight(pair[0], pair[1])).collect(),
+        Some(axes) => {
+            let positions = axes.along(&rows);
+            positions.windows(2).map(|pair| axes.straight(&pair[0], &pair[1])).collect()
+        }
+    }
+}
+
+/// Evenly spread ones of many.
+fn few_of(count: usize) -> Vec<usize> {
+    let mut few: Vec<usize> = (0..FEW_PASSES).map(|k| k * (count - 1) / (FEW_PASSES - 1)).collect();
+    few.dedup();
+    few
+}
+
+fn higher(a: LeftAt, b: LeftAt) -> LeftAt {
+    if b.height > a.height { b } else { a }
+}
+
+fn lower(a: LeftAt, b: LeftAt) -> LeftAt {
+    if b.height < a.height { b } else { a }
+}
+
+fn length([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
+}
+
+/// The origin goes straight, the axis along a great circle, both evenly: tool-centre control.
+pub(super) fn straight(from: [f64; 6], to: [f64; 6]) -> PoseSeries {
+    let [a, b] = [from, to].map(|row| [row[3], row[4], row[5]]);
+    let dot: f64 = (0..3).map(|k| a[k] * b[k]).sum();
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let angle = length(cross).atan2(dot);
+    let at = |share: f64| {
+        // of no turn the limit
+        let [u, w] = if angle < 1e-8 {
+            [1.0 - share, share]
+        } else {
+            [((1.0 - share) * angle).sin() / angle.sin(), (share * angle).sin() / angle.sin()]
+        };
+        let place = |k: usize| from[k] + share * (to[k] - from[k]);
+        let axis = |k: usize| u * a[k] + w * b[k];
+        [place(0), place(1), place(2), axis(0), axis(1), axis(2)]
+    };
+    PoseSeries::sampled(POINTS_OF_BLOCK, at)
+}

@@ -1,0 +1,124 @@
+//! The surface that is milled, and the cutter on it.
+
+use std::ops::Deref;
+
+use flank_chain_dsl::{Job, Milling};
+use flank_expr::{ScalarEvaluator, Tape};
+use flank_solver::{Chart, CutterPose, Lean, NoPose, PoseField, SurfaceFrame};
+
+use super::cutter::MillingCutter;
+use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field};
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::Session;
+
+/// A surface that is milled.
+pub(super) struct Target<'j, 'g> {
+    patch: Patch<'j, 'g>,
+    pub(super) milling: &'j Milling<'g>,
+    lean: Tape,
+}
+
+impl<'j, 'g> Deref for Target<'j, 'g> {
+    type Target = Patch<'j, 'g>;
+
+    fn deref(&self) -> &Patch<'j, 'g> {
+        &self.patch
+    }
+}
+
+/// A surface and the cutter on it as polynomials.
+pub(super) struct Fields {
+    /// Position and normal of the surface.
+    pub(super) surface: PoseField,
+    /// Origin and axis of the cutter on passes that run forwards, and on those that run backwards if there are any.
+    pub(super) cutter: Vec<PoseField>,
+    /// How far the polynomials may be off, mm.
+    pub(super) off: f64,
+    /// The exact points that they go through.
+    pub(super) lattice: Lattice,
+}
+
+impl Fields {
+    /// The cutter's poses on passes of a number.
+    pub(super) fn of_pass(&self, number: usize) -> &PoseField {
+        &self.cutter[number % self.cutter.len()]
+    }
+}
+
+impl<'j, 'g> Target<'j, 'g> {
+    pub(super) fn new(job: &'j Job<'g>, milling: &'j Milling<'g>, session: Session<'_>) -> Target<'j, 'g> {
+        let lean = milling.lean.map(|lean| lean.graph().substitute(&[lean], &job.bindings())[0]);
+        Target {
+            patch: Patch::new(job, &job.surfaces[milling.surface], milling.area.clone(), session),
+            milling,
+            lean: Tape::new(&lean, &milling.area.variables).expect("a job without errors leaves nothing unbound"),
+        }
+    }
+
+    /// How the cutter leans at shares.
+    pub(super) fn lean(&self, shares: [f64; 2]) -> Lean {
+        let mut out = [0.0; 2];
+        ScalarEvaluator::new(&self.lean).run(&self.values(shares), &mut out);
+        Lean { lead: out[0], tilt: out[1], stock: self.milling.stock }
+    }
+
+    /// The pose of the cutter at a point.
+    ///
+    /// # Errors
+    /// Why it cannot touch there, with the place.
+    pub(super) fn pose(
+        &self,
+        shares: [f64; 2],
+        frame: &SurfaceFrame,
+        cutter: &MillingCutter,
+        forward: f64,
+    ) -> Result<CutterPose, NotDone> {
+        let pose = CutterPose::touching(frame, &cutter.cutting, self.lean(shares), forward);
+        pose.map_err(|why| {
+            let place = self.place(shares);
+            let (message, way) = match why {
+                NoPose::Flat => (
+                    format!("the bottom of {} lies flat on {} at {place}", self.milling.cutter_name, self.name()),
+                    "nothing says which point of its edge touches: give it a `lead` above zero".to_string(),
+                ),
+                NoPose::OffCutter { angle } => (
+                    format!(
+                        "{} does not touch {} at {place}: its normal would be {:.3} deg from the tip",
+                        self.milling.cutter_name,
+                        self.name(),
+                        angle.to_degrees()
+                    ),
+                    cutter.angles(),
+                ),
+                NoPose::NoFeed => {
+                    (format!("{} has no direction along the pass at {place}", self.name()), String::new())
+                }
+            };
+            let details = [way].into_iter().filter(|way| !way.is_empty()).collect();
+            NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(details)
+        })
+    }
+
+    /// Surface and cutter as polynomials that are as near as [`NEAR`].
+    ///
+    /// # Errors
+    /// What the surface does not have, or that its polynomials do not come as near.
+    pub(super) fn fields(&self, cutter: &MillingCutter) -> Result<Fields, NotDone> {
+        let mut off = f64::INFINITY;
+        for counts in GRIDS {
+            let lattice = self.lattice(counts.map(Chart::shares))?;
+            let surface = point_field(&lattice);
+            let directions: &[f64] = if self.milling.both_ways { &[1.0, -1.0] } else { &[1.0] };
+            let poses = directions.iter().map(|forward| {
+                let rows = lattice.each().map(|(shares, frame)| Ok(self.pose(shares, frame, cutter, *forward)?.row()));
+                Ok(PoseField::through(rows.collect::<Result<Vec<[f64; 6]>, NotDone>>()?, counts))
+            });
+            let poses = poses.collect::<Result<Vec<PoseField>, NotDone>>()?;
+            off = poses.iter().map(PoseField::tail).fold(surface.tail(), f64::max);
+            if off <= NEAR {
+                return Ok(Fields { surface, cutter: poses, off, lattice });
+            }
+        }
+        Err(self.rough(off))
+    }
+}

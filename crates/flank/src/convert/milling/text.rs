@@ -1,0 +1,86 @@
+//! What is known of a milling in words.
+
+use std::fmt;
+
+use flank_export::fixed;
+
+use super::result::{ClearanceKept, HeightLeft, MillResult, VerifiedProgram};
+use crate::project::units;
+
+impl fmt::Display for MillResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let MillResult { job, milling, surface, frame, cutter, .. } = self;
+        writeln!(f, "milling {milling} of {job}: {surface} ({frame}) with {cutter}\n")?;
+        self.facts().iter().try_for_each(|(name, text)| writeln!(f, "  {name:12} {text}"))?;
+        if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
+    }
+}
+
+impl MillResult {
+    /// What is known of it: names with what belongs to them.
+    pub(crate) fn facts(&self) -> Vec<(String, String)> {
+        let mut facts: Vec<(&str, String)> = Vec::new();
+        if let (Some(passes), Some(step)) = (self.passes, self.pass_step) {
+            facts.push(("passes", format!("{passes} by {}, at most {} mm apart", self.coordinates[0], fixed(step, 4))));
+        }
+        if let (Some(positions), Some(length)) = (self.positions, self.block_length) {
+            let along = &self.coordinates[1];
+            facts.push(("positions", format!("{positions} along {along}, at most {} mm apart", fixed(length, 4))));
+        }
+        if let Some(path) = self.path_length {
+            facts.push(("path", format!("{} mm", fixed(path, 1))));
+        }
+        if let Some(cusp) = &self.cusp {
+            facts.push(("cusps", format!("at most {}", at(cusp))));
+        }
+        if let Some([most, least]) = &self.blocks {
+            let how = if self.tool_centre_control { "the cutter goes straight" } else { "the axes go straight" };
+            facts.push(("blocks", format!("{how}; left {}", at(most))));
+            facts.push(("", format!("too deep {}", at(&deep(least)))));
+        }
+        if let Some([least, most]) = self.effective_radius {
+            facts.push(("radius", format!("{} .. {} mm across the feed", fixed(least, 3), fixed(most, 3))));
+        }
+        if let Some(gap) = &self.least_gap_curvature {
+            facts.push(("gap", format!("bends by {} 1/mm at least, at {}", fixed(gap.curvature, 5), gap.place)));
+        }
+        if let Some(ball) = &self.largest_ball {
+            facts.push(("largest ball", format!("R {} mm by the curvature, at {}", fixed(ball.radius, 3), ball.place)));
+        }
+        for kept in &self.clearances {
+            let (least, ClearanceKept { surface, body, place, .. }) = (fixed(kept.least, 4), kept);
+            facts.push(("clear", format!("{body} comes as near as {least} mm to {surface}, at {place}")));
+        }
+        for axis in &self.axes {
+            let [low, high] = axis.extent.map(|end| fixed(end, 3));
+            let (unit, rate) = (&axis.unit, fixed(axis.rate_per_mm, 3));
+            facts.push(("axis", format!("{} from {low} to {high} {unit}, at most {rate} {unit} per mm", axis.name)));
+        }
+        if let Some(pole) = self.least_from_pole {
+            facts.push(("pole", format!("at least {} deg away", fixed(pole, 3))));
+        }
+        facts.extend(self.verified.iter().flat_map(of_program));
+        facts.into_iter().map(|(name, text)| (name.to_string(), text)).collect()
+    }
+}
+
+fn of_program(program: &VerifiedProgram) -> Vec<(&'static str, String)> {
+    let VerifiedProgram { file, blocks, untouched, points, .. } = program;
+    let words = if program.tool_centre_control { "the cutter in the work" } else { "the axes" };
+    let mut facts =
+        vec![("program", format!("{file}: {}, words of {words}", units::counted(*blocks, "cutting block")))];
+    if let Some([most, least]) = &program.left {
+        facts.push(("left", format!("at most {}", at(most))));
+        facts.push(("", format!("at least {}", at(least))));
+    }
+    facts.push(("map", format!("{points} points, {untouched} of them not passed over")));
+    facts
+}
+
+fn at(left: &HeightLeft) -> String {
+    format!("{} um, at {}", fixed(left.height_um, 4), left.place)
+}
+
+fn deep(left: &HeightLeft) -> HeightLeft {
+    HeightLeft { height_um: -left.height_um, ..left.clone() }
+}

@@ -1,0 +1,355 @@
+//! Whether expectations hold.
+
+use flank_chain_dsl::{Dimension, Expected, Job, PointColumn, Quantity, Sample};
+use flank_export::Values;
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, SurfacePoint};
+
+use crate::compare::deviation;
+use crate::compare::map::Named;
+use crate::convert::Conversion;
+use crate::project::failure::Failure;
+use crate::project::requests::Onto;
+use crate::project::units;
+use crate::solve::{self, SolveOptions, geometry, travel};
+use crate::testing::points::{Tested, place};
+use crate::testing::quantities::{FOLLOWED, Known};
+
+/// Places that are named one by one.
+const NAMED: usize = 3;
+
+/// What became of an expectation.
+pub(super) struct Verdict {
+    pub(super) holds: bool,
+    pub(super) found: String,
+    pub(super) details: Vec<String>,
+}
+
+impl Verdict {
+    fn lost(found: impl Into<String>) -> Verdict {
+        Verdict { holds: false, found: found.into(), details: Vec::new() }
+    }
+}
+
+/// # Errors
+/// If the work is cancelled, or the memory does not suffice.
+pub(super) fn judged<'g>(known: &Known<'_, '_, 'g>, expected: &Expected<'g>) -> Result<Verdict, Failure> {
+    let tested = known.tested;
+    match expected {
+        Expected::Status { surfaces, status, at } => Ok(of_status(tested, surfaces, (status, at))),
+        Expected::Table { surface, columns, rows, within } => Ok(of_table(tested, *surface, (columns, rows, *within))),
+        Expected::Surface { surface, other, within } => of_surface(known, *surface, (other, *within)),
+        Expected::AtPoints { surface, value, known, dimension, ends } => {
+            Ok(at_points(tested, *surface, (*value, known), *dimension, *ends))
+        }
+        Expected::Value { value, ends, quantities, dimension } => {
+            of_value(known, [*value, ends[0], ends[1]], quantities, *dimension)
+        }
+        Expected::Travel { machine } => of_travel(tested, machine.as_deref()),
+        Expected::On { onto, machine, within } => on(known, onto, (machine.as_deref(), *within)),
+        Expected::Pose { off, within } => Ok(of_pose(*off, *within)),
+    }
+}
+
+/// How far a frame of a machine may be off, and is.
+pub(super) fn of_pose(off: f64, within: f64) -> Verdict {
+    Verdict { holds: off <= within, found: format!("off by {}", precise(Dimension::LENGTH, off)), details: Vec::new() }
+}
+
+/// A value with its unit, small ones in small units.
+pub(super) fn precise(dimension: Dimension, value: f64) -> String {
+    const ARCSEC: f64 = std::f64::consts::PI / 648_000.0;
+    let size = value.abs();
+    let (number, unit) = match dimension {
+        Dimension::LENGTH if size < 0.1 => (1e3 * value, "um"),
+        Dimension::LENGTH => (value, "mm"),
+        Dimension::ANGLE if size < 60.0 * ARCSEC => (value / ARCSEC, "arcsec"),
+        Dimension::ANGLE => (value.to_degrees(), "deg"),
+        _ => (value, ""),
+    };
+    let unit = if unit.is_empty() { units::whole_symbol(dimension) } else { unit.to_string() };
+    format!("{} {unit}", significant(number)).trim_end().to_string()
+}
+
+/// Six digits, without zeros at the end.
+pub(super) fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", if value == 0.0 { 0.0 } else { value });
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..9).contains(&exponent) {
+        return format!("{value:.3e}");
+    }
+    let text = format!("{value:.*}", usize::try_from(5 - exponent).unwrap_or(0));
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
+fn of_status(tested: &Tested<'_, '_>, surfaces: &[usize], (status, at): (&str, &[[f64; 2]])) -> Verdict {
+    let (mut asked, mut wrong, mut details) = (0, 0, Vec::new());
+    for index in surfaces {
+        let surface = tested.surface(*index);
+        let listed = (!at.is_empty()).then(|| tested.listed(*index, at.to_vec()));
+        let (sample, points): (&Sample<'_>, &[SurfacePoint]) = match &listed {
+            Some((sample, points)) => (sample, points),
+            None => match &surface.sample {
+                Some(sample) => (sample, tested.points(*index)),
+                None => continue,
+            },
+        };
+        let others: Vec<usize> = (0..points.len()).filter(|k| points[*k].outcome.word() != status).collect();
+        asked += points.len();
+        wrong += others.len();
+        details.extend(
+            others
+                .iter()
+                .take(NAMED)
+                .map(|k| format!("{} is {} at {}", surface.name, points[*k].outcome.word(), place(sample, *k))),
+        );
+        if others.len() > NAMED {
+            details.push(format!(
+                "and {} of {} elsewhere",
+                units::counted(others.len() - NAMED, "point"),
+                surface.name
+            ));
+        }
+    }
+    let found = format!("{} of {} {status}", asked - wrong, units::counted(asked, "point"));
+    Verdict { holds: wrong == 0 && asked > 0, found, details }
+}
+
+/// Where a value at points lies that is to be between two ends: the worst place, and how many are wrong.
+fn worst(
+    (sample, points): (&Sample<'_>, &[SurfacePoint]),
+    values: &[Option<f64>],
+    (name, dimension): (&str, Dimension),
+    [low, high]: [f64; 2],
+) -> Verdict {
+    let excess = |value: f64| if value.is_nan() { f64::INFINITY } else { (low - value).max(value - high) };
+    let known = values.iter().enumerate().filter_map(|(k, value)| value.map(|value| (k, value)));
+    // what is cut away is no point of the finished work
+    let is_lost = |k: &usize| values[*k].is_none() && !matches!(points[*k].outcome, Outcome::CutAway(_));
+    let unknown: Vec<usize> = (0..values.len()).filter(is_lost).collect();
+    let farthest = known.clone().reduce(|a, b| if excess(b.1) > excess(a.1) { b } else { a });
+    let Some((at, value)) = farthest else {
+        let details = unknown.iter().take(NAMED).map(|k| told(points, sample, *k)).collect();
+        return Verdict { holds: false, found: format!("no point of {name} is solved"), details };
+    };
+    let wrong = known.filter(|(_, value)| excess(*value) > 0.0).count();
+    let is_symmetric = low == -high;
+    let what = if is_symmetric {
+        "off by up to"
+    } else if low == 0.0 {
+        "up to"
+    } else {
+        "reaches"
+    };
+    let shown = if is_symmetric { value.abs() } else { value };
+    let mut details: Vec<String> = unknown.iter().take(NAMED).map(|k| told(points, sample, *k)).collect();
+    if wrong > 0 {
+        let all = units::counted(values.len(), "point");
+        details.insert(0, format!("at {wrong} of {all}, most at {}", place(sample, at)));
+    }
+    let found = format!("{what} {}", precise(dimension, shown));
+    Verdict { holds: wrong == 0 && unknown.is_empty(), found, details }
+}
+
+fn told(points: &[SurfacePoint], sample: &Sample<'_>, at: usize) -> String {
+    match points[at].outcome {
+        Outcome::Solved => format!("nothing is known at {}", place(sample, at)),
+        other => format!("{} at {}", other.word(), place(sample, at)),
+    }
+}
+
+fn at_points<'g>(
+    tested: &Tested<'_, 'g>,
+    index: usize,
+    (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
+    dimension: Dimension,
+    ends: [f64; 2],
+) -> Verdict {
+    let surface = tested.surface(index);
+    let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
+    let points = tested.points(index);
+    let values = values(tested, index, (sample, points), (value, known));
+    worst((sample, points), &values, (&surface.name, dimension), ends)
+}
+
+/// A function of points at those that are solved.
+fn values<'g>(
+    tested: &Tested<'_, 'g>,
+    index: usize,
+    (sample, points): (&Sample<'g>, &[SurfacePoint]),
+    (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
+) -> Vec<Option<f64>> {
+    let surface = tested.surface(index);
+    let graph = value.graph();
+    let value = graph.substitute(&[value], &tested.job.bindings());
+    let used = graph.variables_of(&value);
+    let known: Vec<&(&str, Expr<'g>)> =
+        known.iter().filter(|(_, variable)| variable.as_variable().is_some_and(|id| used.contains(&id))).collect();
+    let fields = match known[..] {
+        [] => Vec::new(),
+        _ => geometry::fields(tested.job, surface, sample, points),
+    };
+    let columns: Vec<Option<&Values>> = known
+        .iter()
+        .map(|(name, _)| fields.iter().find(|field| field.name == *name).map(|field| &field.values))
+        .collect();
+    let inputs: Vec<Expr<'g>> =
+        surface.surface.unknowns.iter().copied().chain(known.iter().map(|(_, variable)| *variable)).collect();
+    let tape = Tape::new(&value, &inputs).expect("a job without errors leaves nothing unbound");
+    let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
+    let at = |(k, point): (usize, &SurfacePoint)| {
+        if point.outcome != Outcome::Solved {
+            return None;
+        }
+        let mut input = point.unknowns.clone();
+        for column in &columns {
+            let Some(Values::Scalars(values)) = column else { return None };
+            input.push(values.at(k)?);
+        }
+        evaluator.run(&input, &mut out);
+        Some(out[0])
+    };
+    points.iter().enumerate().map(at).collect()
+}
+
+fn of_table<'g>(
+    tested: &Tested<'_, 'g>,
+    index: usize,
+    (columns, rows, within): (&[PointColumn<'g>], &[Vec<f64>], f64),
+) -> Verdict {
+    let surface = tested.surface(index);
+    let [PointColumn::Coordinate(first), PointColumn::Coordinate(second), compared @ ..] = columns else {
+        return Verdict::lost("points are found by coordinates, not by curvatures");
+    };
+    let at = rows.iter().map(|row| [row[0], row[1]]).collect();
+    let (sample, points) = tested.generated(index, [first.clone(), second.clone()], at);
+    let graph = surface.surface.position.0[0].graph();
+    let mut verdicts = Vec::new();
+    for (k, column) in compared.iter().enumerate() {
+        let (name, dimension, found) = match column {
+            PointColumn::Coordinate(of) => {
+                (of.name.as_str(), of.dimension, values(tested, index, (&sample, &points), (of.value, &[])))
+            }
+            PointColumn::Curvature(name) => {
+                let variable = graph.variable(*name);
+                let found = values(tested, index, (&sample, &points), (variable, &[(*name, variable)]));
+                (*name, Dimension::LENGTH.power(-1), found)
+            }
+        };
+        let apart: Vec<Option<f64>> = found.iter().zip(rows).map(|(value, row)| Some((*value)? - row[2 + k])).collect();
+        verdicts.push((name, worst((&sample, &points), &apart, (&surface.name, dimension), [-within, within])));
+    }
+    let holds = verdicts.iter().all(|(_, verdict)| verdict.holds);
+    let found: Vec<String> = verdicts.iter().map(|(name, verdict)| format!("{name} {}", verdict.found)).collect();
+    let mut details: Vec<String> = verdicts
+        .iter()
+        .filter(|(_, verdict)| !verdict.holds)
+        .flat_map(|(name, verdict)| verdict.details.iter().map(move |line| format!("{name}: {line}")))
+        .collect();
+    let lost = points.iter().filter(|point| point.outcome != Outcome::Solved).count();
+    if lost > 0 {
+        details.push(format!(
+            "{lost} of {} of the table are no points of {}: is it a table of another grid, or of another surface?",
+            units::counted(rows.len(), "row"),
+            surface.name
+        ));
+    }
+    Verdict { holds, found: found.join(", "), details }
+}
+
+fn of_surface(known: &Known<'_, '_, '_>, index: usize, (other, within): (&str, f64)) -> Result<Verdict, Failure> {
+    let tested = known.tested;
+    let own = Named { job: tested.job, surface: tested.surface(index) };
+    let other = known.named(other)?;
+    // normals are those of the surface that is sampled
+    let pair = if other.surface.sample.is_some() { [own, other] } else { [other, own] };
+    if pair[1].surface.sample.is_none() {
+        return Ok(Verdict::lost("neither surface is sampled"));
+    }
+    let map = deviation::measure(pair, true, tested.session)?;
+    let Some(sample) = &pair[1].surface.sample else { return Ok(Verdict::lost("no sample")) };
+    let deviations: Vec<Option<f64>> = map.deviations.iter().map(|um| um.map(|um| 1e-3 * um)).collect();
+    let name = pair[1].whole_name();
+    let mut verdict = worst((sample, &map.points), &deviations, (&name, Dimension::LENGTH), [-within, within]);
+    verdict.details.extend(map.refused.iter().map(|why| why.message.clone()));
+    Ok(verdict)
+}
+
+fn of_value<'g>(
+    known: &Known<'_, '_, 'g>,
+    all: [Expr<'g>; 3],
+    quantities: &[(Expr<'g>, Quantity<'g>)],
+    dimension: Dimension,
+) -> Result<Verdict, Failure> {
+    let graph = known.graph;
+    let mut values = known.tested.job.bindings();
+    for (variable, quantity) in quantities {
+        match known.number(quantity)? {
+            Ok(number) => values.push((*variable, graph.constant(number))),
+            Err(why) => return Ok(Verdict::lost(why)),
+        }
+    }
+    let numbers = graph.substitute(&all, &values);
+    let mut numbers = numbers.iter().map(|number| number.as_constant().unwrap_or(f64::NAN));
+    let [value, low, high] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
+    let holds = low <= value && value <= high;
+    let found = precise(dimension, value);
+    let off = if value < low { value - low } else { value - high };
+    let beyond = format!(
+        "{} {} {}",
+        precise(dimension, off.abs()),
+        if off < 0.0 { "below" } else { "above" },
+        precise(dimension, if off < 0.0 { low } else { high })
+    );
+    Ok(Verdict { holds, found, details: if holds || value.is_nan() { Vec::new() } else { vec![beyond] } })
+}
+
+/// The surfaces of the job with their points.
+fn of_travel(tested: &Tested<'_, '_>, machine: Option<&str>) -> Result<Verdict, Failure> {
+    let options: SolveOptions<'_> = tested.options();
+    let solved = tested.job.surfaces.iter().filter_map(|surface| solve::solve_surface(tested.job, surface, options));
+    let solved: Vec<_> = solved.collect::<Result<_, Failure>>()?;
+    let runs = travel::runs(tested.job, &solved);
+    let of = |name: &str| machine.is_none_or(|machine| machine == name);
+    let ended: Vec<_> = runs.iter().filter(|run| of(run.machine()) && run.is_beyond().is_some()).collect();
+    let beyond = travel::beyond(tested.job, &solved);
+    let prefix = machine.map(|machine| format!("{machine}."));
+    let beyond = beyond.into_iter().filter(|one| {
+        prefix.as_ref().is_none_or(|prefix| one.of.as_ref().is_some_and(|of| of.starts_with(prefix.as_str())))
+    });
+    let details: Vec<String> = beyond.map(|one| one.message).collect();
+    let found = format!("{} of {} within travel", ended.len() - details.len(), units::counted(ended.len(), "axis"));
+    Ok(Verdict { holds: details.is_empty(), found: found.replace("axiss", "axes"), details })
+}
+
+fn on<'g>(
+    known: &Known<'_, '_, 'g>,
+    onto: &Job<'g>,
+    (machine, within): (Option<&str>, f64),
+) -> Result<Verdict, Failure> {
+    let tested = known.tested;
+    let is_made = |frame: &str| machine.is_none_or(|name| frame.split('.').next() == Some(name));
+    let surface =
+        tested.job.surfaces.iter().find(|surface| {
+            is_made(&surface.frame) && !surface.generation.motions.is_empty() && surface.sample.is_some()
+        });
+    let Some(surface) = surface else { return Ok(Verdict::lost("no sampled surface is made by a motion")) };
+    let asked = Onto { surface: Some(surface.name.clone()), ..Onto::default() };
+    let conversion = Conversion::new(known.graph, tested.job, onto, (&asked, tested.session), FOLLOWED);
+    let conversion = match conversion {
+        Ok(conversion) => conversion,
+        Err(Failure::Input(reason)) => return Ok(Verdict::lost(reason)),
+        Err(other) => return Err(other),
+    };
+    let told = conversion.failures();
+    if !told.is_empty() {
+        let details = told.into_iter().map(|why| why.message).collect();
+        let found = format!("{} does not do the same", conversion.machine.name);
+        return Ok(Verdict { holds: false, found, details });
+    }
+    let off = conversion.off();
+    let found = format!("off by up to {}", precise(Dimension::LENGTH, off));
+    Ok(Verdict { holds: off <= within, found, details: Vec::new() })
+}

@@ -1,0 +1,258 @@
+//! Numbers that expectations name.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use flank_chain_dsl::{ContactNumber, DeviationNumber, Job, PointSet, Quantity, SolidNumber};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use flank_solver::Body;
+
+use crate::compare::deviation;
+use crate::compare::deviation_result::DeviationResult;
+use crate::compare::map::{Named, find};
+use crate::contact::result::ContactResult;
+use crate::contact::{interference, rolled, summary};
+use crate::convert::Conversion;
+use crate::project::failure::Failure;
+use crate::project::requests::{ContactRequest, JobSelection, Onto};
+use crate::project::spec::Origin;
+use crate::solve::body::space;
+use crate::testing::points::Tested;
+
+/// Positions of a pitch at which contacts are looked at, and of a motion at which other machines are.
+const POSITIONS: u32 = 24;
+pub(super) const FOLLOWED: u32 = 7;
+
+/// What is known of a job that is tested, each worked out once.
+pub(super) struct Known<'t, 'j, 'g> {
+    pub(super) tested: &'t Tested<'j, 'g>,
+    pub(super) graph: &'g Graph,
+    /// All jobs of the file with few points, for surfaces of others.
+    pub(super) jobs: &'j [Job<'g>],
+    pub(super) which: &'j JobSelection,
+    origin: &'j Origin,
+    contacts: RefCell<HashMap<usize, Result<Arc<ContactResult>, String>>>,
+    bodies: RefCell<HashMap<usize, Result<Arc<Body>, String>>>,
+    deviations: RefCell<HashMap<[String; 2], Arc<DeviationResult>>>,
+}
+
+type Number = Result<f64, String>;
+
+impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
+    pub(super) fn new(
+        tested: &'t Tested<'j, 'g>,
+        graph: &'g Graph,
+        (jobs, which, origin): (&'j [Job<'g>], &'j JobSelection, &'j Origin),
+    ) -> Known<'t, 'j, 'g> {
+        Known {
+            tested,
+            graph,
+            jobs,
+            which,
+            origin,
+            contacts: RefCell::default(),
+            bodies: RefCell::default(),
+            deviations: RefCell::default(),
+        }
+    }
+
+    /// A quantity, mm and radians; or why it is not known.
+    pub(super) fn number(&self, of: &Quantity<'g>) -> Result<Number, Failure> {
+        match of {
+            Quantity::Contact { contact, number } => self.of_contact(*contact, *number),
+            Quantity::Solid { solid, number } => self.of_solid(*solid, *number),
+            Quantity::Deviation { surfaces, number } => self.of_deviation(surfaces, *number),
+            Quantity::Extreme { surface, over, value, is_highest } => {
+                self.extreme(*surface, *over, (*value, *is_highest))
+            }
+            Quantity::Position { onto, axis, at } => self.position(onto, axis, at),
+        }
+    }
+
+    fn of_contact(&self, index: usize, number: ContactNumber) -> Result<Number, Failure> {
+        let is_known = self.contacts.borrow().contains_key(&index);
+        if !is_known {
+            let found = self.contact(index)?;
+            self.contacts.borrow_mut().insert(index, found);
+        }
+        let found = self.contacts.borrow()[&index].clone();
+        let contact = &self.tested.job.contacts[index];
+        Ok(found.and_then(|result| {
+            contact_number(&result, number, contact).ok_or_else(|| {
+                let why = result.not_done.first().map_or(String::new(), |why| format!(": {}", why.message));
+                format!("contact {} has no such number{why}", contact.name)
+            })
+        }))
+    }
+
+    fn contact(&self, index: usize) -> Result<Result<Arc<ContactResult>, String>, Failure> {
+        let Tested { job, session, .. } = *self.tested;
+        let contact = &job.contacts[index];
+        let request = ContactRequest { positions: POSITIONS, ..ContactRequest::new(self.which.clone()) };
+        let rolled = match rolled(job, contact, &request, session) {
+            Ok(rolled) => rolled,
+            Err(Failure::Input(reason)) => return Ok(Err(reason)),
+            Err(other) => return Err(other),
+        };
+        let Some((rolling, _)) = &rolled.found else { return Ok(Ok(Arc::new(rolled.result))) };
+        let none = vec![0.0; contact.errors.len()];
+        let backlash = summary::backlash(job, &rolled.members, &request, &none, rolling, session)?;
+        let rooms = interference::of_spaces(job, &rolled.members, &none, rolling, session)?;
+        let mut result = rolled.result;
+        (result.backlash, result.clearances) = (backlash, rooms.clearances);
+        Ok(Ok(Arc::new(result)))
+    }
+
+    fn of_solid(&self, index: usize, number: SolidNumber) -> Result<Number, Failure> {
+        let is_known = self.bodies.borrow().contains_key(&index);
+        if !is_known {
+            let Tested { job, session, .. } = *self.tested;
+            let found = match space::body(job, &job.solids[index], session) {
+                Ok(space) => Ok(Arc::new(space.body)),
+                Err(Failure::Input(reason)) => Err(reason),
+                Err(other) => return Err(other),
+            };
+            self.bodies.borrow_mut().insert(index, found);
+        }
+        let body = self.bodies.borrow()[&index].clone();
+        let name = &self.tested.job.solids[index].name;
+        Ok(body.and_then(|body| {
+            let [tip, root] = body.tip_and_root();
+            let form = body.form();
+            Ok(match number {
+                SolidNumber::Volume => body.mass_properties().volume,
+                SolidNumber::Area => body.mass_properties().area,
+                SolidNumber::TipDiameter => 2.0 * tip,
+                SolidNumber::RootDiameter => 2.0 * root,
+                SolidNumber::FormDiameter if body.is_external() => 2.0 * form[0].max(form[1]),
+                SolidNumber::FormDiameter => 2.0 * form[0].min(form[1]),
+                SolidNumber::Thickness(diameter) => {
+                    let found = body.thickness(0.5 * diameter).map(|thickness| thickness.arc);
+                    found.ok_or_else(|| format!("{name} has no tooth thickness at {diameter} mm"))?
+                }
+                SolidNumber::Span(teeth) => {
+                    let found = body.span(teeth).map(|span| span.width);
+                    found.ok_or_else(|| format!("no planes touch {name} over {teeth} teeth"))?
+                }
+                SolidNumber::OverBalls(ball) => {
+                    let found = body.ball(ball).map(|found| found.over_balls);
+                    found.ok_or_else(|| format!("no ball of {ball} mm touches both flanks of {name}"))?
+                }
+            })
+        }))
+    }
+
+    fn of_deviation(&self, surfaces: &[String; 2], number: DeviationNumber) -> Result<Number, Failure> {
+        let is_known = self.deviations.borrow().contains_key(surfaces);
+        if !is_known {
+            let pair = [self.named(&surfaces[0])?, self.named(&surfaces[1])?];
+            let found = deviation::measure(pair, false, self.tested.session)?;
+            let found = found.result(Vec::new(), self.origin);
+            self.deviations.borrow_mut().insert(surfaces.clone(), Arc::new(found));
+        }
+        let found = Arc::clone(&self.deviations.borrow()[surfaces]);
+        const UM: f64 = 1e-3;
+        let direction = |k: usize| found.directions[k].as_ref();
+        let value = match number {
+            DeviationNumber::Turn => found.turn_deg.map(f64::to_radians),
+            DeviationNumber::Rms => found.rms_um.map(|um| UM * um),
+            DeviationNumber::Lowest => found.lowest_um.map(|um| UM * um),
+            DeviationNumber::Highest => found.highest_um.map(|um| UM * um),
+            DeviationNumber::Slope(k) => direction(k).map(|of| UM * of.slope_um),
+            DeviationNumber::Crowning(k) => direction(k).map(|of| UM * of.crowning_um),
+            DeviationNumber::Bias => found.bias_um.map(|um| UM * um),
+        };
+        Ok(value.ok_or_else(|| {
+            let why = found.not_done.first().map_or(String::new(), |why| format!(": {}", why.message));
+            format!("{} and {} have no such number{why}", surfaces[0], surfaces[1])
+        }))
+    }
+
+    /// A surface of any job of the file.
+    pub(super) fn named(&self, name: &str) -> Result<Named<'j, 'g>, Failure> {
+        Ok(find(self.jobs, name)?)
+    }
+
+    fn extreme(&self, index: usize, over: PointSet, (value, is_highest): (Expr<'g>, bool)) -> Result<Number, Failure> {
+        let points = self.tested.set(index, over)?;
+        let surface = self.tested.surface(index);
+        let value = self.graph.substitute(&[value], &self.tested.job.bindings());
+        let tape = Tape::new(&value, &surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
+        let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
+        let values = points.iter().map(|point| {
+            evaluator.run(&point.unknowns, &mut out);
+            out[0]
+        });
+        let found = values.reduce(if is_highest { f64::max } else { f64::min });
+        Ok(found.ok_or_else(|| format!("{} has no such point", surface.name)))
+    }
+
+    fn position(&self, onto: &Job<'g>, axis: &str, at: &[Option<f64>]) -> Result<Number, Failure> {
+        let Tested { job, session, .. } = *self.tested;
+        let mut index = 0;
+        let conversion = Conversion::at_positions(self.graph, (job, onto), (&Onto::default(), session), |source| {
+            let wanted: Vec<f64> = source
+                .motions
+                .iter()
+                .zip(&source.ranges)
+                .map(|(motion, range)| {
+                    let place = job.motions.iter().position(|own| own.variable == motion.variable);
+                    let given = place.and_then(|place| at.get(place).copied().flatten());
+                    given.unwrap_or(0.5 * (range.low + range.high))
+                })
+                .collect();
+            let mut positions = source.positions(FOLLOWED as usize);
+            // of one motion positions stand in order
+            index = match wanted[..] {
+                [wanted] => positions.partition_point(|position| position[0] < wanted),
+                _ => positions.len(),
+            };
+            positions.insert(index, wanted);
+            positions
+        });
+        let conversion = match conversion {
+            Ok(conversion) => conversion,
+            Err(Failure::Input(reason)) => return Ok(Err(reason)),
+            Err(other) => return Err(other),
+        };
+        let told = conversion.failures();
+        let name = &conversion.machine.name;
+        let Some(k) = conversion.free.iter().position(|free| free.name == axis) else {
+            return Ok(Err(format!("axis {axis} of {name} does not move the tool")));
+        };
+        Ok(match (told.first(), conversion.line.get(index)) {
+            (None, Some(posture)) => Ok(posture.axes[k]),
+            (Some(why), _) => Err(why.message.clone()),
+            (None, None) => Err(format!("no posture of {name} was found")),
+        })
+    }
+}
+
+fn contact_number(of: &ContactResult, number: ContactNumber, contact: &flank_chain_dsl::Contact<'_>) -> Option<f64> {
+    let middle = of.middle.as_ref();
+    let is_angle = |dimension| crate::project::units::is_angle(dimension);
+    let shown = |dimension, value: f64| if is_angle(dimension) { value.to_radians() } else { value };
+    // told in urad or um
+    let fine = |value: f64| if is_angle(contact.lag.dimension) { 1e-6 * value } else { 1e-3 * value };
+    match number {
+        ContactNumber::Ratio => of.ratio,
+        ContactNumber::PeakToPeak => of.error.as_ref().map(|error| fine(error.peak_to_peak)),
+        ContactNumber::Turn => middle.map(|middle| shown(contact.roll.dimension, middle.turn)),
+        ContactNumber::Lag => middle.map(|middle| shown(contact.lag.dimension, middle.error)),
+        ContactNumber::Parabola => middle.map(|middle| {
+            let per_roll = if is_angle(contact.roll.dimension) { 1f64.to_degrees() } else { 1.0 };
+            fine(middle.parabola) * per_roll * per_roll
+        }),
+        ContactNumber::Backlash => of.backlash.as_ref().map(|room| shown(contact.lag.dimension, room.least)),
+        ContactNumber::NormalBacklash => of.backlash.as_ref().map(|room| room.normal),
+        ContactNumber::Clearance => of.clearances.iter().map(|room| room.least_mm).reduce(f64::min),
+        ContactNumber::HalfLength => middle.and_then(|middle| middle.ellipse).map(|[long, _]| long),
+        ContactNumber::HalfWidth => middle.and_then(|middle| middle.ellipse).map(|[_, short]| short),
+        ContactNumber::GapHigh => middle.and_then(|middle| middle.gap).map(|[high, _]| high),
+        ContactNumber::GapLow => middle.and_then(|middle| middle.gap).map(|[_, low]| low),
+        ContactNumber::Pairs => of.error.as_ref().map(|error| error.pairs as f64),
+        ContactNumber::Z(member) => middle.map(|middle| middle.on[member].z),
+        ContactNumber::Rho(member) => middle.map(|middle| middle.on[member].rho),
+    }
+}

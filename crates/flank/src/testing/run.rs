@@ -1,0 +1,145 @@
+//! One spec, tested.
+
+use flank_chain_dsl::{Compilation, Expectation, Job, Request, Span, compile_request};
+use flank_expr::Graph;
+use rayon::prelude::*;
+
+use crate::project::failure::Failure;
+use crate::project::findings::{Findings, Place};
+use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::requests::{JobSelection, Session, check};
+use crate::project::shown_path;
+use crate::project::spec::Origin;
+use crate::testing::judge::{judged, of_pose};
+use crate::testing::points::{Tested, thinned};
+use crate::testing::quantities::Known;
+use crate::testing::request::TestRequest;
+use crate::testing::result::{TestResult, TestedExpectation, TestedItem, TestedSpec};
+use crate::testing::snapshot;
+
+/// Tests specs, as many at a time as there are threads. The result does not depend on how many these are.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResult, Failure> {
+    let tested = requests.par_iter().map(|request| {
+        check(monitor)?;
+        test_spec(request, &Unwatched)
+    });
+    Ok(TestResult::of_specs(tested.collect::<Result<_, Failure>>()?))
+}
+
+/// Checks all that a spec expects, at few points of each sample.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedSpec, Failure> {
+    let graph = Graph::new();
+    let project = &request.project;
+    let compile = Request { files: project.shared_files(), ..Request::default() };
+    let compilation = compile_request(&graph, project.file(), &compile);
+    let findings = Findings::new(&compilation.diagnostics, &compilation.sources);
+    let nothing = TestedSpec {
+        file: shown_path(project.file()),
+        items: Vec::new(),
+        findings,
+        failure: None,
+        snapshot: None,
+        read: compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect(),
+    };
+    if !compilation.expected_errors.is_empty() {
+        return Ok(wrong_as_expected(&compilation, nothing));
+    }
+    if compilation.has_errors() {
+        return Ok(nothing);
+    }
+    let session = Session::new(request.evaluator, monitor);
+    let which = JobSelection::all(project.clone());
+    match tested(&graph, &compilation, (request, &which, session)) {
+        Ok((items, snapshot)) => Ok(TestedSpec { items, snapshot, ..nothing }),
+        Err(Failure::Cancelled) => Err(Failure::Cancelled),
+        Err(other) => Ok(TestedSpec { failure: Some(other.to_string()), ..nothing }),
+    }
+}
+
+type Found = (Vec<TestedItem>, Option<crate::testing::result::TestedSnapshot>);
+
+fn tested<'g>(
+    graph: &'g Graph,
+    compilation: &Compilation<'g>,
+    (request, which, session): (&TestRequest, &JobSelection, Session<'_>),
+) -> Result<Found, Failure> {
+    let jobs: Vec<Job<'g>> = compilation.jobs.iter().map(thinned).collect();
+    let origin = Origin::of_compilation(compilation);
+    let mut items = Vec::new();
+    for machine in compilation.machines.iter().filter(|machine| request.takes(&machine.name)) {
+        let expectations = machine.expectations.iter().filter_map(|expectation| match expectation.what {
+            flank_chain_dsl::Expected::Pose { off, within } => {
+                Some(verdict(compilation, expectation, of_pose(off, within)))
+            }
+            _ => None,
+        });
+        items.push(TestedItem { name: machine.name.clone(), expectations: expectations.collect() });
+    }
+    let mut snapshots = Vec::new();
+    for job in jobs.iter().filter(|job| request.takes(&job.name)) {
+        session.check()?;
+        let of_job = Tested::new(job, session);
+        let known = Known::new(&of_job, graph, (&jobs, which, &origin));
+        let mut expectations = Vec::new();
+        for expectation in &job.expectations {
+            expectations.push(verdict(compilation, expectation, judged(&known, &expectation.what)?));
+        }
+        items.push(TestedItem { name: job.name.clone(), expectations });
+        if request.snapshot || request.propose {
+            snapshots.push(of_job);
+        }
+    }
+    let snapshot = snapshot::compared(request, &snapshots)?;
+    Ok((items, snapshot))
+}
+
+fn verdict(
+    compilation: &Compilation<'_>,
+    expectation: &Expectation<'_>,
+    found: crate::testing::judge::Verdict,
+) -> TestedExpectation {
+    let (expected, place) = written(compilation, expectation.written);
+    TestedExpectation { expected, place, holds: found.holds, found: found.found, details: found.details }
+}
+
+/// An expectation on one line, without its first word, and its place.
+fn written(compilation: &Compilation<'_>, span: Span) -> (String, Place) {
+    let place = Place::of_span(&compilation.sources, span);
+    let lines = place.text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    let words: Vec<&str> = lines.flat_map(str::split_whitespace).collect();
+    let text = words.join(" ");
+    (text.strip_prefix("expect ").map_or(text.clone(), str::to_string), place)
+}
+
+/// A spec that must be wrong.
+fn wrong_as_expected(compilation: &Compilation<'_>, nothing: TestedSpec) -> TestedSpec {
+    let codes: Vec<&str> = nothing
+        .findings
+        .list()
+        .iter()
+        .filter(|finding| finding.severity == crate::project::findings::Severity::Error)
+        .map(|finding| finding.code)
+        .collect();
+    let expectations = compilation.expected_errors.iter().map(|(code, span)| {
+        let (_, place) = written(compilation, *span);
+        let holds = codes.contains(&code.as_str());
+        let found = if codes.is_empty() { "no error".to_string() } else { codes.join(", ") };
+        TestedExpectation { expected: format!("error {code}"), place, holds, found, details: Vec::new() }
+    });
+    let mut expectations: Vec<TestedExpectation> = expectations.collect();
+    // every error is one that is expected
+    let expected: Vec<&String> = compilation.expected_errors.iter().map(|(code, _)| code).collect();
+    let others: Vec<&str> = codes.iter().copied().filter(|code| !expected.iter().any(|known| known == code)).collect();
+    if let Some(first) = expectations.first_mut().filter(|_| !others.is_empty()) {
+        first.holds = false;
+        first.details.push(format!("also {}", others.join(", ")));
+    }
+    let items = vec![TestedItem { name: String::new(), expectations }];
+    TestedSpec { items, ..nothing }
+}

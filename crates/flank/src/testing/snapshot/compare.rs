@@ -1,0 +1,235 @@
+//! What differs between two snapshots of a spec, in the words of gears.
+
+use flank_chain_dsl::Sample;
+use flank_draw::{PictureOptions, field_maps};
+use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
+use flank_solver::{EaseOff, Outcome, SurfacePoint};
+
+use crate::project::Project;
+use crate::project::failure::Failure;
+use crate::project::{shown_path, units};
+use crate::solve::patch;
+use crate::testing::explain::{Moved, explained};
+use crate::testing::judge::{precise, significant};
+use crate::testing::points::Tested;
+use crate::testing::snapshot::text::KeptSurface;
+
+/// Nine digits of some hundred millimetres end here, mm.
+const DIGITS: f64 = 2e-6;
+/// Names of settings that are told.
+const NAMED: usize = 3;
+
+type Told = (Vec<String>, Option<String>);
+
+/// What differs, a line each, and the map of the surface that moved most.
+pub(super) fn told(
+    jobs: &[Tested<'_, '_>],
+    (before, now): (&[KeptSurface], &[KeptSurface]),
+    project: &Project,
+) -> Result<Told, Failure> {
+    let (mut lines, mut picture) = (Vec::new(), None);
+    let whole = |of: &KeptSurface| format!("{}.{}", of.job, of.name);
+    for old in before.iter().filter(|old| !now.iter().any(|new| whole(new) == whole(old))) {
+        lines.push(format!("{}: there is no such sampled surface any more", whole(old)));
+    }
+    for new in now.iter().filter(|new| !before.iter().any(|old| whole(new) == whole(old))) {
+        lines.push(format!("{}: this surface is new", whole(new)));
+    }
+    for tested in jobs {
+        let mut moved = Vec::new();
+        for (index, surface) in tested.job.surfaces.iter().enumerate() {
+            let name = format!("{}.{}", tested.job.name, surface.name);
+            let both = (before.iter().find(|old| whole(old) == name), now.iter().find(|new| whole(new) == name));
+            let (Some(old), Some(new)) = both else { continue };
+            if old == new {
+                continue;
+            }
+            let beside = Beside::new(tested, index, old);
+            lines.extend(beside.told(new));
+            moved.extend(beside.moved());
+            picture = picture.or_else(|| beside.picture(project));
+        }
+        lines.extend(settings(tested, &moved));
+    }
+    if lines.is_empty() {
+        lines.push("only the order of jobs and surfaces differs".to_string());
+    }
+    Ok((lines, picture))
+}
+
+/// The settings that explain best how surfaces of a job moved.
+fn settings(tested: &Tested<'_, '_>, moved: &[Moved]) -> Option<String> {
+    let found = explained(tested, moved);
+    let best = found.first()?;
+    let each = found.iter().take(NAMED).map(|one| {
+        let by = precise(one.dimension, one.by);
+        let sign = if one.by > 0.0 { "+" } else { "" };
+        format!("{} {sign}{by} ({} %)", one.name, significant((1000.0 * one.share).round() / 10.0))
+    });
+    let each: Vec<String> = each.collect();
+    let what = if best.share > 0.5 { "explained best by" } else { "explained by no single setting; nearest come" };
+    Some(format!("{}: {what} {}", tested.job.name, each.join(", ")))
+}
+
+/// A surface at the places of its snapshot.
+struct Beside<'t, 'j, 'g> {
+    tested: &'t Tested<'j, 'g>,
+    index: usize,
+    old: &'t KeptSurface,
+    /// As it is there now, if it has the coordinates.
+    now: Option<(Sample<'g>, Vec<SurfacePoint>)>,
+}
+
+impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
+    fn new(tested: &'t Tested<'j, 'g>, index: usize, old: &'t KeptSurface) -> Beside<'t, 'j, 'g> {
+        let surface = tested.surface(index);
+        let [first, second] = old.coordinates.each_ref().map(|name| surface.coordinate(name));
+        let coordinates = first.zip(second).map(|(first, second)| [first, second]);
+        let at: Vec<[f64; 2]> = old.points.iter().map(|point| point.at).collect();
+        let now = coordinates.map(|coordinates| tested.generated(index, coordinates, at));
+        Beside { tested, index, old, now }
+    }
+
+    /// How far each point moved along its old normal, mm.
+    fn displacements(&self) -> Vec<Option<f64>> {
+        let Some((_, points)) = &self.now else { return Vec::new() };
+        let along = self.old.points.iter().zip(points).map(|(old, new)| {
+            (old.is_solved() && new.outcome == Outcome::Solved)
+                .then(|| (0..3).map(|k| (new.position[k] - old.position[k]) * old.normal[k]).sum())
+        });
+        along.collect()
+    }
+
+    fn moved(&self) -> Option<Moved> {
+        let (_, points) = self.now.as_ref()?;
+        Some(Moved { surface: self.index, points: points.clone(), by: self.displacements() })
+    }
+
+    fn told(&self, new: &KeptSurface) -> Vec<String> {
+        let name = format!("{}.{}", self.old.job, self.old.name);
+        let Some((_, points)) = &self.now else {
+            return vec![format!("{name}: it has no coordinates {} any more", self.old.coordinates.join(" and "))];
+        };
+        let mut lines = Vec::new();
+        let by = self.displacements();
+        let largest = by.iter().enumerate().filter_map(|(k, by)| by.map(|by| (k, by)));
+        let largest = largest.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a });
+        if let Some((k, most)) = largest.filter(|(_, most)| most.abs() > DIGITS) {
+            let known: Vec<f64> = by.iter().flatten().copied().collect();
+            let rms = (known.iter().map(|x| x * x).sum::<f64>() / known.len() as f64).sqrt();
+            let columns = self.old.counts[1];
+            lines.push(format!(
+                "{name} moved along its normal by at most {} at ({}, {}), rms {}{}",
+                precise(flank_chain_dsl::Dimension::LENGTH, most),
+                k / columns + 1,
+                k % columns + 1,
+                precise(flank_chain_dsl::Dimension::LENGTH, rms),
+                self.angles(&by)
+            ));
+        }
+        let changed = |from: bool| {
+            let pairs = self.old.points.iter().zip(points);
+            pairs.filter(|(old, new)| old.is_solved() == from && (new.outcome == Outcome::Solved) != from).count()
+        };
+        for (count, what) in [(changed(true), "no longer solved"), (changed(false), "solved that were not")] {
+            if count > 0 {
+                lines.push(format!("{name}: {} {what}", units::counted(count, "point")));
+            }
+        }
+        lines.extend(self.other_branch(&name, points));
+        if self.old.coordinates != new.coordinates || self.old.counts != new.counts {
+            lines.push(format!("{name}: its sample is another one"));
+        }
+        if self.old.work != new.work && lines.is_empty() {
+            let [[old, old_boxes], [new, new_boxes]] = [self.old.work, new.work];
+            lines.push(format!(
+                "{name}: the same points took {new} evaluations and {new_boxes} boxes instead of {old} and {old_boxes}"
+            ));
+        }
+        if lines.is_empty() {
+            lines.push(format!("{name}: its sample, its frame or its last digits differ"));
+        }
+        lines
+    }
+
+    /// Slopes of what moved: pressure angle along the profile, helix angle along the tooth.
+    fn angles(&self, by: &[Option<f64>]) -> String {
+        let Some(of) = EaseOff::of_deviations(by, self.old.counts) else { return String::new() };
+        let labels = self.tested.surface(self.index).sample.as_ref().map(|sample| sample.labels.clone());
+        let [rows, columns] = self.old.counts;
+        let apart = |a: usize, b: usize| {
+            let (a, b) = (&self.old.points[a].position, &self.old.points[b].position);
+            (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
+        };
+        let lengths = [
+            apart(columns / 2, (rows - 1) * columns + columns / 2),
+            apart(rows / 2 * columns, rows / 2 * columns + columns - 1),
+        ];
+        let mut out = String::new();
+        for k in 0..2 {
+            let label = labels.as_ref().map_or("", |labels| labels[k].as_str());
+            let what = match label {
+                "rho" | "root -> tip" => "pressure angle",
+                "z" | "toe -> heel" => "helix angle",
+                _ => continue,
+            };
+            let arcmin = of.slopes[k].atan2(lengths[k]).to_degrees() * 60.0;
+            if arcmin.is_finite() && arcmin.abs() >= 5e-4 {
+                out += &format!(", {what} {}{} arcmin", if arcmin > 0.0 { "+" } else { "" }, significant(arcmin));
+            }
+        }
+        out
+    }
+
+    /// Whether unknowns are elsewhere at points that are the same.
+    fn other_branch(&self, name: &str, points: &[SurfacePoint]) -> Option<String> {
+        let surface = self.tested.surface(self.index);
+        let jumped = self.old.points.iter().zip(points).find_map(|(old, new)| {
+            let both = old.is_solved() && new.outcome == Outcome::Solved;
+            let unknowns = old.unknowns.iter().zip(&new.unknowns).zip(&surface.unknowns);
+            let far =
+                unknowns.filter(|((old, new), unknown)| (*old - *new).abs() > FAR * (unknown.high - unknown.low).abs());
+            far.map(|((old, new), unknown)| (unknown, *old, *new)).next().filter(|_| both)
+        });
+        let (unknown, old, new) = jumped?;
+        let [old, new] = [old, new].map(|value| units::text(unknown.dimension, value, 3));
+        Some(format!("{name}: {} is {new} instead of {old}: another branch?", unknown.name))
+    }
+
+    /// The map of what moved, in SVG.
+    fn picture(&self, project: &Project) -> Option<String> {
+        let (_, points) = self.now.as_ref()?;
+        let by = self.displacements();
+        let is_moved = by.iter().flatten().any(|by| by.abs() > DIGITS);
+        let [rows, columns] = self.old.counts;
+        if !is_moved || rows < 2 || columns < 2 {
+            return None;
+        }
+        let surface = self.tested.surface(self.index);
+        let sample = surface.sample.as_ref()?;
+        let axis = |k: usize| Axis { label: sample.labels[k].clone(), count: self.old.counts[k] };
+        let patch = patch(self.tested.job, &surface.name, surface, [axis(0), axis(1)], points);
+        let field = Field {
+            name: "moved".to_string(),
+            unit: "um".to_string(),
+            meaning: "along the normal, plus is material".to_string(),
+            values: Values::Scalars(by.into_iter().map(|by| by.map(|by| 1e3 * by)).collect()),
+        };
+        let header = Header {
+            program: concat!("flank ", env!("CARGO_PKG_VERSION")).to_string(),
+            spec: shown_path(project.file()),
+            spec_hash: String::new(),
+            job: self.tested.job.name.clone(),
+            conventions: Vec::new(),
+        };
+        let dataset = Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] };
+        let title = format!("{}.{} beside its snapshot", self.old.job, self.old.name);
+        Some(
+            field_maps(&dataset, &title, &[(0, 0)], "along the normal, plus is material", &PictureOptions::default())
+                .svg(),
+        )
+    }
+}
+
+/// An unknown that is farther away than this share of its range is another solution.
+const FAR: f64 = 0.2;

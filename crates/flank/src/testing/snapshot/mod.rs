@@ -1,0 +1,112 @@
+//! What a spec derived once, as text beside it.
+
+mod compare;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use crate::project::failure::Failure;
+use crate::project::files::write_texts;
+use crate::project::shown_path;
+use crate::testing::points::Tested;
+use crate::testing::request::TestRequest;
+use crate::testing::result::{TestedSnapshot, TestedSpec};
+use text::{Kept, KeptSurface};
+
+/// Rows and columns of a sample that are kept.
+const MOST_LINES: usize = 4;
+/// Bytes of a snapshot that are read.
+const MOST_BYTES: usize = 1 << 24;
+
+/// The snapshot of a spec: beside it, with its own ending.
+fn beside(spec: &Path) -> PathBuf {
+    spec.with_extension("snapshot")
+}
+
+/// What differs from the snapshot of a spec; nothing if it has none, unless one is proposed. What is filtered is not compared: a snapshot
+/// is one of all jobs.
+///
+/// # Errors
+/// If the snapshot cannot be read, or is no longer what the program wrote.
+pub(super) fn compared(request: &TestRequest, jobs: &[Tested<'_, '_>]) -> Result<Option<TestedSnapshot>, Failure> {
+    if request.filter.is_some() || !(request.snapshot || request.propose) {
+        return Ok(None);
+    }
+    let path = beside(request.project.file());
+    let files = request.project.files();
+    let file = shown_path(&path);
+    let is_there = files.exists(&path);
+    if !is_there && !request.propose {
+        return Ok(None);
+    }
+    let now: Vec<KeptSurface> = jobs.iter().flat_map(kept).collect();
+    let text = text::written(&shown_path(Path::new(path.file_stem().unwrap_or_default())), &now);
+    if !is_there {
+        let differences = vec!["there is no snapshot yet".to_string()];
+        return Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture: None }));
+    }
+    let unreadable = |error: std::io::Error| Failure::Input(format!("cannot read `{file}`: {error}"));
+    let before = files.real_path(&path).and_then(|real| files.read(&real, MOST_BYTES)).map_err(unreadable)?;
+    if before == text {
+        return Ok(Some(TestedSnapshot { file, is_same: true, differences: Vec::new(), text: None, picture: None }));
+    }
+    let (differences, picture) = match text::read(&before) {
+        Ok(before) => compare::told(jobs, (&before, &now), &request.project)?,
+        Err(why) => (vec![why.told()], None),
+    };
+    Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture }))
+}
+
+/// Writes the snapshot that a tested spec would have now; its path, if anything differs.
+///
+/// # Errors
+/// What stands in the way.
+pub fn accept_snapshot(tested: &TestedSpec) -> Result<Option<String>, Failure> {
+    let Some(TestedSnapshot { file, text: Some(text), .. }) = &tested.snapshot else { return Ok(None) };
+    let path = Path::new(file);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    write_texts(folder, &[(name, text.clone())])?;
+    Ok(Some(file.clone()))
+}
+
+/// The surfaces of a job as they are kept.
+fn kept(tested: &Tested<'_, '_>) -> Vec<KeptSurface> {
+    let of_surface = |(index, surface): (usize, &flank_chain_dsl::GeneratedSurface<'_>)| {
+        let sample = surface.sample.as_ref()?;
+        let points = tested.points(index);
+        let [rows, columns] = sample.counts.map(lines);
+        let places = rows.iter().flat_map(|row| columns.iter().map(move |column| (*row, *column)));
+        let points = places.map(|(row, column)| {
+            let point = &points[row * sample.counts[1] + column];
+            Kept {
+                at: sample.grid.at(row, column),
+                status: point.outcome.word().to_string(),
+                position: point.position,
+                normal: point.normal,
+                unknowns: point.unknowns.clone(),
+            }
+        });
+        Some(KeptSurface {
+            job: tested.job.name.clone(),
+            name: surface.name.clone(),
+            frame: surface.frame.clone(),
+            coordinates: sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
+            unknowns: surface.unknowns.iter().map(|unknown| unknown.name.clone()).collect(),
+            counts: [rows.len(), columns.len()],
+            solved: tested.points(index).iter().filter(|point| point.outcome.word() == "solved").count(),
+            asked: tested.points(index).len(),
+            work: tested.work(index),
+            points: points.collect(),
+        })
+    };
+    tested.job.surfaces.iter().enumerate().filter_map(of_surface).collect()
+}
+
+/// So many of some lines, evenly, both ends among them.
+fn lines(count: usize) -> Vec<usize> {
+    if count <= MOST_LINES {
+        return (0..count).collect();
+    }
+    (0..MOST_LINES).map(|k| k * (count - 1) / (MOST_LINES - 1)).collect()
+}

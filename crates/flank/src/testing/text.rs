@@ -1,0 +1,66 @@
+//! What `flank test` says.
+
+use std::fmt::{self, Display};
+
+use crate::project::units;
+use crate::testing::result::{TestResult, TestedSnapshot, TestedSpec};
+
+impl Display for TestResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.specs.iter().try_for_each(|spec| write!(f, "{spec}"))?;
+        let tested = self.specs.iter().filter(|spec| spec.says_something()).count();
+        let specs = units::counted(tested, "spec");
+        let failed = match self.failed {
+            0 => "all hold".to_string(),
+            1 => "1 failure".to_string(),
+            many => format!("{many} failures"),
+        };
+        writeln!(f, "{specs}, {}: {failed}", units::counted(self.passed + self.failed, "expectation"))
+    }
+}
+
+impl TestedSpec {
+    /// Whether there is something to say of it: a file of machines or tools without expectations is passed over.
+    pub(super) fn says_something(&self) -> bool {
+        !self.items.is_empty() || self.failed() > 0
+    }
+}
+
+/// A line, and what does not hold below it.
+impl Display for TestedSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.says_something() {
+            return Ok(());
+        }
+        let (passed, failed) = (self.passed(), self.failed());
+        let all = units::counted(passed + failed, "expectation");
+        match (passed, failed) {
+            _ if self.is_wrong() => {
+                writeln!(f, "{}: {} in the text", self.file, units::counted(self.findings.counts()[0], "error"))?
+            }
+            (0, 0) => writeln!(f, "{}: nothing is expected", self.file)?,
+            (_, 0) => writeln!(f, "{}: {all} hold{}", self.file, if passed == 1 { "s" } else { "" })?,
+            _ => writeln!(f, "{}: {failed} of {all} failed", self.file)?,
+        }
+        if let Some(why) = &self.failure {
+            writeln!(f, "  {why}")?;
+        }
+        for item in &self.items {
+            for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
+                let at = format!("{}:{}", expectation.place.line, expectation.place.column);
+                writeln!(f, "  {}:{at}: {}", item.name, expectation.expected)?;
+                writeln!(f, "    is {}", expectation.found)?;
+                expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
+            }
+        }
+        let differs = self.snapshot.iter().filter(|snapshot| !snapshot.is_same);
+        differs.into_iter().try_for_each(|snapshot| write!(f, "{snapshot}"))
+    }
+}
+
+impl Display for TestedSnapshot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "  differs from {}:", self.file)?;
+        self.differences.iter().try_for_each(|line| writeln!(f, "    {line}"))
+    }
+}

@@ -1,0 +1,180 @@
+//! Contacts that are wanted: what is possible comes back through the whole contact, what is not is told.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use flank::{
+    Buffers, ContactRequest, ContactResult, Disk, Failure, JobSelection, NotDoneKind, Project, SynthesisRequest,
+    SynthesisResult, Unwatched, contact, synthesis,
+};
+
+/// Settings that wishes are made and met by, each with the change up to which it is drawn, in its unit.
+const SETTINGS: [(&str, f64, f64, &str); 6] = [
+    ("p.radial_distance", 99.808, 0.15, "mm"),
+    ("p.work_offset", -1.8799, 0.1, "mm"),
+    ("p.machine_center_to_crossing_point", 4.9987, 0.1, "mm"),
+    ("p.ratio_of_roll", 3.4108, 0.004, ""),
+    ("p.modified_roll_2c", 0.092298, 0.003, ""),
+    ("pinion_cutter.blade_angle", 19.882, 0.1, "deg"),
+];
+
+/// The pair with a wish of its own.
+fn wished(wish: &str) -> JobSelection {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/pairs/wished.chain");
+    let text = format!(
+        "use \"bevel_19x62.chain\"
+        use \"../machines/cradle.chain\"
+        job wished extends bevel_19x62 {{
+            param shift : length in -0.02 mm .. 0.02 mm = 0 mm
+            machine p = cradle_generator(
+                radial_distance: 99.808 mm + shift, cradle_angle: -51.522 deg,
+                work_offset: -1.8799 mm, sliding_base: -1.3231 mm, machine_root_angle: 15.64096727073747 deg,
+                machine_center_to_crossing_point: 4.9987 mm,
+                ratio_of_roll: 3.4108, modified_roll_2c: 0.092298, modified_roll_6d: -0.27878
+            )
+            want wish in drive_side = vertex({wish})
+        }}"
+    );
+    let files = Buffers::over(Arc::new(Disk)).with(&spec, text);
+    JobSelection { project: Project::open(spec, Arc::new(files)), job: Some("wished".to_string()), set: vec![] }
+}
+
+fn solved(wish: &str, vary: &[&str]) -> Result<SynthesisResult, Failure> {
+    let vary = vary.iter().map(|name| name.to_string()).collect();
+    synthesis(&SynthesisRequest { vary, ..SynthesisRequest::new(wished(wish), "wish") }, &Unwatched)
+}
+
+fn rolled(set: Vec<(String, String)>) -> ContactResult {
+    let selection = JobSelection { set, ..wished("ellipse: 8 mm") };
+    let request = ContactRequest { positions: 12, no_picture: true, format: vec![], ..ContactRequest::new(selection) };
+    let mut found = Vec::new();
+    contact(&request, &Unwatched, &mut |of| found.push(of)).expect("a contact");
+    found.remove(0)
+}
+
+/// From -1 to 1, the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// z, rho, path in degrees, length of the ellipse, height of the error over a pitch in urad; `None` unless flank touches flank in a point
+/// within both teeth.
+fn numbers(of: &ContactResult) -> Option<[f64; 5]> {
+    let middle = of.middle.as_ref().filter(|middle| middle.is_vertex && of.not_done.is_empty())?;
+    let [long, _] = middle.ellipse?;
+    let pitch = 360.0 / 19.0;
+    let height = middle.parabola.abs() * pitch * pitch / 8.0;
+    Some([middle.on[1].z, middle.on[1].rho, middle.on[1].path_angle?, 2.0 * long, height])
+}
+
+/// Fifty contacts that some settings make are wished for, without their settings. The settings that are found, given to `flank contact`,
+/// make them: to 1e-6 mm, 1e-6 rad of the path, and of the error 1e-6 rad a thousand times over.
+#[test]
+fn what_is_possible_comes_back() {
+    let mut dice = Dice(21);
+    let (mut met, mut drawn) = (0, 0);
+    while met < 50 {
+        drawn += 1;
+        assert!(drawn < 200, "{met} of {drawn} draws are contacts");
+        let set = SETTINGS.iter().map(|(name, value, by, unit)| {
+            (name.to_string(), format!("{:?} {unit}", value + by * dice.share()).trim_end().to_string())
+        });
+        let Some(wanted) = numbers(&rolled(set.collect())) else { continue };
+        let [z, rho, path, ellipse, height] = wanted;
+        let wish = format!(
+            "z: {z:?} mm, rho: {rho:?} mm, path: {path:?} deg, ellipse: {ellipse:?} mm, transmission_error: {:?} rad",
+            1e-6 * height
+        );
+        let found = solved(&wish, &SETTINGS.map(|(name, ..)| name)).expect("a result");
+        assert!(found.not_done.is_empty(), "{drawn}: {wish}: {:?}", found.not_done);
+        assert!(found.conditions.iter().all(|of| of.is_met) && found.is_settled, "{drawn}: {:?}", found.conditions);
+        let set = found
+            .settings
+            .iter()
+            .map(|of| (of.name.clone(), format!("{:?} {}", of.new, of.unit).trim_end().to_string()));
+        let there = numbers(&rolled(set.collect())).expect("they touch");
+        for (k, most) in [(0, 1e-6), (1, 1e-6), (2, 1e-6f64.to_degrees()), (3, 1e-6), (4, 1e-3)] {
+            let off = (there[k] - wanted[k]).abs();
+            assert!(off < most, "{drawn}: number {k} is off by {off:e}: {there:?} for {wanted:?}");
+        }
+        met += 1;
+    }
+}
+
+/// Twenty wishes that nothing makes, each with a word of the reason.
+#[test]
+fn what_is_not_possible_is_told() {
+    let all = SETTINGS.map(|(name, ..)| name);
+    let (place, other) = ("z: 21.7 mm, rho: 106.3 mm", ["pinion_cutter.inside_point_radius"]);
+    let cases: Vec<(String, Vec<&str>, &str)> = vec![
+        // off the tooth
+        ("lengthwise: 1.1, profilewise: 0.5".into(), all.to_vec(), "heel of gear_convex"),
+        ("lengthwise: -0.1, profilewise: 0.5".into(), all.to_vec(), "toe of gear_convex"),
+        ("lengthwise: 0.5, profilewise: 1.3".into(), all.to_vec(), "tip of gear_convex"),
+        ("z: 80 mm, rho: 106 mm".into(), all.to_vec(), "gear_convex"),
+        ("z: 21.7 mm, rho: 300 mm".into(), all.to_vec(), "gear_convex"),
+        // a setting of the other flank
+        ("lengthwise: 0.5".into(), other.to_vec(), "none of these settings changes lengthwise"),
+        ("path: 20 deg".into(), other.to_vec(), "none of these settings changes path"),
+        ("ellipse: 9 mm".into(), other.to_vec(), "none of these settings changes ellipse"),
+        ("transmission_error: 10 arcsec".into(), other.to_vec(), "none of these settings changes transmission_error"),
+        // the cradle's angle turns the tooth, and shifts where the roll is modified
+        ("path: 20 deg".into(), vec!["p.cradle_angle"], "path: with all else as it is wanted it comes to 8."),
+        // more numbers than settings
+        (place.into(), vec!["p.radial_distance"], "z and rho together"),
+        ("lengthwise: 0.4, profilewise: 0.8".into(), vec!["p.ratio_of_roll"], "lengthwise and profilewise together"),
+        ("path: 12 deg, ellipse: 7 mm".into(), vec!["p.work_offset"], "path and ellipse together"),
+        (format!("{place}, path: 9 deg"), vec!["p.ratio_of_roll", "p.radial_distance"], "together"),
+        (format!("{place}, ellipse: 7 mm"), vec!["p.ratio_of_roll", "p.radial_distance"], "together"),
+        (
+            "ellipse: 7 mm, transmission_error: 25 arcsec".into(),
+            vec!["p.modified_roll_2c"],
+            "ellipse and transmission_error together",
+        ),
+        (
+            "path: 9 deg, transmission_error: 25 arcsec".into(),
+            vec!["p.modified_roll_2c"],
+            "path and transmission_error together",
+        ),
+        // a range that ends before, and a place where the mate's tooth ends
+        ("lengthwise: 0.5".into(), vec!["shift"], "bounds: shift"),
+        ("profilewise: 0.1".into(), vec!["pinion_cutter.blade_angle"], "beyond the tip of pinion_concave"),
+        // with this path and this error the flanks part too slowly in one direction for so short an ellipse
+        (format!("{place}, path: 9 deg, ellipse: 0.2 mm, transmission_error: 29 arcsec"), all.to_vec(), "ellipse"),
+    ];
+    assert_eq!(cases.len(), 20);
+    let mut wrong = Vec::new();
+    for (wish, vary, word) in cases {
+        let told = match solved(&wish, &vary) {
+            Ok(found) => {
+                assert!(found.not_done.iter().any(|of| of.kind == NotDoneKind::NotMet), "{wish} is met");
+                format!("{:?}", found.not_done)
+            }
+            Err(Failure::Unsolved(reason)) => reason,
+            Err(other) => panic!("{wish}: {other}"),
+        };
+        if !told.contains(word) {
+            wrong.push(format!("{wish} by {vary:?}: {told}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A number that need not hold exactly gives way, and the exact ones hold.
+#[test]
+fn least_squares_give_way_to_what_is_exact() {
+    let vary = ["p.radial_distance", "p.ratio_of_roll"];
+    let found = solved("z: 21.8 mm, rho: 106.4 mm, path: about(8 deg, 5 deg), ellipse: about(6.8 mm, 1 mm)", &vary)
+        .expect("a result");
+    assert!(found.not_done.is_empty(), "{:?}", found.not_done);
+    for of in &found.conditions {
+        let off = (of.reached.expect("it is there") - of.wanted).abs();
+        assert!(off < of.within.unwrap_or(1e-6), "{of:?}");
+        assert!(of.within.is_none() || off > 1e-6, "two settings have only two numbers to give: {of:?}");
+    }
+}

@@ -1,0 +1,90 @@
+//! The axes of a five-axis machine at a pose of a cutter, which its own turn does not change.
+
+use flank_expr::geometry::{Axis, Chain, Step, Vector3 as Symbolic};
+use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use nalgebra::Vector3;
+
+use crate::conversion::explicit::{ExplicitProblem, NotExplicit};
+use crate::milling::pose::CutterPose;
+
+/// A pose at which formulas are tried: no axis of it is special.
+const SOMEWHERE: [f64; 5] = [1.0, 2.0, 3.0, 0.3, 0.4];
+
+/// The axes of a machine in closed form.
+#[derive(Clone, Debug)]
+pub struct MillAxes {
+    elbows: [Tape; 2],
+    forward: Tape,
+    axes: usize,
+    pole: [f64; 3],
+    across: f64,
+}
+
+impl MillAxes {
+    /// Of a machine whose cutter's frame (z out of the spindle) stands in the work by a chain in `axes`, everything else in numbers.
+    ///
+    /// # Errors
+    /// If the machine has not two rotary and three linear axes that turn about lines and shift along lines.
+    ///
+    /// # Panics
+    /// If the chain depends on anything but the axes.
+    pub fn new<'g>(graph: &'g Graph, t_work_tool: &Chain<'g>, axes: &[Expr<'g>]) -> Result<MillAxes, NotExplicit> {
+        let spin = graph.variable("turn of the cutter");
+        let target = t_work_tool.then(&Chain::new(graph, vec![Step::Rotate(Axis::Z, spin)]));
+        let unknowns: Vec<Expr<'g>> = axes.iter().copied().chain([spin]).collect();
+        let motions = ["x", "y", "z", "about z", "about x"].map(|name| graph.variable(format!("pose {name}")));
+        let [x, y, z, about_z, about_x] = motions;
+        let steps =
+            vec![Step::Translate(Symbolic([x, y, z])), Step::Rotate(Axis::Z, about_z), Step::Rotate(Axis::X, about_x)];
+        let source = Chain::new(graph, steps);
+        let somewhere = [SOMEWHERE.to_vec()];
+        let problem = ExplicitProblem {
+            target: &target,
+            unknowns: &unknowns,
+            source: &source,
+            motions: &motions,
+            bindings: &[],
+            line: (&somewhere, &[]),
+        };
+        let both = problem.both_elbows()?;
+        let inputs: Vec<Expr<'g>> = both.given.iter().flat_map(|vector| vector.0).collect();
+        let tape = |formulas: &[Expr<'g>]| Tape::new(&formulas[..axes.len()], &inputs).expect("nothing is unbound");
+        let along = Symbolic::constant(graph, [0.0, 0.0, 1.0]);
+        let pose = t_work_tool.point(Symbolic::zero(graph)).0.into_iter().chain(t_work_tool.direction(along).0);
+        Ok(MillAxes {
+            elbows: both.formulas.each_ref().map(|formulas| tape(formulas)),
+            forward: Tape::new(&pose.collect::<Vec<_>>(), axes).expect("nothing is unbound"),
+            axes: axes.len(),
+            pole: both.pole,
+            across: both.across,
+        })
+    }
+
+    /// The axes at a pose on one of both elbows, mm and radians: angles within half a turn to both sides of zero.
+    pub fn at(&self, pose: &CutterPose, elbow: usize) -> Vec<f64> {
+        let out_of_spindle = -Vector3::from(pose.axis);
+        let least = out_of_spindle.iamin();
+        let across = out_of_spindle.cross(&Vector3::ith(least, 1.0)).normalize() * self.across;
+        let mut inputs = [0.0; 9];
+        for k in 0..3 {
+            (inputs[k], inputs[3 + k], inputs[6 + k]) = (out_of_spindle[k], across[k], pose.tip[k]);
+        }
+        let mut out = vec![0.0; self.axes];
+        ScalarEvaluator::new(&self.elbows[elbow]).run(&inputs, &mut out);
+        out
+    }
+
+    /// Origin and axis of the cutter, towards the spindle, in the work's frame where the axes stand so.
+    pub fn pose(&self, axes: &[f64]) -> [f64; 6] {
+        let mut out = [0.0; 6];
+        ScalarEvaluator::new(&self.forward).run(axes, &mut out);
+        let [x, y, z, i, j, k] = out;
+        [x, y, z, -i, -j, -k]
+    }
+
+    /// The angle between the cutter's axis and the first rotary axis as seen from the work, radians: where it is zero, that axis is free.
+    pub fn from_pole(&self, axis: [f64; 3]) -> f64 {
+        let (axis, pole) = (Vector3::from(axis), Vector3::from(self.pole));
+        axis.cross(&pole).norm().atan2(axis.dot(&pole).abs())
+    }
+}

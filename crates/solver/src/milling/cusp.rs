@@ -1,0 +1,122 @@
+//! What two neighbouring passes leave between them, and what a straight block leaves along its pass.
+
+use crate::milling::height::lowest;
+use crate::milling::outline::Cutter;
+use crate::milling::series::PoseSeries;
+
+/// Steps of a bracketed root at the most.
+const MOST_STEPS: u32 = 200;
+/// A root is as near as this share of its bracket.
+const CLOSE: f64 = 1e-15;
+/// Steps of a search for an extreme by sections.
+const SECTIONS: u32 = 60;
+
+/// The ridge between two passes at a place along them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cusp {
+    /// The share across all passes at which both are equally high.
+    pub share: f64,
+    /// How high it stands, mm.
+    pub height: f64,
+}
+
+/// The ridge between the passes at two shares, on the line `across` the surface at the share `along` of each pass: where both leave the same.
+///
+/// `None` if a pass does not reach that far.
+pub fn cusp(
+    across: &PoseSeries,
+    passes: [&PoseSeries; 2],
+    shares: [f64; 2],
+    along: f64,
+    cutter: &Cutter,
+) -> Option<Cusp> {
+    let mut near = [along; 2];
+    let mut heights = |share: f64| -> Option<[f64; 2]> {
+        let line = across.at(share);
+        let mut out = [0.0; 2];
+        for k in [0, 1] {
+            let found = lowest(passes[k], cutter, &line, near[k])?;
+            (out[k], near[k]) = (found.height, found.share);
+        }
+        Some(out)
+    };
+    let [mut low, mut high] = shares;
+    let difference = |[a, b]: [f64; 2]| a - b;
+    let (mut at_low, mut at_high) = (difference(heights(low)?), difference(heights(high)?));
+    // passes that cut too deep beside themselves are higher where they are
+    let sign = if at_low <= 0.0 && at_high >= 0.0 { 1.0 } else { -1.0 };
+    (at_low, at_high) = (sign * at_low, sign * at_high);
+    if !(at_low <= 0.0 && at_high >= 0.0) {
+        return None;
+    }
+    let mut side = 0;
+    let (mut share, mut height) = (low, 0.0);
+    for _ in 0..MOST_STEPS {
+        share =
+            if at_high > at_low { (low * at_high - high * at_low) / (at_high - at_low) } else { 0.5 * (low + high) };
+        let found = heights(share)?;
+        height = 0.5 * (found[0] + found[1]);
+        let off = sign * difference(found);
+        if off.abs() < 1e-14 * (1.0 + height.abs()) || (high - low).abs() < CLOSE {
+            break;
+        }
+        // the Illinois rule: an end that stays counts half
+        if off < 0.0 {
+            (low, at_low) = (share, off);
+            if side == -1 {
+                at_high *= 0.5;
+            }
+            side = -1;
+        } else {
+            (high, at_high) = (share, off);
+            if side == 1 {
+                at_low *= 0.5;
+            }
+            side = 1;
+        }
+    }
+    Some(Cusp { share, height })
+}
+
+/// What a block leaves along its pass, with the share of the pass: the extreme farther from `stock`, mm.
+///
+/// `surface` is the pass on the surface, `block` the cutter from the one share to the other. `None` if the cutter is not found there.
+pub fn left_by_block(
+    surface: &PoseSeries,
+    block: &PoseSeries,
+    [from, to]: [f64; 2],
+    cutter: &Cutter,
+    stock: f64,
+) -> Option<Cusp> {
+    let left = |share: f64| {
+        let near = (share - from) / (to - from);
+        lowest(block, cutter, &surface.at(share), near).map(|found| found.height - stock)
+    };
+    // the middle tells which way it goes
+    let middle = left(0.5 * (from + to))?;
+    let sign = if middle < 0.0 { -1.0 } else { 1.0 };
+    let found = peak([from, to], |share| left(share).map(|left| sign * left))?;
+    Some(Cusp { share: found.0, height: stock + sign * found.1 })
+}
+
+/// The largest value of a function with one peak between two ends, and where: by golden sections, then the parabola through the last three.
+pub fn peak([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
+    let golden = 0.5 * (5.0f64.sqrt() - 1.0);
+    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_a, mut at_b) = (value(a)?, value(b)?);
+    for _ in 0..SECTIONS {
+        if at_a > at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - golden * (high - low);
+            at_a = value(a)?;
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + golden * (high - low);
+            at_b = value(b)?;
+        }
+        if high - low < 1e-9 {
+            break;
+        }
+    }
+    Some(if at_a > at_b { (a, at_a) } else { (b, at_b) })
+}

@@ -1,0 +1,275 @@
+//! Bodies in mesh: turned through a pitch at their mounting distance, teeth and spaces touch and have no volume in common. A body whose flanks
+//! are inside out, or of the other hand, does not pass.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::Arc;
+
+use flank::{
+    ContactRequest, Disk, EvaluatorOptions, JobSelection, MeshFormat, PointFormat, Project, SolidPart, SolidRequest,
+    Unwatched, contact, solid,
+};
+use flank_expr::{Graph, ScalarEvaluator, Tape};
+use flank_tests::bodies::triangles;
+use flank_tests::{job, repository};
+use nalgebra::{Matrix4, Point3, Rotation3, Vector3};
+
+/// How far edges of the meshes lie off the exact surfaces, mm.
+const DEVIATION: f64 = 5e-4;
+/// What may be between the bodies at their contact, and what they may have in common, mm: that of both meshes.
+const GAP: f64 = 1e-3;
+/// Points farther apart are not looked at, mm.
+const NEAR: f64 = 0.04;
+/// Of the cells in which triangles are looked up, mm.
+const CELL: f64 = 0.3;
+/// A triangle that spans more cells is no flank.
+const MOST_CELLS: i64 = 40;
+
+type Triangle = [Point3<f64>; 3];
+
+/// The triangles of a space or a tooth, found by place.
+struct Body {
+    triangles: Vec<Triangle>,
+    /// The least and the largest coordinates.
+    bounds: [Point3<f64>; 2],
+    cells: HashMap<[i64; 3], Vec<usize>>,
+}
+
+impl Body {
+    fn new(triangles: Vec<Triangle>) -> Body {
+        let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        for (k, triangle) in triangles.iter().enumerate() {
+            around(triangle, NEAR).into_iter().for_each(|cell| cells.entry(cell).or_default().push(k));
+        }
+        let corners = || triangles.iter().flatten().copied();
+        let bounds = [corners().reduce(|a, b| a.inf(&b)), corners().reduce(|a, b| a.sup(&b))];
+        let bounds = bounds.map(|corner| corner.expect("triangles"));
+        Body { triangles, bounds, cells }
+    }
+
+    /// The least distance of points on a triangle, so far apart; infinite where none is near.
+    fn least(&self, triangle: &Triangle, spacing: f64) -> f64 {
+        let [low, high] = &self.bounds;
+        let is_beside = |k: usize| {
+            triangle.iter().all(|corner| corner[k] < low[k]) || triangle.iter().all(|corner| corner[k] > high[k])
+        };
+        if (0..3).any(is_beside) || !around(triangle, 0.0).iter().any(|cell| self.cells.contains_key(cell)) {
+            return f64::INFINITY;
+        }
+        let [a, b, c] = triangle;
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let parts = (longest / spacing).ceil().max(1.0) as usize;
+        let places = (0..=parts).flat_map(|i| (0..=parts - i).map(move |j| (i, j)));
+        let points = places.map(|(i, j)| a + ((b - a) * i as f64 + (c - a) * j as f64) / parts as f64);
+        points.filter_map(|point| self.distance(point)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far a point lies outside, less than nothing inside; `None` where nothing is near.
+    fn distance(&self, point: Point3<f64>) -> Option<f64> {
+        let near = self.cells.get(&[0, 1, 2].map(|k| cell(point[k])))?;
+        let nearest = near.iter().map(|k| beside(&self.triangles[*k], point));
+        let (off, side) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (off < NEAR).then_some(off * side)
+    }
+}
+
+/// The cells that a triangle may touch; none where these are too many.
+fn around(triangle: &Triangle, by: f64) -> Vec<[i64; 3]> {
+    let bound = |k: usize, of: fn(f64, f64) -> f64, by: f64| {
+        cell(triangle.iter().map(|corner| corner[k]).reduce(of).expect("three") + by)
+    };
+    let [low, high] = [[0, 1, 2].map(|k| bound(k, f64::min, -by)), [0, 1, 2].map(|k| bound(k, f64::max, by))];
+    if (0..3).any(|k| high[k] - low[k] > MOST_CELLS) {
+        return Vec::new();
+    }
+    let plane = (low[0]..=high[0]).flat_map(|i| (low[1]..=high[1]).map(move |j| [i, j]));
+    plane.flat_map(|[i, j]| (low[2]..=high[2]).map(move |l| [i, j, l])).collect()
+}
+
+fn cell(x: f64) -> i64 {
+    (x / CELL).floor() as i64
+}
+
+/// The distance of a point from a triangle, and on which side it is (C. Ericson, Real-Time Collision Detection, 5.1.5, by Voronoi regions).
+fn beside([a, b, c]: &Triangle, p: Point3<f64>) -> (f64, f64) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let side = if ab.cross(&ac).dot(&ap) >= 0.0 { 1.0 } else { -1.0 };
+    let on_edge = |from: &Point3<f64>, to: &Point3<f64>| {
+        let along = to - from;
+        let share = ((p - from).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+        (p - (from + share * along)).norm()
+    };
+    let normal = ab.cross(&ac);
+    let is_over =
+        [(a, b), (b, c), (c, a)].iter().all(|(from, to)| normal.cross(&(*to - *from)).dot(&(p - *from)) >= 0.0);
+    if is_over {
+        return (normal.dot(&ap).abs() / normal.norm(), side);
+    }
+    (on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a)), side)
+}
+
+fn read(path: &Path) -> Vec<Triangle> {
+    let corner = |corner: [f32; 3]| Point3::from(corner.map(f64::from));
+    triangles(path).into_iter().map(|triangle| triangle.map(corner)).collect()
+}
+
+fn selection(spec: &str) -> JobSelection {
+    JobSelection { project: Project::open(repository(spec), Arc::new(Disk)), job: None, set: Vec::new() }
+}
+
+/// One part of all solids of a spec as triangles, by the names of the solids.
+fn parts(spec: &str, part: SolidPart) -> HashMap<String, Vec<Triangle>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = SolidRequest {
+        jobs: selection(spec),
+        part,
+        out: folder.path().to_path_buf(),
+        format: vec![MeshFormat::Stl],
+        step: None,
+        deviation: DEVIATION,
+        density: 7850.0,
+        ball: None,
+        evaluator: EvaluatorOptions::default(),
+    };
+    let mut found = HashMap::new();
+    solid(&request, &Unwatched, &mut |result| {
+        for body in &result.solids {
+            found.insert(body.name.clone(), read(&folder.path().join(format!("{}.{}.stl", result.job, body.name))));
+        }
+    })
+    .expect("a right spec");
+    found
+}
+
+/// Roll and lag, rad, at which the pair of a spec's first contact stands over a pitch about its middle, of all pairs of teeth together.
+fn rolled(spec: &str, teeth: u32, count: usize) -> Vec<[f64; 2]> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = ContactRequest {
+        out: folder.path().to_path_buf(),
+        format: vec![PointFormat::Csv],
+        no_picture: true,
+        ..ContactRequest::new(selection(spec))
+    };
+    let mut middle = None;
+    contact(&request, &Unwatched, &mut |result| {
+        middle = middle.take().or(result.middle.map(|middle| (result.files[0].clone(), middle.turn)));
+    })
+    .expect("a right spec");
+    let (file, turn) = middle.expect("they touch");
+    let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(file).expect("written");
+    let head = table.headers().expect("a head").clone();
+    let at = |name: &str| head.iter().position(|column| column == name).expect("a column");
+    let columns = [at("turn"), at("composite")];
+    let rows: Vec<[f64; 2]> = table
+        .records()
+        .map(|row| row.expect("a row"))
+        .filter(|row| row[at("surface")].ends_with(".path"))
+        .filter_map(|row| Some([row[columns[0]].parse().ok()?, row[columns[1]].parse().ok()?]))
+        .collect();
+    let pitch = 360.0 / f64::from(teeth);
+    let nearest = |wanted: f64| {
+        let off = |row: &[f64; 2]| (row[0] - wanted).abs();
+        *rows.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("rows")
+    };
+    let wanted = (0..count).map(|k| turn + pitch * (k as f64 / (count - 1) as f64 - 0.5));
+    wanted.map(nearest).map(|[turn, error]| [turn.to_radians(), 1e-6 * error]).collect()
+}
+
+/// Where both members of the first contact of a spec stand.
+fn places(spec: &str, [roll, lag]: [f64; 2]) -> [Matrix4<f64>; 2] {
+    let graph = Graph::new();
+    let job = job(&graph, spec, &[]);
+    let contact = &job.contacts[0];
+    let errors = contact.errors.iter().map(|axis| (axis.variable, graph.constant(0.0)));
+    let given: Vec<_> = errors.chain(job.bindings()).collect();
+    contact.placements.each_ref().map(|placement| {
+        let entries = placement.substituted(&given).pose().matrix4().concat();
+        let tape = Tape::new(&entries, &[contact.roll.variable, contact.lag.variable]).expect("all bound");
+        let mut out = [0.0; 16];
+        ScalarEvaluator::new(&tape).run(&[roll, lag], &mut out);
+        Matrix4::from_row_slice(&out)
+    })
+}
+
+struct Pair {
+    spec: &'static str,
+    solids: [&'static str; 2],
+    teeth: [u32; 2],
+    /// How far points on teeth lie apart, mm: so near that flanks part by less than half a micrometre half that way on.
+    spacing: f64,
+}
+
+impl Pair {
+    fn space_and_tooth(&self) -> [Vec<Triangle>; 2] {
+        let mut spaces = parts(self.spec, SolidPart::Space);
+        let mut teeth = parts(self.spec, SolidPart::Tooth);
+        [spaces.remove(self.solids[0]).expect("built"), teeth.remove(self.solids[1]).expect("built")]
+    }
+
+    /// The least distance between spaces of the first member and teeth of the second one, of three pairs beside each other, at each position.
+    fn gaps(&self, space: &Body, tooth: &[Triangle], count: usize) -> Vec<f64> {
+        let turned = |member: usize, k: f64| {
+            let angle = k * TAU / f64::from(self.teeth[member]);
+            Rotation3::from_axis_angle(&Vector3::z_axis(), angle).to_homogeneous()
+        };
+        let at = |rolled: [f64; 2]| {
+            let [first, second] = places(self.spec, rolled);
+            let pairs = [-1.0, 0.0, 1.0].into_iter().flat_map(|i| [-1.0, 0.0, 1.0].map(|j| [i, j]));
+            let gap = |[i, j]: [f64; 2]| {
+                let placed = (first * turned(0, i)).try_inverse().expect("a pose") * second * turned(1, j);
+                let moved = tooth.iter().map(|triangle| triangle.map(|corner| placed.transform_point(&corner)));
+                moved.map(|triangle| space.least(&triangle, self.spacing)).fold(f64::INFINITY, f64::min)
+            };
+            pairs.map(gap).fold(f64::INFINITY, f64::min)
+        };
+        rolled(self.spec, self.teeth[0], count).into_iter().map(at).collect()
+    }
+
+    fn check(&self, count: usize) {
+        let [space, tooth] = self.space_and_tooth();
+        let gaps = self.gaps(&Body::new(space), &tooth, count);
+        assert!(gaps.iter().all(|gap| gap.abs() < GAP), "{}: {gaps:?}", self.spec);
+    }
+}
+
+#[test]
+fn spur_gears() {
+    Pair { spec: "specs/pairs/spur_pair.chain", solids: ["pinion", "gear"], teeth: [24, 37], spacing: 0.12 }.check(5);
+}
+
+#[test]
+fn a_pinion_in_a_ring() {
+    Pair {
+        spec: "tests/surfaces/specs/bodies/pairs/internal_pair.chain",
+        solids: ["pinion", "ring"],
+        teeth: [21, 62],
+        spacing: 0.2,
+    }
+    .check(3);
+}
+
+#[test]
+fn helical_gears() {
+    Pair {
+        spec: "tests/surfaces/specs/bodies/pairs/helical_pair.chain",
+        solids: ["pinion", "gear"],
+        teeth: [27, 47],
+        spacing: 0.12,
+    }
+    .check(3);
+}
+
+/// The same with the pinion's space turned inside out by a mirror: what a kernel calls valid.
+#[test]
+fn spiral_bevel_gears_and_their_mirror_image() {
+    let pair =
+        Pair { spec: "specs/bevel/pair_from_blank.chain", solids: ["pinion", "gear"], teeth: [19, 62], spacing: 0.24 };
+    let [space, tooth] = pair.space_and_tooth();
+    let mirrored: Vec<Triangle> =
+        space.iter().map(|[a, b, c]| [a, c, b].map(|corner| Point3::new(corner.x, -corner.y, corner.z))).collect();
+    let gaps = pair.gaps(&Body::new(space), &tooth, 3);
+    assert!(gaps.iter().all(|gap| gap.abs() < GAP), "{gaps:?}");
+    let gaps = pair.gaps(&Body::new(mirrored), &tooth, 3);
+    assert!(gaps.iter().any(|gap| *gap < -10.0 * GAP), "{gaps:?}");
+}
