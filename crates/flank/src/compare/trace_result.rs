@@ -12,7 +12,7 @@ pub struct FlankTraces {
     /// Of its points.
     pub frame: String,
     /// What it is held against.
-    pub reference: InvoluteNumbers,
+    pub involute: InvoluteNumbers,
     /// Over the length of roll, half-way along the face.
     pub profile: TraceNumbers,
     /// Over the face, half-way up the length of roll.

@@ -65,7 +65,7 @@ pub(crate) fn traces<'j>(
     Ok(FlankTraces {
         surface: name.clone(),
         frame: solved.surface.frame.clone(),
-        reference: involute(&reference, source),
+        involute: involute(&reference, source),
         profile,
         helix,
     })

@@ -57,7 +57,7 @@ fn note(found: &[FlankTraces]) -> String {
     format!(
         "Transverse, along the tangent to the base circle, from {}; zero in the middle, plus is material. Shaded: what is evaluated, with its \
          mean line dashed (ISO 1328-1:2013).",
-        involute(&first.reference)
+        involute(&first.involute)
     )
 }
 

@@ -106,7 +106,7 @@ fn evaluation(traces: &[FlankTraces]) -> Block {
         traces.iter().flat_map(|of| [row(of, "profile, \u{3b1}", &of.profile), row(of, "helix, \u{3b2}", &of.helix)]);
     let caption = format!(
         "Total, form and slope deviation and crowning of the traces, ISO 1328-1:2013, from {}",
-        traces::involute(&traces[0].reference)
+        traces::involute(&traces[0].involute)
     );
     Block::Table(caption, columns.chain(numbers).collect(), rows.collect())
 }

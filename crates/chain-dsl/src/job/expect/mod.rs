@@ -37,8 +37,11 @@ fn wrong(context: &mut Context<'_>, span: Span, message: String, help: impl Into
     context.report(Diagnostic::new(Code::Expectation, span, message).help(help));
 }
 
-/// An expectation that holds whatever the surface is like.
+/// An expectation that holds whatever the surface is like; after an error, what it compares may only be missing.
 fn never_fails(context: &mut Context<'_>, span: Span, why: &str) {
+    if context.has_errors() {
+        return;
+    }
     let message = format!("this expectation can never fail: {why}");
     let help = "name something that is derived: points of a surface, a number of a contact or a solid, a parameter";
     context.report(Diagnostic::new(Code::NeverFails, span, message).help(help));
