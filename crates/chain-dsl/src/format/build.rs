@@ -151,7 +151,7 @@ fn gap(kind: Kind, parts: &[Part<'_>], index: usize) -> bool {
         Kind::Element => !(right.is(":") || right.is(",")),
         // without a space, the exponent would be that of the unit
         Kind::Power => parts[0].kind == Kind::Number && parts[0].parts.len() > 1,
-        Kind::Statement => !(right.kind == Kind::List && right.parts[0].is("(") || right.is(",")),
+        Kind::Statement => !(right.kind == Kind::List && right.parts[0].is("(") && !left.is("at") || right.is(",")),
         _ => true,
     }
 }

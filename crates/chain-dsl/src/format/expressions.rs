@@ -246,10 +246,13 @@ impl Printer<'_> {
 
     fn steps(&mut self, calls: &[Node], at: Place) {
         for (index, call) in calls.iter().enumerate() {
+            let below = at.indent + at.hang;
             if index > 0 {
-                self.newline(at.indent + at.hang);
+                self.newline(below);
+                self.node(call, Place { rest: 0, ..Place::alone(below) });
+            } else {
+                self.node(call, Place { rest: 0, ..at });
             }
-            self.node(call, Place { rest: 0, ..at });
         }
     }
 }

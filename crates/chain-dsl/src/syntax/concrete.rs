@@ -217,7 +217,7 @@ fn one_row(pair: Pair<'_, Rule>) -> Part<'_> {
     Part::node(Kind::Statement, parts)
 }
 
-/// An expectation is one row; a tolerance that does not fit behind what it is for stands on a line of its own.
+/// An expectation is one row; where it does not fit, its place and its tolerance stand on lines of their own.
 fn expectation(pair: Pair<'_, Rule>) -> Part<'_> {
     let mut parts = inner(pair);
     let head = parts.remove(0);
@@ -225,9 +225,10 @@ fn expectation(pair: Pair<'_, Rule>) -> Part<'_> {
         let of = Part::node(Kind::Element, parts.drain(..2).collect());
         parts.insert(0, of);
     }
-    let tolerance = parts.iter().position(|part| part.is("within")).map(|within| parts.split_off(within));
-    let mut rows = vec![one_of(Kind::Statement, parts)];
-    rows.extend(tolerance.map(|tolerance| one_of(Kind::Statement, tolerance)));
+    let mut behind = |word| parts.iter().position(|part| part.is(word)).map(|at| parts.split_off(at));
+    let (tolerance, place) = (behind("within"), behind("at"));
+    let rows = [Some(parts), place, tolerance].into_iter().flatten();
+    let rows = rows.map(|row| one_of(Kind::Statement, row)).collect();
     Part::node(Kind::Statement, vec![head, one_of(Kind::Steps, rows)])
 }
 

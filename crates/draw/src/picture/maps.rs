@@ -135,7 +135,8 @@ impl<'a> Panel<'a> {
             return None;
         }
         let known = || values.iter().zip(&patch.points).filter(|(_, point)| point.is_solved()).filter_map(|(v, _)| v);
-        let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain(patch, field));
+        let grain = grain(patch, field);
+        let is_rounding = known().any(|value| value != 0.0) && known().all(|value| value.abs() <= grain);
         let taken = |value: f64| if is_rounding { 0.0 } else { value };
         let mesh = Mesh::of_patch(patch, if style == Style::Relief { MOST_OF_RELIEF } else { MOST_CELLS });
         let flat = Projection::laid_flat(patch, &mesh);

@@ -175,6 +175,13 @@ impl Pose<'_> {
             .filter(|axis| axis.law != axis.variable)
             .map(|axis| (axis.variable, axis.law))
             .collect();
+        for axis in machine.axes.iter().filter(|axis| axis.law != axis.variable) {
+            if let Some(of) = given.iter().find_map(|of| of.name.as_ref().filter(|name| name.node == axis.name)) {
+                let message = format!("axis `{}` has a law of its machine: it stands where that says", axis.name);
+                wrong(context, of.span, message, "leave it out: a pose is that of the axes that are free");
+                return None;
+            }
+        }
         let driven = chain.substituted(&laws);
         let mut values = Vec::new();
         for axis in machine.axes.iter().filter(|axis| axis.law == axis.variable) {
