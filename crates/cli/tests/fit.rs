@@ -282,6 +282,35 @@ fn grids_that_are_not_those_of_the_flank_are_told() {
     assert!(stderr.contains("with the columns in the other order"), "{stderr}");
 }
 
+/// A point that stands in the file twice is refused with its line; a row that is missing is counted, and the others are fitted; both flanks
+/// may stand in one file.
+#[test]
+fn points_twice_rows_that_miss_and_flanks_in_one_file() {
+    let file = gauged("fit_twice");
+    let once = rewritten(&file, "once.csv", |place, at, _| plain(place, at));
+    let content = std::fs::read_to_string(&once).expect("written");
+    let twice = written(
+        file.parent().expect("a folder"),
+        "twice.csv",
+        &(content.clone() + content.lines().nth(6).expect("a line") + "\n"),
+    );
+    let refused = flank(&["fit", PINION, "concave", "--measured", &twice, "--vary", VARIED]);
+    let stderr = text(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("twice.csv: line 47: row 1, column 6 is there already"), "{stderr}");
+
+    let rows = rewritten(&file, "rows.csv", |place, at, _| if place[0] == 3 { None } else { plain(place, at) });
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &rows, "--vary", VARIED]);
+    assert!(stderr.contains("not measured: 9 of 45 points of concave"), "{stderr}");
+    for ((.., value), setting) in CHANGED.iter().zip(told["identification"]["settings"].as_array().expect("settings")) {
+        assert!((number(&setting["new"]) - value).abs() < 1e-9, "{setting}");
+    }
+
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", path(&file), "--and", "convex", "--vary", VARIED]);
+    assert_eq!(told["flanks"].as_array().expect("flanks").iter().map(|of| number(&of["known"])).sum::<f64>(), 90.0);
+    assert!(number(&told["identification"]["left_um"]) < 1e-6);
+}
+
 /// Noise without a deviation: no setting is worth a change, or the numbers say that they mean nothing.
 #[test]
 fn noise_is_not_taken_for_settings() {
