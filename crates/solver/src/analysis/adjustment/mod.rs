@@ -77,7 +77,7 @@ impl AdjustableSurface {
         let outputs: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).chain(moved).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().chain(settings).copied().collect();
         Ok(AdjustableSurface {
-            foot: System::one_by_one(&residuals, &unknowns, &parameters)?,
+            foot: System::new(&residuals, &unknowns, &parameters)?,
             at_foot: LaneTape::new(&Tape::new(&outputs, &inputs)?),
             ranges: surface.ranges().to_vec(),
             settings: settings.len(),
