@@ -97,6 +97,7 @@ fn fitted(bencher: Bencher, counts: [usize; 2]) {
         kept: vec![],
         settings: settings.iter().map(|of| unknown(of)).collect(),
         turn: ScaledUnknown { start: 0.0, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
+        further: vec![],
         shapes: None,
         resolution: 1e-4,
         uses_weak: true,

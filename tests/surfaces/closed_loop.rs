@@ -119,6 +119,7 @@ impl<'p, 'g> Gauge<'p, 'g> {
             kept: vec![],
             settings,
             turn,
+            further: vec![],
             shapes: None,
             resolution: 1e-4,
             uses_weak: true,

@@ -307,6 +307,8 @@ pub struct Parameter<'g> {
     pub is_error: bool,
     /// Between which values it must lie, if that is stated.
     pub range: Option<(f64, f64)>,
+    /// What it is set in multiples of, mm or radians, if that is stated.
+    pub step: Option<f64>,
     /// Its doc comment.
     pub doc: Vec<String>,
     /// Who gives it its value.

@@ -173,6 +173,7 @@ impl Fit {
             round: self.round.clone(),
             keep: self.keep.clone(),
             as_it_lies: self.as_it_lies,
+            is_thickness_free: self.is_thickness_free,
             share: self.share,
             within: self.within,
             resolution: self.resolution,

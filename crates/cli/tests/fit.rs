@@ -99,6 +99,43 @@ fn both_flanks_are_fitted_with_one_turn() {
     }
 }
 
+/// One flank of the tooth lies further round: no settings make it so thick, and with the thickness free it does not count.
+#[test]
+fn the_thickness_of_a_tooth_is_fitted_or_free() {
+    const FURTHER: f64 = 2e-3;
+    let file = gauged("fit_thickness");
+    let steel = std::cell::Cell::new(0.0);
+    let turned = rewritten(&file, "further.csv", |place, [x, y, z], [nx, ny, _]| {
+        steel.set(steel.get() + x * ny - y * nx);
+        let (sine, cosine) = f64::sin_cos(FURTHER);
+        plain(place, [x * cosine - y * sine, x * sine + y * cosine, z])
+    });
+    let and = format!("convex={}", path(&file));
+    let asked = [PINION, "concave", "--measured", &turned, "--and", &and, "--vary", VARIED];
+    let (fitted, _) = fit(3, &asked);
+    assert!(number(&fitted["identification"]["left_um"]) > 1.0 && fitted["thicker_mm"].is_null());
+    let (told, _) = fit(0, &[&asked[..], &["--thickness", "free"]].concat());
+    assert!(number(&told["identification"]["left_um"]) < 1e-6, "{}", told["identification"]);
+    for ((.., value), setting) in CHANGED.iter().zip(told["identification"]["settings"].as_array().expect("settings")) {
+        assert!((number(&setting["new"]) - value).abs() < 1e-9, "{setting}");
+    }
+    // settings change the thickness too: told is what the tooth is thicker than that of the job, before they are fitted
+    let (straight, _) =
+        fit(0, &[PINION, "concave", "--measured", path(&file), "--and", &and, "--vary", VARIED, "--thickness", "free"]);
+    let [thicker, own] = [&told, &straight].map(|told| number(&told["thicker_mm"]));
+    let radius = number(&told["turn_mm"]) / number(&told["turn_deg"]).to_radians();
+    assert!((thicker - own - radius * FURTHER * steel.get().signum()).abs() < 1e-4, "{thicker} {own} {radius}");
+    for (more, says) in [
+        (&["--as-it-lies", "--thickness", "free"][..], "--as-it-lies turns nothing"),
+        (&["--thickness", "thin"], "write fitted or free"),
+    ] {
+        let run = flank(&[&["fit"], &asked[..], more].concat());
+        assert!(matches!(run.status.code(), Some(1 | 2)) && text(&run.stderr).contains(says), "{}", text(&run.stderr));
+    }
+    let run = flank(&["fit", PINION, "concave", "--measured", &turned, "--thickness", "free"]);
+    assert!(text(&run.stderr).contains("is about two flanks"), "{}", text(&run.stderr));
+}
+
 /// What was corrected is a spec; measured again, the flank is what the prediction says.
 #[test]
 fn the_corrected_spec_cuts_the_predicted_flank() {
@@ -245,6 +282,35 @@ fn grids_that_are_not_those_of_the_flank_are_told() {
     assert!(stderr.contains("with the columns in the other order"), "{stderr}");
 }
 
+/// A point that stands in the file twice is refused with its line; a row that is missing is counted, and the others are fitted; both flanks
+/// may stand in one file.
+#[test]
+fn points_twice_rows_that_miss_and_flanks_in_one_file() {
+    let file = gauged("fit_twice");
+    let once = rewritten(&file, "once.csv", |place, at, _| plain(place, at));
+    let content = std::fs::read_to_string(&once).expect("written");
+    let twice = written(
+        file.parent().expect("a folder"),
+        "twice.csv",
+        &(content.clone() + content.lines().nth(6).expect("a line") + "\n"),
+    );
+    let refused = flank(&["fit", PINION, "concave", "--measured", &twice, "--vary", VARIED]);
+    let stderr = text(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("twice.csv: line 47: row 1, column 6 is there already"), "{stderr}");
+
+    let rows = rewritten(&file, "rows.csv", |place, at, _| if place[0] == 3 { None } else { plain(place, at) });
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &rows, "--vary", VARIED]);
+    assert!(stderr.contains("not measured: 9 of 45 points of concave"), "{stderr}");
+    for ((.., value), setting) in CHANGED.iter().zip(told["identification"]["settings"].as_array().expect("settings")) {
+        assert!((number(&setting["new"]) - value).abs() < 1e-9, "{setting}");
+    }
+
+    let (told, _) = fit(0, &[PINION, "concave", "--measured", path(&file), "--and", "convex", "--vary", VARIED]);
+    assert_eq!(told["flanks"].as_array().expect("flanks").iter().map(|of| number(&of["known"])).sum::<f64>(), 90.0);
+    assert!(number(&told["identification"]["left_um"]) < 1e-6);
+}
+
 /// Noise without a deviation: no setting is worth a change, or the numbers say that they mean nothing.
 #[test]
 fn noise_is_not_taken_for_settings() {
@@ -310,6 +376,7 @@ fn corrections_are_multiples_of_steps() {
     for (setting, step) in settings.iter().zip([0.02, 0.01]) {
         let share = number(&setting["new"]) / step;
         assert!((share - share.round()).abs() < 1e-9 && number(&setting["step"]) == step, "{setting}");
+        assert!(setting["at_bound"].is_null(), "a step is no end of a range: {setting}");
     }
     assert!(settings[2]["step"].is_null());
     for (found, exact) in told["identification"]["settings"].as_array().expect("settings").iter().zip(CHANGED) {
@@ -327,6 +394,41 @@ fn corrections_are_multiples_of_steps() {
         assert!(matches!(run.status.code(), Some(1 | 2)), "{round}: {:?}", run.status.code());
         assert!(text(&run.stderr).contains(says), "{round}: {}", text(&run.stderr));
     }
+}
+
+/// A machine whose dials have steps: they are kept to without being asked for, also in the spec that is written; other ones may be asked for.
+#[test]
+fn corrections_are_multiples_of_the_steps_of_the_machine() {
+    let file = gauged("fit_steps");
+    let project = folder("fit_steps_project");
+    let copied = std::process::Command::new("cp").args(["-r", "specs", path(&project)]).current_dir(top()).status();
+    assert!(copied.expect("cp runs").success());
+    written(&project, "flank.toml", "");
+    let text_of_job = std::fs::read_to_string(project.join("specs/bevel/pinion_19x62.chain")).expect("a spec");
+    let dialled = "\n/// As its dials show it.\nmachine dialled extends cradle_generator {\n    \
+                   param radial_distance : length in 0 mm .. 500 mm step 20 um\n    \
+                   param work_offset : length step 0.01 mm = 0 mm\n}\n";
+    let of_dialled = text_of_job.replace("= cradle_generator(", "= dialled(");
+    assert_ne!(of_dialled, text_of_job, "the job names its machine");
+    let spec = written(&project.join("specs/bevel"), "dialled.chain", &(of_dialled + dialled));
+    assert_eq!(flank(&["fmt", "--check", &spec]).status.code(), Some(0));
+    let corrected = project.join("corrected.chain");
+    let asked = [spec.as_str(), "concave", "--measured", path(&file), "--vary", VARIED, "--write", path(&corrected)];
+    let (told, _) = fit(0, &asked);
+    let settings = told["correction"]["settings"].as_array().expect("settings");
+    let content = std::fs::read_to_string(&corrected).expect("written");
+    for (setting, step) in settings.iter().zip([0.02, 0.01]) {
+        let share = number(&setting["new"]) / step;
+        assert!((share - share.round()).abs() < 1e-9 && number(&setting["step"]) == step, "{setting}");
+    }
+    let of_flags = [PINION, "concave", "--measured", path(&file), "--vary", VARIED];
+    let (of_flags, _) = fit(0, &[&of_flags[..], &["--round", "radial_distance=20um,m.work_offset=0.01mm"]].concat());
+    for (setting, same) in settings.iter().zip(of_flags["correction"]["settings"].as_array().expect("settings")) {
+        assert!((number(&setting["new"]) - number(&same["new"])).abs() < 1e-9, "{setting} {same}");
+    }
+    assert!(content.contains("m.radial_distance: 97.8") && content.contains(" mm"), "{content}");
+    let (finer, _) = fit(0, &[&asked[..6], &["--round", "radial_distance=5um"]].concat());
+    assert_eq!(number(&finer["correction"]["settings"][0]["step"]), 0.005);
 }
 
 /// A range that ends before the flank is reached: the setting stands at its end, and that is the reason.

@@ -10,7 +10,7 @@ fn unknown(start: f64, range: Range) -> ScaledUnknown {
 }
 
 fn problem(unknowns: Vec<ScaledUnknown>) -> LeastSquares {
-    LeastSquares { unknowns, exact: 0, resolution: 1e-6, uses_weak: true, settled: 1e-13 }
+    LeastSquares { unknowns, exact: 0, resolution: 1e-6, uses_weak: true, settled: 1e-13, given_up: None }
 }
 
 fn rows(residuals: Vec<f64>, slopes: &[&[f64]]) -> Option<Linearized> {
@@ -128,6 +128,7 @@ fn a_weak_direction_is_used_where_it_shows() {
         resolution: 0.1,
         uses_weak: true,
         settled: 1e-13,
+        given_up: None,
     };
     let fit = problem.solve(weak(1e-6)).expect("finite");
     near(fit.values[1], 2.0, 1e-9);

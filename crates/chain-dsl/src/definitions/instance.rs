@@ -141,6 +141,10 @@ impl<'a, 'g> Binder<'a, 'g> {
         let checked_at = given.as_ref().map_or(param.name.span, |given| given.written);
         // what follows from a value that is refused is no finding of its own
         let range = self.check_value(context, param, value, scope, checked_at).ok()?;
+        let step = match &param.step {
+            Some(step) => checked_step(context, param, (step, scope), dimension).ok()?,
+            None => None,
+        };
         let variable = context.variable(name.clone(), Role::Parameter, value);
         let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
@@ -166,6 +170,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                 is_count,
                 is_error: param.is_error,
                 range,
+                step,
                 doc,
                 given_by,
                 written,
@@ -177,10 +182,15 @@ impl<'a, 'g> Binder<'a, 'g> {
     /// The profile that a parameter is set to; nothing if something is wrong (and reported).
     fn profile(&mut self, context: &mut Context<'g>, param: &Param) -> Option<Rc<Profile<'g>>> {
         let name = &param.name;
-        if let Some(place) =
-            param.default.as_ref().map(|value| value.span).or(param.range.as_ref().map(|range| range.span))
+        if let Some(place) = param
+            .default
+            .as_ref()
+            .or(param.step.as_ref())
+            .map(|value| value.span)
+            .or(param.range.as_ref().map(|range| range.span))
         {
-            let message = format!("{} is a profile: it has no range, and no value by default", shown_name(param));
+            let message =
+                format!("{} is a profile: it has no range, no step, and no value by default", shown_name(param));
             let help = format!("write `param {} : profile`; the job gives the profile", name.node);
             context.report(Diagnostic::new(Code::WrongKind, place, message).help(help));
             return None;
@@ -312,6 +322,37 @@ impl<'a, 'g> Binder<'a, 'g> {
 
 /// A value cannot stay, which has been reported.
 struct Refused;
+
+/// What a parameter is set in multiples of; none while that depends on parameters without values.
+///
+/// # Errors
+/// If the step is refused, which has been reported.
+fn checked_step<'g>(
+    context: &mut Context<'g>,
+    param: &Param,
+    (step, scope): (&Expression, &Scope<'g>),
+    dimension: crate::values::dimension::Dimension,
+) -> Result<Option<f64>, Refused> {
+    let (what, span) = (format!("the step of {}", shown_name(param)), step.span);
+    if is_count(&param.dimension) {
+        let message = format!("{} is a count: it goes in whole steps, and has no step of its own", shown_name(param));
+        context.report(Diagnostic::new(Code::WrongDimension, span, message).help("leave the step out"));
+        return Err(Refused);
+    }
+    let value = context.evaluate(step, scope);
+    let definition = context.require(&value, dimension, span, &what).ok_or(Refused)?;
+    if let Constant::Unknown = context.constant(definition) {
+        return Ok(None);
+    }
+    let value = context.require_constant(definition, span, &what).ok_or(Refused)?;
+    if value <= 0.0 {
+        let message = format!("{what} is {}: it must be above zero", shown(value, dimension));
+        let help = "write the smallest change that can be set, for example `step 0.001 mm`";
+        context.report(Diagnostic::new(Code::OutOfRange, span, message).help(help));
+        return Err(Refused);
+    }
+    Ok(Some(value))
+}
 
 /// Whether a dimension is that of something that is counted.
 pub(crate) fn is_count(dimension: &Dimension) -> bool {

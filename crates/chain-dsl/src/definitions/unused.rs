@@ -163,7 +163,7 @@ impl Used {
 
     fn param(&mut self, param: &ast::Param) {
         param.range.iter().for_each(|range| self.range(range));
-        param.default.iter().for_each(|value| self.expression(value));
+        param.step.iter().chain(&param.default).for_each(|value| self.expression(value));
     }
 
     fn machine(&mut self, machine: &ast::Machine) {

@@ -123,7 +123,7 @@ pub enum MachineStatement {
     Expect(Expectation),
 }
 
-/// `param name : dimension in a .. b = default`
+/// `param name : dimension in a .. b step c = default`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
     /// `///` lines above it.
@@ -134,6 +134,8 @@ pub struct Param {
     pub dimension: Dimension,
     /// Allowed values.
     pub range: Option<Range>,
+    /// What it is set in multiples of.
+    pub step: Option<Expression>,
     /// Value where none is given.
     pub default: Option<Expression>,
     /// Whether it is an error of a machine: zero where none is given.

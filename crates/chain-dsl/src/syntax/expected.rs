@@ -248,6 +248,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_for => "for",
         Rule::kw_as => "as",
         Rule::kw_in | Rule::kw_runs => "in",
+        Rule::kw_step => "step",
         Rule::kw_by => "by",
         Rule::kw_keep => "keep",
         Rule::kw_travel => "travel",

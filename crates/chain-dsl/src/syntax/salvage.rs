@@ -183,7 +183,15 @@ impl Piece<'_> {
 
     fn param(&self, name: Name) -> Param {
         let dimension = self.dimension(self.range.start);
-        Param { doc: self.doc(), name, dimension, range: None, default: Some(self.error()), is_error: false }
+        Param {
+            doc: self.doc(),
+            name,
+            dimension,
+            range: None,
+            step: None,
+            default: Some(self.error()),
+            is_error: false,
+        }
     }
 
     fn parameter(&self, index: usize, name: Name) -> Parameter {

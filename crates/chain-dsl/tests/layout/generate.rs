@@ -204,6 +204,10 @@ impl Writer {
             self.put("in");
             self.range();
         }
+        if self.random.one_in(4) {
+            self.put("step");
+            self.value();
+        }
         if self.random.one_in(2) {
             self.put("=");
             self.expression(2);

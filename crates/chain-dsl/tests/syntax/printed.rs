@@ -250,8 +250,9 @@ fn named(name: &Name) -> &str {
 fn param(it: &Param) -> String {
     let default = it.default.as_ref().map_or(String::new(), |it| format!(" = {}", expression(it)));
     let range = optional_range(it.range.as_ref());
+    let step = it.step.as_ref().map_or(String::new(), |it| format!(" step {}", expression(it)));
     let word = if it.is_error { "error" } else { "param" };
-    format!("{}{word} {}: {}{range}{default}", doc(&it.doc), it.name.node, dimension(&it.dimension))
+    format!("{}{word} {}: {}{range}{step}{default}", doc(&it.doc), it.name.node, dimension(&it.dimension))
 }
 
 fn let_statement(it: &Let) -> String {

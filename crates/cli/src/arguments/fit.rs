@@ -38,7 +38,7 @@ pub(crate) struct Fit {
     pub(crate) surface: Option<String>,
     /// What a contact shall be like: a `want` of the job. Its settings are looked for
     #[arg(long, value_name = "NAME", conflicts_with_all = ["measured", "and", "ease_off", "from", "rows", "columns", "margin", "order", "noise",
-          "as_it_lies", "share", "within", "resolution"])]
+          "as_it_lies", "is_thickness_free", "share", "within", "resolution"])]
     pub(crate) want: Option<String>,
     /// Measured points of the surface, which is sampled in the spec
     #[arg(long, value_name = "FILE")]
@@ -69,7 +69,7 @@ pub(crate) struct Fit {
     /// What a measured point scatters by; without it as all settings leave it. Without --vary, settings that take less than twice that are not changed
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) noise: Option<f64>,
-    /// Round corrections to the steps of settings, several with commas: radial_distance=1um,machine_root_angle=1arcsec; the others are fitted again
+    /// Round corrections to these steps instead of those in the spec, several with commas: radial_distance=1um,machine_root_angle=1arcsec; the others are fitted again
     #[arg(long, value_name = "NAME=STEP", value_delimiter = ',', value_parser = amount)]
     pub(crate) round: Vec<(String, ToleratedAmount)>,
     /// Leave a further surface of the job where it is in its middle, or at both ends of its middle row: root (the tooth's depth), root=line (the root line), convex (its thickness)
@@ -78,6 +78,9 @@ pub(crate) struct Fit {
     /// Do not turn the points about z
     #[arg(long)]
     pub(crate) as_it_lies: bool,
+    /// Whether the tooth's thickness counts where both flanks are fitted: with `free` each has a turn of its own
+    #[arg(long = "thickness", value_name = "fitted|free", default_value = "fitted", value_parser = thickness, action = clap::ArgAction::Set, hide_default_value = true)]
+    pub(crate) is_thickness_free: bool,
     /// The share of the deviation that the correction takes away
     #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = share, allow_hyphen_values = true)]
     pub(crate) share: f64,
@@ -134,6 +137,14 @@ fn kept(text: &str) -> Result<(String, KeptPlace), String> {
         Some((name, "line")) if !name.is_empty() => Ok((name.to_string(), KeptPlace::Line)),
         Some((name, "middle")) if !name.is_empty() => Ok((name.to_string(), KeptPlace::Middle)),
         _ => Err("write SURFACE, SURFACE=middle or SURFACE=line, for example root=line".to_string()),
+    }
+}
+
+fn thickness(text: &str) -> Result<bool, String> {
+    match text.trim() {
+        "free" => Ok(true),
+        "fitted" => Ok(false),
+        _ => Err("write fitted or free".to_string()),
     }
 }
 

@@ -363,6 +363,8 @@ pub struct FitRequest {
     pub keep: Vec<(String, KeptPlace)>,
     /// Whether the points are not turned about z.
     pub as_it_lies: bool,
+    /// Whether a further surface is turned by itself, so that the tooth's thickness does not count.
+    pub is_thickness_free: bool,
     /// The share of the deviation that the corrected settings take away.
     pub share: f64,
     /// Root of the mean square, mm, up to which a flank is as it was wanted.
@@ -398,6 +400,7 @@ impl FitRequest {
             round: Vec::new(),
             keep: Vec::new(),
             as_it_lies: false,
+            is_thickness_free: false,
             share: 1.0,
             within: 1e-3,
             resolution: 1e-4,

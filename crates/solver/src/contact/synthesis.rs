@@ -260,7 +260,8 @@ impl ContactSynthesis<'_> {
     #[must_use]
     pub fn solve_at_once(&self) -> Option<SynthesizedContact> {
         let unknowns = self.settings.iter().copied().chain([self.roll()]).collect();
-        let problem = LeastSquares { unknowns, exact: 0, resolution: 0.0, uses_weak: false, settled: SETTLED };
+        let problem =
+            LeastSquares { unknowns, exact: 0, resolution: 0.0, uses_weak: false, settled: SETTLED, given_up: None };
         let mut near = self.vertex.clone();
         let fit = problem.solve(|values| {
             let (at, linearized) = self.linearized(&near, values)?;

@@ -197,6 +197,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_travel
             | kw_nothing
             | kw_keep
+            | kw_step
             | kw_in
             | kw_runs
             | kw_by

@@ -86,6 +86,7 @@ impl Build<'_> {
             name: self.name(parts.required(Rule::name)),
             dimension: self.dimension(parts.required(Rule::dimension)),
             range: parts.optional(Rule::range).map(|range| self.range(range)),
+            step: parts.optional(Rule::step).map(|step| self.expression(Parts::of(step).required(Rule::expression))),
             default: parts.optional(Rule::expression).map(|value| self.expression(value)),
             is_error,
         }

@@ -1,7 +1,10 @@
 //! What a fit comes to: the settings that are chosen, and what is known of them.
 
 use flank_chain_dsl::Parameter;
-use flank_solver::{AdjustedSurfaces, EaseOff, RangeEnd, SearchEnd, SingularDirection, linear_rest, most_effective};
+use flank_solver::{
+    AdjustedSurfaces, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection, linear_rest,
+    most_effective,
+};
 
 use super::aim::Aim;
 use super::problem::{self, Problem};
@@ -9,7 +12,7 @@ use super::result::{
     AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
     RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
-use super::words::{self, SHARE, Unknown};
+use super::words::{self, SHARE, Unknown, What};
 use super::{corrected, keep};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
@@ -29,11 +32,6 @@ const LEAST: f64 = 1e-4;
 const OUTLYING: f64 = 4.0;
 /// No machine measures to this, mm: what is nearer goes with the others.
 const NEAR: f64 = 1e-5;
-/// The turn about z, radians.
-pub(super) fn turn_of(of: &AdjustedSurfaces) -> f64 {
-    of.fit.values.last().copied().unwrap_or_default()
-}
-
 /// Which settings are looked for and what comes of it.
 pub(super) struct Fitting<'a, 'g> {
     pub(super) aims: &'a [Aim<'a, 'g>],
@@ -53,15 +51,15 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let (free, choice) = if request.vary.is_empty() {
             let candidates: Vec<usize> = all.filter(|k| rms(&effects[*k]) >= CANDIDATE).collect();
             let mut own: Vec<Vec<f64>> = candidates.iter().map(|k| effects[*k].clone()).collect();
-            let (off, turn) = (&self.now.fit.residuals, self.turn_effect(self.now));
-            own.push(turn.clone());
+            let (off, turns) = (&self.now.fit.residuals, self.turn_effects());
+            own.extend(turns.iter().cloned());
             let all_leave = linear_rest(off, &own, request.resolution);
-            own.pop();
             // a wish does not scatter
-            let of_points = || scatter(all_leave, off.len(), own.len() + 1);
+            let of_points = || scatter(all_leave, off.len(), own.len());
             let noise = request.noise.unwrap_or_else(|| if request.is_wish() { 0.0 } else { of_points() });
+            own.truncate(candidates.len());
             let mut free: Vec<usize> =
-                most_effective(off, &own, &turn, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
+                most_effective(off, &own, &turns, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
             let choice = SettingsChoice {
                 candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
@@ -72,7 +70,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
         } else {
             (all.filter(|k| rms(&effects[*k]) > NOTHING).collect(), None)
         };
-        let unknowns = free.len() + usize::from(!request.as_it_lies);
+        let unknowns = free.len() + self.problem.further.len() + usize::from(!request.as_it_lies);
         let points = self.problem.count();
         if points < unknowns {
             return Err(Failure::Input(format!(
@@ -90,11 +88,22 @@ impl<'a, 'g> Fitting<'a, 'g> {
         unknowns.map(|(k, unknown)| self.problem.part(scaled(of.effect(k), unknown.scale))).collect()
     }
 
-    /// The same of the turn; nothing where it is held.
-    pub(super) fn turn_effect(&self, of: &AdjustedSurfaces) -> Vec<f64> {
-        let turn = self.problem.turn;
-        let scale = if turn.range.low < turn.range.high { turn.scale } else { 0.0 };
-        self.problem.part(scaled(of.effect(self.problem.settings.len()), scale))
+    /// The same of each turn; nothing where it is held.
+    pub(super) fn turn_effects(&self) -> Vec<Vec<f64>> {
+        let turns = [&self.problem.turn].into_iter().chain(&self.problem.further).enumerate();
+        let effect = |(k, turn): (usize, &ScaledUnknown)| {
+            let scale = if turn.range.low < turn.range.high { turn.scale } else { 0.0 };
+            self.problem.part(scaled(self.now.effect(self.problem.settings.len() + k), scale))
+        };
+        turns.map(effect).collect()
+    }
+
+    /// By how much the tooth that was measured is thicker than the nominal one, mm on the circle through the middle of the points.
+    fn thicker(&self, radius: f64) -> Option<f64> {
+        let further = self.problem.turns(self.now).get(1)?;
+        // turned so far the points come to the surface: they lay off it by the contrary
+        let off: f64 = self.now.effect(self.problem.settings.len() + 1).iter().sum();
+        Some(-radius * further * off.signum())
     }
 
     /// The value of a setting as a spec has it.
@@ -112,7 +121,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let main = identification.unwrap_or(correction);
         let unknowns = self.unknowns();
         let predicted = self.predicted(request, correction);
-        let turn = (!request.as_it_lies).then(|| turn_of(self.now));
+        let turn = (!request.as_it_lies).then(|| self.problem.turns(self.now)[0]);
         let radius = self.problem.turn.scale.recip() * problem::TURN;
         let is_wish = request.is_wish();
         FitResult {
@@ -121,6 +130,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             flanks: self.flanks(main, &predicted, is_wish),
             turn_deg: turn.map(f64::to_degrees),
             turn_mm: turn.map(|turn| radius * turn),
+            thicker_mm: self.thicker(radius),
             before_um: 1e3 * self.now.rms(),
             identification: identification.map(|of| self.adjusted(of, free)),
             correction: self.adjusted(correction, &self.problem.settable(free)),
@@ -189,8 +199,12 @@ impl<'a, 'g> Fitting<'a, 'g> {
 
     fn unknowns(&self) -> Vec<Unknown<'a, 'g>> {
         let settings = self.problem.settings.iter().zip(&self.problem.unknowns);
-        let settings = settings.map(|(of, unknown)| Unknown { setting: Some(*of), scale: unknown.scale });
-        settings.chain([Unknown { setting: None, scale: self.problem.turn.scale }]).collect()
+        let settings = settings.map(|(of, unknown)| Unknown { what: What::Setting(of), scale: unknown.scale });
+        let turn = Unknown { what: What::Turn, scale: self.problem.turn.scale };
+        let names = self.aims.iter().skip(1).map(|aim| aim.of.surface.name.as_str());
+        let further = self.problem.further.iter().zip(names);
+        let further = further.map(|(of, name)| Unknown { what: What::Further(name), scale: of.scale });
+        settings.chain([turn]).chain(further).collect()
     }
 
     fn adjusted(&self, of: &AdjustedSurfaces, free: &[usize]) -> AdjustedSettings {
@@ -199,6 +213,9 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let setting = self.problem.settings[k];
             let shown = |value: f64| units::shown(setting.dimension, value);
             let (change, held) = (of.fit.values[k] - setting.value, of.fit.held[k]);
+            // what stands on a step is held there too
+            let Range { low, high } = self.problem.unknowns[k].range;
+            let at_end = held.filter(|_| of.fit.values[k] <= low || of.fit.values[k] >= high);
             let is_told = of.fit.directions.iter().filter(|of| !of.is_used).all(|of| of.shares[k].abs() <= SHARE);
             let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).sqrt());
             AdjustedSetting {
@@ -209,7 +226,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
                 now: shown(setting.value),
                 change: shown(change),
                 new: shown(of.fit.values[k]),
-                at_bound: held.map(|end| match end {
+                at_bound: at_end.map(|end| match end {
                     RangeEnd::Low => RangeBound::Low,
                     RangeEnd::High => RangeBound::High,
                 }),
@@ -324,7 +341,7 @@ fn variance(of: &AdjustedSurfaces) -> Option<f64> {
 fn told(of: &SingularDirection, unknowns: &[Unknown<'_, '_>]) -> SettingsDirection {
     let parts = unknowns.iter().zip(&of.shares).filter(|(_, share)| share.abs() > SHARE);
     let changes = parts.map(|(unknown, share)| SettingChange {
-        name: unknown.name().to_string(),
+        name: unknown.name(),
         unit: units::whole_symbol(unknown.dimension()),
         by: units::shown(unknown.dimension(), share * unknown.scale),
         share: share.abs(),

@@ -17,7 +17,7 @@ use flank_expr::Graph;
 use flank_solver::AdjustedSurfaces;
 
 use self::aim::Aim;
-use self::fitting::{Fitting, turn_of};
+use self::fitting::Fitting;
 use self::problem::Problem;
 use self::result::{FitResult, SettingsChoice};
 use crate::compare::map::{Named, find};
@@ -102,7 +102,7 @@ struct Found {
 impl Found {
     fn of(aims: &[Aim<'_, '_>], problem: &Problem<'_, '_>, request: &FitRequest) -> Result<Found, Failure> {
         let now = problem.as_it_is()?;
-        aims.iter().try_for_each(|aim| aim.check_places(turn_of(&now)))?;
+        aims.iter().enumerate().try_for_each(|(k, aim)| aim.check_places(problem.turn_of(&now, k)))?;
         let (free, choice) = Fitting { aims, problem, now: &now }.chosen(request)?;
         let (identification, correction) = match request.is_wish() {
             true => (None, problem.reached(&now, &free)?),
@@ -138,6 +138,12 @@ fn check(request: &FitRequest) -> Result<(), Failure> {
         }
         (None, true, Some(_)) if has_area && !is_table => refused(
             "option `rows`, option `columns` and option `margin` are those of a table: of option `measured`, or of option `ease_off`",
+        ),
+        _ if request.is_thickness_free && request.and.is_none() => {
+            refused("option `thickness free` is about two flanks: name the other one with option `and`")
+        }
+        _ if request.is_thickness_free && request.as_it_lies => refused(
+            "option `as_it_lies` turns nothing, and option `thickness free` turns each flank by itself: leave one of them out",
         ),
         _ if !(request.share > 0.0 && request.share <= 1.0) => refused("option `share` is above 0 and 1 at the most"),
         _ if request.dry && request.write.is_none() => {

@@ -36,6 +36,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) places: Vec<Vec<usize>>,
     points: Vec<Vec<Aimed>>,
     pub(super) turn: ScaledUnknown,
+    /// Of each surface behind the first by how much further it is turned, where its points lie as they like.
+    pub(super) further: Vec<ScaledUnknown>,
     /// What corrected settings leave where it is.
     pub(super) keeps: Vec<Keep>,
     /// The parts of the distances that are fitted.
@@ -57,14 +59,21 @@ impl<'p, 'g> Problem<'p, 'g> {
         let steps = super::settings::steps(&settings, &request.round)?;
         let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim.of, &settings)).collect();
         let (as_it_lies, resolution) = (request.as_it_lies, request.resolution);
-        let start = if as_it_lies { 0.0 } else { Aim::first_turn(aims) };
+        let alone = |k: usize| Aim::first_turn(&aims[k..=k]);
+        let start = match () {
+            () if as_it_lies => 0.0,
+            () if request.is_thickness_free => alone(0),
+            () => Aim::first_turn(aims),
+        };
+        let further = |k: usize| if request.is_thickness_free && k > 0 { alone(k) - start } else { 0.0 };
         let now: Vec<f64> = settings.iter().map(|of| of.value).collect();
         let (mut places, mut points) = (Vec::new(), Vec::new());
         let (mut squares, mut count) = (vec![0.0; settings.len()], 0.0);
-        for (aim, surface) in aims.iter().zip(&surfaces) {
+        for (k, (aim, surface)) in aims.iter().zip(&surfaces).enumerate() {
             let known: Vec<(usize, &Aimed)> =
                 aim.points.iter().enumerate().filter_map(|(at, point)| Some((at, point.as_ref()?))).collect();
-            let positions: Vec<[f64; 3]> = known.iter().map(|(_, point)| turned(point.position, start)).collect();
+            let positions: Vec<[f64; 3]> =
+                known.iter().map(|(_, point)| turned(point.position, start + further(k))).collect();
             let near: Vec<NearFoot> = known.iter().map(|(_, point)| point.near.clone()).collect();
             let feet = surface.feet(&now, &positions, &near);
             for foot in feet.iter().flatten() {
@@ -86,6 +95,8 @@ impl<'p, 'g> Problem<'p, 'g> {
         let radius = radii.iter().sum::<f64>() / radii.len() as f64;
         let range = if as_it_lies { Range { low: 0.0, high: 0.0 } } else { Range { low: -2.0 * TAU, high: 2.0 * TAU } };
         let turn = ScaledUnknown { start, scale: TURN / radius.max(TURN), range };
+        let each = if request.is_thickness_free { 1..aims.len() } else { 0..0 };
+        let further = each.map(|k| ScaledUnknown { start: further(k), ..turn }).collect();
         let moved = squares.iter().map(|sum: &f64| (sum / count).sqrt());
         let unknowns = settings.iter().zip(moved).map(|(of, moved)| unknown(of, moved)).collect();
         let ends = aims.iter().map(|aim| ends(aim.of.surface)).collect();
@@ -99,6 +110,7 @@ impl<'p, 'g> Problem<'p, 'g> {
             places,
             points,
             turn,
+            further,
             keeps,
             shapes,
             resolution,
@@ -140,7 +152,19 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn as_it_is(&self) -> Result<AdjustedSurfaces, Failure> {
-        self.fitted((&self.points, &[]), self.turn, (&[], &[]))
+        let turns: Vec<f64> = [&self.turn].into_iter().chain(&self.further).map(|of| of.start).collect();
+        self.fitted((&self.points, &[]), &turns, (&[], &[]))
+    }
+
+    /// The turns of a fit: that of all points, then by how much further those of each surface behind the first are turned.
+    pub(super) fn turns<'a>(&self, of: &'a AdjustedSurfaces) -> &'a [f64] {
+        &of.fit.values[self.settings.len()..]
+    }
+
+    /// About z, radians, of the points of a surface.
+    pub(super) fn turn_of(&self, fit: &AdjustedSurfaces, surface: usize) -> f64 {
+        let turns = self.turns(fit);
+        turns[0] + turns.get(surface).filter(|_| surface > 0).copied().unwrap_or_default()
     }
 
     /// With some settings free, from where the points lie nearest to the surface as it is.
@@ -148,8 +172,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn identified(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
-        let turn = now.fit.values.last().copied().unwrap_or_default();
-        self.fitted((&self.points, &[]), ScaledUnknown { start: turn, ..self.turn }, (free, &[]))
+        self.fitted((&self.points, &[]), self.turns(now), (free, &[]))
     }
 
     /// The same for points that lie on the other side of the surface by a share of the way.
@@ -171,7 +194,7 @@ impl<'p, 'g> Problem<'p, 'g> {
             feet.iter().map(point).collect()
         });
         let mirrored: Vec<Vec<Aimed>> = mirrored.collect();
-        self.rounded(&mirrored, 0.0, free)
+        self.rounded(&mirrored, &vec![0.0; 1 + self.further.len()], free)
     }
 
     /// A wanted surface: that of the points themselves.
@@ -179,30 +202,29 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn reached(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
-        self.rounded(&self.points, now.fit.values.last().copied().unwrap_or_default(), free)
+        self.rounded(&self.points, self.turns(now), free)
     }
 
     /// Settings that have a step are brought onto it one by one, and the others are fitted again.
-    fn rounded(&self, points: &[Vec<Aimed>], turn: f64, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
-        let turn = ScaledUnknown { start: turn, ..self.turn };
+    fn rounded(&self, points: &[Vec<Aimed>], turns: &[f64], free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
         let mut fixed = Vec::new();
-        let mut found = self.fitted((points, &self.keeps), turn, (free, &fixed))?;
+        let mut found = self.fitted((points, &self.keeps), turns, (free, &fixed))?;
         for &k in free {
             let Some(step) = self.steps[k] else { continue };
             let Range { low, high } = self.unknowns[k].range;
             let whole = (found.fit.values[k] / step).round();
             let inside = whole.max((low / step).ceil()).min((high / step).floor());
             fixed.push((k, inside * step));
-            found = self.fitted((points, &self.keeps), turn, (free, &fixed))?;
+            found = self.fitted((points, &self.keeps), turns, (free, &fixed))?;
         }
         Ok(found)
     }
 
-    /// With settings free, some of which are fixed at values; all others stay as they are.
+    /// From these turns, with settings free, some of which are fixed at values; all others stay as they are.
     fn fitted(
         &self,
         (points, keeps): (&[Vec<Aimed>], &[Keep]),
-        turn: ScaledUnknown,
+        turns: &[f64],
         (free, fixed): (&[usize], &[(usize, f64)]),
     ) -> Result<AdjustedSurfaces, Failure> {
         let kept = keeps.iter().map(|keep| (&keep.surface, &keep.points)).map(wanted);
@@ -216,7 +238,8 @@ impl<'p, 'g> Problem<'p, 'g> {
             wanted: self.surfaces.iter().zip(points).map(wanted).collect(),
             kept: kept.collect(),
             settings: settings.collect(),
-            turn,
+            turn: ScaledUnknown { start: turns[0], ..self.turn },
+            further: self.further.iter().zip(&turns[1..]).map(|(of, at)| ScaledUnknown { start: *at, ..*of }).collect(),
             shapes: self.shapes.clone(),
             resolution: self.resolution,
             uses_weak: self.is_measured,

@@ -21,6 +21,9 @@ pub struct FitResult {
     pub turn_deg: Option<f64>,
     /// The same on the circle through the middle of the points.
     pub turn_mm: Option<f64>,
+    /// By how much the tooth that was measured is thicker than the nominal one on that circle, where its thickness does not count; null where
+    /// it does, or one flank is fitted.
+    pub thicker_mm: Option<f64>,
     /// Root of the mean square of the deviations before anything is changed.
     pub before_um: f64,
     /// The settings that made the measured flank: identification. Null where a wanted ease-off is fitted.

@@ -64,7 +64,7 @@ pub(in crate::compare) fn find(job: &Job<'_>, name: &str) -> Result<usize, Failu
     }
 }
 
-/// Of each setting the step that it is set in, in mm and radians.
+/// Of each setting the step that it is set in, in mm and radians: the one that is asked for, else that of the spec.
 ///
 /// # Errors
 /// If a step is named for a setting that does not vary, twice, or has another unit.
@@ -72,7 +72,7 @@ pub(in crate::compare) fn steps(
     settings: &[&Parameter<'_>],
     round: &[(String, ToleratedAmount)],
 ) -> Result<Vec<Option<f64>>, Failure> {
-    let mut steps = vec![None; settings.len()];
+    let mut asked = vec![None; settings.len()];
     for (name, amount) in round {
         let is_named = |of: &&Parameter<'_>| of.name == *name || of.name.rsplit('.').next() == Some(name);
         let exact = settings.iter().position(|of| of.name == *name);
@@ -90,11 +90,11 @@ pub(in crate::compare) fn steps(
                 return Err(Failure::Input(format!("option `round {name}`: this step is {wanted}")));
             }
         };
-        if steps[at].replace(step).is_some() {
+        if asked[at].replace(step).is_some() {
             return Err(Failure::Request(format!("option `round` names `{name}` twice: leave one of them out")));
         }
     }
-    Ok(steps)
+    Ok(asked.into_iter().zip(settings).map(|(asked, of)| asked.or(of.step)).collect())
 }
 
 /// A setting as an unknown, within the range that it is said to have. `moved` is what one mm, radian or 1 of it moves the flank by, mm.

@@ -29,6 +29,9 @@ impl fmt::Display for FitResult {
             let [deg, mm] = [deg, mm].map(|value| fixed(value, 6));
             writeln!(f, "  turn about z  {deg} deg, {mm} mm on the circle through the middle")?;
         }
+        if let Some(mm) = self.thicker_mm {
+            writeln!(f, "  thickness     {} mm more on that circle, which does not count", fixed(mm, 6))?;
+        }
         writeln!(f, "  before        rms {} um", um(self.before_um))?;
         if let Some(found) = &self.identification {
             writeln!(f, "  identified    rms {} um is left", um(found.left_um))?;

@@ -142,7 +142,7 @@ impl Fitting<'_, '_> {
             .filter(|k| main.fit.values[*k] != self.problem.settings[*k].value)
             .map(|k| self.now.effect(k))
             .collect();
-        effects.push(self.turn_effect(self.now));
+        effects.extend(self.turn_effects());
         let off = &self.now.fit.residuals;
         let from = |at: usize, [is_up, is_back]: [bool; 2]| {
             let (row, column) = (at / columns, at % columns);

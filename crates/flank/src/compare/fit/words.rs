@@ -14,24 +14,44 @@ pub(super) const SHARE: f64 = 1e-2;
 /// A share of the largest one in a direction that is worth a word.
 const LARGE: f64 = 0.3;
 
-/// An unknown of a fit: a setting, or the turn about z.
+/// An unknown of a fit.
 pub(super) struct Unknown<'p, 'g> {
-    /// `None` of the turn.
-    pub(super) setting: Option<&'p Parameter<'g>>,
+    pub(super) what: What<'p, 'g>,
     pub(super) scale: f64,
 }
 
+/// What an unknown of a fit is.
+#[derive(Clone, Copy)]
+pub(super) enum What<'p, 'g> {
+    Setting(&'p Parameter<'g>),
+    /// Of all points about z.
+    Turn,
+    /// Of the points of this surface beyond that.
+    Further(&'p str),
+}
+
 impl Unknown<'_, '_> {
-    pub(super) fn name(&self) -> &str {
-        self.setting.map_or("turn about z", |of| &of.name)
+    pub(super) fn name(&self) -> String {
+        match self.what {
+            What::Setting(of) => of.name.clone(),
+            What::Turn => "turn about z".to_string(),
+            What::Further(name) => format!("further turn of {name}"),
+        }
     }
 
     pub(super) fn dimension(&self) -> Dimension {
-        self.setting.map_or(Dimension::ANGLE, |of| of.dimension)
+        if let What::Setting(of) = self.what { of.dimension } else { Dimension::ANGLE }
     }
 
     fn quoted(&self) -> String {
-        self.setting.map_or("the turn about z".to_string(), |of| format!("`{}`", of.name))
+        match self.what {
+            What::Setting(of) => format!("`{}`", of.name),
+            _ => format!("the {}", self.name()),
+        }
+    }
+
+    fn is_turn(&self) -> bool {
+        !matches!(self.what, What::Setting(_))
     }
 }
 
@@ -56,7 +76,7 @@ fn sentence(shares: &[f64], size: Option<f64>, unknowns: &[Unknown<'_, '_>]) -> 
     match parts[..] {
         [one] => format!("{} does not show: {} of it {little}", unknowns[one].quoted(), by(one)),
         [a, b] if size.is_none() => {
-            let (a, b) = if unknowns[a].setting.is_none() { (b, a) } else { (a, b) };
+            let (a, b) = if unknowns[a].is_turn() { (b, a) } else { (a, b) };
             let ratio = -shares[b] * unknowns[b].scale / (shares[a] * unknowns[a].scale);
             let [first, other] = [a, b].map(|k| unknowns[k].quoted());
             let one = if units::is_angle(unknowns[a].dimension()) { 1f64.to_radians() } else { 1.0 };

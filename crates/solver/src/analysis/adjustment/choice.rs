@@ -18,25 +18,34 @@ const SETTLED: f64 = 1e-10;
 /// Settings in the order in which they lower what the linear model leaves most, until the next would lower its root of the mean square by
 /// less than `least`, does less than `least` of its own for its scale, or would take no more than twice `noise` of them as one number: residuals that
 /// scatter by `noise` each give a setting that does nothing that much in one of twenty cases. An entry of `effects` for each setting says what it does
-/// to the residuals for its scale; what `always` holds is fitted first. Of two that do as much the first one is taken.
+/// to the residuals for its scale; each of `always` is fitted first. Of two that do as much the first one is taken.
 ///
 /// # Panics
 /// If entries are not as long as the residuals.
 #[must_use]
-pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], least: f64, noise: f64) -> Vec<usize> {
+pub fn most_effective(
+    residuals: &[f64],
+    effects: &[Vec<f64>],
+    always: &[Vec<f64>],
+    least: f64,
+    noise: f64,
+) -> Vec<usize> {
     let root = (residuals.len().max(1) as f64).sqrt();
     let column = |of: &[f64]| Col::from_fn(residuals.len(), |row| of[row]);
     let mut left = column(residuals);
     let mut own: Vec<Col<f64>> = effects.iter().map(|of| column(of)).collect();
     let whole: Vec<f64> = own.iter().map(Col::norm_l2).collect();
     let mut taken = Vec::new();
-    let mut next = Some(column(always));
-    while let Some(column) = next {
-        let length = column.norm_l2();
-        if length > 0.0 {
+    let mut first: Vec<Col<f64>> = always.iter().map(|of| column(of)).collect();
+    loop {
+        while let Some(column) = first.pop() {
+            let length = column.norm_l2();
+            if length == 0.0 {
+                continue;
+            }
             let unit = &column * (1.0 / length);
             without(&mut left, unit.as_ref());
-            own.iter_mut().for_each(|of| without(of, unit.as_ref()));
+            own.iter_mut().chain(&mut first).for_each(|of| without(of, unit.as_ref()));
         }
         let rms = left.norm_l2() / root;
         let falls = |k: usize| -> Option<f64> {
@@ -51,12 +60,10 @@ pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], l
             _ => Some((k, fall)),
         };
         let best = (0..own.len()).filter_map(|k| Some((k, falls(k)?))).fold(None, better);
-        next = best.filter(|(_, fall)| *fall >= least).map(|(k, _)| {
-            taken.push(k);
-            own[k].clone()
-        });
+        let Some((k, _)) = best.filter(|(_, fall)| *fall >= least) else { return taken };
+        taken.push(k);
+        first.push(own[k].clone());
     }
-    taken
 }
 
 /// What the linear model leaves of residuals, root of the mean square, when settings take away as much as they can; entries of `effects`
@@ -68,12 +75,13 @@ pub fn most_effective(residuals: &[f64], effects: &[Vec<f64>], always: &[f64], l
 pub fn linear_rest(residuals: &[f64], effects: &[Vec<f64>], resolution: f64) -> f64 {
     let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
     let unknowns = vec![ScaledUnknown { start: 0.0, scale: 1.0, range: everywhere }; effects.len()];
-    let fit = LeastSquares { unknowns, exact: 0, resolution, uses_weak: false, settled: SETTLED }.solve(|at| {
-        let left = residuals.iter().enumerate();
-        let left = left.map(|(row, off)| off + effects.iter().zip(at).map(|(of, x)| of[row] * x).sum::<f64>());
-        let jacobian = Mat::from_fn(residuals.len(), effects.len(), |row, k| effects[k][row]);
-        Some(Linearized { residuals: left.collect(), jacobian })
-    });
+    let fit = LeastSquares { unknowns, exact: 0, resolution, uses_weak: false, settled: SETTLED, given_up: None }
+        .solve(|at| {
+            let left = residuals.iter().enumerate();
+            let left = left.map(|(row, off)| off + effects.iter().zip(at).map(|(of, x)| of[row] * x).sum::<f64>());
+            let jacobian = Mat::from_fn(residuals.len(), effects.len(), |row, k| effects[k][row]);
+            Some(Linearized { residuals: left.collect(), jacobian })
+        });
     let left = fit.map_or_else(|| residuals.to_vec(), |fit| fit.residuals);
     (left.iter().map(|x| x * x).sum::<f64>() / left.len().max(1) as f64).sqrt()
 }
@@ -167,10 +175,11 @@ mod tests {
         let first = vec![1.0, 0.0, 0.0, 0.0];
         // the third setting does what the first one does, the last one next to nothing
         let effects = [first.clone(), vec![0.0, 1.0, 0.0, 0.0], first, vec![0.0, 0.0, 1e-4, 0.0]];
-        let found = most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3, 0.0);
+        let always = [vec![0.0, 0.0, 0.0, 1.0]];
+        let found = most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &always, 1e-3, 0.0);
         assert_eq!(found, [1, 0]);
         // one takes 3 of the residuals, the other 1
-        assert_eq!(most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &[0.0, 0.0, 0.0, 1.0], 1e-3, 0.8), [1]);
-        assert_eq!(most_effective(&[0.0; 4], &effects, &[0.0; 4], 1e-3, 0.0), []);
+        assert_eq!(most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &always, 1e-3, 0.8), [1]);
+        assert_eq!(most_effective(&[0.0; 4], &effects, &[vec![0.0; 4]], 1e-3, 0.0), []);
     }
 }

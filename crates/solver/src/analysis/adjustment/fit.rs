@@ -20,7 +20,7 @@ pub struct WantedPoints<'s> {
     pub near: Vec<NearFoot>,
 }
 
-/// Settings that bring surfaces to points, and a turn of all points about the z axis.
+/// Settings that bring surfaces to points, and turns of the points about the z axis.
 #[derive(Clone, Debug)]
 pub struct SettingsAdjustment<'s> {
     /// Surfaces of one body, all in the same settings.
@@ -29,8 +29,10 @@ pub struct SettingsAdjustment<'s> {
     pub kept: Vec<WantedPoints<'s>>,
     /// The settings; of those that are held both ends of the range are the start.
     pub settings: Vec<ScaledUnknown>,
-    /// About z, radians.
+    /// About z, radians, of all points.
     pub turn: ScaledUnknown,
+    /// By how much further the points of each wanted surface behind the first are turned, where each lies as it likes.
+    pub further: Vec<ScaledUnknown>,
     /// The parts of the distances that are fitted; all of them where there is none.
     pub shapes: Option<Shapes>,
     /// As [`LeastSquares::resolution`], mm.
@@ -42,7 +44,8 @@ pub struct SettingsAdjustment<'s> {
 /// Surfaces that are as near to points as their settings bring them.
 #[derive(Clone, Debug)]
 pub struct AdjustedSurfaces {
-    /// Residuals are the distances of the points, mm, or their parts that are fitted; unknowns the settings, then the turn.
+    /// Residuals are the distances of the points, mm, or their parts that are fitted; unknowns the settings, then the turn, then those of single
+    /// surfaces.
     pub fit: LeastSquaresFit,
     /// Of each surface, for each point.
     pub feet: Vec<Vec<Foot>>,
@@ -62,13 +65,10 @@ impl AdjustedSurfaces {
         (squares / self.fit.residuals.len().max(1) as f64).sqrt()
     }
 
-    /// What the distances change by per unit of an unknown: a setting, or behind them the turn. One for each point.
-    ///
-    /// # Panics
-    /// If there is no such unknown.
+    /// What the distances change by per unit of an unknown. One for each point.
     #[must_use]
     pub fn effect(&self, unknown: usize) -> Vec<f64> {
-        self.feet.iter().flatten().map(|foot| slope(foot, unknown)).collect()
+        in_order(&self.feet).map(|(surface, foot)| slope((surface, foot), unknown)).collect()
     }
 }
 
@@ -80,18 +80,19 @@ impl SettingsAdjustment<'_> {
     #[must_use]
     pub fn solve(&self) -> Option<AdjustedSurfaces> {
         let problem = LeastSquares {
-            unknowns: self.settings.iter().copied().chain([self.turn]).collect(),
+            unknowns: self.settings.iter().chain([&self.turn]).chain(&self.further).copied().collect(),
             exact: self.kept.iter().map(|kept| kept.points.len()).sum(),
             resolution: self.resolution,
             uses_weak: self.uses_weak,
             settled: SETTLED,
+            given_up: None,
         };
         let mut near: Vec<Vec<NearFoot>> = self.surfaces().map(|wanted| wanted.near.clone()).collect();
         let fit = problem.solve(|values| {
             let feet = self.feet(values, &near)?;
             near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
             let (wanted, kept) = feet.split_at(self.wanted.len());
-            Some(linearized([wanted, kept], self.shapes.as_ref()))
+            Some(linearized([wanted, kept], values.len(), self.shapes.as_ref()))
         })?;
         let mut feet = self.feet(&fit.values, &near)?;
         feet.truncate(self.wanted.len());
@@ -104,32 +105,43 @@ impl SettingsAdjustment<'_> {
 
     /// All feet with these settings and this turn; `None` if one is missing.
     fn feet(&self, values: &[f64], near: &[Vec<NearFoot>]) -> Option<Vec<Vec<Foot>>> {
-        let (turn, settings) = values.split_last()?;
-        let of = |(wanted, near): (&WantedPoints<'_>, &Vec<NearFoot>)| {
-            let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, *turn)).collect();
+        let (settings, turns) = values.split_at(self.settings.len());
+        let of = |(surface, (wanted, near)): (usize, (&WantedPoints<'_>, &Vec<NearFoot>))| {
+            let is_further = surface > 0 && surface < self.wanted.len();
+            let further = turns.get(surface).copied().filter(|_| is_further).unwrap_or_default();
+            let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, turns[0] + further)).collect();
             wanted.surface.feet(settings, &points, near).into_iter().collect::<Option<Vec<Foot>>>()
         };
-        self.surfaces().zip(near).map(of).collect()
+        self.surfaces().zip(near).enumerate().map(of).collect()
     }
 }
 
-/// Of points that are wanted, then of those that are kept.
-fn linearized([wanted, kept]: [&[Vec<Foot>]; 2], shapes: Option<&Shapes>) -> Linearized {
-    let settings = wanted.iter().flatten().next().map_or(0, |foot| foot.moved.len());
+/// Of points that are wanted, then of those that are kept, by so many unknowns.
+fn linearized([wanted, kept]: [&[Vec<Foot>]; 2], unknowns: usize, shapes: Option<&Shapes>) -> Linearized {
     let part = |of: Vec<f64>| shapes.map_or_else(|| of.clone(), |shapes| shapes.part(&of));
-    let all = |of: &dyn Fn(&Foot) -> f64| -> Vec<f64> {
-        let own = part(wanted.iter().flatten().map(of).collect());
-        own.into_iter().chain(kept.iter().flatten().map(of)).collect()
+    let all = |of: &dyn Fn((usize, &Foot)) -> f64| -> Vec<f64> {
+        let own = part(in_order(wanted).map(of).collect());
+        // what is kept is turned with all
+        own.into_iter().chain(in_order(kept).map(|(_, foot)| of((0, foot)))).collect()
     };
-    let columns: Vec<Vec<f64>> = (0..=settings).map(|k| all(&|foot| slope(foot, k))).collect();
-    let residuals = all(&|foot| foot.distance);
-    Linearized { jacobian: Mat::from_fn(residuals.len(), settings + 1, |row, k| columns[k][row]), residuals }
+    let columns: Vec<Vec<f64>> = (0..unknowns).map(|k| all(&|foot| slope(foot, k))).collect();
+    let residuals = all(&|(_, foot)| foot.distance);
+    Linearized { jacobian: Mat::from_fn(residuals.len(), unknowns, |row, k| columns[k][row]), residuals }
+}
+
+/// Each with the place of its surface.
+fn in_order(feet: &[Vec<Foot>]) -> impl Iterator<Item = (usize, &Foot)> {
+    feet.iter().enumerate().flat_map(|(surface, feet)| feet.iter().map(move |foot| (surface, foot)))
 }
 
 /// Along the normal at its foot a point recedes as the surface comes, and comes as it is turned; where the foot goes is square to that.
-fn slope(foot: &Foot, unknown: usize) -> f64 {
+fn slope((surface, foot): (usize, &Foot), unknown: usize) -> f64 {
     let ([x, y, _], [nx, ny, _]) = (foot.position, foot.normal);
-    foot.moved.get(unknown).map_or(x * ny - y * nx, |moved| -moved)
+    match unknown.checked_sub(foot.moved.len()) {
+        None => -foot.moved[unknown],
+        Some(turn) if turn == 0 || turn == surface => x * ny - y * nx,
+        Some(_) => 0.0,
+    }
 }
 
 fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {

@@ -5,17 +5,15 @@ pub(crate) mod fit;
 pub(crate) mod shapes;
 
 use flank_expr::geometry::Vector3;
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, LANES, LaneEvaluator, LaneTape, Tape, TapeError};
 use rayon::prelude::*;
 
 use crate::analysis::deviation::FARTHEST;
 use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
-use crate::newton::scalar::solve;
+use crate::newton::batch::LaneNewton;
+use crate::newton::scalar::{LONGEST_STEP, solve};
 use crate::surface::bound::BoundSurface;
-
-/// Points that a thread takes at a time.
-const TOGETHER: usize = 16;
 
 /// A surface that depends on settings, which are given their values later.
 #[derive(Clone, Debug)]
@@ -23,7 +21,7 @@ pub struct AdjustableSurface {
     /// Unknowns of the surface and a distance along its normal; the point and the settings are parameters.
     foot: System,
     /// Of the unknowns and the settings: position, normal, and how far the surface moves along it with each setting.
-    at_foot: Tape,
+    at_foot: LaneTape,
     ranges: Vec<Range>,
     settings: usize,
 }
@@ -79,8 +77,8 @@ impl AdjustableSurface {
         let outputs: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).chain(moved).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().chain(settings).copied().collect();
         Ok(AdjustableSurface {
-            foot: System::one_by_one(&residuals, &unknowns, &parameters)?,
-            at_foot: Tape::new(&outputs, &inputs)?,
+            foot: System::new(&residuals, &unknowns, &parameters)?,
+            at_foot: LaneTape::new(&Tape::new(&outputs, &inputs)?),
             ranges: surface.ranges().to_vec(),
             settings: settings.len(),
         })
@@ -93,35 +91,64 @@ impl AdjustableSurface {
     /// If there are not as many starts as points, or not as many settings as the surface has.
     pub fn feet(&self, settings: &[f64], points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
         assert_eq!((points.len(), settings.len()), (near.len(), self.settings), "a start for each point");
-        let tiles = points.par_chunks(TOGETHER).zip(near.par_chunks(TOGETHER));
+        let tiles = points.par_chunks(LANES).zip(near.par_chunks(LANES));
         let ranges = [&self.ranges[..], &[FARTHEST]].concat();
-        let tile = |(points, near): (&[[f64; 3]], &[NearFoot])| -> Vec<Option<Foot>> {
-            let mut evaluator = ScalarEvaluator::new(&self.at_foot);
-            let pairs = points.iter().zip(near);
-            pairs.map(|(point, near)| self.foot_of(settings, (*point, near), (&ranges, &mut evaluator))).collect()
-        };
-        tiles.flat_map_iter(tile).collect()
+        tiles.flat_map_iter(|(points, near)| self.tile(settings, (points, near), &ranges)).collect()
     }
 
-    fn foot_of(
+    /// As many points as there are lanes at the most, at once; what needs care is solved alone.
+    fn tile(
         &self,
         settings: &[f64],
-        (point, near): ([f64; 3], &NearFoot),
-        (ranges, evaluator): (&[Range], &mut ScalarEvaluator<'_>),
-    ) -> Option<Foot> {
-        let parameters = [&point, settings].concat();
+        (points, near): (&[[f64; 3]], &[NearFoot]),
+        ranges: &[Range],
+    ) -> Vec<Option<Foot>> {
+        let mut newton = LaneNewton::new(&self.foot, ranges);
+        for (lane, (point, near)) in points.iter().zip(near).enumerate() {
+            let start = near.unknowns.iter().copied().chain([near.distance]);
+            newton.put(lane, start, &[point, settings].concat());
+        }
+        newton.run(&vec![true; points.len()], true);
+        let mut roots = Vec::with_capacity(points.len());
+        for (lane, (point, near)) in points.iter().zip(near).enumerate() {
+            let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
+            roots.push(match is_near && newton.outcome(lane) == Outcome::Solved {
+                true => Some((0..ranges.len()).map(|k| newton.input(k)[lane]).collect()),
+                false => self.root(settings, (*point, near), ranges),
+            });
+        }
+        self.placed(settings, roots)
+    }
+
+    /// Unknowns and distance.
+    fn root(&self, settings: &[f64], (point, near): ([f64; 3], &NearFoot), ranges: &[Range]) -> Option<Vec<f64>> {
         let start = [&near.unknowns, &[near.distance][..]].concat();
-        let solution = solve(&self.foot, ranges, &parameters, &start);
-        let (distance, unknowns) = solution.unknowns.split_last().filter(|_| solution.outcome == Outcome::Solved)?;
-        let mut out = vec![0.0; 6 + self.settings];
-        evaluator.run(&[unknowns, settings].concat(), &mut out);
-        let moved = out.split_off(6);
-        Some(Foot {
-            unknowns: unknowns.to_vec(),
-            position: std::array::from_fn(|k| out[k]),
-            normal: std::array::from_fn(|k| out[3 + k]),
-            distance: *distance,
-            moved,
-        })
+        let solution = solve(&self.foot, ranges, &[&point, settings].concat(), &start);
+        (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
+    }
+
+    fn placed(&self, settings: &[f64], roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
+        let mut evaluator = LaneEvaluator::new(&self.at_foot, self.foot.instructions());
+        let size = self.ranges.len();
+        settings.iter().enumerate().for_each(|(k, value)| evaluator.input(size + k).fill(*value));
+        for (lane, root) in roots.iter().enumerate() {
+            // where there is none nothing is read
+            let known = root.iter().chain(roots.iter().flatten()).next();
+            known.into_iter().for_each(|root| (0..size).for_each(|k| evaluator.input(k)[lane] = root[k]));
+        }
+        evaluator.run_first(roots.len());
+        let output = |k: usize, lane: usize| evaluator.output(k)[lane];
+        let foot = |(lane, root): (usize, Option<Vec<f64>>)| {
+            let mut unknowns = root?;
+            let distance = unknowns.pop()?;
+            Some(Foot {
+                unknowns,
+                position: std::array::from_fn(|k| output(k, lane)),
+                normal: std::array::from_fn(|k| output(3 + k, lane)),
+                distance,
+                moved: (0..self.settings).map(|k| output(6 + k, lane)).collect(),
+            })
+        };
+        roots.into_iter().enumerate().map(foot).collect()
     }
 }

@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use faer::Mat;
-use faer::linalg::solvers::{Qr, SolveLstsq, Svd};
 use flank_expr::{ScalarEvaluator, Tape};
 use rayon::prelude::*;
 
 use super::{SettingBounds, SettingKind, SettingsFit};
 use crate::equations::solution::Range;
+use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown};
 use crate::newton::multistart::probe;
 
 /// Rows of a pose's deviation: three displacements, nine entries of a rotation.
@@ -16,14 +16,14 @@ const ROWS: usize = 12;
 /// Poses on which starts are tried; more of them only make each step dearer.
 const FEW: usize = 5;
 /// Starts that are tried together.
-const BATCH: u32 = 64;
+const BATCH: u32 = 32;
 /// So many ends with the same sum of squares, up to a share of it, are no chance.
 const AGREEING: usize = 4;
 const SAME_END: f64 = 1e-6;
-/// Steps from a start.
-const MOST_STEPS: usize = 80;
-/// Damping beyond which no step makes the deviation smaller.
-const LARGEST_DAMPING: f64 = 1e8;
+/// A step by less, of the reach or in radians, comes near an end: the one after it leaves rounding alone.
+const NEAR: f64 = 1e-7;
+/// What loses less than a thousandth of the sum of squares in a step creeps.
+const CREEPS: f64 = 0.999;
 /// A deviation, of the reach or in radians, that is rounding.
 const EXACT: f64 = 1e-12;
 /// A setting that is outside its range by less than this share of it, of the reach at most, is on its end: poses that are met to
@@ -58,6 +58,17 @@ struct State {
     cost: f64,
 }
 
+impl State {
+    /// With other values of the free settings, then of what moves in each pose.
+    fn with(&self, values: &[f64], free: &[usize]) -> State {
+        let (own, moving) = values.split_at(free.len());
+        let mut next = self.clone();
+        free.iter().zip(own).for_each(|(k, value)| next.settings[*k] = *value);
+        next.moving.iter_mut().flatten().zip(moving).for_each(|(of, value)| *of = *value);
+        next
+    }
+}
+
 impl Search {
     pub(super) fn fit(&self, motions: &[Vec<f64>]) -> SettingsFit {
         let mut held = vec![None; self.settings.len()];
@@ -76,7 +87,7 @@ impl Search {
     pub(super) fn stand(&self, settings: &[f64], motions: &[f64], near: &[f64]) -> Vec<f64> {
         let start = State { settings: settings.to_vec(), moving: vec![near.to_vec()], cost: f64::INFINITY };
         let held: Vec<Option<f64>> = settings.iter().map(|x| Some(*x)).collect();
-        self.descend(start, &[motions.to_vec()], &held).moving.swap_remove(0)
+        self.descend(start, &[motions.to_vec()], &held, EXACT).moving.swap_remove(0)
     }
 
     /// The best end of descents from starts all over the ranges, on a few poses first; but for the settings that are held.
@@ -85,7 +96,7 @@ impl Search {
         let (mut ends, mut exact): (Vec<State>, Vec<State>) = (Vec::new(), Vec::new());
         for before in (0..self.starts).step_by(BATCH as usize) {
             let starts = (before + 1..=self.starts.min(before.saturating_add(BATCH))).into_par_iter();
-            let found: Vec<State> = starts.map(|k| self.descend(self.start(k, &few, held), &few, held)).collect();
+            let found: Vec<State> = starts.map(|k| self.descend(self.start(k, &few, held), &few, held, NEAR)).collect();
             let is_exact = |end: &&State| end.cost <= self.rounding(few.len());
             exact.extend(found.iter().filter(is_exact).map(|end| self.widened(end.clone(), motions, held)));
             exact.sort_by(|a, b| self.rank(a, motions.len()).total_cmp(&self.rank(b, motions.len())));
@@ -112,7 +123,7 @@ impl Search {
         let last = few.moving.len() - 1;
         let near = |k: usize| few.moving[(k * last + (motions.len() - 1) / 2) / (motions.len() - 1).max(1)].clone();
         let moving = motions.iter().enumerate().map(|(k, at)| self.stand(&few.settings, at, &near(k))).collect();
-        let state = self.descend(State { moving, settings: few.settings, cost: f64::INFINITY }, motions, held);
+        let state = self.descend(State { moving, settings: few.settings, cost: f64::INFINITY }, motions, held, EXACT);
         self.unwound(state, motions)
     }
 
@@ -159,93 +170,58 @@ impl Search {
         State { settings, moving: motions.iter().map(moving).collect(), cost: f64::INFINITY }
     }
 
-    /// Levenberg and Marquardt, settings and poses together.
-    fn descend(&self, start: State, motions: &[Vec<f64>], held: &[Option<f64>]) -> State {
-        let mut state = State { cost: self.cost(&start.settings, &start.moving, motions), ..start };
-        let mut damping = 1e-2;
-        for _ in 0..MOST_STEPS {
-            if !state.cost.is_finite() || state.cost == 0.0 {
-                break;
-            }
-            let (jacobian, right) = self.linearized(&state, motions, held);
-            let mut next = None;
-            while next.is_none() && damping <= LARGEST_DAMPING {
-                let trial = self.stepped(&state, &jacobian, &right, damping, held, motions);
-                if trial.cost < state.cost {
-                    damping = (damping * 0.1).max(1e-12);
-                    next = Some(trial);
-                } else {
-                    damping *= 10.0;
-                }
-            }
-            let Some(next) = next else { break };
-            let gain = next.cost < 0.999 * state.cost;
-            state = next;
-            if !gain {
-                break;
-            }
-        }
-        state
-    }
-
-    fn stepped(
-        &self,
-        state: &State,
-        jacobian: &Mat<f64>,
-        right: &Mat<f64>,
-        damping: f64,
-        held: &[Option<f64>],
-        motions: &[Vec<f64>],
-    ) -> State {
-        let (rows, columns) = (jacobian.nrows(), jacobian.ncols());
-        let damped = Mat::from_fn(rows + columns, columns, |i, j| match i.checked_sub(rows) {
-            None => jacobian[(i, j)],
-            Some(k) if k == j => damping.sqrt(),
-            Some(_) => 0.0,
+    /// Settings and poses together, but for the settings that are held.
+    fn descend(&self, start: State, motions: &[Vec<f64>], held: &[Option<f64>], settled: f64) -> State {
+        let free: Vec<usize> = (0..held.len()).filter(|k| held[*k].is_none()).collect();
+        let found = self.solved(&start, motions, &free, settled);
+        let found = found.map(|fit| {
+            let cost = fit.residuals.iter().map(|off| off * off).sum();
+            State { cost, ..start.with(&fit.values, &free) }
         });
-        let right = Mat::from_fn(rows + columns, 1, |i, _| if i < rows { right[(i, 0)] } else { 0.0 });
-        let by = Qr::new(damped.as_ref()).solve_lstsq(&right);
-        let mut next = state.clone();
-        let mut column = 0;
-        for (k, value) in next.settings.iter_mut().enumerate().filter(|(k, _)| held[*k].is_none()) {
-            *value += by[(column, 0)] * self.scale(k);
-            column += 1;
-        }
-        for moving in &mut next.moving {
-            for (k, value) in moving.iter_mut().enumerate() {
-                *value += by[(column, 0)] * self.moving_scale(k);
-                column += 1;
-            }
-        }
-        next.cost = self.cost(&next.settings, &next.moving, motions);
-        next
+        found.unwrap_or(State { cost: f64::INFINITY, ..start })
     }
 
-    /// The deviations' derivatives by the free settings, then by what moves in each pose, and the deviations reversed; unknowns by
-    /// their scales.
-    fn linearized(&self, state: &State, motions: &[Vec<f64>], held: &[Option<f64>]) -> (Mat<f64>, Mat<f64>) {
-        let columns: Vec<usize> = (0..held.len()).filter(|k| held[*k].is_none()).collect();
-        let (own, of_each) = (columns.len(), self.is_rotary.len());
-        let mut jacobian = Mat::zeros(ROWS * motions.len(), own + of_each * motions.len());
-        let mut right = Mat::zeros(ROWS * motions.len(), 1);
-        let unknowns = self.settings.len() + of_each;
-        let mut out = vec![0.0; self.tape.output_count()];
+    /// By least squares of what the poses are off, in the free settings and then in what moves in each pose.
+    fn solved(&self, start: &State, motions: &[Vec<f64>], free: &[usize], settled: f64) -> Option<LeastSquaresFit> {
+        let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        let unknown = |start: f64, scale: f64| ScaledUnknown { start, scale, range: everywhere };
+        let settings = free.iter().map(|k| unknown(start.settings[*k], self.scale(*k)));
+        let moving = start.moving.iter().flatten().enumerate();
+        let moving = moving.map(|(k, at)| unknown(*at, self.moving_scale(k % self.is_rotary.len())));
+        let unknowns = settings.chain(moving).collect();
+        let problem =
+            LeastSquares { unknowns, exact: 0, resolution: 0.0, uses_weak: false, settled, given_up: Some(CREEPS) };
         let mut evaluator = ScalarEvaluator::new(&self.tape);
+        let mut out = vec![0.0; self.tape.output_count()];
+        problem.solve(|values| {
+            let at = start.with(values, free);
+            Some(self.linearized((&mut evaluator, &mut out), &at, motions, free))
+        })
+    }
+
+    fn linearized(
+        &self,
+        (evaluator, out): (&mut ScalarEvaluator<'_>, &mut [f64]),
+        state: &State,
+        motions: &[Vec<f64>],
+        free: &[usize],
+    ) -> Linearized {
+        let (own, of_each) = (free.len(), self.is_rotary.len());
+        let mut jacobian = Mat::zeros(ROWS * motions.len(), own + of_each * motions.len());
+        let mut residuals = Vec::with_capacity(ROWS * motions.len());
+        let unknowns = self.settings.len() + of_each;
         for (pose, (moving, at)) in state.moving.iter().zip(motions).enumerate() {
-            evaluator.run(&[&state.settings[..], moving, at].concat(), &mut out);
+            evaluator.run(&[&state.settings[..], moving, at].concat(), out);
             for row in 0..ROWS {
                 let slope = |k: usize| out[ROWS + row * unknowns + k];
-                let line = ROWS * pose + row;
-                right[(line, 0)] = -out[row];
-                for (column, &k) in columns.iter().enumerate() {
-                    jacobian[(line, column)] = slope(k) * self.scale(k);
-                }
+                residuals.push(out[row]);
+                free.iter().enumerate().for_each(|(column, &k)| jacobian[(ROWS * pose + row, column)] = slope(k));
                 for k in 0..of_each {
-                    jacobian[(line, own + of_each * pose + k)] = slope(self.settings.len() + k) * self.moving_scale(k);
+                    jacobian[(ROWS * pose + row, own + of_each * pose + k)] = slope(self.settings.len() + k);
                 }
             }
         }
-        (jacobian, right)
+        Linearized { residuals, jacobian }
     }
 
     fn cost(&self, settings: &[f64], moving: &[Vec<f64>], motions: &[Vec<f64>]) -> f64 {
@@ -294,13 +270,11 @@ impl Search {
 
     /// The settings that can change without changing the poses, as few as fix all others: those with a usual value first.
     fn loose(&self, state: &State, motions: &[Vec<f64>]) -> Vec<usize> {
-        let (jacobian, _) = self.linearized(state, motions, &vec![None; self.settings.len()]);
-        let Ok(svd) = Svd::new(jacobian.as_ref()) else { return Vec::new() };
-        let (sizes, v) = (svd.S(), svd.V());
-        let count = jacobian.ncols();
-        let unseen = (0..count).filter(|&k| k >= jacobian.nrows() || sizes[k] <= UNSEEN * sizes[0]);
-        let mut directions: Vec<Vec<f64>> =
-            unseen.map(|k| (0..self.settings.len()).map(|j| v[(j, k)]).collect()).collect();
+        let all: Vec<usize> = (0..self.settings.len()).collect();
+        let Some(fit) = self.solved(state, motions, &all, EXACT) else { return Vec::new() };
+        let largest = fit.directions.first().map_or(0.0, |of| of.size);
+        let unseen = fit.directions.iter().filter(|of| of.size <= UNSEEN * largest);
+        let mut directions: Vec<Vec<f64>> = unseen.map(|of| of.shares[..all.len()].to_vec()).collect();
         let mut loose = Vec::new();
         // Gauss and Jordan: each direction gives up the setting that is easiest to settle
         while let Some((row, pivot)) = self.pivot(&directions, &loose) {

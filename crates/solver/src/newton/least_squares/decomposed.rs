@@ -14,6 +14,9 @@ pub(super) struct Kept {
 impl Kept {
     /// What each has to push with against a gradient, as the unknowns that are inside their ranges say it.
     pub(super) fn forces(&self, gradient: &Mat<f64>, is_inside: impl Fn(usize) -> bool) -> Mat<f64> {
+        if self.residuals.nrows() == 0 {
+            return Mat::zeros(0, 1);
+        }
         let inside: Vec<usize> = (0..gradient.nrows()).filter(|k| is_inside(*k)).collect();
         let of_inside = Mat::from_fn(inside.len(), 1, |row, _| -gradient[(inside[row], 0)]);
         Free::new(self, &inside).forces(&of_inside)
@@ -98,7 +101,9 @@ impl Decomposed {
         if keeping.ncols() == 0 {
             return none(kept);
         }
-        let jacobian = Mat::from_fn(rows, free.len(), |row, k| state.jacobian[(row, free[k])]);
+        // rows of zeros change nothing, and leave a direction for each unknown where there are fewer residuals
+        let slope = |row: usize, k: usize| if row < rows { state.jacobian[(row, free[k])] } else { 0.0 };
+        let jacobian = Mat::from_fn(rows.max(free.len()), free.len(), slope);
         // without anything to keep, the directions are the unknowns themselves
         let jacobian = if kept.sizes.is_empty() { jacobian } else { &jacobian * &keeping };
         // all is finite, so that the values converge

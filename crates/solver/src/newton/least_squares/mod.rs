@@ -2,6 +2,8 @@
 
 mod decomposed;
 
+use std::rc::Rc;
+
 use faer::Mat;
 
 use decomposed::{Decomposed, Kept};
@@ -84,6 +86,8 @@ pub struct LeastSquares {
     pub uses_weak: bool,
     /// The search ends with a step that changes no residual by more than this; residuals are known to a tenth of it.
     pub settled: f64,
+    /// The search is given up with a step that leaves more than this share of the sum of squares, where one of many is worth no more.
+    pub given_up: Option<f64>,
 }
 
 /// A direction in the unknowns, with what it does.
@@ -104,7 +108,7 @@ pub enum SearchEnd {
     Settled,
     /// No step made the sum of squares smaller, and the last one tried was not small.
     Stuck,
-    /// After as many steps as are taken at the most.
+    /// After as many steps as are taken at the most, or where it was given up.
     Unfinished,
 }
 
@@ -153,9 +157,23 @@ struct State {
     kept: Kept,
     /// The sum of the squares of the residuals.
     squares: f64,
+    /// The Jacobian by those unknowns that were free when it was asked for last.
+    decomposed: Option<(Vec<bool>, Rc<Decomposed>)>,
 }
 
 impl State {
+    /// The singular values of the Jacobian by the free unknowns: the same for all steps that are tried from here.
+    fn decomposed(&mut self, free: Vec<bool>) -> Rc<Decomposed> {
+        if let Some((known, decomposed)) = &self.decomposed
+            && *known == free
+        {
+            return decomposed.clone();
+        }
+        let decomposed = Rc::new(Decomposed::new(self, |k| free[k]));
+        self.decomposed = Some((free, decomposed.clone()));
+        decomposed
+    }
+
     /// What a step has to lower: the sum of squares, and what is to be zero by a weight.
     fn cost(&self, weight: f64) -> f64 {
         self.squares + weight * size(&self.kept.residuals)
@@ -197,7 +215,7 @@ impl LeastSquares {
                 break SearchEnd::Unfinished;
             }
             tried += 1;
-            let step = self.step(&state, rank, damping);
+            let step = self.step(&mut state, rank, damping);
             let trial = self.state(step.values.clone(), &mut linearized);
             let is_small = step.change <= self.settled;
             let error = KNOWN * self.settled * (state.residuals.nrows() as f64).sqrt();
@@ -212,7 +230,11 @@ impl LeastSquares {
                     let gain = (cost - trial.cost(step.weight) + rounding) / (step.fall + rounding);
                     (damping, growth) = (step.after(damping, gain), GROWTH);
                     is_slow = trial.cost(step.weight) > SLOW * cost;
+                    let is_hopeless = self.given_up.is_some_and(|share| trial.cost(step.weight) > share * cost);
                     state = trial;
+                    if is_hopeless {
+                        break SearchEnd::Unfinished;
+                    }
                 }
                 None if is_small => {}
                 None if damping >= LARGEST_DAMPING * step.squares[1] => break SearchEnd::Stuck,
@@ -222,14 +244,14 @@ impl LeastSquares {
                 }
             }
             // a damped step is small for its damping alone
-            let shown = if is_small || is_slow { self.shown(&state) } else { rank };
+            let shown = if is_small || is_slow { self.shown(&mut state) } else { rank };
             if is_small && damping == 0.0 && shown <= rank {
                 break SearchEnd::Settled;
             }
             rank = rank.max(shown);
             damping = if is_small { 0.0 } else { damping };
         };
-        Some(self.told(&state, (rank, steps, end)))
+        Some(self.told(state, (rank, steps, end)))
     }
 
     fn state(&self, values: Vec<f64>, linearized: &mut impl FnMut(&[f64]) -> Option<Linearized>) -> Option<State> {
@@ -246,7 +268,7 @@ impl LeastSquares {
         let kept = Kept { residuals: column(count, self.exact), jacobian: rows(count, self.exact) };
         let (residuals, jacobian) = (column(0, count), rows(0, count));
         let squares = residuals.squared_norm_l2();
-        is_finite.then_some(State { values, residuals, jacobian, kept, squares })
+        is_finite.then_some(State { values, residuals, jacobian, kept, squares, decomposed: None })
     }
 
     /// What the sum of squares changes by with each unknown, along what is to be zero: without the part of the gradient that only that
@@ -280,11 +302,11 @@ impl LeastSquares {
     }
 
     /// The step to the least sum of squares of the linear model within the bounds.
-    fn step(&self, state: &State, rank: usize, damping: f64) -> Step {
+    fn step(&self, state: &mut State, rank: usize, damping: f64) -> Step {
         let mut fixed: Vec<Option<f64>> = self.held(state).iter().map(|held| held.map(|_| 0.0)).collect();
         loop {
             let taken = Mat::from_fn(fixed.len(), 1, |k, _| fixed[k].unwrap_or(0.0));
-            let decomposed = Decomposed::new(state, |k| fixed[k].is_none());
+            let decomposed = state.decomposed(fixed.iter().map(Option::is_none).collect());
             let used = self.count_used(&decomposed, rank);
             let begun = &taken + &decomposed.onto(&state.kept, &taken);
             let free = decomposed.step(&(&state.residuals + &state.jacobian * &begun), used, damping);
@@ -324,12 +346,11 @@ impl LeastSquares {
     }
 
     /// How many directions leave next to nothing; none where not even all of them do.
-    fn shown(&self, state: &State) -> usize {
+    fn shown(&self, state: &mut State) -> usize {
         if !self.uses_weak {
             return 0;
         }
-        let held = self.held(state);
-        let of = Decomposed::new(state, |k| held[k].is_none());
+        let of = state.decomposed(self.held(state).iter().map(Option::is_none).collect());
         let seen = of.sizes.iter().take_while(|size| **size > UNSEEN * of.sizes[0]).count();
         let mut left = state.squares;
         let mut is_enough = |k: &usize| {
@@ -340,9 +361,9 @@ impl LeastSquares {
         (0..seen).filter(|_| is_known).find(|k| is_enough(k)).map_or(0, |last| last + 1)
     }
 
-    fn told(&self, state: &State, (rank, steps, end): (usize, usize, SearchEnd)) -> LeastSquaresFit {
-        let held = self.held(state);
-        let of = Decomposed::new(state, |k| held[k].is_none());
+    fn told(&self, mut state: State, (rank, steps, end): (usize, usize, SearchEnd)) -> LeastSquaresFit {
+        let held = self.held(&state);
+        let of = state.decomposed(held.iter().map(Option::is_none).collect());
         let used = self.count_used(&of, rank);
         let shares = |k: usize| (0..held.len()).map(|unknown| of.share(k, unknown)).collect::<Vec<f64>>();
         let directions: Vec<SingularDirection> = (0..of.sizes.len())
@@ -354,9 +375,9 @@ impl LeastSquares {
             scale(i) * scale(j) * terms.sum::<f64>()
         };
         let all = 0..held.len();
-        let gradient = self.gradient(state);
+        let gradient = self.gradient(&state);
         LeastSquaresFit {
-            values: state.values.clone(),
+            values: state.values,
             residuals: state.residuals.col(0).iter().copied().collect(),
             exact: state.kept.residuals.col(0).iter().copied().collect(),
             gradient: gradient.col(0).iter().copied().collect(),
