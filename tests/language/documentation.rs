@@ -179,6 +179,23 @@ fn two_machines_cut_one_flank() {
 }
 
 /// The tutorial builds up the file that ships.
+/// How many lines a script and a spec take that do the same, as the tour says: lines with code.
+#[test]
+fn the_tour_counts_the_lines_of_both() {
+    let read = |path: &str| fs::read_to_string(repository(path)).expect("the file is there");
+    let (script, spec) = (read("benches/peers/spiral_bevel_casadi.py"), read("benches/spiral_bevel.chain"));
+    let is_code = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with(['#', '/']);
+    // every other piece between three quotes is a remark
+    let script = script.split("\"\"\"").step_by(2).collect::<String>();
+    let of_main = script.split_once("\ndef main").expect("the script has a main function").1;
+    let count = |text: &str| text.lines().filter(is_code).count();
+    let (all, of_main) = (count(&script), count(&format!("def main{of_main}")));
+    // without the job that asks for the same surface by other coordinates
+    let spec = count(spec.split_once("job grid").expect("the spec has a second job").0);
+    let told = format!("| {all}, of which {of_main} for arguments, targets and timing | {spec} |");
+    assert!(read("docs/tour.md").contains(&told), "{told}");
+}
+
 #[test]
 fn the_tutorial_ends_with_its_file() {
     let shipped = read(&repository("specs/tutorial/first_gear.chain"));

@@ -21,7 +21,7 @@ fn helicoid<'g>(graph: &'g Graph, of: &str, [rb, tb, eps]: [f64; 3], [c, d]: [f6
     let position = Vector3([(cos + sin * xi * eps) * rb, (sin - cos * xi * eps) * rb, z]);
     let tan = (z * (2.0 * c) + z * square * (4.0 * d)) * eps + tb;
     let normal = Vector3([sin, -cos, tan]).scaled(1.0 / (tan * tan + 1.0).sqrt()).scaled(graph.constant(eps));
-    Surface { unknowns: vec![xi, z], position, normal, constraints: Vec::new() }
+    Surface { unknowns: vec![xi, z], position, normal, constraints: Vec::new(), given: 0 }
 }
 
 /// Points of a flank over its ranges.
@@ -206,7 +206,7 @@ fn straight_blade<'g>(graph: &'g Graph, of: &str, side: f64, [radius, alpha]: [f
     let around = u * (side * sin) + radius;
     let position = Vector3([around * v.cos(), around * v.sin(), u * cos]);
     let normal = Vector3([v.cos() * (side * cos), v.sin() * (side * cos), graph.constant(-sin)]);
-    Surface { unknowns: vec![u, v], position, normal, constraints: Vec::new() }
+    Surface { unknowns: vec![u, v], position, normal, constraints: Vec::new(), given: 0 }
 }
 
 /// A flank cut by a blade on a cradle machine, as tca.md has it.
@@ -293,7 +293,7 @@ fn curved_blade<'g>(graph: &'g Graph, of: &str, k: f64, set: &Value) -> Surface<
     let x = w.cos() * (k * rho) + (rp - k * rho * a.cos());
     let position = Vector3([x * v.cos(), x * v.sin(), w.sin() * -rho + rho * a.sin()]);
     let normal = Vector3([w.cos() * v.cos() * -k, w.cos() * v.sin() * -k, w.sin()]);
-    Surface { unknowns: vec![u, v], position, normal, constraints: Vec::new() }
+    Surface { unknowns: vec![u, v], position, normal, constraints: Vec::new(), given: 0 }
 }
 
 /// Mounting errors of the published pair: the pinion out of the apex, the offset, the shaft angle, the gear out of the apex.

@@ -170,6 +170,7 @@ fn what_does_not_fit_says_why_and_what_does() {
         ("specs/bevel/formate_gear.chain", "section", "stands still while it makes"),
         ("specs/bevel/formate_gear.chain", "motion", "nothing moves while"),
         ("specs/double_envelope/shaped_ring_gear.chain", "section", "is an envelope itself"),
+        ("tests/surfaces/specs/ring_by_equation.chain", "section", "is given by an equation"),
     ];
     for (spec, kind, why) in cases {
         let run = flank(&["plot", spec, "--what", kind]);

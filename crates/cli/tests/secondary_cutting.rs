@@ -269,4 +269,6 @@ fn what_was_not_looked_at_is_said() {
     );
     let wheel = told("specs/double_envelope/hourglass_worm_wheel.chain", &[]);
     assert!(wheel[0].1.is_null() && wheel[1].1.as_str().unwrap().contains("generated itself"), "{wheel:?}");
+    let forms = told("tests/surfaces/specs/ring_by_equation.chain", &[]);
+    assert!(forms.len() == 1 && forms[0].1.as_str().unwrap().contains("given by an equation"), "{forms:?}");
 }

@@ -1,6 +1,7 @@
 //! Machines and tools as they are defined, and instances of them with their parameters' values.
 
 pub(crate) mod closure;
+pub(crate) mod implicit_surface;
 pub(crate) mod instance;
 pub(crate) mod machine;
 pub(crate) mod material_side;

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use flank_expr::geometry::{Edge, Surface, Vector3};
 use flank_expr::{Expr, Interval};
 
+use crate::definitions::implicit_surface;
 use crate::definitions::instance::{Binder, Overrides, Source, is_count, is_profile};
 use crate::definitions::material_side::{self, Places};
 use crate::definitions::profile;
@@ -15,7 +16,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
 use crate::job::sample;
 use crate::model::{Parameter, PieceEnds, RangedVariable, ToolShape};
-use crate::syntax::ast::{self, Side, SurfaceParameter, ToolStatement};
+use crate::syntax::ast::{self, ExpressionKind, Side, SurfaceParameter, ToolStatement};
 use crate::values::context::{Context, Role};
 use crate::values::dimension::Dimension;
 use crate::values::segment::Segment;
@@ -210,6 +211,10 @@ fn build_surface<'g>(
 ) -> Option<(ToolShape<'g>, Vec<RangedVariable<'g>>)> {
     let (scope, unknowns) = own_names(context, side, scope, along)?;
     let written = side.written;
+    if let Side::Where(condition) = &written.body.side {
+        let surface = implicit_surface::build(context, (&written.at, condition), &unknowns, &scope)?;
+        return Some((ToolShape::Surface(surface), unknowns));
+    }
     let (position, steel) = point_and_steel(context, written, &scope)?;
     let shape = match (written.parameters.len(), unknowns.as_slice()) {
         (1, [u]) => ToolShape::Edge(Edge { parameter: u.variable, position, steel }),
@@ -262,13 +267,7 @@ fn own_names<'g>(
         scope.insert(parameter.name().node.clone(), value);
         unknowns.extend(bounded);
     }
-    if !matches!(written.parameters.len(), 1 | 2) {
-        let message = format!(
-            "a surface has two parameters (a cutting edge one), `{}` has {}",
-            name.node,
-            written.parameters.len()
-        );
-        context.report(Diagnostic::new(Code::WrongArguments, name.span, message));
+    if !has_its_parameters(context, written, name) {
         return None;
     }
     for binding in &written.lets {
@@ -276,6 +275,34 @@ fn own_names<'g>(
         scope.insert(binding.name.node.clone(), value);
     }
     Some((scope, unknowns))
+}
+
+/// Whether a surface has as many parameters as its kind takes; reported if not.
+fn has_its_parameters(context: &mut Context<'_>, written: &ast::ToolSurface, name: &Name) -> bool {
+    let (is_implicit, count) = (matches!(written.body.side, Side::Where(_)), written.parameters.len());
+    let (kind, help) = match (is_implicit, count) {
+        (false, 1 | 2) | (true, 3) => return true,
+        // what its side is has been asked for
+        (false, 3) if matches!(&written.body.side, Side::Towards(side) if side.kind == ExpressionKind::Error) => {
+            return false;
+        }
+        (true, _) => (
+            "a surface by a condition has three parameters",
+            "they move the point in space, as `at = [u, v, w]`; where the condition ceases to hold lies the surface",
+        ),
+        (false, 3) => (
+            "a surface has two parameters (a cutting edge one)",
+            "with three, a condition says where the steel lies: `body where u^2 + v^2 < radius^2`",
+        ),
+        (false, _) => ("a surface has two parameters (a cutting edge one)", ""),
+    };
+    let mut diagnostic =
+        Diagnostic::new(Code::WrongArguments, name.span, format!("{kind}, `{}` has {count}", name.node));
+    if !help.is_empty() {
+        diagnostic = diagnostic.help(help);
+    }
+    context.report(diagnostic);
+    false
 }
 
 /// The point of a surface, and a direction from it into the steel.
@@ -287,13 +314,13 @@ fn point_and_steel<'g>(
     let position = context.vector(&written.at, scope, Dimension::LENGTH, "the point");
     let towards = match &written.body.side {
         Side::Towards(direction) => direction_of_steel(context, direction, scope),
-        Side::Inside | Side::Outside => position,
+        Side::Inside | Side::Outside | Side::Where(_) => position,
     };
     let (position, towards) = (Vector3(position?), Vector3(towards?));
     let radial = Vector3([position.0[0], position.0[1], context.graph.constant(0.0)]);
     let steel = match &written.body.side {
         Side::Inside => -radial,
-        Side::Outside => radial,
+        Side::Outside | Side::Where(_) => radial,
         Side::Towards(_) => towards,
     };
     Some((position, steel))

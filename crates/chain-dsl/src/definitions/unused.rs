@@ -209,8 +209,8 @@ impl Used {
                     }
                     surface.lets.iter().for_each(|binding| self.expression(&binding.value));
                     self.expression(&surface.at);
-                    if let Side::Towards(direction) = &surface.body.side {
-                        self.expression(direction);
+                    if let Side::Towards(side) | Side::Where(side) = &surface.body.side {
+                        self.expression(side);
                     }
                 }
             }

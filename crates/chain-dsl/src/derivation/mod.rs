@@ -224,6 +224,10 @@ impl Page {
                 self.text(&format!("tool surface in {frame}, mm, and its unit normal, out of the tool's steel:"));
                 self.vector("r_t", surface.position);
                 self.vector("n_t", surface.normal);
+                if surface.given == 1 {
+                    self.text("its equation, mm off the surface:");
+                    self.zero("f_t", surface.constraints[0]);
+                }
             }
             ToolShape::Edge(edge) => {
                 self.text(&format!("cutting edge in {frame}, mm, and a direction into the tool's steel:"));
@@ -252,13 +256,18 @@ impl Page {
             let Some(&meshing) = index.checked_sub(free).and_then(|k| own.get(k)) else { continue };
             self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0, the same in every frame, here as in the shortest one"));
             let name = graph.listing(&[motion], self.style, "t").values[0].clone();
-            let listing = graph.listing(&[meshing], self.style, "t");
-            self.definitions(&listing.definitions);
-            match self.style {
-                Style::Text => self.line(&format!("  {} = 0", listing.values[0])),
-                Style::Latex => self.line(&format!("\\[ f_{{{name}}} = {} = 0 \\]", listing.values[0])),
-            }
+            self.zero(&format!("f_{{{name}}}"), meshing);
             self.closed_forms(meshing, &surface.surface.unknowns);
+        }
+    }
+
+    /// An equation, which has a name in LaTeX.
+    fn zero(&mut self, name: &str, function: Expr<'_>) {
+        let listing = function.graph().listing(&[function], self.style, "t");
+        self.definitions(&listing.definitions);
+        match self.style {
+            Style::Text => self.line(&format!("  {} = 0", listing.values[0])),
+            Style::Latex => self.line(&format!("\\[ {name} = {} = 0 \\]", listing.values[0])),
         }
     }
 

@@ -32,7 +32,8 @@ impl<'g> Builder<'_, 'g> {
         what: &str,
     ) -> bool {
         let mut fine = true;
-        for (meshing, unknown) in made.constraints.iter().zip(&made.unknowns[2..]) {
+        let of_motions = made.constraints.iter().zip(&made.unknowns[2..]).skip(made.given);
+        for (meshing, unknown) in of_motions {
             let Some((motion, span)) = motions.iter().find(|(motion, _)| motion.variable == *unknown) else { continue };
             let is_zero = |mut values: Vec<f64>| is_zero(*meshing, made, unknowns, motion, &mut values);
             if !is_zero(context.values().to_vec()) {

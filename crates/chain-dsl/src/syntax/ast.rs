@@ -365,6 +365,8 @@ pub enum Side {
     Outside,
     /// `body towards [x, y, z]`: the side to which this direction points.
     Towards(Expression),
+    /// `body where x^2 + y^2 < r^2`: where this holds of three parameters; the surface is its border.
+    Where(Expression),
 }
 
 /// `require condition, "message"`: what must hold of the values, and the message if it does not.

@@ -266,6 +266,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_then => "then",
         Rule::kw_else => "else",
         Rule::kw_towards => "towards",
+        Rule::kw_where => "where",
         _ => return None,
     })
 }

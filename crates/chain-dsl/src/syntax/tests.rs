@@ -181,7 +181,7 @@ fn the_scanner_knows_the_words_of_the_grammar() {
         assert!(words::reserved(&longer).is_none(), "{longer}");
         assert!(grammar::strict(Rule::job_piece, &format!("let {longer} = 3")).is_ok(), "{longer}");
     }
-    for word in free.into_iter().chain(["along", "towards", "as", "with"]) {
+    for word in free.into_iter().chain(["along", "towards", "where", "as", "with"]) {
         assert!(
             words::reserved(word).is_none() && grammar::strict(Rule::job_piece, &format!("let {word} = 3")).is_ok()
         );

@@ -426,11 +426,18 @@ impl Writer {
         }
         self.all(&["at", "="]);
         self.value();
-        if self.random.one_in(2) {
-            self.all(&["body", "inside"]);
-        } else {
-            self.all(&["body", "towards"]);
-            self.vector(1);
+        match self.random.below(3) {
+            0 => self.all(&["body", "inside"]),
+            1 => {
+                self.all(&["body", "towards"]);
+                self.vector(1);
+            }
+            _ => {
+                self.all(&["body", "where"]);
+                self.value();
+                self.put("<");
+                self.value();
+            }
         }
         self.put("}");
     }

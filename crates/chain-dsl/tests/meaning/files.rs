@@ -472,6 +472,32 @@ fn a_decimal_comma_from_outside_is_one_finding() {
 
 /// A grid of points: what is wrong of its rows, and of how it is asked for.
 #[test]
+fn large_tables_are_refused() {
+    let found = |rows: String, value: &str| {
+        let tool = format!(
+            "tool t {{
+                let value = {value}
+                surface s(u: length in 0 mm .. 1 mm, v: length in 0 mm .. 1 mm) {{
+                    at = [u, v, 0 mm]
+                    body towards [0, 0, 1]
+                }}
+            }}"
+        );
+        let folder = project("large", &[("p.csv", &rows), ("t.chain", &tool)]);
+        let graph = Graph::new();
+        let findings = compile_file(&graph, &folder.join("t.chain"), &[]).diagnostics;
+        findings.iter().map(|finding| format!("{} {}", finding.code.as_str(), finding.message)).collect::<Vec<_>>()
+    };
+    let rows =
+        |count: usize| (0..count).fold("u,v,w\n".to_string(), |rows, k| rows + &format!("{},{},{k}\n", k / 41, k % 41));
+    let (curve, grid) = ("curve(\"p.csv\", w: length, v: length)", "grid(\"p.csv\", u: length, v: length, w: length)");
+    assert_eq!(found(rows(48 * 41), grid), [""; 0]);
+    assert_eq!(found(rows(49 * 41), grid), ["E0004 a grid of more than 2,000 points"]);
+    assert_eq!(found(rows(100_001), curve), ["E0004 a table of more than 100,000 rows"]);
+    assert_eq!(found(rows(2) + &"\n".repeat(16 << 20), curve), ["E0004 the tables are more than 16 MiB together"]);
+}
+
+#[test]
 fn a_grid_is_whole_and_does_not_fold() {
     let tool = |call: &str, at: &str| {
         format!(

@@ -377,6 +377,37 @@ fn refused() -> Vec<(&'static str, String, Limit)> {
             format!("machine m {{ frame f {} }}", "frame g in h ".repeat(50_000)),
             limits::MISTAKES,
         ),
+        (
+            "thousands of surfaces by a long condition",
+            format!(
+                "fn f(x: number, y: number) = {}\ntool t {{ {} }}",
+                (0..100).map(|k| format!("sin({k} * x * 1 rad) * exp(y / {k}.5)")).collect::<Vec<_>>().join(" + "),
+                lines(4_000, |k| {
+                    let parameters = ["u", "v", "w"].map(|name| format!("{name}: length in -1 mm .. 1 mm")).join(", ");
+                    format!(
+                        "surface s{k}({parameters}) {{ at = [u, v, w] body where f(u / 1 mm, v / {k}.5 mm) < w / 1 mm }}"
+                    )
+                })
+            ),
+            limits::EVALUATION_STEPS,
+        ),
+        (
+            "a spline through hundreds of points of a sample",
+            small_job(
+                "sample s as many { u: 0 deg .. 40 deg by 300, turn: 10 deg }\nprofile p { face = spline(many, rho, z) }",
+            ),
+            limits::SPLINE_POINTS,
+        ),
+        (
+            "thousands of sides of one surface",
+            format!(
+                "tool t {{ {} surface {}(u: length in 0 mm .. 1 mm, v: length in 0 mm .. 1 mm) for side in [{}] {{ at = [u, v, side * 1 mm] body towards [0, 0, 1] }} }}",
+                lines(1_000, |k| format!("let a{k} = {k}")),
+                lines(4_000, |k| format!("s{k},")).trim_end().trim_end_matches(','),
+                "1, ".repeat(4_000)
+            ),
+            limits::EVALUATION_STEPS,
+        ),
         ("a very long name", format!("machine m {{ frame {} }}", "f".repeat(500_000)), limits::WORD),
         ("a very long number", format!("machine m {{ frame f let a = {} }}", "1".repeat(500_000)), limits::WORD),
         ("a very long path", format!("use \"{}\"", "../".repeat(300_000)), limits::WORD),

@@ -105,6 +105,7 @@ fn tool_statement(statement: &ToolStatement) -> Vec<String> {
                 Side::Inside => "inside".to_owned(),
                 Side::Outside => "outside".to_owned(),
                 Side::Towards(direction) => format!("towards {}", expression(direction)),
+                Side::Where(condition) => format!("where {}", expression(condition)),
             };
             let lets = it.lets.iter().map(|it| format!("  {}", let_statement(it)));
             let rest = [format!("  at {}", expression(&it.at)), format!("  body {body}")];

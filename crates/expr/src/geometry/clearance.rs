@@ -6,8 +6,8 @@ use crate::geometry::vector::Vector3;
 use crate::symbolic::graph::{Expr, Graph};
 
 impl<'g> Surface<'g> {
-    /// The leading minors of the Hessian of the clearance, one for each constraint: all positive where the tool leaves the
-    /// point that it generates.
+    /// The leading minors of the Hessian of the clearance, one for each constraint of a motion: all positive where the tool leaves
+    /// the point that it generates.
     ///
     /// The clearance of a point of the work is its distance from the tool's steel as a function of the motions. Where the
     /// tool generates the point, it is zero and stationary. The point stays only if that is a minimum, so if the Hessian
@@ -18,7 +18,8 @@ impl<'g> Surface<'g> {
     /// With δ_k the determinant of ∂c/∂p and ∂r/∂p bordered by n, restricted to the first k constraints and k + 2
     /// unknowns, the k-th minor is (−1)^k δ_k / δ_0. They are found from c, r and n alone, for the k-th constraint belongs
     /// to the motion that is unknown k + 2 and is −n · ∂r/∂motion. For an envelope of an envelope the later minors are those
-    /// of the later motions times the last of the earlier ones.
+    /// of the later motions times the last of the earlier ones. Where an equation gives the tool, δ₁ of that alone takes the place
+    /// of δ₀, and each later one that of the one before: what two parameters of the tool's own would change is a common factor.
     ///
     /// # Panics
     /// If the surface does not have two unknowns more than constraints.
@@ -27,10 +28,11 @@ impl<'g> Surface<'g> {
         let slopes: Vec<Vector3<'g>> = self.unknowns.iter().map(|&p| self.position.derivative(p)).collect();
         let rows: Vec<Vec<Expr<'g>>> =
             self.constraints.iter().map(|c| self.unknowns.iter().map(|&p| c.derivative(p)).collect()).collect();
-        let area = self.oriented_area(graph, &rows[..0], &slopes[..2]);
-        (1..=rows.len())
+        let bordered = |k: usize| self.oriented_area(graph, &rows[..k], &slopes[..k + 2]);
+        let area = bordered(self.given);
+        (1..=rows.len() - self.given)
             .map(|k| {
-                let bordered = self.oriented_area(graph, &rows[..k], &slopes[..k + 2]);
+                let bordered = bordered(self.given + k);
                 (if k % 2 == 0 { bordered } else { -bordered }) / area
             })
             .collect()
@@ -39,9 +41,10 @@ impl<'g> Surface<'g> {
     /// The determinant of the constraints' derivatives by the motions: zero where the lines of contact have an envelope on the
     /// tool. Beyond that line no point of the tool generates anything. `None` without motions.
     pub fn contact_limit(&self) -> Option<Expr<'g>> {
-        let motions = self.unknowns.get(2..).filter(|motions| !motions.is_empty())?;
+        let motions = self.unknowns.get(2 + self.given..).filter(|motions| !motions.is_empty())?;
+        let meshing = &self.constraints[self.given..];
         let rows: Vec<Vec<Expr<'g>>> =
-            self.constraints.iter().map(|c| motions.iter().map(|&motion| c.derivative(motion)).collect()).collect();
+            meshing.iter().map(|c| motions.iter().map(|&motion| c.derivative(motion)).collect()).collect();
         let columns: Vec<usize> = (0..motions.len()).collect();
         Some(determinant(motions[0].graph(), &rows, &columns))
     }

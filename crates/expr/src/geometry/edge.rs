@@ -36,7 +36,7 @@ impl<'g> Edge<'g> {
         let normal = self.raw_normal(t_work_tool, motions[0]).normalized();
         let normal = if flipped { -normal } else { normal };
         let unknowns = [self.parameter].into_iter().chain(motions.iter().copied()).collect();
-        let swept = Surface { unknowns, position: self.position, normal, constraints: Vec::new() };
+        let swept = Surface { unknowns, position: self.position, normal, constraints: Vec::new(), given: 0 };
         let constraints = motions[1..].iter().map(|&motion| -swept.meshing(t_work_tool, motion)).collect();
         Surface { constraints, ..swept.moved(t_work_tool) }
     }

@@ -16,8 +16,11 @@ pub struct Surface<'g> {
     /// Unit vector in the same frame, out of the body that owns the surface.
     pub normal: Vector3<'g>,
     /// What must be zero for the point to lie on it: two fewer than unknowns. The k-th belongs to unknown k + 2, a motion,
-    /// and equals `−n · ∂r/∂motion` on the surface: how fast the tool's steel draws back from the work.
+    /// and equals `−n · ∂r/∂motion` on the surface: how fast the tool's steel draws back from the work. Those of the tool
+    /// itself come first.
     pub constraints: Vec<Expr<'g>>,
+    /// How many of the constraints belong to no motion, but hold on the tool by itself: one where an equation gives it.
+    pub given: usize,
 }
 
 impl<'g> Surface<'g> {
@@ -30,7 +33,30 @@ impl<'g> Surface<'g> {
     pub fn along(unknowns: [Expr<'g>; 2], position: Vector3<'g>, raw: Vector3<'g>, flipped: bool) -> Surface<'g> {
         let normal = raw.normalized();
         let normal = if flipped { -normal } else { normal };
-        Surface { unknowns: unknowns.to_vec(), position, normal, constraints: Vec::new() }
+        Surface { unknowns: unknowns.to_vec(), position, normal, constraints: Vec::new(), given: 0 }
+    }
+
+    /// Where a function is zero of three unknowns, with which the position moves in space; the body lies where the function is negative.
+    ///
+    /// The constraint is the function over the length of its gradient, so that it is, in mm, how far a point near the surface lies
+    /// off it, whatever unit the function has.
+    pub fn implicit(unknowns: [Expr<'g>; 3], position: Vector3<'g>, function: Expr<'g>) -> Surface<'g> {
+        let gradient = Surface::gradient(unknowns, position, function);
+        Surface {
+            unknowns: unknowns.to_vec(),
+            position,
+            normal: gradient.normalized(),
+            constraints: vec![function / gradient.norm()],
+            given: 1,
+        }
+    }
+
+    /// The gradient in space, per mm, of a function of three unknowns with which the position moves: `Σ f_i (r_j × r_k) / det(r_u, r_v, r_w)`.
+    pub fn gradient(unknowns: [Expr<'g>; 3], position: Vector3<'g>, function: Expr<'g>) -> Vector3<'g> {
+        let [u, v, w] = unknowns.map(|unknown| position.derivative(unknown));
+        let [by_u, by_v, by_w] = unknowns.map(|unknown| function.derivative(unknown));
+        let sum = v.cross(w).scaled(by_u) + w.cross(u).scaled(by_v) + u.cross(v).scaled(by_w);
+        sum.scaled(1.0 / u.dot(v.cross(w)))
     }
 
     /// Along `r_u × r_v`, not of unit length, without what its components have as a common factor.
@@ -59,6 +85,7 @@ impl<'g> Surface<'g> {
             position: Vector3([parts[0], parts[1], parts[2]]),
             normal: Vector3([parts[3], parts[4], parts[5]]),
             constraints: parts[6..].to_vec(),
+            given: self.given,
         }
     }
 
@@ -75,6 +102,7 @@ impl<'g> Surface<'g> {
             position: moved.position,
             normal: -moved.normal,
             constraints: self.constraints.iter().copied().chain(meshing).collect(),
+            given: self.given,
         }
     }
 

@@ -73,19 +73,6 @@ impl Node {
         };
         a.into_iter().chain(b)
     }
-
-    /// The same of other nodes.
-    pub(crate) fn with_operands(self, other: impl Fn(NodeId) -> NodeId) -> Node {
-        match self {
-            Node::Constant(_) | Node::Variable(_) => self,
-            Node::Unary(op, a) => Node::Unary(op, other(a)),
-            Node::Binary(op, a, b) => Node::Binary(op, other(a), other(b)),
-            Node::Curve(curve, order, a) => Node::Curve(curve, order, other(a)),
-            Node::Middle(a) => Node::Middle(other(a)),
-            Node::Root(root, a, b) => Node::Root(root, other(a), other(b)),
-            Node::Integral(integral, a, b) => Node::Integral(integral, other(a), other(b)),
-        }
-    }
 }
 
 #[derive(Default)]
@@ -190,6 +177,13 @@ pub(crate) struct Placed {
     pub(crate) node: Node,
     /// The places of its operands: the only one twice, none as zeros.
     pub(crate) operands: [usize; 2],
+}
+
+impl Placed {
+    /// Whether it is made of nothing.
+    pub(crate) fn is_leaf(&self) -> bool {
+        matches!(self.node, Node::Constant(_) | Node::Variable(_))
+    }
 }
 
 impl fmt::Debug for Graph {
@@ -389,6 +383,39 @@ impl Graph {
     /// What the roots are made of.
     pub(crate) fn order(&self, roots: &[Expr<'_>]) -> Order {
         let found = self.reachable(roots.iter().map(|root| root.id));
+        let (nodes, roots) = self.placed(&found, roots.iter().map(|root| root.id));
+        Order { nodes, roots: roots.into_iter().map(|root| root.expect("roots are among them")).collect() }
+    }
+
+    /// The same numbers without what only enclosures need: a middle is what it is the middle of, and parts that are equal then are one.
+    pub(crate) fn without_middles<'g>(&'g self, roots: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let Order { nodes, roots: places } = self.order(roots);
+        if !nodes.iter().any(|placed| matches!(placed.node, Node::Middle(_))) {
+            return roots.to_vec();
+        }
+        let mut images: Vec<NodeId> = Vec::with_capacity(nodes.len());
+        for Placed { id, node, operands: [a, b] } in nodes {
+            let of = |place: usize| images[place];
+            let image = match node {
+                Node::Constant(_) | Node::Variable(_) => id,
+                Node::Middle(_) => of(a),
+                Node::Unary(op, _) => self.intern(Node::Unary(op, of(a))).id,
+                Node::Binary(op, ..) => self.intern(Node::Binary(op, of(a), of(b))).id,
+                Node::Curve(curve, order, _) => self.intern(Node::Curve(curve, order, of(a))).id,
+                Node::Root(root, ..) => self.intern(Node::Root(root, of(a), of(b))).id,
+                Node::Integral(integral, ..) => self.intern(Node::Integral(integral, of(a), of(b))).id,
+            };
+            images.push(image);
+        }
+        places.into_iter().map(|place| self.expr(images[place])).collect()
+    }
+
+    /// Nodes with the places of their operands, which are among them, and the places of the `wanted`; none of what is not among them.
+    pub(crate) fn placed(
+        &self,
+        found: &[NodeId],
+        wanted: impl Iterator<Item = NodeId>,
+    ) -> (Vec<Placed>, Vec<Option<usize>>) {
         let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
         for (place, id) in found.iter().enumerate() {
             visits.last[id.0 as usize].1 = place as u32;
@@ -400,10 +427,8 @@ impl Graph {
             let first = operands.next().unwrap_or(0);
             Placed { id, node, operands: [first, operands.next().unwrap_or(first)] }
         };
-        Order {
-            nodes: found.iter().copied().map(placed).collect(),
-            roots: roots.iter().map(|root| place(root.id)).collect(),
-        }
+        let nodes = found.iter().copied().map(placed).collect();
+        (nodes, wanted.map(|id| Some(place(id)).filter(|place| found.get(*place) == Some(&id))).collect())
     }
 
     /// Operations that depend on at least one of the `variables`: what has to be done anew where these change, with equal

@@ -1,13 +1,11 @@
 //! A hash for tables of nodes: a few multiplications where the standard one takes tens of nanoseconds, and the same in every
 //! run. No result depends on it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// A table whose keys are nodes or their numbers.
 pub(crate) type NodeMap<K, V> = HashMap<K, V, BuildHasherDefault<NodeHasher>>;
-/// A set of nodes or their numbers.
-pub(crate) type NodeSet<K> = HashSet<K, BuildHasherDefault<NodeHasher>>;
 
 /// Bits of the golden ratio: odd, and without a pattern.
 const MULTIPLIER: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -50,9 +48,10 @@ impl Hasher for NodeHasher {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
     use std::hash::{BuildHasher, BuildHasherDefault};
 
-    use super::{NodeHasher, NodeSet};
+    use super::NodeHasher;
     use crate::symbolic::graph::{Node, NodeId};
     use crate::symbolic::op::Binary;
 
@@ -64,8 +63,8 @@ mod tests {
         let sums = (0..COUNT).map(|k| Node::Binary(Binary::Add, NodeId(k), NodeId(k + 1)));
         let numbers = (0..COUNT).map(|k| Node::constant(f64::from(k)));
         for nodes in [sums.collect::<Vec<_>>(), numbers.collect()] {
-            let low: NodeSet<u64> = nodes.iter().map(|node| build.hash_one(node) % u64::from(COUNT)).collect();
-            let high: NodeSet<u64> = nodes.iter().map(|node| build.hash_one(node) >> 48).collect();
+            let low: HashSet<u64> = nodes.iter().map(|node| build.hash_one(node) % u64::from(COUNT)).collect();
+            let high: HashSet<u64> = nodes.iter().map(|node| build.hash_one(node) >> 48).collect();
             // dice would hit 63 % of as many boxes
             for hit in [low, high] {
                 assert!(hit.len() > COUNT as usize / 2, "{} buckets", hit.len());

@@ -47,9 +47,9 @@ impl Implicit {
     }
 }
 
-/// The unknowns of equations from good starts: two steps of Newton's method, each kept within the ranges, the last one from the middle of
-/// where an interval puts the unknowns, which gives intervals the mean-value form. The value is NaN where the last step goes
-/// further than `reach`.
+/// The unknowns of equations from good starts: two steps of Newton's method, each kept within the ranges and from the middle of where an
+/// interval puts the unknowns, which gives intervals the mean-value form. The value is NaN where the last step goes further than
+/// `reach`.
 ///
 /// Each residual is zero; `unknowns` are variables that stand nowhere else. They are said to lie in `ranges`, their values stay within
 /// `limits`.
@@ -73,9 +73,11 @@ pub(crate) fn roots<'g>(
     };
     let step = |x: &[Expr<'g>], middle: &[Expr<'g>]| solution(&at(&slopes, x), &at(residuals, middle));
     let moved = |from: &[Expr<'g>], by: &[Expr<'g>]| clamped(from.iter().zip(by).map(|(x, by)| *x - *by).collect());
+    let middles = |x: &[Expr<'g>]| -> Vec<Expr<'g>> { x.iter().map(|x| x.middle()).collect() };
     let start = clamped(starts);
-    let near = moved(&start, &step(&start, &start));
-    let middle: Vec<Expr<'g>> = near.iter().map(|x| x.middle()).collect();
+    let middle = middles(&start);
+    let near = moved(&middle, &step(&start, &middle));
+    let middle = middles(&near);
     let by = step(&near, &middle);
     let values = moved(&middle, &by);
     let sizes = by.iter().zip(reach).map(|(by, reach)| by.abs() / *reach);

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::symbolic::curve::Curve;
-use crate::symbolic::graph::{CurveId, Expr, Graph, Node, NodeId};
-use crate::symbolic::hash::{NodeMap, NodeSet};
+use crate::symbolic::graph::{CurveId, Expr, Graph, Node, NodeId, Placed};
+use crate::symbolic::hash::NodeMap;
 use crate::symbolic::op::{Binary, Unary};
 
 /// What an instruction does with its registers.
@@ -129,32 +129,72 @@ impl Tape {
         let roots = roots.chain([outputs.iter().map(|output| output.id).collect()]);
         let mut order: Vec<NodeId> = roots.flat_map(|roots| graph.reachable(roots)).collect();
         if !definitions.is_empty() {
-            let mut seen = NodeSet::default();
-            order.retain(|id| seen.insert(*id));
+            let mut seen = vec![false; graph.len()];
+            order.retain(|id| !std::mem::replace(&mut seen[id.0 as usize], true));
         }
-        let mut registers = Registers::new(graph, &order, outputs, definitions);
-        for (index, input) in inputs.iter().enumerate() {
-            registers.place.insert(input.id, index as u32);
-        }
-        tape.place_leaves(graph, &order, &mut registers)?;
+        let wanted = definitions.iter().flat_map(|(variable, value)| [variable.id, value.id]);
+        let (nodes, places) = graph.placed(&order, wanted.chain(outputs.iter().map(|output| output.id)));
+        let (defined, outputs) = places.split_at(2 * definitions.len());
+        assert!(
+            definitions.iter().all(|(variable, _)| variable.as_variable().is_some()),
+            "what is defined is a variable"
+        );
+        let outputs: Vec<usize> = outputs.iter().map(|output| output.expect("outputs are among them")).collect();
+        let mut registers = Registers::new(&nodes, defined, &outputs);
+        let inputs: NodeMap<NodeId, usize> =
+            inputs.iter().enumerate().map(|(index, input)| (input.id, index)).collect();
+        tape.place_leaves(graph, &inputs, &mut registers)?;
         registers.next = (tape.input_count + tape.constants.len()) as u32;
-        tape.instructions = order.iter().filter_map(|&id| registers.step(graph, id)).collect();
+        tape.instructions.reserve(nodes.len());
+        for place in 0..nodes.len() {
+            tape.instructions.extend(registers.step(place));
+        }
         tape.curves = registers.curves.iter().map(|&id| graph.curve_of(id)).collect();
-        tape.outputs = outputs.iter().map(|output| registers.place[&registers.meant(output.id)]).collect();
+        tape.outputs = outputs.iter().map(|output| registers.register_of(registers.meant[*output])).collect();
         tape.register_count = registers.next as usize;
         Ok(tape)
     }
 
-    fn place_leaves(&mut self, graph: &Graph, order: &[NodeId], registers: &mut Registers) -> Result<(), TapeError> {
-        for &id in order {
-            match graph.node(id) {
+    /// [`Tape::with_definitions`] for numbers and series, with fewer steps: what only enclosures need is left out. The numbers are the same.
+    ///
+    /// # Errors
+    /// As for [`Tape::with_definitions`].
+    ///
+    /// # Panics
+    /// As for [`Tape::with_definitions`].
+    pub fn of_numbers<'g>(
+        outputs: &[Expr<'g>],
+        inputs: &[Expr<'g>],
+        definitions: &[(Expr<'g>, Expr<'g>)],
+    ) -> Result<Tape, TapeError> {
+        let Some(first) = outputs.first() else { return Tape::new(outputs, inputs) };
+        let all: Vec<Expr<'g>> = outputs.iter().copied().chain(definitions.iter().map(|(_, value)| *value)).collect();
+        let all = first.graph().without_middles(&all);
+        let (outputs, values) = all.split_at(outputs.len());
+        let definitions: Vec<_> =
+            definitions.iter().map(|(variable, _)| *variable).zip(values.iter().copied()).collect();
+        Tape::with_definitions(outputs, inputs, &definitions)
+    }
+
+    fn place_leaves(
+        &mut self,
+        graph: &Graph,
+        inputs: &NodeMap<NodeId, usize>,
+        registers: &mut Registers<'_>,
+    ) -> Result<(), TapeError> {
+        for (place, leaf) in registers.nodes.iter().enumerate() {
+            match leaf.node {
                 Node::Constant(bits) => {
-                    registers.place.insert(id, (self.input_count + self.constants.len()) as u32);
+                    registers.held[place] = (self.input_count + self.constants.len()) as u32;
                     self.constants.push(f64::from_bits(bits));
                 }
-                Node::Variable(variable) if !registers.place.contains_key(&id) && registers.meant(id) == id => {
-                    return Err(TapeError::UnboundVariable(graph.variable_name(variable)));
-                }
+                Node::Variable(variable) => match inputs.get(&leaf.id) {
+                    Some(index) => registers.held[place] = *index as u32,
+                    None if registers.meant[place] == place => {
+                        return Err(TapeError::UnboundVariable(graph.variable_name(variable)));
+                    }
+                    None => {}
+                },
                 _ => {}
             }
         }
@@ -197,133 +237,140 @@ impl Tape {
     }
 }
 
-/// Which node lives in which register, and which registers are free.
-struct Registers {
-    place: NodeMap<NodeId, u32>,
-    /// What defined variables stand for.
-    meanings: NodeMap<NodeId, NodeId>,
-    uses: NodeMap<NodeId, u32>,
+/// Of nothing.
+const NOWHERE: u32 = u32::MAX;
+
+/// Which node lives in which register, and which registers are free. Nodes are told by their places.
+struct Registers<'n> {
+    nodes: &'n [Placed],
+    /// The register of each node.
+    held: Vec<u32>,
+    /// What each node stands for: itself, but for variables that are defined.
+    meant: Vec<usize>,
+    /// How often each node is still read.
+    uses: Vec<u32>,
     /// The cosine that has the angle of a sine, and the other way round, where both are wanted.
-    partners: NodeMap<NodeId, NodeId>,
+    partners: Vec<u32>,
     free: Vec<u32>,
     /// Curves in the order in which the tape numbers them.
     curves: Vec<CurveId>,
     next: u32,
 }
 
-impl Registers {
-    fn new(graph: &Graph, order: &[NodeId], outputs: &[Expr<'_>], definitions: &[(Expr<'_>, Expr<'_>)]) -> Registers {
-        let mut meanings = NodeMap::<NodeId, NodeId>::default();
-        for (variable, value) in definitions {
-            assert!(variable.as_variable().is_some(), "what is defined is a variable");
-            let meaning = meanings.get(&value.id).copied().unwrap_or(value.id);
-            meanings.insert(variable.id, meaning);
-        }
-        let meant = |id: NodeId| meanings.get(&id).copied().unwrap_or(id);
-        let mut uses = NodeMap::with_capacity_and_hasher(order.len(), Default::default());
-        for &id in order {
-            let mut before = None;
-            for operand in
-                graph.node(id).operands().map(meant).filter(|&operand| before.replace(operand) != Some(operand))
-            {
-                *uses.entry(operand).or_insert(0) += 1;
+impl Registers<'_> {
+    /// `defined` has the places of each variable that is defined, and of what it stands for; none of variables that nothing depends on.
+    fn new<'n>(nodes: &'n [Placed], defined: &[Option<usize>], outputs: &[usize]) -> Registers<'n> {
+        let mut meant: Vec<usize> = (0..nodes.len()).collect();
+        for pair in defined.chunks_exact(2) {
+            if let [Some(variable), Some(value)] = *pair {
+                meant[variable] = meant[value];
             }
+        }
+        let mut uses = vec![0_u32; nodes.len()];
+        for placed in nodes.iter().filter(|placed| !placed.is_leaf()) {
+            let [a, b] = placed.operands.map(|operand| meant[operand]);
+            uses[a] += 1;
+            uses[b] += u32::from(b != a);
         }
         // an output is read once more, after the last step
         for output in outputs {
-            *uses.entry(meant(output.id)).or_insert(0) += 1;
+            uses[meant[*output]] += 1;
         }
         // leaves are never written again
-        for &id in order {
-            if matches!(graph.node(id), Node::Constant(_) | Node::Variable(_)) {
-                uses.insert(id, u32::MAX);
-            }
+        for (uses, _) in uses.iter_mut().zip(nodes).filter(|(_, placed)| placed.is_leaf()) {
+            *uses = u32::MAX;
         }
-        let partners = partners(graph, order);
-        let place = NodeMap::with_capacity_and_hasher(order.len(), Default::default());
-        Registers { place, meanings, uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
+        let (held, partners) = (vec![NOWHERE; nodes.len()], partners(nodes));
+        Registers { nodes, held, meant, uses, partners, free: Vec::new(), curves: Vec::new(), next: 0 }
     }
 
-    fn meant(&self, id: NodeId) -> NodeId {
-        self.meanings.get(&id).copied().unwrap_or(id)
+    fn register_of(&self, place: usize) -> u32 {
+        let register = self.held[place];
+        assert_ne!(register, NOWHERE, "what is defined is not needed before");
+        register
     }
 
     /// The instruction of a node; none for a leaf, which is in its register from the start, nor for the second of a sine and
     /// a cosine.
-    fn step(&mut self, graph: &Graph, id: NodeId) -> Option<Instruction> {
-        if self.place.contains_key(&id) {
+    fn step(&mut self, place: usize) -> Option<Instruction> {
+        if self.held[place] != NOWHERE {
             return None;
         }
-        let (operation, a, b) = match graph.node(id).with_operands(|operand| self.meant(operand)) {
-            Node::Unary(Unary::Sin, a) if self.partners.contains_key(&id) => {
-                return Some(self.sin_cos_step(id, self.partners[&id], a));
+        let Placed { node, operands, .. } = self.nodes[place];
+        let [a, b] = operands.map(|operand| self.meant[operand]);
+        let partner = self.partners[place];
+        let operation = match node {
+            Node::Unary(Unary::Sin, _) if partner != NOWHERE => {
+                return Some(self.sin_cos_step(place, partner as usize, a));
             }
-            Node::Unary(Unary::Cos, a) if self.partners.contains_key(&id) => {
-                return Some(self.sin_cos_step(self.partners[&id], id, a));
+            Node::Unary(Unary::Cos, _) if partner != NOWHERE => {
+                return Some(self.sin_cos_step(partner as usize, place, a));
             }
-            Node::Unary(op, a) => (Operation::Unary(op), a, a),
-            Node::Binary(op, a, b) => (Operation::Binary(op), a, b),
-            Node::Middle(a) => (Operation::Middle, a, a),
-            Node::Root(_, a, b) => (Operation::Settled, a, b),
-            Node::Integral(_, a, b) => (Operation::Widened, a, b),
-            Node::Curve(curve, order, a) => return Some(self.curve_step(id, curve, order, a)),
+            Node::Unary(op, _) => Operation::Unary(op),
+            Node::Binary(op, ..) => Operation::Binary(op),
+            Node::Middle(_) => Operation::Middle,
+            Node::Root(..) => Operation::Settled,
+            Node::Integral(..) => Operation::Widened,
+            Node::Curve(curve, order, _) => return Some(self.curve_step(place, curve, order, a)),
             Node::Constant(_) | Node::Variable(_) => return None,
         };
-        let (a_register, b_register) = (self.place[&a], self.place[&b]);
+        let (a_register, b_register) = (self.register_of(a), self.register_of(b));
         self.release(a);
         if b != a {
             self.release(b);
         }
-        Some(Instruction { operation, out: self.allocate(id), a: a_register, b: b_register })
+        Some(Instruction { operation, out: self.allocate(place), a: a_register, b: b_register })
     }
 
-    fn sin_cos_step(&mut self, sine: NodeId, cosine: NodeId, a: NodeId) -> Instruction {
-        let a_register = self.place[&a];
+    fn sin_cos_step(&mut self, sine: usize, cosine: usize, a: usize) -> Instruction {
+        let a_register = self.register_of(a);
         self.release(a);
         self.release(a);
         let (out, b) = (self.allocate(sine), self.allocate(cosine));
         Instruction { operation: Operation::SinCos, out, a: a_register, b }
     }
 
-    fn curve_step(&mut self, id: NodeId, curve: CurveId, order: u8, a: NodeId) -> Instruction {
+    fn curve_step(&mut self, place: usize, curve: CurveId, order: u8, a: usize) -> Instruction {
         let known = self.curves.iter().position(|&other| other == curve);
         let index = known.unwrap_or(self.curves.len());
         if known.is_none() {
             self.curves.push(curve);
         }
-        let a_register = self.place[&a];
+        let a_register = self.register_of(a);
         self.release(a);
-        Instruction { operation: Operation::Curve(order), out: self.allocate(id), a: a_register, b: index as u32 }
+        Instruction { operation: Operation::Curve(order), out: self.allocate(place), a: a_register, b: index as u32 }
     }
 
-    fn release(&mut self, id: NodeId) {
-        let Some(left) = self.uses.get_mut(&id).filter(|left| **left != u32::MAX) else {
+    fn release(&mut self, place: usize) {
+        let left = &mut self.uses[place];
+        if *left == u32::MAX {
             return;
-        };
+        }
         *left -= 1;
         if *left == 0 {
-            self.free.push(self.place[&id]);
+            self.free.push(self.held[place]);
         }
     }
 
-    fn allocate(&mut self, id: NodeId) -> u32 {
+    fn allocate(&mut self, place: usize) -> u32 {
         let register = self.free.pop().unwrap_or_else(|| {
             self.next += 1;
             self.next - 1
         });
-        self.place.insert(id, register);
+        self.held[place] = register;
         register
     }
 }
 
 /// Of each angle whose sine and cosine are both among the nodes, the one by the other.
-fn partners(graph: &Graph, order: &[NodeId]) -> NodeMap<NodeId, NodeId> {
-    let (mut of_angle, mut partners) = (NodeMap::<NodeId, NodeId>::default(), NodeMap::default());
-    for &id in order {
-        let Node::Unary(Unary::Sin | Unary::Cos, angle) = graph.node(id) else { continue };
-        if let Some(other) = of_angle.insert(angle, id) {
-            partners.insert(id, other);
-            partners.insert(other, id);
+fn partners(nodes: &[Placed]) -> Vec<u32> {
+    let [mut of_angle, mut partners] = [vec![NOWHERE; nodes.len()], vec![NOWHERE; nodes.len()]];
+    for (place, placed) in nodes.iter().enumerate() {
+        let Node::Unary(Unary::Sin | Unary::Cos, _) = placed.node else { continue };
+        let other = std::mem::replace(&mut of_angle[placed.operands[0]], place as u32);
+        if other != NOWHERE {
+            partners[place] = other;
+            partners[other as usize] = place as u32;
         }
     }
     partners

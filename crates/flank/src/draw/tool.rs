@@ -30,6 +30,10 @@ impl Tool {
             _ if generation.process == Process::Move || generation.motions.is_empty() => {
                 return Err(format!("`{}` stands still while it makes `{name}`", generation.tool_name));
             }
+            ToolShape::Surface(tool) if tool.given > 0 => {
+                let tool = &generation.tool_name;
+                return Err(format!("the tool of `{name}`, `{tool}`, is given by an equation, not by two parameters"));
+            }
             ToolShape::Surface(tool) if !tool.constraints.is_empty() => {
                 return Err(format!("the tool of `{name}`, `{}`, is an envelope itself", generation.tool_name));
             }

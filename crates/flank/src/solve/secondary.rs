@@ -37,7 +37,15 @@ pub(crate) fn judge<'g>(
     if surface.generation.process != Process::Envelope {
         return Positions::Unseen("all other positions, the tool is an edge");
     }
-    let Some(_) = piece(surface) else { return Positions::Unseen("all other positions, the tool is generated itself") };
+    let Some(_) = piece(surface) else {
+        let is_given = matches!(&surface.generation.tool, ToolShape::Surface(tool) if tool.given > 0);
+        let reason = if is_given {
+            "all other positions, the tool is given by an equation"
+        } else {
+            "all other positions, the tool is generated itself"
+        };
+        return Positions::Unseen(reason);
+    };
     let values = job.bindings();
     let mut names: Vec<&str> = Vec::new();
     let all = job.surfaces.iter().enumerate().filter(|(_, other)| is_of_same_tool(surface, other));
@@ -76,7 +84,7 @@ pub(crate) fn judge_trims<'g>(
     }
 }
 
-/// The tool's surface with the ranges of its parameters; `None` where the tool is an edge, or generated itself.
+/// The tool's surface with the ranges of its parameters; `None` where the tool is an edge, generated itself, or given by an equation.
 fn piece<'s, 'g>(surface: &'s GeneratedSurface<'g>) -> Option<(&'s Surface<'g>, Vec<Range>)> {
     let ToolShape::Surface(shape) = &surface.generation.tool else { return None };
     let ranges = ranges(surface);

@@ -23,7 +23,7 @@ pub(crate) fn expected<'g>(
     let root = PlainRoot::new(wanted, unknowns, determinant, determinant.abs() - f64::MAX);
     let [lows, highs] = &root.ends;
     let inputs = [unknowns, parameters, &[determinant], lows, highs].concat();
-    let tape = Tape::with_definitions(&root.outputs, &inputs, &definitions(given, unknowns))?;
+    let tape = Tape::of_numbers(&root.outputs, &inputs, &definitions(given, unknowns))?;
     let mut varies = vec![Varies::Freely; inputs.len()];
     varies[unknowns.len() + parameters.len() + 1..].fill(Varies::Seldom);
     Ok(LaneTape::with_inputs(&tape, &varies).writing(root.written()))
@@ -48,7 +48,7 @@ pub(crate) fn laid_out<'g>(
     let root = PlainRoot::new(wanted, unknowns, determinant, CLEAR - determinant * side);
     let [lows, highs] = &root.ends;
     let inputs = [unknowns, parameters, &linear.widths, lows, highs, &[side]].concat();
-    let tape = Tape::with_definitions(&root.outputs, &inputs, &definitions(given, unknowns))?;
+    let tape = Tape::of_numbers(&root.outputs, &inputs, &definitions(given, unknowns))?;
     let mut varies = vec![Varies::Freely; unknowns.len()];
     varies.extend([Varies::ByRun, Varies::ByLane]);
     varies.extend(vec![Varies::Seldom; 3 * unknowns.len()]);

@@ -34,7 +34,7 @@ pub(crate) fn written_out<'g>(
     });
     let outputs = residuals.iter().copied().chain(steps).chain(sharpness).chain([linear.scaled_determinant()]);
     let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(widths).copied().collect();
-    let tape = Tape::new(&outputs.collect::<Vec<_>>(), &inputs)?;
+    let tape = Tape::of_numbers(&outputs.collect::<Vec<_>>(), &inputs, &[])?;
     Ok(LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len())))
 }
 
@@ -92,7 +92,7 @@ impl GivenTapes {
         let outputs: Vec<Expr<'g>> = wanted.all().into_iter().chain(found).chain(determinant).collect();
         let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&linear.widths).copied().collect();
         let definitions: Vec<_> = given.iter().map(|given| (unknowns[given.unknown], given.form)).collect();
-        let tape = Tape::with_definitions(&outputs, &inputs, &definitions)?;
+        let tape = Tape::of_numbers(&outputs, &inputs, &definitions)?;
         let checked = LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len()));
         let is_on_lines = has_all && parameters.len() == 2;
         let on_lines = || lines::laid_out(wanted, &given, &linear, [unknowns, parameters]);

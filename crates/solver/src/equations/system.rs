@@ -99,7 +99,7 @@ impl System {
     ) -> Result<System, TapeError> {
         let wanted = RootOutputs { residuals, conditions, extras };
         let (unknowns, parameters) = inputs.split_at(self.size);
-        let checked = LaneTape::new(&Tape::new(&wanted.all(), inputs)?);
+        let checked = LaneTape::new(&Tape::of_numbers(&wanted.all(), inputs, &[])?);
         let is_written_out = self.lanes.is_written_out;
         let given = || GivenTapes::new(&wanted, unknowns, parameters);
         let given = if is_written_out { given()? } else { None };

@@ -93,6 +93,9 @@ impl Build<'_> {
         match parts.optional(Rule::side) {
             Some(side) if side.as_str() == "inside" => Side::Inside,
             Some(_) => Side::Outside,
+            None if parts.optional(Rule::kw_where).is_some() => {
+                Side::Where(self.expression(parts.required(Rule::expression)))
+            }
             None => Side::Towards(self.expression(parts.required(Rule::expression))),
         }
     }
@@ -116,7 +119,7 @@ impl Build<'_> {
         }
         if body.is_none() && !broken {
             let message = format!("the surface `{}` does not say on which side the steel is", shorten(&name.node));
-            self.report(place, message, "add `body inside`, `body outside` or `body towards [x, y, z]`");
+            self.report(place, message, "add `body inside`, `body outside`, `body towards [x, y, z]` or, of three parameters, `body where u^2 + v^2 < r^2`");
         }
         let error = Expression { kind: ExpressionKind::Error, span: place };
         let at = at.unwrap_or_else(|| error.clone());
