@@ -44,8 +44,8 @@ fn a_generated_spur_gear_has_no_deviations() {
     let found = traces("hobbing/spur_gear.chain", &[]);
     assert_eq!(found.iter().map(|of| &*of.surface).collect::<Vec<_>>(), ["flank_plus", "flank_minus"]);
     for of in &found {
-        assert_eq!(of.reference.source, InvoluteSource::Job);
-        assert!((of.reference.base_diameter_mm - 72.0 * 20f64.to_radians().cos()).abs() < 1e-12, "{:?}", of.reference);
+        assert_eq!(of.involute.source, InvoluteSource::Job);
+        assert!((of.involute.base_diameter_mm - 72.0 * 20f64.to_radians().cos()).abs() < 1e-12, "{:?}", of.involute);
         for trace in [&of.profile, &of.helix] {
             assert_eq!(trace.lengths_mm.len(), trace.asked);
             assert!(evaluated(trace).iter().all(|um| um.abs() < 1e-5), "{:?}", evaluated(trace));
@@ -93,7 +93,7 @@ fn a_wrong_pressure_angle_is_a_profile_slope() {
     };
     let (design, made) = (base(20.0), base(20.2));
     for of in &found {
-        assert!((of.reference.base_diameter_mm - 2.0 * design).abs() < 1e-9, "{:?}", of.reference);
+        assert!((of.involute.base_diameter_mm - 2.0 * design).abs() < 1e-9, "{:?}", of.involute);
         let lengths = &of.profile.lengths_mm;
         let middle = lengths[lengths.len() / 2];
         let rho = |length: f64| design.hypot(length);
