@@ -1,6 +1,6 @@
 //! Profile and helix traces against involutes in closed form.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use flank::{
@@ -13,7 +13,8 @@ fn traces(spec: &str, set: &[(&str, &str)]) -> Vec<FlankTraces> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs").join(spec);
     let set = set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
     let jobs = JobSelection { project: Project::open(file, Arc::new(Disk)), job: None, set };
-    let out: PathBuf = std::env::temp_dir().join(format!("flank_traces_{}", std::process::id()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_path_buf();
     let request = ReportRequest {
         jobs,
         out,
