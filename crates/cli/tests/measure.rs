@@ -400,7 +400,7 @@ fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
 #[test]
 fn what_has_no_grid_hides_nothing_else() {
     let out = folder("measure_no_grid");
-    let shaped = ["tests/surfaces/specs/bodies/hobbing/shaped_gear.chain", "--job", "shaped_gear"];
+    let shaped = ["specs/bodies/shaped_gear_body.chain", "--job", "shaped_gear_body"];
     let told = measure(&out, &shaped);
     let flanks = told["flanks"].as_array().expect("flanks");
     let names: Vec<&str> = flanks.iter().map(|one| one["surface"].as_str().expect("a name")).collect();
@@ -409,7 +409,7 @@ fn what_has_no_grid_hides_nothing_else() {
     assert_eq!(remarks.len(), 1, "{remarks:?}");
     assert_eq!((&remarks[0]["kind"], &remarks[0]["of"]), (&"no_grid".into(), &"root".into()));
     assert!(remarks[0]["place"].is_object(), "{remarks:?}");
-    let content = std::fs::read_to_string(out.join("shaped_gear.grid.csv")).expect("written");
+    let content = std::fs::read_to_string(out.join("shaped_gear_body.grid.csv")).expect("written");
     assert!(content.contains("\nfillet_minus,left,grid,5,9,") && !content.contains("\nroot,"), "{content}");
     // people are told on stderr
     let at = out.to_str().expect("a plain path");
