@@ -71,29 +71,30 @@ fn check(spec: &str, expected: &[(&str, u32)]) {
 
 #[test]
 fn cylindrical_gears() {
-    check("tests/surfaces/specs/bodies/hobbing/spur_gear.chain", &[("gear", 24)]);
-    check("tests/surfaces/specs/bodies/hobbing/undercut_gear.chain", &[("gear", 10)]);
-    check("tests/surfaces/specs/bodies/hobbing/helical_gear.chain", &[("gear", 31)]);
-    check("tests/surfaces/specs/bodies/hobbing/diagonal_gear.chain", &[("gear", 31)]);
-    check("tests/surfaces/specs/bodies/hobbing/shaped_gear.chain", &[("gear", 47)]);
-    check("tests/surfaces/specs/bodies/pairs/internal_pair.chain", &[("pinion", 21), ("ring", 62)]);
-    check("tests/surfaces/specs/bodies/pairs/rack_and_pinion.chain", &[("pinion", 24)]);
+    check("specs/bodies/spur_gear_body.chain", &[("gear", 24)]);
+    check("specs/bodies/undercut_gear_body.chain", &[("gear", 10)]);
+    check("specs/bodies/semi_topped_gear_body.chain", &[("gear", 24)]);
+    check("specs/bodies/helical_gear_body.chain", &[("gear", 31)]);
+    check("specs/bodies/diagonal_gear_body.chain", &[("gear", 31)]);
+    check("specs/bodies/shaped_gear_body.chain", &[("gear", 47), ("ring", 73)]);
+    check("specs/bodies/internal_pair_body.chain", &[("pinion", 21), ("ring", 62)]);
+    check("specs/bodies/rack_and_pinion_body.chain", &[("pinion", 24)]);
 }
 
 #[test]
 fn crowned_and_taper_gears() {
-    check("tests/surfaces/specs/bodies/hobbing/crowned_gear.chain", &[("gear", 27)]);
-    check("tests/surfaces/specs/bodies/hobbing/crowned_gear_quartic.chain", &[("gear", 27)]);
-    check("tests/surfaces/specs/bodies/hobbing/beveloid.chain", &[("gear", 30)]);
-    check("tests/surfaces/specs/bodies/pairs/helical_pair.chain", &[("pinion", 27), ("gear", 47)]);
+    check("specs/bodies/crowned_gear_body.chain", &[("gear", 27)]);
+    check("specs/bodies/crowned_gear_quartic_body.chain", &[("gear", 27)]);
+    check("specs/bodies/beveloid_body.chain", &[("gear", 30)]);
+    check("specs/bodies/helical_pair_body.chain", &[("pinion", 27), ("gear", 47)]);
 }
 
 #[test]
 fn worm_gears_and_face_gears() {
-    check("tests/surfaces/specs/bodies/hobbing/worm_wheel.chain", &[("wheel", 40)]);
-    check("tests/surfaces/specs/bodies/pairs/worm_and_wheel.chain", &[("worm", 1), ("wheel", 40)]);
-    check("tests/surfaces/specs/bodies/hobbing/face_gear.chain", &[("gear", 108)]);
-    check("tests/surfaces/specs/bodies/pairs/face_gear_pair.chain", &[("pinion", 23), ("gear", 108)]);
+    check("specs/bodies/worm_wheel_body.chain", &[("wheel", 40)]);
+    check("specs/bodies/worm_and_wheel_body.chain", &[("worm", 1), ("wheel", 40)]);
+    check("specs/bodies/face_gear_body.chain", &[("gear", 108)]);
+    check("specs/bodies/face_gear_pair_body.chain", &[("pinion", 23), ("gear", 108)]);
 }
 
 #[test]
@@ -157,8 +158,8 @@ type Odd = (&'static str, &'static [(&'static str, &'static str)], Option<&'stat
 /// Odd numbers give a body, or a reason with its number and no file.
 #[test]
 fn odd_numbers_give_a_body_or_a_reason() {
-    let spur = "tests/surfaces/specs/bodies/hobbing/spur_gear.chain";
-    let helical = "tests/surfaces/specs/bodies/hobbing/helical_gear.chain";
+    let spur = "specs/bodies/spur_gear_body.chain";
+    let helical = "specs/bodies/helical_gear_body.chain";
     let odd: [Odd; 11] = [
         (spur, &[("teeth", "7")], None),
         (spur, &[("teeth", "4"), ("profile_shift", "0")], Some("9 of 9 points there are beyond the ranges")),
@@ -169,16 +170,8 @@ fn odd_numbers_give_a_body_or_a_reason() {
         (spur, &[("face_width", "400 mm")], None),
         (helical, &[("helix_angle", "45 deg")], None),
         (helical, &[("helix_angle", "0 deg"), ("teeth", "12"), ("shift", "0 mm")], None),
-        (
-            "tests/surfaces/specs/bodies/hobbing/face_gear.chain",
-            &[("inner_radius", "120 mm")],
-            Some("neither end in one line nor meet"),
-        ),
-        (
-            "tests/surfaces/specs/bodies/hobbing/worm_wheel.chain",
-            &[("teeth", "11")],
-            Some("neither end in one line nor meet"),
-        ),
+        ("specs/bodies/face_gear_body.chain", &[("inner_radius", "120 mm")], Some("neither end in one line nor meet")),
+        ("specs/bodies/worm_wheel_body.chain", &[("teeth", "11")], Some("neither end in one line nor meet")),
     ];
     for (spec, set, reason) in odd {
         let folder = tempfile::tempdir().expect("a folder");

@@ -240,24 +240,14 @@ fn spur_gears() {
 
 #[test]
 fn a_pinion_in_a_ring() {
-    Pair {
-        spec: "tests/surfaces/specs/bodies/pairs/internal_pair.chain",
-        solids: ["pinion", "ring"],
-        teeth: [21, 62],
-        spacing: 0.2,
-    }
-    .check(3);
+    Pair { spec: "specs/bodies/internal_pair_body.chain", solids: ["pinion", "ring"], teeth: [21, 62], spacing: 0.2 }
+        .check(3);
 }
 
 #[test]
 fn helical_gears() {
-    Pair {
-        spec: "tests/surfaces/specs/bodies/pairs/helical_pair.chain",
-        solids: ["pinion", "gear"],
-        teeth: [27, 47],
-        spacing: 0.12,
-    }
-    .check(3);
+    Pair { spec: "specs/bodies/helical_pair_body.chain", solids: ["pinion", "gear"], teeth: [27, 47], spacing: 0.12 }
+        .check(3);
 }
 
 /// The same with the pinion's space turned inside out by a mirror: what a kernel calls valid.

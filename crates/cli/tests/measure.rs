@@ -396,6 +396,46 @@ fn a_neighbouring_setting_is_measured_as_its_derivative_says() {
     }
 }
 
+/// What has neither root nor tip is told, and hides nothing else: it is an error only where it was named, or where there is nothing else.
+#[test]
+fn what_has_no_grid_hides_nothing_else() {
+    let out = folder("measure_no_grid");
+    let shaped = ["specs/bodies/shaped_gear_body.chain", "--job", "shaped_gear_body"];
+    let told = measure(&out, &shaped);
+    let flanks = told["flanks"].as_array().expect("flanks");
+    let names: Vec<&str> = flanks.iter().map(|one| one["surface"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["flank_plus", "flank_minus", "fillet_plus", "fillet_minus"]);
+    let remarks = told["remarks"].as_array().expect("remarks");
+    assert_eq!(remarks.len(), 1, "{remarks:?}");
+    assert_eq!((&remarks[0]["kind"], &remarks[0]["of"]), (&"no_grid".into(), &"root".into()));
+    assert!(remarks[0]["place"].is_object(), "{remarks:?}");
+    let content = std::fs::read_to_string(out.join("shaped_gear_body.grid.csv")).expect("written");
+    assert!(content.contains("\nfillet_minus,left,grid,5,9,") && !content.contains("\nroot,"), "{content}");
+    // people are told on stderr
+    let at = out.to_str().expect("a plain path");
+    let run = flank(&[&["measure"], &shaped[..], &["--out", at]].concat());
+    assert_eq!(run.status.code(), Some(0));
+    let why = "root is not measured: the grid of `root` does not tell root and tip from the length of the tooth";
+    assert!(text(&run.stderr).contains(why), "{}", text(&run.stderr));
+    for named in ["root", "flank_plus,root"] {
+        let run = flank(&[&["measure"], &shaped[..], &["--surface", named, "--out", at]].concat());
+        assert_eq!(run.status.code(), Some(1), "{named}");
+        assert!(text(&run.stderr).contains("error: the grid of `root` does not tell"), "{}", text(&run.stderr));
+    }
+}
+
+#[test]
+fn nothing_to_measure_is_an_error() {
+    let out = folder("measure_nothing");
+    let at = out.to_str().expect("a plain path");
+    let run = flank(&["measure", "specs/grinding/thread_wheel.chain", "--job", "zi", "--out", at]);
+    assert_eq!(run.status.code(), Some(1));
+    for wheel in ["plus_wheel", "minus_wheel"] {
+        let why = format!("{wheel} is not measured: `{wheel}` is sampled at one value of `spindle` only");
+        assert!(text(&run.stderr).contains(&why), "{}", text(&run.stderr));
+    }
+}
+
 #[test]
 fn what_is_missing_or_wrong_is_told() {
     let out = folder("measure_wrong");

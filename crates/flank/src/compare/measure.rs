@@ -12,7 +12,7 @@ use crate::compare::measure_result::{MeasureResult, MeasuredFlank, MeasuredPart,
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
-use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{MeasureRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -25,7 +25,8 @@ const TRIAL: usize = 13;
 /// Writes nominal points and normals of surfaces for measuring machines. `each` is given the result of each job.
 ///
 /// # Errors
-/// What is wrong with the spec; that a surface has no grid, or several branches; that a file cannot be written.
+/// What is wrong with the spec; that a surface that is named has no grid, or several branches, or that none of a job has one; that a file
+/// cannot be written.
 pub fn measure(
     request: &MeasureRequest,
     monitor: &dyn Monitor,
@@ -45,18 +46,63 @@ pub fn measure(
         if meant.is_empty() {
             continue;
         }
-        let flanks =
-            meant.iter().map(|surface| flank(job, surface, (request, session))).collect::<Result<_, Failure>>()?;
+        let mut taken = Taken::default();
+        for surface in &meant {
+            match flank(job, surface, (request, session)) {
+                Ok(flank) => taken.flanks.push(flank),
+                Err(reason) if named.is_empty() => taken.leave(&surface.name, reason)?,
+                Err(reason) => return Err(reason),
+            }
+        }
+        let Taken { flanks, left, unknown } = taken;
+        if flanks.is_empty() {
+            return Err(none(left, unknown));
+        }
         let header = solve::header(&[job], &request.jobs, &origin);
         let grid = MeasuringGrid { header, margins: request.margins(), flanks };
         let mut folder = Folder::at(&request.out, &origin, monitor)?;
         for format in &request.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }
-        let not_done = origin.located(&[job], unsolved(&grid));
-        each(MeasureResult { not_done, ..result(&grid, folder.finish()?) });
+        let not_done = origin.located(&[job], unknown.into_iter().chain(unsolved(&grid)).collect());
+        let remarks = origin.located(&[job], left);
+        each(MeasureResult { remarks, not_done, ..result(&grid, folder.finish()?) });
     }
     Ok(())
+}
+
+/// The surfaces of a job, where all that are sampled are meant.
+#[derive(Default)]
+struct Taken {
+    flanks: Vec<NominalFlank>,
+    /// Those that have no grid.
+    left: Vec<Remark>,
+    /// Those of which nobody knows which branch is meant.
+    unknown: Vec<NotDone>,
+}
+
+impl Taken {
+    /// # Errors
+    /// What ends the work on the other surfaces, too.
+    fn leave(&mut self, name: &str, reason: Failure) -> Result<(), Failure> {
+        match reason {
+            Failure::Input(reason) => {
+                let message = format!("{name} is not measured: {reason}");
+                self.left.push(Remark::new(RemarkKind::NoGrid, name, message));
+            }
+            Failure::NotDone(branches) => self.unknown.extend(branches),
+            other => return Err(other),
+        }
+        Ok(())
+    }
+}
+
+/// Why nothing of a job is measured.
+fn none(left: Vec<Remark>, unknown: Vec<NotDone>) -> Failure {
+    match unknown.is_empty() {
+        true => Failure::Input(left.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+        false => Failure::NotDone(unknown),
+    }
 }
 
 /// How the measuring grid of a surface lies in its sample.
@@ -242,6 +288,7 @@ fn result(grid: &MeasuringGrid, files: Vec<String>) -> MeasureResult {
         margins: grid.margins,
         flanks: grid.flanks.iter().filter_map(flank).collect(),
         files,
+        remarks: Vec::new(),
         not_done: Vec::new(),
     }
 }

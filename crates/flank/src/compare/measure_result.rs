@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::columns::aligned;
-use crate::project::remark::NotDone;
+use crate::project::remark::{NotDone, Remark};
 use crate::project::units;
 
 /// What was written for a measuring machine, of `flank measure`.
@@ -25,6 +25,8 @@ pub struct MeasureResult {
     pub flanks: Vec<MeasuredFlank>,
     /// Files written, in their order.
     pub files: Vec<String>,
+    /// Which surfaces are not measured, and why.
+    pub remarks: Vec<Remark>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
 }
@@ -131,6 +133,10 @@ impl From<flank_export::NominalPart> for FlankPart {
 impl Answer for MeasureResult {
     fn not_done(&self) -> &[NotDone] {
         &self.not_done
+    }
+
+    fn remarks(&self) -> &[Remark] {
+        &self.remarks
     }
 }
 

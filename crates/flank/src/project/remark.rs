@@ -105,6 +105,8 @@ pub enum RemarkKind {
     ShownInPart,
     /// A job asks for no points.
     NoSample,
+    /// A surface has no grid that could be measured.
+    NoGrid,
     /// A value set by the caller changes several jobs.
     SeveralJobs,
     /// A mesh has no triangle.
