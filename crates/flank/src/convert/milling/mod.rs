@@ -2,6 +2,7 @@
 
 mod cutter;
 mod files;
+mod klartext;
 mod machine;
 mod obstacles;
 mod patch;
