@@ -458,6 +458,12 @@ fn a_ball_comes_as_near_to_the_opposite_flank_as_brute_force_finds() {
         let nearest = obstacle.nearest(&ToolBody { pieces: vec![whole] }, &pose, f64::INFINITY).expect("it is near");
         let off = (nearest.distance - number(row, "clearance")).abs();
         assert!(off < 1e-9, "{off:e} {nearest:?} {row}");
+        // of all balls that touch there it is the largest with its own clearance
+        let [x, y, z, nx, ny, nz] = fields.surface.pass(0.5).at(0.5);
+        let clearance = number(row, "clearance");
+        let largest = obstacle.largest_ball([x, y, z], [nx, ny, nz], clearance).expect("the flank is in the way");
+        // the clearance changes slower than the radius does
+        assert!((largest.distance - radius).abs() < 1e-8, "{largest:?} {row}");
         let foot = [0.02 + nearest.shares[1] * 0.96, 0.06 + nearest.shares[0] * 0.91];
         // the brute force is a scan
         for k in [0, 1] {

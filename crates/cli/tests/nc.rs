@@ -129,10 +129,11 @@ fn programs_cut_the_asked_flank() {
         _ => x,
     };
     type Read = fn(&str, f64) -> f64;
-    let runs: [(&str, &str, &str, Read); 4] = [
+    let runs: [(&str, &str, &str, Read); 5] = [
         ("specs/machines/free_form.chain", "fanuc", "nc", plain),
         ("specs/machines/free_form.chain", "siemens", "mpf", plain),
         ("specs/machines/free_form.chain", "linuxcnc", "ngc", plain),
+        ("specs/machines/free_form.chain", "heidenhain", "h", plain),
         (&relabelled, "siemens", "mpf", other),
     ];
     for (to, control, extension, count) in runs {

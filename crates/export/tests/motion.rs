@@ -93,8 +93,41 @@ struct Move {
     minutes: Option<f64>,
 }
 
+/// Reads Klartext: absolute straight lines with a feed over mm and degrees alike.
+fn read_klartext(text: &str) -> Vec<Move> {
+    let mut moves: Vec<Move> = Vec::new();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with(';')).collect();
+    assert_eq!(
+        [lines[0], lines[lines.len() - 2], lines[lines.len() - 1]],
+        ["BEGIN PGM FLANK MM", "M30", "END PGM FLANK MM"]
+    );
+    for line in &lines[1..lines.len() - 2] {
+        let words = line.strip_prefix("L ").expect("a straight block");
+        let (mut feed, mut positions) = (None, BTreeMap::new());
+        for word in words.split(' ') {
+            match word.split_at(1) {
+                ("R", "0") | ("F", "MAX") => {}
+                ("F", value) => feed = Some(value.parse::<f64>().expect("a feed")),
+                (address, value) => {
+                    assert!(value.starts_with(['+', '-']), "{word} in {line}");
+                    positions.insert(address.to_owned(), value.parse::<f64>().expect("a position"));
+                }
+            }
+        }
+        let minutes = feed.map(|feed| {
+            let before = &moves.last().expect("a rapid before").positions;
+            positions.iter().map(|(address, at)| (at - before[address]).powi(2)).sum::<f64>().sqrt() / feed
+        });
+        moves.push(Move { positions, minutes });
+    }
+    moves
+}
+
 /// Reads absolute straight lines with inverse-time feed; knows nothing of how they were written.
 fn read_program(text: &str) -> Vec<Move> {
+    if text.starts_with("BEGIN PGM") {
+        return read_klartext(text);
+    }
     let mut moves: Vec<Move> = Vec::new();
     let (mut motion_code, mut is_inverse, mut has_ended) = (None, false, false);
     for line in text.lines() {
@@ -184,8 +217,18 @@ fn the_cutting_time_is_shared_out_as_the_motion_goes_on() {
         for (pair, there) in table.rows.windows(2).zip(&moves[1..]) {
             let expected = CUTTING_TIME * (pair[1].motion - pair[0].motion) / whole;
             let seconds = 60.0 * there.minutes.expect("a feed");
-            // feeds of this table are above 100 and have three decimals
-            assert!((seconds - expected).abs() < 1e-5 * expected, "{dialect:?}: {seconds} s, not {expected} s");
+            // feeds of this table are above 100 and have three decimals; a length is read from positions that are rounded
+            let rounded = match dialect {
+                Dialect::Heidenhain => {
+                    let steps = table.axes.iter().map(|axis| 10f64.powi(-i32::from(axis.decimals)));
+                    let whole = pair[0].axes.iter().zip(&pair[1].axes).zip(&table.axes);
+                    let moved = whole.map(|((a, b), axis)| if axis.is_rotary { (b - a).to_degrees() } else { b - a });
+                    steps.sum::<f64>() / moved.map(|by| by * by).sum::<f64>().sqrt()
+                }
+                _ => 0.0,
+            };
+            let off = (seconds - expected).abs();
+            assert!(off < (1e-5 + rounded) * expected, "{dialect:?}: {seconds} s, not {expected} s");
         }
     }
 }
@@ -261,14 +304,19 @@ fn no_text_from_outside_is_an_order() {
         table.axes.iter_mut().for_each(|axis| axis.name = text());
         for dialect in Dialect::ALL {
             let program = program(&table, dialect);
-            let is_remark = |line: &&str| line.starts_with(if dialect == Dialect::Siemens840D { ';' } else { '(' });
+            let is_remark = |line: &&str| {
+                line.starts_with(match dialect {
+                    Dialect::Siemens840D | Dialect::Heidenhain => ';',
+                    Dialect::Fanuc | Dialect::LinuxCnc => '(',
+                })
+            };
             for line in program.lines() {
                 let is_plain = line.bytes().all(|letter| matches!(letter, b' '..=b'~')) && line.len() < 80;
                 assert!(is_plain, "{dialect:?}: {line:?}");
             }
             for line in program.lines().filter(is_remark) {
                 let inside = match dialect {
-                    Dialect::Siemens840D => line.strip_prefix("; "),
+                    Dialect::Siemens840D | Dialect::Heidenhain => line.strip_prefix("; "),
                     Dialect::Fanuc | Dialect::LinuxCnc => {
                         line.strip_prefix('(').and_then(|line| line.strip_suffix(')'))
                     }
@@ -278,7 +326,7 @@ fn no_text_from_outside_is_an_order() {
                     OPENINGS.iter().any(|opening| format!("{inside} ").starts_with(opening)),
                     "{dialect:?}: {line}"
                 );
-                assert!(!inside.contains(['(', ')', ';', '%']), "{dialect:?}: {line}");
+                assert!(!inside.contains(['(', ')', ';', '%', '~']), "{dialect:?}: {line}");
             }
             // what is no remark is as of a table with plain names
             let orders = |program: &str| program.lines().filter(|line| !is_remark(line)).map(str::to_owned).collect();
@@ -308,6 +356,9 @@ fn each_control_has_its_words() {
     assert!(fanuc.starts_with("%\nO0001\n(JOB PINION, FOR FANUC)\n") && fanuc.ends_with("N70 M30\n%\n"), "{fanuc}");
     let linuxcnc = program(&table, Dialect::LinuxCnc);
     assert!(linuxcnc.contains("\nG21 G17 G90 G40 G49 G80 G94 G64 P0.00001 Q0\nG00 X"), "{linuxcnc}");
+    let heidenhain = program(&table, Dialect::Heidenhain);
+    assert!(heidenhain.starts_with("BEGIN PGM FLANK MM\n; job pinion, for Heidenhain\n"), "{heidenhain}");
+    assert!(heidenhain.contains(" R0 FMAX\nL X") && heidenhain.ends_with("\nM30\nEND PGM FLANK MM\n"), "{heidenhain}");
 }
 
 fn refusal(dialect: Dialect, seconds: f64, spoil: impl Fn(&mut MotionTable)) -> NcError {

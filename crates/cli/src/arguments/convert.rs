@@ -50,7 +50,7 @@ pub(crate) struct Convert {
     /// Files with positions and polynomials: csv, json, or both with a comma; csv otherwise
     #[arg(long, value_parser = names::<TableFormat>(), value_delimiter = ',')]
     pub(crate) format: Vec<TableFormat>,
-    /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc
+    /// Write an NC program with inverse-time feed: fanuc, siemens, linuxcnc; with a feed per minute: heidenhain
     #[arg(long, value_parser = names::<NcDialect>(), value_delimiter = ',', requires = "time")]
     pub(crate) nc: Vec<NcDialect>,
     /// Seconds that the motion takes, evenly: for NC programs, and for velocity, acceleration and jerk of the axes

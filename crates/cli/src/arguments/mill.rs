@@ -29,7 +29,7 @@ pub(crate) struct Mill {
     /// Files with cutter locations, several with commas
     #[arg(long, value_parser = described::<CutterFormat>(), value_delimiter = ',', default_value = "csv")]
     pub(crate) format: Vec<CutterFormat>,
-    /// Write an NC program: fanuc, siemens, linuxcnc
+    /// Write an NC program: fanuc, siemens, linuxcnc, heidenhain
     #[arg(long, value_parser = names::<NcDialect>(), value_delimiter = ',')]
     pub(crate) nc: Vec<NcDialect>,
     /// Blocks are straight in the work: the control keeps the tip on its way (tool-centre control)

@@ -11,11 +11,13 @@ pub enum Dialect {
     Siemens840D,
     /// LinuxCNC.
     LinuxCnc,
+    /// Heidenhain TNC in its own language, Klartext.
+    Heidenhain,
 }
 
 impl Dialect {
     /// All of them.
-    pub const ALL: [Dialect; 3] = [Dialect::Fanuc, Dialect::Siemens840D, Dialect::LinuxCnc];
+    pub const ALL: [Dialect; 4] = [Dialect::Fanuc, Dialect::Siemens840D, Dialect::LinuxCnc, Dialect::Heidenhain];
 
     /// Its name for people.
     #[must_use]
@@ -24,6 +26,18 @@ impl Dialect {
             Dialect::Fanuc => "Fanuc",
             Dialect::Siemens840D => "Siemens 840D",
             Dialect::LinuxCnc => "LinuxCNC",
+            Dialect::Heidenhain => "Heidenhain",
+        }
+    }
+
+    /// How names of its program files end.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Dialect::Fanuc => "nc",
+            Dialect::Siemens840D => "mpf",
+            Dialect::LinuxCnc => "ngc",
+            Dialect::Heidenhain => "h",
         }
     }
 
@@ -31,7 +45,7 @@ impl Dialect {
     /// begin with a sign. Controls take some remarks for orders by how they begin, LinuxCNC `(PY,…)` and `(LOGOPEN,…)`.
     pub(super) fn remark(self, text: &str) -> Vec<String> {
         let wrap = |line: String| match self {
-            Dialect::Siemens840D => format!("; {line}"),
+            Dialect::Siemens840D | Dialect::Heidenhain => format!("; {line}"),
             Dialect::Fanuc => format!("({})", line.to_ascii_uppercase()),
             Dialect::LinuxCnc => format!("({line})"),
         };
@@ -44,6 +58,7 @@ impl Dialect {
             Dialect::Fanuc => &["%", "O0001"],
             Dialect::Siemens840D => &[],
             Dialect::LinuxCnc => &["%"],
+            Dialect::Heidenhain => &["BEGIN PGM FLANK MM"],
         }
     }
 
@@ -52,25 +67,71 @@ impl Dialect {
         match self {
             Dialect::Fanuc | Dialect::LinuxCnc => &["%"],
             Dialect::Siemens840D => &[],
+            Dialect::Heidenhain => &["END PGM FLANK MM"],
         }
     }
 
     /// The block that settles how words are meant: metric, absolute, no compensation, no cycle.
-    pub(super) fn settling(self, least_increment: &str) -> String {
+    pub(super) fn settling(self, least_increment: &str) -> Option<String> {
         match self {
-            Dialect::Fanuc => "G21 G17 G90 G40 G49 G80 G94".to_owned(),
-            Dialect::Siemens840D => "G710 G17 G90 G40 G94 G64".to_owned(),
+            Dialect::Fanuc => Some("G21 G17 G90 G40 G49 G80 G94".to_owned()),
+            Dialect::Siemens840D => Some("G710 G17 G90 G40 G94 G64".to_owned()),
             // along the path as close as positions are written, without leaving out positions
-            Dialect::LinuxCnc => format!("G21 G17 G90 G40 G49 G80 G94 G64 P{least_increment} Q0"),
+            Dialect::LinuxCnc => Some(format!("G21 G17 G90 G40 G49 G80 G94 G64 P{least_increment} Q0")),
+            // its first block says metric, `L` is absolute, and `R0` stands in the rapids
+            Dialect::Heidenhain => None,
         }
     }
 
-    /// The words that turn inverse-time feed on.
-    pub(super) fn inverse_time(self) -> &'static str {
+    /// The words that turn inverse-time feed on and off; none where blocks have a feed per minute.
+    pub(super) fn inverse_time(self) -> Option<[&'static str; 2]> {
         match self {
-            Dialect::Fanuc | Dialect::LinuxCnc => "G93",
+            Dialect::Fanuc | Dialect::LinuxCnc => Some(["G93", "G94"]),
             // a constant feed in each block, whatever profile was set before
-            Dialect::Siemens840D => "G93 FNORM",
+            Dialect::Siemens840D => Some(["G93 FNORM", "G94"]),
+            Dialect::Heidenhain => None,
+        }
+    }
+
+    /// The feed of a block of all axes that takes so many seconds: 1/min, or its length in mm and degrees per minute.
+    pub(super) fn feed(self, seconds: f64, length: f64) -> f64 {
+        match self.inverse_time() {
+            Some(_) => 60.0 / seconds,
+            None => 60.0 * length / seconds,
+        }
+    }
+
+    /// What the feed of blocks of all axes is, for people.
+    pub(super) fn feed_kind(self) -> &'static str {
+        match self.inverse_time() {
+            Some(_) => "inverse-time feed in 1/min",
+            None => "feed per minute over mm and deg alike",
+        }
+    }
+
+    /// A block that goes to a position as fast as the machine can.
+    pub(super) fn rapid(self, words: &str) -> String {
+        match self {
+            Dialect::Heidenhain => format!("L {words} R0 FMAX"),
+            Dialect::Fanuc | Dialect::Siemens840D | Dialect::LinuxCnc => format!("G00 {words}"),
+        }
+    }
+
+    /// The word before a block that goes straight with feed, and whether it holds for the blocks behind.
+    pub(super) fn straight(self) -> (&'static str, bool) {
+        match self {
+            Dialect::Heidenhain => ("L", false),
+            Dialect::Fanuc | Dialect::Siemens840D | Dialect::LinuxCnc => ("G01", true),
+        }
+    }
+
+    /// The blocks that bring the first tool and let it turn.
+    pub(super) fn tool(self, spindle: Option<&str>) -> Vec<String> {
+        match (self, spindle) {
+            (Dialect::Heidenhain, Some(speed)) => vec![format!("TOOL CALL 1 Z S{speed}"), "M3".to_owned()],
+            (Dialect::Heidenhain, None) => vec!["TOOL CALL 1 Z".to_owned()],
+            (_, Some(speed)) => vec!["T1 M06".to_owned(), format!("S{speed} M03")],
+            (_, None) => vec!["T1 M06".to_owned()],
         }
     }
 
@@ -81,11 +142,17 @@ impl Dialect {
             Dialect::Fanuc => ["G43.4 H1", "G49"],
             Dialect::Siemens840D => ["TRAORI", "TRAFOOF"],
             Dialect::LinuxCnc => ["M428", "M429"],
+            // the feed is the tip's in the work, rotary words are positions of the axes, which turn evenly
+            Dialect::Heidenhain => ["FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "FUNCTION RESET TCPM"],
         }
     }
 
     /// An axis word.
     pub(super) fn word(self, address: &str, position: &str) -> String {
+        if self == Dialect::Heidenhain {
+            let sign = if position.starts_with('-') { "" } else { "+" };
+            return format!("{address}{sign}{position}");
+        }
         let is_extended = address.len() > 1;
         if is_extended { format!("{address}={position}") } else { format!("{address}{position}") }
     }
@@ -93,32 +160,33 @@ impl Dialect {
     /// Whether it has axes of this address.
     pub(super) fn has_axis(self, address: &str) -> bool {
         let letters = match self {
-            Dialect::Fanuc | Dialect::LinuxCnc => "ABCUVWXYZ",
+            Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Heidenhain => "ABCUVWXYZ",
             Dialect::Siemens840D => "ABCQUVWXYZ",
         };
         let mut characters = address.chars();
         let is_led = characters.next().is_some_and(|first| letters.contains(first));
         let rest = characters.as_str();
         match self {
-            Dialect::Fanuc | Dialect::LinuxCnc => is_led && rest.is_empty(),
+            Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Heidenhain => is_led && rest.is_empty(),
             Dialect::Siemens840D => is_led && rest.len() <= 2 && rest.bytes().all(|c| c.is_ascii_digit()),
         }
     }
 
-    /// Decimals of an inverse-time feed.
+    /// Decimals of the feed of blocks of all axes.
     pub(super) fn feed_decimals(self) -> usize {
         match self {
-            Dialect::Fanuc | Dialect::Siemens840D => 3,
+            Dialect::Fanuc | Dialect::Siemens840D | Dialect::Heidenhain => 3,
             Dialect::LinuxCnc => 6,
         }
     }
 
-    /// Inverse-time feeds that it takes, 1/min.
+    /// Feeds that it takes for blocks of all axes.
     pub(super) fn feeds(self) -> RangeInclusive<f64> {
         match self {
             Dialect::Fanuc => 0.001..=9_999.999,
             Dialect::Siemens840D => 0.001..=999_999.999,
             Dialect::LinuxCnc => 0.000_001..=f64::MAX,
+            Dialect::Heidenhain => 0.001..=99_999.999,
         }
     }
 
@@ -126,7 +194,7 @@ impl Dialect {
     pub(super) fn numbering(self, blocks: usize) -> Option<usize> {
         const LARGEST: usize = 99_999;
         match self {
-            Dialect::LinuxCnc => None,
+            Dialect::LinuxCnc | Dialect::Heidenhain => None,
             Dialect::Fanuc | Dialect::Siemens840D => [10, 1].into_iter().find(|step| blocks * step <= LARGEST),
         }
     }
@@ -139,6 +207,8 @@ fn remarkable(text: &str) -> String {
         ')' => ']',
         ';' => ',',
         '%' => '/',
+        // a line that ends with it goes on
+        '~' => '-',
         ' '..='~' => c,
         c if c.is_control() => ' ',
         _ => '?',

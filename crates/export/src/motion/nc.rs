@@ -64,7 +64,7 @@ pub enum NcError {
     },
     /// A block is too short or too long for the control.
     #[error(
-        "the block to {motion} would take {seconds:.3e} s, an inverse-time feed of {feed:.3e}; {dialect} takes {low} .. {high}: \
+        "the block to {motion} would take {seconds:.3e} s, {kind}: {feed:.3e}; {dialect} takes {low} .. {high}: \
          change the cutting time or the number of positions"
     )]
     Feed {
@@ -72,7 +72,9 @@ pub enum NcError {
         motion: String,
         /// Its time.
         seconds: f64,
-        /// Its feed in 1/min.
+        /// What its feed is.
+        kind: &'static str,
+        /// Its feed.
         feed: f64,
         /// Name of the control.
         dialect: &'static str,
@@ -90,6 +92,8 @@ impl From<NcError> for WriteError {
 }
 
 /// Writes an NC program that passes the rows in order, in straight lines of all axes at once with inverse-time feed (`G93`).
+///
+/// Heidenhain's language has no inverse-time feed: there `F` is the block's length over mm and degrees alike, per minute.
 ///
 /// The approach to the first row is a rapid. `cutting_time` in seconds is shared out over the blocks as the motion goes on in
 /// them. The head states conventions, spec and hash, and a table of the axes; positions have the decimals of their axis, in mm
@@ -169,7 +173,7 @@ pub(super) fn check_axes(axes: &[MachineAxis], dialect: Dialect) -> Result<(), N
                 dialect: dialect.name(),
                 known: match dialect {
                     Dialect::Siemens840D => "it has A B C Q U V W X Y Z, alone or with a number behind",
-                    Dialect::Fanuc | Dialect::LinuxCnc => "it has A B C U V W X Y Z",
+                    Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Heidenhain => "it has A B C U V W X Y Z",
                 },
             });
         }
@@ -199,7 +203,7 @@ fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String>
     );
     head.push("- no rotary axis may roll over, positions are absolute".to_owned());
     head.push("- the first block is a rapid of all axes to the first position".to_owned());
-    head.push(format!("- cutting time {} s, inverse-time feed in 1/min", shortest(cutting_time)));
+    head.push(format!("- cutting time {} s, {}", shortest(cutting_time), dialect.feed_kind()));
     let ends = [table.rows.first(), table.rows.last()].map(|row| row.map_or(0.0, |row| row.motion));
     let [first, last] = ends.map(|value| motion_text(table, value));
     head.push(format!("motion from {first} to {last}, {} positions", table.rows.len()));
@@ -236,20 +240,20 @@ fn blocks(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Ve
     let feeds = feeds(table, dialect, cutting_time)?;
     let decimals = table.axes.iter().filter(|axis| !axis.is_rotary).map(|axis| axis.decimals).max().unwrap_or(3);
     let least_increment = format!("{:.*}", usize::from(decimals), 10f64.powi(-i32::from(decimals)));
-    let mut blocks = vec![dialect.settling(&least_increment)];
+    let mut blocks = Vec::from_iter(dialect.settling(&least_increment));
+    let (straight, holds) = dialect.straight();
     for (index, feed) in [None].into_iter().chain(feeds.into_iter().map(Some)).enumerate() {
-        let mut words = positions(table, dialect, index)?;
-        match feed {
-            None => words.insert(0, "G00".to_owned()),
-            Some(feed) => words.push(format!("F{feed:.*}", dialect.feed_decimals())),
-        }
-        if index == 1 {
-            blocks.push(dialect.inverse_time().to_owned());
-            words.insert(0, "G01".to_owned());
-        }
-        blocks.push(words.join(" "));
+        let words = positions(table, dialect, index)?.join(" ");
+        let Some(feed) = feed else {
+            blocks.push(dialect.rapid(&words));
+            blocks.extend(dialect.inverse_time().map(|[on, _]| on.to_owned()));
+            continue;
+        };
+        let before = if index == 1 || !holds { format!("{straight} ") } else { String::new() };
+        blocks.push(format!("{before}{words} F{feed:.*}", dialect.feed_decimals()));
     }
-    blocks.extend(["G94", "M30"].map(str::to_owned));
+    blocks.extend(dialect.inverse_time().map(|[_, off]| off.to_owned()));
+    blocks.push("M30".to_owned());
     Ok(blocks)
 }
 
@@ -286,7 +290,13 @@ pub(super) fn axis_word(
     Ok(dialect.word(&axis.address, &printed))
 }
 
-/// The inverse-time feed of each block but the first, 1/min.
+/// The length of a block over mm and degrees alike.
+pub(super) fn block_length(axes: &[MachineAxis], from: &[f64], to: &[f64]) -> f64 {
+    let of_axis = |((axis, from), to): ((&MachineAxis, &f64), &f64)| axis.unit().written(to - from).powi(2);
+    axes.iter().zip(from).zip(to).map(of_axis).sum::<f64>().sqrt()
+}
+
+/// The feed of each block but the first.
 fn feeds(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Vec<f64>, NcError> {
     let (Some(first), Some(last)) = (table.rows.first(), table.rows.last().filter(|_| table.rows.len() > 1)) else {
         return Err(NcError::TooFewRows { rows: table.rows.len() });
@@ -301,12 +311,13 @@ fn feeds(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Result<Vec
             return Err(NcError::TurnsBack { motion: motion_text(table, pair[1].motion) });
         }
         let seconds = share * cutting_time;
-        let feed = 60.0 / seconds;
+        let feed = dialect.feed(seconds, block_length(&table.axes, &pair[0].axes, &pair[1].axes));
         let range = dialect.feeds();
         if !range.contains(&feed) {
             return Err(NcError::Feed {
                 motion: motion_text(table, pair[1].motion),
                 seconds,
+                kind: dialect.feed_kind(),
                 feed,
                 dialect: dialect.name(),
                 low: *range.start(),

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::dialect::Dialect;
-use super::nc::{NcError, axis_word, check_axes, extent_line};
+use super::nc::{NcError, axis_word, block_length, check_axes, extent_line};
 use super::table::MachineAxis;
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
@@ -37,7 +37,7 @@ pub struct PassProgram {
 /// What the words of cutting blocks are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WordsOf {
-    /// All axes, with inverse-time feed.
+    /// All axes, with inverse-time feed where the control has it.
     Axes,
     /// The tip in the work, and the rotary axes: the control keeps the tip on its way (tool-centre control).
     Tip,
@@ -59,7 +59,8 @@ pub struct ProgramPass {
 /// Writes passes: the cutter away from the work, the other axes to the pass, down, along, up and away; spindle and coolant about all.
 ///
 /// Blocks of axes have inverse-time feed (`G93`), so that the cutter goes along the surface with the feed whatever the rotary axes do; with
-/// tool-centre control (`TRAORI`, `G43.4`) the feed is that of the tip.
+/// tool-centre control (`TRAORI`, `G43.4`, `FUNCTION TCPM`) the feed is that of the tip. Heidenhain's language has no inverse-time feed: `F` of
+/// blocks of axes is their length over mm and degrees alike, per minute.
 ///
 /// # Errors
 /// When a position is beyond the travel of its axis, the control lacks an axis or takes no such feed, or the stream refuses.
@@ -101,6 +102,9 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
             "- X Y Z of cutting blocks are the tip in the work; rotary words are positions of the axes".to_owned()
         }
     });
+    if program.words == WordsOf::Axes {
+        head.push(format!("- F of cutting blocks: {}", dialect.feed_kind()));
+    }
     head.push("- tool length as in the spec: no length is added".to_owned());
     for (index, axis) in program.axes.iter().enumerate() {
         let values = program.passes.iter().flat_map(|pass| &pass.rows).map(|row| row[index]);
@@ -121,11 +125,15 @@ impl Blocks<'_> {
         let PassProgram { axes, passes, spindle, .. } = self.program;
         let decimals = axes.iter().filter(|axis| !axis.is_rotary).map(|axis| axis.decimals).max().unwrap_or(3);
         let least_increment = format!("{:.*}", usize::from(decimals), 10f64.powi(-i32::from(decimals)));
-        self.out.push(self.dialect.settling(&least_increment));
-        self.retract()?;
-        self.out.push("T1 M06".to_owned());
-        if let Some(spindle) = spindle {
-            self.out.push(format!("S{} M03", shortest(*spindle)));
+        self.out.extend(self.dialect.settling(&least_increment));
+        let tool = self.dialect.tool(spindle.map(shortest).as_deref());
+        if self.dialect == Dialect::Heidenhain {
+            // no axis moves before a tool is called, and the call itself takes the spindle away
+            self.out.extend(tool);
+            self.retract()?;
+        } else {
+            self.retract()?;
+            self.out.extend(tool);
         }
         self.out.push("M08".to_owned());
         for pass in passes {
@@ -140,7 +148,7 @@ impl Blocks<'_> {
         let (axis, position) = self.program.retract;
         let axis = &self.program.axes[axis];
         let word = axis_word(axis, position, self.dialect, &|| "the clearance plane".to_owned())?;
-        self.out.push(format!("G00 {word}"));
+        self.out.push(self.dialect.rapid(&word));
         Ok(())
     }
 
@@ -151,23 +159,25 @@ impl Blocks<'_> {
         let first = self.axis_words(pass, 0)?;
         let retract = program.retract.0;
         let others = first.iter().enumerate().filter(|(axis, _)| *axis != retract).map(|(_, word)| word.as_str());
-        self.out.push(format!("G00 {}", others.collect::<Vec<_>>().join(" ")));
-        self.out.push(format!("G00 {}", first[retract]));
+        self.out.push(self.dialect.rapid(&others.collect::<Vec<_>>().join(" ")));
+        self.out.push(self.dialect.rapid(&first[retract]));
+        let (straight, _) = self.dialect.straight();
         match program.words {
             WordsOf::Axes => {
-                self.out.push(self.dialect.inverse_time().to_owned());
+                let inverse_time = self.dialect.inverse_time();
+                self.out.extend(inverse_time.map(|[on, _]| on.to_owned()));
                 for row in 1..=last {
                     let words = self.axis_words(pass, row)?.join(" ");
-                    let feed = self.inverse_time(pass, row)?;
-                    self.out.push(format!("G01 {words} F{feed:.*}", self.dialect.feed_decimals()));
+                    let feed = self.feed_of_axes(pass, row)?;
+                    self.out.push(format!("{straight} {words} F{feed:.*}", self.dialect.feed_decimals()));
                 }
-                self.out.push("G94".to_owned());
+                self.out.extend(inverse_time.map(|[_, off]| off.to_owned()));
             }
             WordsOf::Tip => {
                 self.out.push(self.dialect.tip_control()[0].to_owned());
                 for row in 1..=last {
                     let words = self.tip_words(pass, row)?;
-                    self.out.push(format!("G01 {words} F{}", fixed(program.feed, 1)));
+                    self.out.push(format!("{straight} {words} F{}", fixed(program.feed, 1)));
                 }
                 self.out.push(self.dialect.tip_control()[1].to_owned());
             }
@@ -190,11 +200,12 @@ impl Blocks<'_> {
         Ok(tip.chain(rotary).collect::<Vec<String>>().join(" "))
     }
 
-    /// 1/min.
-    fn inverse_time(&self, pass: &ProgramPass, row: usize) -> Result<f64, NcError> {
+    /// The feed of a block of all axes, so that the contact has the feed of the program.
+    fn feed_of_axes(&self, pass: &ProgramPass, row: usize) -> Result<f64, NcError> {
         let range = self.dialect.feeds();
-        let way = pass.ways[row - 1];
-        let feed = self.program.feed / way;
+        let seconds = 60.0 * pass.ways[row - 1] / self.program.feed;
+        let length = block_length(&self.program.axes, &pass.rows[row - 1], &pass.rows[row]);
+        let feed = self.dialect.feed(seconds, length);
         // a block that is shorter than the control can tell takes the least time that it can
         let feed = feed.min(*range.end());
         if range.contains(&feed) {
@@ -202,7 +213,8 @@ impl Blocks<'_> {
         }
         Err(NcError::Feed {
             motion: format!("row {} of {}", row + 1, pass.name),
-            seconds: 60.0 / feed,
+            seconds,
+            kind: self.dialect.feed_kind(),
             feed,
             dialect: self.dialect.name(),
             low: *range.start(),

@@ -228,6 +228,8 @@ choices! {
         Siemens = "siemens",
         /// LinuxCNC.
         LinuxCnc = "linuxcnc",
+        /// Heidenhain TNC, Klartext.
+        Heidenhain = "heidenhain",
     }
 }
 
@@ -269,6 +271,7 @@ impl From<NcDialect> for Dialect {
             NcDialect::Fanuc => Dialect::Fanuc,
             NcDialect::Siemens => Dialect::Siemens840D,
             NcDialect::LinuxCnc => Dialect::LinuxCnc,
+            NcDialect::Heidenhain => Dialect::Heidenhain,
         }
     }
 }

@@ -186,12 +186,7 @@ impl<'a> Folder<'a> {
 
     /// A program that runs the motion in a number of seconds.
     pub(crate) fn nc(&mut self, name: &str, motion: &MotionTable, to: Dialect, seconds: f64) -> Result<(), Failure> {
-        let extension = match to {
-            Dialect::Fanuc => "nc",
-            Dialect::Siemens840D => "mpf",
-            Dialect::LinuxCnc => "ngc",
-        };
-        self.write(&format!("{name}.{extension}"), |out| write_nc(motion, to, seconds, out))
+        self.write(&format!("{name}.{}", to.extension()), |out| write_nc(motion, to, seconds, out))
     }
 
     /// A page to look at.

@@ -119,15 +119,32 @@ impl Obstacle {
         if coarse - self.reach > limit {
             return None;
         }
-        let found = self.solved(body, pose, start);
+        let found = self.solved(&|point| body.distance(pose, point), start);
         Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
     }
 
-    /// Newton's method for the least distance from a start, within the surface's ends.
-    fn solved(&self, body: &ToolBody, pose: &[f64; 6], mut at: [f64; 2]) -> Nearest {
+    /// The radius of the largest ball that touches a point from the side of its unit `normal` and stays away from the surface by `by`, and
+    /// the place of the surface that stops it; `None` where nothing does. mm.
+    ///
+    /// A ball that touches p leaves the distance `by` to q = p + d where its radius is (d² − by²) / (2 (n · d + by)).
+    pub fn largest_ball(&self, point: [f64; 3], normal: [f64; 3], by: f64) -> Option<Nearest> {
+        let radius = |place: [f64; 3]| {
+            let d = [0, 1, 2].map(|k| place[k] - point[k]);
+            let [square, ahead] = [d, normal].map(|with| (0..3).map(|k| d[k] * with[k]).sum::<f64>());
+            let room = ahead + by;
+            if room > 0.0 { 0.5 * (square - by * by) / room } else { f64::INFINITY }
+        };
+        let radii = self.coarse.iter().map(|(shares, place)| (radius(*place), *shares));
+        let (coarse, start) = radii.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(radius, _)| radius.is_finite())?;
+        let found = self.solved(&radius, start);
+        Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
+    }
+
+    /// Newton's method for the least value over the surface from a start, within the surface's ends.
+    fn solved(&self, value: &dyn Fn([f64; 3]) -> f64, mut at: [f64; 2]) -> Nearest {
         let distance = |shares: [f64; 2]| {
             let [x, y, z, ..] = self.surface.at(shares);
-            body.distance(pose, [x, y, z])
+            value([x, y, z])
         };
         let mut here = distance(at);
         for _ in 0..MOST_STEPS {

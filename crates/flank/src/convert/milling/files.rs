@@ -242,12 +242,8 @@ fn program_text(
             "LinuxCNC keeps no tool on its way by itself: leave option `tool_centre_control` out for its programs";
         return Err(Failure::Request(message.to_string()));
     }
-    let extension = match dialect {
-        NcDialect::Fanuc => "nc",
-        NcDialect::Siemens => "mpf",
-        NcDialect::LinuxCnc => "ngc",
-    };
+    let dialect = Dialect::from(dialect);
     let mut text = Vec::new();
-    write_passes(program, Dialect::from(dialect), &mut text).map_err(|error| error.to_string())?;
-    Ok((extension, String::from_utf8(text).expect("programs are ASCII")))
+    write_passes(program, dialect, &mut text).map_err(|error| error.to_string())?;
+    Ok((dialect.extension(), String::from_utf8(text).expect("programs are ASCII")))
 }

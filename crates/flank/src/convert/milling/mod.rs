@@ -2,6 +2,7 @@
 
 mod cutter;
 mod files;
+mod klartext;
 mod machine;
 mod obstacles;
 mod patch;
@@ -257,10 +258,12 @@ fn describe(
     result.axes = axes(machine, milled);
     for (pass, (poses, rows)) in milled.poses.iter().zip(&milled.axes).enumerate() {
         let place = |k: usize| target.place(milled.shares(target, pass, k));
-        let faults = machine.faults(poses, rows, place);
-        if !faults.is_empty() {
-            result.not_done.extend(faults);
-            break;
+        for fault in machine.faults(poses, rows, place) {
+            // what ails many passes is told of the first
+            let is_known = |known: &NotDone| known.kind == fault.kind && known.of == fault.of;
+            if !result.not_done.iter().any(is_known) {
+                result.not_done.push(fault);
+            }
         }
     }
 }

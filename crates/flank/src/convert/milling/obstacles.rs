@@ -84,6 +84,26 @@ fn sampled<'g>(
     })
 }
 
+/// How large a ball may be that touches the milled surface everywhere and stays clear.
+fn largest_ball(
+    target: &Target<'_, '_>,
+    milled: &Milled<'_, '_>,
+    clearance: &MillingClearance<'_>,
+    (surface, obstacle): (&str, &Obstacle),
+) -> Option<String> {
+    if clearance.surface == target.milling.surface {
+        return None;
+    }
+    let stock = target.milling.stock;
+    let balls = milled.lattice.each().filter_map(|(shares, frame)| {
+        let touched = [0, 1, 2].map(|k| frame.position[k] + stock * frame.normal[k]);
+        Some((obstacle.largest_ball(touched, frame.normal, clearance.distance)?.distance, shares))
+    });
+    let (radius, shares) = balls.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(radius, _)| *radius > 0.0)?;
+    let place = target.place(shares);
+    Some(format!("a ball that stays clear of {surface} has R {radius:.3} mm at the most, at {place}"))
+}
+
 /// A position, and what is nearest there.
 type Found = ([usize; 2], flank_solver::Nearest);
 
@@ -124,11 +144,16 @@ fn least(
         } else {
             format!("{body} comes as near as {least:.4} mm to {surface} while the cutter is at {place}, {wanted} mm are wanted")
         };
-        let details = vec![
-            format!("the nearest place of {surface} is at {foot}"),
-            "take a smaller or longer cutter, or lean it with `tilt`".to_string(),
+        let details = [
+            Some(format!("the nearest place of {surface} is at {foot}")),
+            largest_ball(target, milled, clearance, (surface, obstacle)),
+            Some(if clearance.surface == target.milling.surface {
+                "take a smaller cutter, or lean it more with `lead`".to_string()
+            } else {
+                "take a smaller or longer cutter, or lean it with `tilt`".to_string()
+            }),
         ];
-        NotDone::new(NotDoneKind::NotClear, surface, message).with(details)
+        NotDone::new(NotDoneKind::NotClear, surface, message).with(details.into_iter().flatten().collect())
     });
     (kept, not_clear)
 }

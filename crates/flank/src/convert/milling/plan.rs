@@ -45,6 +45,13 @@ fn evenly(count: usize) -> Vec<f64> {
     (0..count).map(|k| k as f64 / (count - 1) as f64).collect()
 }
 
+/// A block that is not near the surface everywhere.
+struct Lost {
+    shares: [f64; 2],
+    /// How far the axis of the cutter is from the pole at the nearer end, radians, where all axes go straight.
+    from_pole: Option<f64>,
+}
+
 /// What a plan is made from.
 pub(super) struct Planner<'p, 'j, 'g> {
     pub(super) target: &'p Target<'j, 'g>,
@@ -169,7 +176,7 @@ impl Planner<'_, '_, '_> {
         found.map(|found| found.concat()).map_err(|shares| {
             let place = self.target.place(shares);
             let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
-            let way = "the cutter is too small for passes so far apart, or they run out of the surface".to_string();
+            let way = "set them closer together, or take a cutter with a larger arc: the ridge lies beyond the end of this one".to_string();
             NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way])
         })
     }
@@ -210,23 +217,34 @@ impl Planner<'_, '_, '_> {
     /// The most and the least that straight blocks leave on some passes.
     fn left_by_blocks(&self, passes: &[f64], along: &[f64], which: &[usize]) -> Result<[LeftAt; 2], NotDone> {
         let (fields, cutter, axes, stock) = (self.fields, &self.cutter.cutting, self.axes, self.stock());
-        let of_pass = |number: &usize| -> Result<[LeftAt; 2], [f64; 2]> {
+        let of_pass = |number: &usize| -> Result<[LeftAt; 2], Lost> {
             let share = passes[*number];
             let (surface, path) = (fields.surface.pass(share), fields.of_pass(*number).pass(share));
             let blocks = blocks(axes, &path, along);
             let mut ends = [LeftAt { shares: [share, 0.0], height: 0.0 }; 2];
             for (pair, block) in along.windows(2).zip(&blocks) {
                 let found = left_by_block(&surface, block, [pair[0], pair[1]], cutter, stock);
-                let Cusp { share: at, height } = found.ok_or([share, pair[0]])?;
+                let from_pole = |axes: &FreeAxes| {
+                    let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&path.at(share)));
+                    ends[0].min(ends[1])
+                };
+                let Cusp { share: at, height } =
+                    found.ok_or_else(|| Lost { shares: [share, pair[0]], from_pole: axes.map(from_pole) })?;
                 let left = LeftAt { shares: [share, at], height: height - stock };
                 ends = [higher(ends[0], left), lower(ends[1], left)];
             }
             Ok(ends)
         };
-        let all: Result<Vec<[LeftAt; 2]>, [f64; 2]> = which.par_iter().map(of_pass).collect();
-        let all = all.map_err(|shares| {
-            let message = format!("the block at {} was not followed", self.target.place(shares));
-            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message)
+        let all: Result<Vec<[LeftAt; 2]>, Lost> = which.par_iter().map(of_pass).collect();
+        let all = all.map_err(|Lost { shares, from_pole }| {
+            let message = format!("the block at {} leaves the surface", self.target.place(shares));
+            let swings = from_pole.map(|angle| {
+                format!("its ends are {:.3} deg from the pole, where rotary axes swing", angle.to_degrees())
+            });
+            let way =
+                "lean the cutter away with `lead` or `tilt`, clamp the work at another angle, or make blocks shorter";
+            let details = swings.into_iter().chain([way.to_string()]).collect();
+            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(details)
         })?;
         Ok(all.into_iter().reduce(|a, b| [higher(a[0], b[0]), lower(a[1], b[1])]).expect("there are passes"))
     }

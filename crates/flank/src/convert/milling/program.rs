@@ -5,6 +5,7 @@ use std::fmt;
 
 use flank_solver::PoseSeries;
 
+use super::klartext;
 use super::machine::Machine;
 
 /// Letters of axis words.
@@ -15,6 +16,14 @@ pub(super) struct Program {
     pub(super) blocks: Vec<PoseSeries>,
     /// Whether one of them has the tip in the work in its words.
     pub(super) tool_centre_control: bool,
+}
+
+impl Program {
+    fn push(&mut self, block: Option<PoseSeries>, state: &State<'_, '_, '_>) {
+        let Some(block) = block else { return };
+        self.tool_centre_control |= state.has_tip_control;
+        self.blocks.push(block);
+    }
 }
 
 /// What a program says that is not understood, with its line.
@@ -30,9 +39,9 @@ impl fmt::Display for Fault {
 }
 
 /// A word of a block.
-struct Word {
-    address: String,
-    value: f64,
+pub(super) struct Word {
+    pub(super) address: String,
+    pub(super) value: f64,
 }
 
 /// What a program has said so far.
@@ -49,7 +58,7 @@ struct State<'m, 'p, 'g> {
     unit: f64,
 }
 
-/// Reads a program in the words of Fanuc, Siemens 840D or LinuxCNC.
+/// Reads a program in the words of Fanuc, Siemens 840D, LinuxCNC or Heidenhain's Klartext, which its first block tells.
 pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fault> {
     let addresses = machine.free.iter().enumerate().map(|(k, axis)| (axis.word.address.clone(), k)).collect();
     let mut state = State {
@@ -62,11 +71,23 @@ pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fau
         unit: 1.0,
     };
     let mut program = Program { blocks: Vec::new(), tool_centre_control: false };
+    let is_klartext = text.lines().any(klartext::begins);
     for (number, line) in text.lines().enumerate() {
         let fault = |message: String| Fault { line: number + 1, message };
         let plain = without_remarks(line);
         let plain = plain.trim();
         if plain.is_empty() || plain == "%" || plain.starts_with(['O', ':']) {
+            continue;
+        }
+        if is_klartext {
+            match klartext::line(plain).map_err(fault)? {
+                klartext::Line::End => break,
+                klartext::Line::Nothing => {}
+                klartext::Line::Unit(unit) => state.unit = unit,
+                klartext::Line::TipControl(on) => state.tip_control(on),
+                klartext::Line::Elsewhere(axes) => state.forget(&axes),
+                klartext::Line::Block(words) => program.push(state.block(&words).map_err(fault)?, &state),
+            }
             continue;
         }
         for (word, on) in [("TRAORI", true), ("TRAFOOF", false)] {
@@ -81,10 +102,7 @@ pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fau
         if words.iter().any(|word| word.address == "M" && (word.value == 30.0 || word.value == 2.0)) {
             break;
         }
-        if let Some(block) = state.block(&words).map_err(fault)? {
-            program.tool_centre_control |= state.has_tip_control;
-            program.blocks.push(block);
-        }
+        program.push(state.block(&words).map_err(fault)?, &state);
     }
     if program.blocks.is_empty() {
         return Err(Fault { line: text.lines().count(), message: "the program has no cutting block".to_string() });
@@ -135,6 +153,14 @@ fn words(line: &str) -> Result<Vec<Word>, String> {
 impl State<'_, '_, '_> {
     fn tip_control(&mut self, on: bool) {
         self.has_tip_control = on;
+        self.tip = [None; 3];
+    }
+
+    /// Axes went where the program does not say in the work's coordinates.
+    fn forget(&mut self, addresses: &[String]) {
+        for axis in addresses.iter().filter_map(|address| self.addresses.get(address)) {
+            self.axes[*axis] = None;
+        }
         self.tip = [None; 3];
     }
 

@@ -1,0 +1,238 @@
+//! `flank mill`: programs that it writes are read back, by it and by LinuxCNC's interpreter, and what cannot be milled is told with its
+//! place.
+
+mod support;
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+use support::{flank, folder, text, written};
+
+/// What the job needs of the library.
+const SPECS: [&str; 7] = [
+    "functions/bevel",
+    "machines/cradle",
+    "tools/face_mill",
+    "functions/blanks_19x62",
+    "bevel/pinion_19x62",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+const BALL: &str = "ball_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)";
+const BULL: &str = "bull_mill(radius: 6 mm, corner: 1 mm, reach: 40 mm, holder_radius: 8 mm)";
+const AREA: &str = "passes profilewise: 0.45 .. 0.55 by 9\n along lengthwise: 0.2 .. 0.8 by 9\n";
+
+/// A job that mills a part of the concave flank of the pinion.
+fn job(settings: &str, cutter: &str, milling: &str) -> String {
+    let library = support::self_contained(&SPECS);
+    format!(
+        "{library}\njob milled extends pinion_19x62 {{\n machine mill = five_axis_table_table({settings})\n tool cutter = {cutter}\n \
+         mount cutter on mill.cutter\n mill part of concave with cutter.cutting in mill.work {{\n{milling}\n }}\n}}\n"
+    )
+}
+
+/// As the library's job leans it.
+fn sound() -> String {
+    job("work_z: 60 mm", BALL, &format!("{AREA} lead 5 deg\n tilt 70 deg\n"))
+}
+
+/// Exit code, what was printed, what was told.
+fn mill(spec: &str, out: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let out = out.to_str().expect("a plain path");
+    let run = flank(&[&["mill", spec, "--out", out][..], arguments].concat());
+    (run.status.code().expect("it ends by itself"), text(&run.stdout), text(&run.stderr))
+}
+
+fn json(spec: &str, out: &Path, arguments: &[&str]) -> Value {
+    let (code, told, errors) = mill(spec, out, &[arguments, &["--json"]].concat());
+    assert_eq!(code, 0, "{errors}");
+    serde_json::from_str(&told).expect("JSON")
+}
+
+const CONTROLS: [(&str, &str); 4] = [("linuxcnc", "ngc"), ("siemens", "mpf"), ("fanuc", "nc"), ("heidenhain", "h")];
+
+/// A program of each control leaves what its plan says: on no point more than cusp and block together, nowhere less than blocks cut too
+/// deep; words have four decimals of mm and five of degrees.
+#[test]
+fn programs_of_all_controls_leave_what_was_planned() {
+    let out = folder("mill_programs");
+    let spec = written(&out, "milled.chain", &sound());
+    // half of the last decimal on each of five axes; the work is some 200 mm from the rotary ones
+    let rounding = 1e3 * (3.0 * 0.5e-4 + 2.0 * 0.5e-5_f64.to_radians() * 200.0);
+    for tip in [false, true] {
+        let controls = CONTROLS.into_iter().filter(|(control, _)| !(tip && *control == "linuxcnc"));
+        for (control, extension) in controls {
+            let words: &[&str] = if tip { &["--tcp"] } else { &[] };
+            json(&spec, &out, &[&["--nc", control, "--spindle", "9000"], words].concat());
+            let program = out.join(format!("milled.part.{extension}"));
+            let read = json(&spec, &out, &[&["--verify", program.to_str().unwrap()], words].concat());
+            let verified = &read["verified"];
+            assert_eq!(verified["untouched"], 0, "{control}: {verified}");
+            assert_eq!(verified["tool_centre_control"], tip, "{control}: {verified}");
+            let height = |value: &Value| value["height_um"].as_f64().expect("a height");
+            let [most, least] = [0, 1].map(|k| height(&verified["left"][k]));
+            let cusp = height(&read["cusp"]);
+            let [left, deep] = [0, 1].map(|k| height(&read["blocks"][k]));
+            assert!(most < cusp + left + rounding, "{control}: {most} um, planned {cusp} and {left}");
+            assert!(least > deep.min(0.0) - rounding, "{control}: {least} um, planned {deep}");
+            // and the map is not just small: between passes and on blocks something is left
+            assert!(most > 0.5 * (cusp + left), "{control}: {most} um, planned {cusp} and {left}");
+        }
+    }
+}
+
+/// Whole programs, also of several spaces, run through LinuxCNC's interpreter: each cutting block arrives, nothing is refused.
+#[test]
+fn linuxcnc_runs_whole_programs() {
+    if Command::new("rs274").arg("-h").output().is_err() {
+        eprintln!("skipped 1 test: rs274 of linuxcnc-uspace is not installed");
+        return;
+    }
+    let out = folder("mill_rs274");
+    let spec = written(&out, "milled.chain", &sound());
+    let tools = written(&out, "tool.tbl", "T1 P1 D2.0 Z0.0 ;cutter\n");
+    let variables = written(&out, "v.var", "5161 0\n5220 1\n");
+    for spaces in ["1", "3"] {
+        json(&spec, &out, &["--nc", "linuxcnc", "--spindle", "9000", "--spaces", spaces]);
+        let program = out.join("milled.part.ngc");
+        let arguments = ["-g", "-t", &tools, "-v", &variables, program.to_str().unwrap()];
+        let run = Command::new("rs274").args(arguments).current_dir(&out).output().expect("it is installed");
+        let told = format!("{}{}", text(&run.stdout), text(&run.stderr));
+        assert!(run.status.success(), "{told}");
+        let blocks = std::fs::read_to_string(&program).unwrap().lines().filter(|line| line.starts_with("G01")).count();
+        // nine passes of nine positions, down and up
+        assert_eq!(blocks, spaces.parse::<usize>().unwrap() * 9 * 10);
+        assert_eq!(told.matches("STRAIGHT_FEED(").count(), blocks, "{told}");
+    }
+}
+
+/// What cannot be milled: exit code 3, the place and a way out, and no program.
+#[test]
+fn what_cannot_be_milled_is_told_with_its_place() {
+    let out = folder("mill_refused");
+    let large = BALL.replace("radius: 1 mm", "radius: 3 mm");
+    let lean = |lead: &str, tilt: &str| format!("{AREA} lead {lead} deg\n tilt {tilt} deg\n");
+    let heel = format!(
+        "{} clear of concave by 0 mm with cutter.whole\n",
+        lean("0.5", "0").replace("by 9\n along", "by 60\n along")
+    );
+    let clear = format!("{} clear of convex by 0.1 mm with cutter.whole\n", lean("5", "70"));
+    let fine = lean("5", "70").replace("0.55 by 9", "0.55, scallop 1e-9 um");
+    let here = "work_z: 60 mm";
+    let near_pole = |tilt: &str| lean("-47", tilt).replace("0.8 by 9", "0.8 by 5");
+    let cases: [(String, &[&str], &[&str]); 7] = [
+        (
+            job(here, &large, &clear),
+            &[
+                "cutter.whole cuts 2.",
+                "mm into convex while the cutter is at profilewise",
+                "a ball that stays clear of convex has R 1.",
+            ],
+            &[],
+        ),
+        (
+            job(here, BULL, &heel),
+            &[
+                "cutter.whole cuts 0.3713 mm into concave while the cutter is at profilewise",
+                "lean it more with `lead`",
+            ],
+            &[],
+        ),
+        (
+            job(here, BALL, &near_pole("7")),
+            &[
+                "the block at profilewise 0.4750, lengthwise 0.6500 leaves the surface",
+                " deg from the pole",
+                "lean the cutter away with `lead` or `tilt`",
+            ],
+            &[],
+        ),
+        (
+            job(here, BALL, &near_pole("7").replace("0.2 .. 0.8 by 5", "0.65 .. 0.8 by 2")),
+            &["C of mill turns by ", "the cutter's axis passes the pole, 1."],
+            &["--tcp"],
+        ),
+        (
+            job("work_z: 600 mm", BALL, &lean("5", "70")),
+            &[
+                "mill goes beyond the travel of Y: -7",
+                "at profilewise 0.4500, lengthwise 0.8000, its travel is -300.000 mm .. 300.000 mm",
+                "clamp the work elsewhere",
+            ],
+            &[],
+        ),
+        (
+            job(here, BALL, &fine),
+            &["part: it would take ", "passes; at most 100000 are made", "allow a higher scallop"],
+            &[],
+        ),
+        (
+            job(here, "flat_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)", &lean("0", "0")),
+            &["the bottom of cutter.cutting lies flat on concave at profilewise 0.4500", "give it a `lead` above zero"],
+            &[],
+        ),
+    ];
+    for (spec, parts, arguments) in cases {
+        let spec = written(&out, "milled.chain", &spec);
+        let (code, _, told) = mill(&spec, &out, &[arguments, &["--nc", "fanuc"]].concat());
+        assert_eq!(code, 3, "{told}");
+        for part in parts {
+            assert!(told.contains(part), "{part} in {told}");
+        }
+        assert!(!out.join("milled.part.nc").exists(), "{told}");
+    }
+}
+
+/// Programs with words that the machine has not, or that are not followed: the line and the reason.
+#[test]
+fn programs_that_are_not_followed_are_told_with_their_line() {
+    let out = folder("mill_unread");
+    let spec = written(&out, "milled.chain", &sound());
+    let klartext = |line: &str| format!("0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S9000\n{line}\n3 END PGM A MM\n");
+    let cases: [(String, &str); 12] = [
+        ("%\nG01 X1 B2 F3\n".to_string(), ":2: mill has no word `B`; it has X Y Z A C"),
+        ("%\nG01 X1 Y2 F3\n".to_string(), ":2: cuts before each axis has its position"),
+        ("G90\nG02 X1 Y2 I3\n".to_string(), ":2: G2 is a circle: only straight blocks are followed"),
+        ("G91\n".to_string(), ":1: G91 counts from where the axes stand"),
+        ("G01 X#3\n".to_string(), ":1: `X` has no number"),
+        ("G90\nM30\n".to_string(), ":2: the program has no cutting block"),
+        (klartext("2 L X+1 V+2 R0 FMAX"), ":3: mill has no word `V`; it has X Y Z A C"),
+        (klartext("2 CC X+1 Y+2"), ":3: `CC X+1 Y+2` is no straight block `L`"),
+        (klartext("2 L IX+1 F200"), ":3: `IX+1` counts from where the axis stands"),
+        (klartext("2 L X+1 RL F200"), ":3: `RL` compensates the radius"),
+        (
+            klartext("2 FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS"),
+            ":3: FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS is not followed",
+        ),
+        (klartext("2 L X+Q1 F200"), ":3: `X+Q1` has no number"),
+    ];
+    for (program, part) in cases {
+        let file = written(&out, "program.nc", &program);
+        let (code, _, told) = mill(&spec, &out, &["--verify", &file]);
+        assert_eq!(code, 1, "{program}: {told}");
+        assert!(told.contains(part), "{part} in {told}");
+    }
+}
+
+/// Klartext of others: block numbers, decimal commas, M128, rapids, blocks in the machine's coordinates.
+#[test]
+fn klartext_of_others_is_followed() {
+    let out = folder("mill_klartext");
+    let spec = written(&out, "milled.chain", &sound());
+    json(&spec, &out, &["--nc", "heidenhain", "--tcp"]);
+    let own = std::fs::read_to_string(out.join("milled.part.h")).unwrap();
+    let renamed = own
+        .replace("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "M128 F1000")
+        .replace("FUNCTION RESET TCPM", "M129")
+        .replace("L Z+500.0000 R0 FMAX", "L Z-1 R0 FMAX M91");
+    let comma = |line: &str| if line.starts_with('L') { line.replace('.', ",") } else { line.to_string() };
+    let numbered: String = renamed.lines().enumerate().map(|(k, line)| format!("{k} {}\n", comma(line))).collect();
+    let theirs = written(&out, "theirs.h", &numbered);
+    let own = out.join("milled.part.h");
+    let [found, expected] = [theirs.as_str(), own.to_str().unwrap()]
+        .map(|file| json(&spec, &out, &["--tcp", "--verify", file])["verified"].clone());
+    for part in ["blocks", "left", "untouched", "tool_centre_control"] {
+        assert_eq!(found[part], expected[part], "{part}");
+    }
+}
