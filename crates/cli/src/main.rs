@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
-use commands::{check, explain, fmt, import, new, operations, schema, shell, test};
+use commands::{check, explain, fmt, import, new, operations, schema, shell, sweep, test};
 use console::{eprint, print};
 use failure::Failure;
 
@@ -89,6 +89,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Deviation(arguments) => operations::deviation(arguments),
         Command::Fit(arguments) => operations::fit(arguments),
         Command::Tolerance(arguments) => operations::tolerance(arguments),
+        Command::Sweep(arguments) => sweep::run(arguments),
         Command::Contact(arguments) => operations::contact(arguments),
         Command::Mill(arguments) => operations::mill(arguments),
         Command::Measure(arguments) => operations::measure(arguments),

@@ -92,7 +92,7 @@ impl fmt::Display for Dimension {
 /// A unit: its size in mm or radians and its dimension.
 ///
 /// `None` if there is no such unit.
-pub(crate) fn unit(name: &str) -> Option<(f64, Dimension)> {
+pub fn unit(name: &str) -> Option<(f64, Dimension)> {
     use std::f64::consts::PI;
     let (size, dimension) = match name {
         "mm" => (1.0, Dimension::LENGTH),

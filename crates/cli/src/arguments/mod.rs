@@ -10,6 +10,7 @@ mod mill;
 mod plot;
 mod report;
 mod solid;
+mod sweep;
 mod test;
 mod tolerance;
 
@@ -32,6 +33,7 @@ pub(crate) use mill::Mill;
 pub(crate) use plot::Plot;
 pub(crate) use report::Report;
 pub(crate) use solid::SolidArguments;
+pub(crate) use sweep::{Sweep, SweepGather, SweepStep};
 pub(crate) use test::Test;
 pub(crate) use tolerance::Tolerance;
 
@@ -83,6 +85,8 @@ pub(crate) enum Command {
     Fit(Fit),
     /// How a surface's ease-off and its contacts scatter with settings and mounting errors, and how far these may
     Tolerance(Tolerance),
+    /// Many cases of a job: from a table, from ranges or at random; a row of numbers for each
+    Sweep(Box<Sweep>),
     /// Where two flanks touch while a pair rolls, how evenly they turn each other, what the marking compound shows
     Contact(Contact),
     /// Write nominal points and normals for a gear measuring machine
@@ -126,6 +130,7 @@ impl Command {
             Command::Deviation(arguments) => arguments.json,
             Command::Fit(arguments) => arguments.json,
             Command::Tolerance(arguments) => arguments.json,
+            Command::Sweep(arguments) => arguments.is_json(),
             Command::Contact(arguments) => arguments.json,
             Command::Explain(arguments) => arguments.json,
             Command::Import(arguments) => arguments.json,
@@ -151,6 +156,7 @@ impl Command {
             Command::Deviation(arguments) => Some(arguments.evaluator),
             Command::Fit(arguments) => Some(arguments.evaluator),
             Command::Tolerance(arguments) => Some(arguments.evaluator),
+            Command::Sweep(arguments) => arguments.evaluator(),
             Command::Contact(arguments) => Some(arguments.evaluator),
             Command::Measure(arguments) => Some(arguments.evaluator),
             Command::Mesh(arguments) => Some(arguments.evaluator),

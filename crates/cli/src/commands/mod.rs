@@ -8,4 +8,5 @@ pub(crate) mod new;
 pub(crate) mod operations;
 pub(crate) mod schema;
 pub(crate) mod shell;
+pub(crate) mod sweep;
 pub(crate) mod test;

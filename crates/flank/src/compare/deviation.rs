@@ -19,7 +19,7 @@ use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::branches;
-use crate::solve::starts::{self, Starts};
+use crate::solve::starts::{self, Asked, Starts};
 use crate::solve::{self, SolveOptions, bound, problem};
 
 /// What a surface is compared with.
@@ -122,7 +122,7 @@ pub(crate) fn measure<'j, 'g>(
     let counts = sample.counts;
     let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), session);
     session.check()?;
-    let starts = Starts::beside(surface.surface, (sample, &points));
+    let starts = Starts::beside(surface.surface, (&Asked::of_sample(sample), &points));
     let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
     let deviation = flank_solver::Deviation::new(&bound(surface.job, surface.surface))
         .expect("a job without errors leaves nothing unbound");

@@ -8,6 +8,7 @@ pub(crate) mod inspect;
 pub(crate) mod map;
 pub(crate) mod measure;
 pub(crate) mod measure_result;
+pub(crate) mod sweep;
 pub(crate) mod synthesis;
 pub(crate) mod tolerance;
 pub(crate) mod trace_result;

@@ -45,6 +45,11 @@ fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j PointRequirement<'g>) -
     (found.places.count > 0).then_some(found)
 }
 
+/// How many points do not hold all that their samples require.
+pub(crate) fn missed_points(all: &[Solved<'_, '_>]) -> usize {
+    all.iter().flat_map(broken).map(|broken| broken.places.count).sum()
+}
+
 /// All that does not hold.
 pub(crate) fn missed(all: &[Solved<'_, '_>]) -> Vec<NotDone> {
     let of_surface = |solved: &Solved<'_, '_>| {

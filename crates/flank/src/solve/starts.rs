@@ -11,6 +11,21 @@ const OF_PLACES: [&str; 5] = ["x", "y", "z", "rho", "polar_angle"];
 /// normals by less than this share of what another way does: hardly more than nothing, as on a root cylinder or an end face.
 const HARDLY: f64 = 0.02;
 
+/// Where the points of a grid were asked for.
+pub(crate) struct Asked {
+    /// The names of its two coordinates.
+    pub(crate) names: [String; 2],
+    pub(crate) targets: Vec<[f64; 2]>,
+    pub(crate) counts: [usize; 2],
+}
+
+impl Asked {
+    pub(crate) fn of_sample(sample: &Sample<'_>) -> Asked {
+        let names = sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone());
+        Asked { names, targets: sample.targets(), counts: sample.counts }
+    }
+}
+
 /// Two coordinates of a surface with the values that points of another one have.
 pub(crate) struct Starts<'g> {
     pub(crate) coordinates: [Coordinate<'g>; 2],
@@ -22,16 +37,15 @@ impl<'g> Starts<'g> {
     /// place, else by two that tell the points apart. Names of unknowns say nothing here: another tool's `u` is another place.
     pub(crate) fn beside(
         surface: &GeneratedSurface<'g>,
-        (sample, points): (&Sample<'_>, &[SurfacePoint]),
+        (asked, points): (&Asked, &[SurfacePoint]),
     ) -> Starts<'g> {
-        let is_of_place = |coordinate: &Coordinate<'_>| OF_PLACES.contains(&coordinate.name.as_str());
-        let (names, targets) = if sample.coordinates.iter().all(is_of_place) {
-            (sample.coordinates.each_ref().map(|coordinate| coordinate.name.as_str()), sample.targets())
+        let (names, targets) = if asked.names.iter().all(|name| OF_PLACES.contains(&name.as_str())) {
+            (asked.names.each_ref().map(String::as_str), asked.targets.clone())
         } else {
             let names = telling(points);
-            (names, values(names, points, middle(sample.counts)))
+            (names, values(names, points, middle(asked.counts)))
         };
-        let halfway = targets.get(middle(sample.counts)).copied().unwrap_or_default();
+        let halfway = targets.get(middle(asked.counts)).copied().unwrap_or_default();
         let coordinate = |k: usize| {
             let known = surface.coordinates().into_iter().find(|coordinate| coordinate.name == names[k]);
             surface.about(known.expect("every surface has these"), halfway[k])

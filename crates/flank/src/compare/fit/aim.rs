@@ -14,7 +14,7 @@ use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::{FitRequest, Session, WantedEaseOff};
 use crate::project::spec::Origin;
 use crate::solve;
-use crate::solve::starts::{self, Starts};
+use crate::solve::starts::{self, Asked, Starts};
 
 /// Where a surface shall be.
 pub(super) struct Aim<'j, 'g> {
@@ -99,7 +99,7 @@ impl<'j, 'g> Aim<'j, 'g> {
         let [profile, length] = placed.shares(counts);
         let sample = placed.sample(&profile, &length);
         let points = placed.solved(&sample)?;
-        let starts = Starts::beside(of.surface, (&sample, &points));
+        let starts = Starts::beside(of.surface, (&Asked::of_sample(&sample), &points));
         let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, counts), session);
         if let Some(lost) = lost {
             return Err(Failure::NotDone(vec![lost]));

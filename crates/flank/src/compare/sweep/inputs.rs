@@ -1,0 +1,174 @@
+//! What differs from case to case: settings of a job, and axes of the machines of its contacts.
+
+use flank_chain_dsl::{Dimension, Job, Parameter};
+use serde::{Deserialize, Serialize};
+
+use super::request::Distribution;
+use crate::project::failure::Failure;
+use crate::project::requests::{MountingError, ToleratedAmount};
+use crate::project::units;
+
+/// Something that has another value in each case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct StudyInput {
+    /// As the job knows it.
+    pub(super) name: String,
+    /// The unit of its values; empty for a number.
+    pub(super) unit: String,
+    /// Whether it is an axis of a contact, which is added to, rather than a parameter or setting.
+    pub(super) is_axis: bool,
+}
+
+/// What a job says of an input.
+pub(super) struct KnownInput {
+    pub(super) input: StudyInput,
+    pub(super) dimension: Dimension,
+    /// Of the job itself, in mm or radians; 0 of an axis.
+    pub(super) value: f64,
+    pub(super) range: Option<(f64, f64)>,
+    pub(super) is_count: bool,
+}
+
+impl KnownInput {
+    /// A parameter, a setting or an axis by its name, in the unit that people read.
+    ///
+    /// # Errors
+    /// Which there are, if there is none of that name.
+    pub(super) fn named(job: &Job<'_>, name: &str) -> Result<KnownInput, Failure> {
+        let axes = job.contacts.iter().flat_map(|contact| &contact.errors);
+        if let Some(axis) = axes.into_iter().find(|axis| axis.name == name) {
+            let unit = units::whole_symbol(axis.dimension);
+            let input = StudyInput { name: name.to_string(), unit, is_axis: true };
+            return Ok(KnownInput { input, dimension: axis.dimension, value: 0.0, range: None, is_count: false });
+        }
+        let of = parameter(job, name)?;
+        let unit = units::whole_symbol(of.dimension);
+        let input = StudyInput { name: of.name.clone(), unit, is_axis: false };
+        Ok(KnownInput {
+            input,
+            dimension: of.dimension,
+            value: of.value,
+            range: of.range,
+            is_count: of.is_count,
+        })
+    }
+
+    /// The size of the unit of its values.
+    pub(super) fn size(&self) -> f64 {
+        match size_of_unit(&self.input.unit) {
+            Some((size, _)) => size,
+            None => 1.0,
+        }
+    }
+
+    /// How far a distribution reaches, in its unit.
+    ///
+    /// # Errors
+    /// If its amount is of another kind.
+    pub(super) fn amount(&self, of: Distribution) -> Result<f64, Failure> {
+        let (Distribution::Normal(amount) | Distribution::Uniform(amount)) = of;
+        let inside = match amount {
+            ToleratedAmount::Length(mm) if self.dimension == Dimension::LENGTH => Some(mm),
+            ToleratedAmount::Angle(radians) if units::is_angle(self.dimension) => Some(radians),
+            ToleratedAmount::Number(number) if self.dimension != Dimension::LENGTH && !units::is_angle(self.dimension) => {
+                Some(number)
+            }
+            ToleratedAmount::Share(share) if self.value != 0.0 => Some(share * self.value.abs()),
+            _ => None,
+        };
+        let name = &self.input.name;
+        if self.is_count {
+            return Err(Failure::Input(format!("option `scatter {name}`: a count does not scatter; vary it")));
+        }
+        let is_zero = matches!(amount, ToleratedAmount::Share(_)) && self.value == 0.0;
+        let inside = inside.filter(|inside| inside.is_finite() && *inside > 0.0).ok_or_else(|| {
+            Failure::Input(match self.dimension {
+                _ if is_zero => format!(
+                    "option `scatter {name}`: a share of a value that is zero is nothing: say how much, with a unit"
+                ),
+                Dimension::LENGTH => format!("option `scatter {name}`: this takes a length above zero, for example 0.01mm"),
+                Dimension::ANGLE => format!("option `scatter {name}`: this takes an angle above zero, for example 1arcmin"),
+                _ => format!("option `scatter {name}`: this takes a plain number above zero, or a share, for example 0.1%"),
+            })
+        })?;
+        Ok(inside / self.size())
+    }
+
+    /// Why a value cannot be one of this, if so; in its unit.
+    pub(super) fn refused(&self, value: f64) -> Option<String> {
+        let (name, inside) = (&self.input.name, value * self.size());
+        if !value.is_finite() {
+            return Some(format!("`{name}` is no finite number"));
+        }
+        if self.is_count && value.fract() != 0.0 {
+            return Some(format!("`{name}` is a count, and {value} is no whole number"));
+        }
+        let (low, high) = self.range?;
+        // a conversion of units may round
+        let slack = 1e-12 * low.abs().max(high.abs());
+        (inside < low - slack || inside > high + slack).then(|| {
+            let [low, high] = [low, high].map(|end| units::as_given(self.dimension, end));
+            format!("`{name}` is {}, outside its range {low} .. {high}", text(value, &self.input.unit))
+        })
+    }
+}
+
+impl StudyInput {
+    /// How the head of a table names it.
+    pub(super) fn head(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+
+    /// A value as the language reads it.
+    pub(super) fn as_setting(&self, value: f64) -> (String, String) {
+        (self.name.clone(), text(value, &self.unit))
+    }
+
+    /// A value as a mounting error.
+    pub(super) fn as_error(&self, value: f64) -> (String, MountingError) {
+        let amount = match size_of_unit(&self.unit) {
+            Some((size, Dimension::ANGLE)) => MountingError::Angle(value * size),
+            found => MountingError::Length(value * found.map_or(1.0, |(size, _)| size)),
+        };
+        (self.name.clone(), amount)
+    }
+}
+
+/// A parameter or a setting, by its whole name or the last part of it.
+fn parameter<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Parameter<'g>, Failure> {
+    let own = name.strip_prefix(&format!("{}.", job.name)).unwrap_or(name);
+    if let Some(whole) = job.parameters.iter().find(|of| of.name == own) {
+        return Ok(whole);
+    }
+    let found: Vec<&Parameter<'g>> =
+        job.parameters.iter().filter(|of| of.name.rsplit('.').next() == Some(own)).collect();
+    let list = |of: &mut dyn Iterator<Item = &String>| of.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match found[..] {
+        [one] => Ok(one),
+        [] => {
+            let axes = job.contacts.iter().flat_map(|contact| contact.errors.iter().map(|axis| &axis.name));
+            let known = list(&mut job.parameters.iter().map(|of| &of.name).chain(axes));
+            Err(Failure::Input(format!(
+                "job `{}` has no parameter, setting or axis of a contact `{name}`; there is: {known}",
+                job.name
+            )))
+        }
+        _ => {
+            let known = list(&mut found.iter().map(|of| &of.name));
+            Err(Failure::Input(format!("several settings end with `{name}`; say which: {known}")))
+        }
+    }
+}
+
+/// A value with its unit, the shortest that is the same number.
+fn text(value: f64, unit: &str) -> String {
+    match unit.strip_prefix("1/") {
+        Some(below) => format!("{value} / (1 {below})"),
+        None => format!("{value} {unit}").trim_end().to_string(),
+    }
+}
+
+/// Of a plain unit, in mm or radians, and what it measures.
+pub(super) fn size_of_unit(unit: &str) -> Option<(f64, Dimension)> {
+    flank_chain_dsl::unit(unit)
+}

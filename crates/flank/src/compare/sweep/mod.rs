@@ -1,0 +1,225 @@
+//! `flank sweep`: many cases of a job, as a folder of chunks that any number of processes fill.
+
+mod cases;
+mod chunks;
+mod collect;
+mod drawn;
+mod inputs;
+mod plan;
+pub(crate) mod request;
+pub(crate) mod result;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use flank_chain_dsl::compile_request;
+use flank_expr::Graph;
+
+use self::chunks::{Work, verdict_of};
+use self::collect::{Cases, Collected};
+use self::plan::{Plan, write_text};
+use self::request::{CaseSource, RunRequest, SweepRequest};
+use self::result::SweepResult;
+use crate::project::answer::Timing;
+use crate::project::failure::Failure;
+use crate::project::monitor::Monitor;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::{JobSelection, Session};
+use crate::project::spec::{self, Origin};
+use crate::project::{shown_path, units};
+
+/// A chunk takes about so long, seconds.
+const CHUNK: f64 = 1.0;
+const FEWEST: u64 = 64;
+const MOST: u64 = 65_536;
+/// Cases that tell how long one takes.
+const TRIED: u64 = 16;
+/// Numbers of failed cases that are listed.
+const LISTED: usize = 100;
+
+/// Makes the plan of a study: a folder with the texts of the spec, what differs from case to case, and what is collected. Everything is
+/// looked at before a case is computed.
+///
+/// # Errors
+/// What is wrong with the spec, with the table of cases or with what is collected; that there is another study in the folder.
+pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<SweepResult, Failure> {
+    let graph = Graph::new();
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let [job] = &jobs[..] else {
+        let names: Vec<&str> = jobs.iter().map(|job| job.name.as_str()).collect();
+        let message = format!("a study is of one job; say which by the option `job`: {}", names.join(", "));
+        return Err(Failure::Request(message));
+    };
+    if request.collect.is_empty() {
+        let message = "say by the option `collect` what becomes of each case, for example `points` or `ease_off:SURFACE`";
+        return Err(Failure::Request(message.to_string()));
+    }
+    let which = JobSelection { job: Some(job.name.clone()), ..request.jobs.clone() };
+    let table = match &request.cases {
+        CaseSource::Table(path) => {
+            let mut origin = Origin::default();
+            Some(origin.other_text(which.project.files(), path, cases::MOST_BYTES)?)
+        }
+        _ => None,
+    };
+    let (inputs, values) = cases::read(job, &which, &request.cases, table.as_deref())?;
+    let collect = request.collect.iter().map(|text| Collected::read(text)).collect::<Result<Vec<_>, _>>()?;
+    collect.iter().try_for_each(|of| of.check(job))?;
+    let session = Session::new(request.evaluator, monitor);
+    let chunk = {
+        let tried = Cases::new(which.clone(), inputs.clone(), &request.collect, session)?;
+        let start = Instant::now();
+        let count = TRIED.min(values.count());
+        for number in 0..count {
+            tried.solved(&values.of_case(number, &inputs), session)?;
+        }
+        let each = start.elapsed().as_secs_f64() / count as f64;
+        ((CHUNK * rayon::current_num_threads() as f64 / each) as u64).clamp(FEWEST, MOST)
+    };
+    flank_export::make_folder(&request.out)?;
+    let (main, hash) = plan::keep_texts(&compilation, which.file(), &request.out)?;
+    let plan = Plan {
+        inputs,
+        cases: values,
+        collect: request.collect.clone(),
+        heads: collect.iter().flat_map(|of| of.heads(job)).collect(),
+        limit: request.limit.map(|limit| limit.as_secs_f64()),
+        chunk,
+        ..Plan::new(&which, main, hash)
+    };
+    let plan = kept_plan(&request.out, plan)?;
+    for folder in ["chunks", "open"] {
+        flank_export::make_folder(&request.out.join(folder))?;
+    }
+    plan.write(&request.out)?;
+    Ok(told(&request.out, &plan))
+}
+
+/// The plan that is in the folder already, if it is of the same study: its chunks keep their size.
+fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
+    if !folder.join("plan.json").exists() {
+        return Ok(plan);
+    }
+    let there = Plan::read(folder)?;
+    if (Plan { chunk: there.chunk, ..plan }) == there {
+        return Ok(there);
+    }
+    Err(Failure::Input(format!(
+        "{} holds another study: of other texts, cases or numbers; name another folder by the option `out`",
+        folder.display()
+    )))
+}
+
+/// Computes the chunks of a study that are not there.
+///
+/// # Errors
+/// If there is no study, its texts are not those of its plan, something cannot be written, or the work is cancelled.
+pub fn run_sweep(request: &RunRequest, monitor: &dyn Monitor) -> Result<SweepResult, Failure> {
+    let start = Instant::now();
+    let plan = Plan::read(&request.study)?;
+    let session = Session::new(request.evaluator, monitor);
+    let which = plan.selection(&request.study);
+    check_texts(&plan, &which, &request.study)?;
+    let known = ["crashed", "limit"];
+    if let Some(other) = request.again.iter().find(|word| !known.contains(&word.as_str())) {
+        return Err(Failure::Request(format!("option `again {other}`: write {}", known.join(" or "))));
+    }
+    let all = plan.chunks();
+    let (first, last) = request.chunks.unwrap_or((0, all - 1));
+    if first > last || last >= all {
+        let message = format!("option `chunks {first}..{last}`: the study has chunks 0 to {}", all - 1);
+        return Err(Failure::Request(message));
+    }
+    let cases = Cases::new(which, plan.inputs.clone(), &plan.collect, session)?;
+    let work = Work { folder: &request.study, plan: &plan, cases: &cases, evaluator: request.evaluator, monitor };
+    let working = session.begin(format!("computing {}", units::counted(plan.cases.count() as usize, "case")))?;
+    for chunk in first..=last {
+        working.reached(&|| format!("{chunk} of {all} chunks"));
+        work.chunk(chunk, &request.again)?;
+    }
+    let computed = plan.numbers(first).start..plan.numbers(last).end;
+    let timing = Timing { points: (computed.end - computed.start) as usize, elapsed: start.elapsed() };
+    Ok(SweepResult { timing: Some(timing), ..told(&request.study, &plan) })
+}
+
+fn check_texts(plan: &Plan, which: &JobSelection, study: &Path) -> Result<(), Failure> {
+    let graph = Graph::new();
+    let compilation = compile_request(&graph, which.file(), &which.request());
+    if Origin::of_compilation(&compilation).hash == plan.hash {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "the texts in {} are not those that the study was planned with: bring them back, or plan another study",
+        study.join("spec").display()
+    )))
+}
+
+/// How far a study is.
+///
+/// # Errors
+/// If there is none.
+pub fn sweep_status(study: &Path) -> Result<SweepResult, Failure> {
+    Ok(told(study, &Plan::read(study)?))
+}
+
+/// All rows of a study in the order of its cases, as CSV, with what is missing; also in a file, whole or not at all, if one is named.
+///
+/// # Errors
+/// If there is no study, or the file cannot be written.
+pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepResult), Failure> {
+    let plan = Plan::read(study)?;
+    let mut text = plan.head() + "\n";
+    for chunk in 0..plan.chunks() {
+        let rows = std::fs::read_to_string(plan.chunk_file(study, chunk)).unwrap_or_default();
+        rows.lines().skip(1).for_each(|row| {
+            text += row;
+            text.push('\n');
+        });
+    }
+    let mut result = told(study, &plan);
+    let missing = plan.chunks() - result.done;
+    if missing > 0 {
+        let message = format!(
+            "{missing} of {} of {} are not computed",
+            units::counted(plan.chunks(), "chunk"),
+            shown_path(study)
+        );
+        result.not_done.push(NotDone::new(NotDoneKind::NotSolved, &plan.job, message));
+    }
+    if let Some(file) = out {
+        write_text(file, &text)?;
+        result.files.push(shown_path(file));
+    }
+    Ok((text, result))
+}
+
+fn told(study: &Path, plan: &Plan) -> SweepResult {
+    let mut verdicts: BTreeMap<String, u64> = BTreeMap::new();
+    let (mut done, mut failed) = (0, Vec::new());
+    for chunk in 0..plan.chunks() {
+        let Ok(rows) = std::fs::read_to_string(plan.chunk_file(study, chunk)) else { continue };
+        done += 1;
+        for (number, row) in plan.numbers(chunk).zip(rows.lines().skip(1)) {
+            let verdict = verdict_of(plan, row).unwrap_or("crashed");
+            *verdicts.entry(verdict.to_string()).or_default() += 1;
+            if verdict != "done" && failed.len() < LISTED {
+                failed.push(number);
+            }
+        }
+    }
+    SweepResult {
+        study: shown_path(study),
+        job: plan.job.clone(),
+        inputs: plan.inputs.iter().map(|input| input.head()).collect(),
+        collected: plan.heads.clone(),
+        cases: plan.cases.count(),
+        chunks: plan.chunks(),
+        done,
+        verdicts,
+        failed,
+        files: Vec::new(),
+        not_done: Vec::new(),
+        timing: None,
+    }
+}

@@ -1,0 +1,190 @@
+//! The folder of a study: its plan, the texts of its spec, chunks of results.
+//!
+//! `plan.json`, `spec/` with all texts, `chunks/HASH.csv`, and `open/HASH` while a chunk is worked on.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flank_chain_dsl::{Compilation, Disk};
+use flank_export::write_atomically;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::cases::CaseValues;
+use super::inputs::StudyInput;
+use crate::project::Project;
+use crate::project::failure::Failure;
+use crate::project::requests::JobSelection;
+use crate::project::spec::Origin;
+
+/// The name of the document.
+const SCHEMA: &str = "flank.sweep_plan/1";
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Characters of a hash in names and rows: 64 bits of SHA-256 tell a thousand million cases apart.
+const HASH_LENGTH: usize = 16;
+/// Marks the folder of the texts as that of a project.
+const MARK: &str = "flank.toml";
+
+/// All that a study is, but its results.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Plan {
+    pub(super) schema: String,
+    /// Of the program that made it.
+    pub(super) version: String,
+    /// The spec in the folder `spec`, and its job.
+    pub(super) spec: String,
+    pub(super) job: String,
+    /// Values that all cases have in common.
+    pub(super) set: Vec<(String, String)>,
+    /// SHA-256 of all texts.
+    pub(super) hash: String,
+    pub(super) inputs: Vec<StudyInput>,
+    pub(super) cases: CaseValues,
+    pub(super) collect: Vec<String>,
+    /// The heads of the columns that are collected.
+    pub(super) heads: Vec<String>,
+    /// Seconds that a case may take.
+    pub(super) limit: Option<f64>,
+    /// Cases in a chunk; the last one may have fewer.
+    pub(super) chunk: u64,
+}
+
+impl Plan {
+    pub(super) fn new(which: &JobSelection, spec: String, hash: String) -> Plan {
+        Plan {
+            schema: SCHEMA.to_string(),
+            version: VERSION.to_string(),
+            spec,
+            job: which.job.clone().unwrap_or_default(),
+            set: which.set.clone(),
+            hash,
+            inputs: Vec::new(),
+            cases: CaseValues::Table(Vec::new()),
+            collect: Vec::new(),
+            heads: Vec::new(),
+            limit: None,
+            chunk: 1,
+        }
+    }
+
+    /// How many chunks there are.
+    pub(super) fn chunks(&self) -> usize {
+        self.cases.count().div_ceil(self.chunk) as usize
+    }
+
+    /// The numbers of the cases in a chunk.
+    pub(super) fn numbers(&self, chunk: usize) -> std::ops::Range<u64> {
+        let first = chunk as u64 * self.chunk;
+        first..(first + self.chunk).min(self.cases.count())
+    }
+
+    pub(super) fn values(&self, number: u64) -> Vec<f64> {
+        self.cases.of_case(number, &self.inputs)
+    }
+
+    /// Of program, texts, what is collected, and values by the names of the inputs: the same case has the same hash in any study.
+    pub(super) fn hash_of_case(&self, values: &[f64]) -> String {
+        let mut hash = Sha256::new();
+        let mut told = |text: &str| {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text.as_bytes());
+        };
+        [&self.version, &self.hash, &self.job].into_iter().for_each(|text| told(text));
+        self.set.iter().for_each(|(name, value)| {
+            told(name);
+            told(value);
+        });
+        self.collect.iter().for_each(|text| told(text));
+        let mut order: Vec<usize> = (0..self.inputs.len()).collect();
+        order.sort_by_key(|k| &self.inputs[*k].name);
+        for k in order {
+            told(&self.inputs[k].head());
+            told(&values[k].to_bits().to_string());
+        }
+        shortened(hash)
+    }
+
+    /// Of its cases.
+    pub(super) fn hash_of_chunk(&self, chunk: usize) -> String {
+        let mut hash = Sha256::new();
+        for number in self.numbers(chunk) {
+            hash.update(self.hash_of_case(&self.values(number)).as_bytes());
+        }
+        shortened(hash)
+    }
+
+    /// What its cases are made of.
+    pub(super) fn selection(&self, folder: &Path) -> JobSelection {
+        let project = Project::open(folder.join("spec").join(&self.spec), Arc::new(Disk));
+        JobSelection { project, job: Some(self.job.clone()), set: self.set.clone() }
+    }
+
+    pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(self).map_err(|reason| Failure::Input(reason.to_string()))?;
+        write_text(&folder.join("plan.json"), &text)
+    }
+
+    /// # Errors
+    /// If there is no study, or another program has made it.
+    pub(super) fn read(folder: &Path) -> Result<Plan, Failure> {
+        let path = folder.join("plan.json");
+        let text = std::fs::read_to_string(&path).map_err(|reason| {
+            Failure::Input(format!("{} is no study: {}: {reason}", folder.display(), path.display()))
+        })?;
+        let wrong = |reason: serde_json::Error| {
+            Failure::Input(format!("{} is no plan of a study that this program knows: {reason}", path.display()))
+        };
+        let document: serde_json::Value = serde_json::from_str(&text).map_err(wrong)?;
+        let version = document["version"].as_str().unwrap_or_default();
+        if document["schema"] != SCHEMA || version != VERSION {
+            return Err(Failure::Input(format!(
+                "{} was made by flank {version}, this is flank {VERSION}: rows of two programs do not go into one study; make a new one",
+                folder.display()
+            )));
+        }
+        serde_json::from_value(document).map_err(wrong)
+    }
+}
+
+fn shortened(hash: Sha256) -> String {
+    let all: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    all[..HASH_LENGTH].to_string()
+}
+
+pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    Ok(write_atomically(path, |out| Ok(out.write_all(text.as_bytes())?))?)
+}
+
+/// Copies all texts of a compilation into the folder of a study, as they lie to each other; the name of the spec there, and the hash of
+/// all.
+pub(super) fn keep_texts(compilation: &Compilation<'_>, spec: &Path, folder: &Path) -> Result<(String, String), Failure> {
+    let texts: Vec<(PathBuf, String)> = compilation
+        .sources
+        .files()
+        .map(|(_, source)| (source.file.clone().unwrap_or_else(|| source.path.clone()), source.text.clone()))
+        .collect();
+    let common = common_folder(texts.iter().map(|(path, _)| path.as_path()));
+    let inner = |path: &Path| path.strip_prefix(&common).unwrap_or(path).to_path_buf();
+    let root = folder.join("spec");
+    for (path, text) in &texts {
+        let place = root.join(inner(path));
+        flank_export::make_folder(place.parent().unwrap_or(&root))?;
+        write_text(&place, text)?;
+    }
+    write_text(&root.join(MARK), "")?;
+    let real = std::fs::canonicalize(spec).unwrap_or_else(|_| spec.to_path_buf());
+    let main = texts.iter().map(|(path, _)| path).find(|path| **path == real).or(texts.last().map(|(path, _)| path));
+    let name = main.map_or(PathBuf::new(), |path| inner(path));
+    Ok((crate::project::shown_path(&name), Origin::of_compilation(compilation).hash))
+}
+
+/// The innermost folder that all paths lie in.
+fn common_folder<'p>(mut paths: impl Iterator<Item = &'p Path>) -> PathBuf {
+    let folder = |path: &Path| path.parent().map_or(PathBuf::new(), Path::to_path_buf);
+    let first = paths.next().map_or(PathBuf::new(), folder);
+    paths.fold(first, |common, path| {
+        let other = folder(path);
+        let pairs = common.components().zip(other.components());
+        pairs.take_while(|(a, b)| a == b).map(|(a, _)| a.as_os_str().to_os_string()).collect()
+    })
+}

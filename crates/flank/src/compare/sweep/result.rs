@@ -1,0 +1,72 @@
+//! What is known of a study.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::project::answer::{Answer, Timing};
+use crate::project::remark::NotDone;
+use crate::project::units;
+
+/// How far a study is, of `flank sweep`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.sweep/1")]
+pub struct SweepResult {
+    /// The folder.
+    pub study: String,
+    /// The job.
+    pub job: String,
+    /// Heads of the columns that differ from case to case, with units.
+    pub inputs: Vec<String>,
+    /// Heads of the columns that are collected, with units.
+    pub collected: Vec<String>,
+    /// Cases of the study.
+    pub cases: u64,
+    /// Chunks of the study.
+    pub chunks: usize,
+    /// Chunks that are there.
+    pub done: usize,
+    /// Rows that are there by their verdict: `done`, `not all solved`, `spec wrong`, `limit`, `crashed`.
+    pub verdicts: BTreeMap<String, u64>,
+    /// Numbers of cases whose verdict is not `done`, the first hundred of them.
+    pub failed: Vec<u64>,
+    /// Files written.
+    pub files: Vec<String>,
+    /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
+    pub not_done: Vec<NotDone>,
+    #[serde(skip)]
+    pub(super) timing: Option<Timing>,
+}
+
+impl Answer for SweepResult {
+    fn not_done(&self) -> &[NotDone] {
+        &self.not_done
+    }
+
+    fn timing(&self) -> Option<Timing> {
+        self.timing
+    }
+}
+
+impl fmt::Display for SweepResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "study {} of job {}: {} in {}, {} there\n",
+            self.study,
+            self.job,
+            units::counted(self.cases as usize, "case"),
+            units::counted(self.chunks, "chunk"),
+            self.done
+        )?;
+        for (verdict, count) in &self.verdicts {
+            writeln!(f, "  {count:>8}  {verdict}")?;
+        }
+        if !self.files.is_empty() {
+            writeln!(f, "\nwrote {}", self.files.join(", "))?;
+        }
+        Ok(())
+    }
+}
