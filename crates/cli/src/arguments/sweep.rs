@@ -14,7 +14,7 @@ const HELP: &str = "\
 A study is a folder: its plan, the texts of the spec, and chunks of rows. A chunk is the same bytes whoever computes it and whenever; a run
 that was killed goes on where it stopped, and several runs may share the chunks of one study.
 
-Collected: points, requirements, ease_off:SURFACE, width:SURFACE,SURFACE, curvature:SURFACE, at:SURFACE[row,column], contact:CONTACT.
+Collected: points, requirements, limits, ease_off:SURFACE, width:SURFACE,SURFACE, curvature:SURFACE, at:SURFACE[row,column], contact:CONTACT.
 
 Examples:
   flank sweep specs/bevel/pinion_19x62.chain --scatter m.radial_distance=normal(10um) --count 1000 --seed 7 --collect ease_off:concave --out study
@@ -94,7 +94,7 @@ pub(crate) struct SweepPlan {
     /// Scatter by the points of Sobol's sequence, which fill the space evenly
     #[arg(long)]
     pub(crate) sobol: bool,
-    /// What becomes of each case; several with commas are told apart by blanks or further --collect
+    /// What becomes of each case, several with commas
     #[arg(long, value_name = "WHAT", required = true)]
     pub(crate) collect: Vec<String>,
     /// How long a case may take, seconds
@@ -198,12 +198,7 @@ impl SweepPlan {
 
     /// All chunks of the study.
     pub(crate) fn run_request(&self) -> RunRequest {
-        RunRequest {
-            study: self.out.clone(),
-            chunks: None,
-            again: Vec::new(),
-            evaluator: self.evaluator.evaluator(),
-        }
+        RunRequest { study: self.out.clone(), chunks: None, again: Vec::new(), evaluator: self.evaluator.evaluator() }
     }
 }
 

@@ -35,10 +35,7 @@ pub(crate) struct Starts<'g> {
 impl<'g> Starts<'g> {
     /// Of a surface beside the points of a sample of another one: by the sample's own coordinates where these are functions of the
     /// place, else by two that tell the points apart. Names of unknowns say nothing here: another tool's `u` is another place.
-    pub(crate) fn beside(
-        surface: &GeneratedSurface<'g>,
-        (asked, points): (&Asked, &[SurfacePoint]),
-    ) -> Starts<'g> {
+    pub(crate) fn beside(surface: &GeneratedSurface<'g>, (asked, points): (&Asked, &[SurfacePoint])) -> Starts<'g> {
         let (names, targets) = if asked.names.iter().all(|name| OF_PLACES.contains(&name.as_str())) {
             (asked.names.each_ref().map(String::as_str), asked.targets.clone())
         } else {

@@ -8,6 +8,7 @@ use super::inputs::{KnownInput, StudyInput, size_of_unit};
 use super::request::{CaseSource, Distribution, VariedRange};
 use crate::project::failure::Failure;
 use crate::project::requests::JobSelection;
+use crate::project::units;
 
 /// Cases of a study at the most.
 const MOST_CASES: u64 = 100_000_000;
@@ -160,7 +161,8 @@ fn column(job: &Job<'_>, name: &str, unit: Option<&str>) -> Result<KnownInput, F
     };
     let is_fitting = unit == own || size_of_unit(unit).is_some_and(|(_, dimension)| dimension == known.dimension);
     if !is_fitting {
-        let wanted = if own.is_empty() { "it is a plain number".to_string() } else { format!("write `{name} [{own}]`") };
+        let wanted =
+            if own.is_empty() { "it is a plain number".to_string() } else { format!("write `{name} [{own}]`") };
         return Err(Failure::Input(format!("column `{name}`: `{unit}` is no unit of it; {wanted}")));
     }
     Ok(KnownInput { input: StudyInput { unit: unit.to_string(), ..known.input }, ..known })
@@ -186,20 +188,26 @@ fn of_ranges(
             set.push((known.input.name.clone(), text.clone()));
             let job = which.project.job(&job.name, &set)?;
             let found = job.parameters().iter().find(|of| of.name == known.input.name);
-            *value = found.map_or(f64::NAN, |of| of.value);
+            *value = found.map_or(f64::NAN, |of| plain(of.value, &of.unit));
         }
         if let Some(why) = values.iter().find_map(|value| known.refused(*value)) {
             return Err(Failure::Input(format!("option `vary {name}`: {why}")));
         }
         let [low, high] = values;
         if known.is_count && *count > 1 && (high - low) % f64::from(count - 1) != 0.0 {
-            let message = format!("option `vary {name}`: {count} values from {low} to {high} are not all whole numbers");
+            let message =
+                format!("option `vary {name}`: {count} values from {low} to {high} are not all whole numbers");
             return Err(Failure::Request(message));
         }
         ends.push((low, high, *count));
         inputs.push(known.input);
     }
     Ok((inputs, CaseValues::Ranges(ends)))
+}
+
+/// A value in its unit without the noise of a conversion to degrees: 19, not 18.999999999999996.
+fn plain(value: f64, unit: &str) -> f64 {
+    if unit == "deg" { flank_export::degrees(value.to_radians()) } else { value }
 }
 
 type About = Vec<(f64, f64, bool)>;
@@ -210,7 +218,8 @@ fn of_scatter(
     is_sobol: bool,
 ) -> Result<(Vec<StudyInput>, About), Failure> {
     if is_sobol && settings.len() > MOST_SOBOL {
-        let message = format!("option `sobol`: at most {MOST_SOBOL} settings scatter by it, {} are named", settings.len());
+        let message =
+            format!("option `sobol`: at most {MOST_SOBOL} settings scatter by it, {} are named", settings.len());
         return Err(Failure::Request(message));
     }
     let mut inputs = Vec::new();
@@ -218,7 +227,11 @@ fn of_scatter(
     for (name, distribution) in settings {
         let known = KnownInput::named(job, name)?;
         let reach = known.amount(*distribution)?;
-        about.push((known.value / known.size(), reach, matches!(distribution, Distribution::Normal(_))));
+        about.push((
+            plain(units::shown(known.dimension, known.value), &known.input.unit),
+            reach,
+            matches!(distribution, Distribution::Normal(_)),
+        ));
         inputs.push(known.input);
     }
     Ok((inputs, about))

@@ -1,6 +1,9 @@
 //! Work on the chunks of a study. A chunk is a file that is there whole or not at all: who is killed begins it again.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -17,8 +20,9 @@ use crate::project::requests::{EvaluatorOptions, Session};
 const TOGETHER: usize = 64;
 /// A chunk that was begun so often and never ended is gone through case by case.
 const CAREFUL: u32 = 2;
-/// A case that alone ended the program so often is not tried again.
-const DEADLY: u32 = 3;
+/// A case that was worked on so often when the program ended is not tried again. What ends programs at random hits one case so often only
+/// by a chance of one in thousands: each run goes on with the case at which the last one ended, and keeps what it has computed.
+const DEADLY: u32 = 5;
 
 /// A study that is worked on.
 pub(super) struct Work<'w> {
@@ -117,7 +121,7 @@ impl Work<'_> {
     fn one_by_one(&self, chunk: usize, known: Vec<Option<String>>, journal: &Journal) -> Result<Vec<String>, Failure> {
         let rows = self.plan.numbers(chunk).zip(known).map(|(number, known)| {
             crate::project::requests::check(self.monitor)?;
-            match known {
+            match known.or_else(|| journal.row(number)) {
                 Some(row) => Ok(row),
                 None if journal.deaths(number) >= DEADLY => {
                     let found = self.cases.nothing("crashed", "ended the program");
@@ -126,7 +130,7 @@ impl Work<'_> {
                 None => {
                     journal.enter(number)?;
                     let row = self.case(number)?;
-                    journal.leave(number)?;
+                    journal.leave(number, &row)?;
                     Ok(row)
                 }
             }
@@ -166,53 +170,70 @@ impl Monitor for CaseMonitor {
     }
 }
 
-/// What is known of a chunk that was begun: how often, and which cases were worked on when the program ended.
+/// What is known of a chunk that was begun: how often, which cases were worked on when the program ended, and the rows that were computed
+/// one by one. A text of lines `begun`, `enter NUMBER`, `row NUMBER ROW`, each added to the end; what was cut off in the middle of a line
+/// does not count.
 struct Journal {
+    file: RefCell<std::fs::File>,
     path: PathBuf,
     attempts: u32,
-    deaths: std::cell::RefCell<Vec<(u64, u32)>>,
+    deaths: HashMap<u64, u32>,
+    rows: HashMap<u64, String>,
 }
 
 impl Journal {
     /// One more attempt.
     fn begin(path: &Path) -> Result<Journal, Failure> {
         let text = std::fs::read_to_string(path).unwrap_or_default();
-        let mut lines = text.lines();
-        let attempts: u32 = lines.next().and_then(|line| line.parse().ok()).unwrap_or(0);
-        let case = |line: &str| {
-            let (number, deaths) = line.split_once(' ')?;
-            Some((number.parse().ok()?, deaths.parse().ok()?))
-        };
-        let deaths = lines.filter_map(case).collect();
-        let journal = Journal { path: path.to_path_buf(), attempts: attempts + 1, deaths: std::cell::RefCell::new(deaths) };
-        journal.write()?;
+        let (mut attempts, mut deaths, mut rows) = (1, HashMap::new(), HashMap::new());
+        for line in text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n')) {
+            let mut words = line.splitn(3, ' ');
+            let (kind, number, rest) = (words.next(), words.next(), words.next());
+            match (kind, number.and_then(|number| number.parse().ok()), rest) {
+                (Some("begun"), ..) => attempts += 1,
+                (Some("enter"), Some(number), _) => *deaths.entry(number).or_default() += 1,
+                (Some("row"), Some(number), Some(row)) => _ = rows.insert(number, row.to_string()),
+                _ => {}
+            }
+        }
+        let file =
+            std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(|why| unwritten(path, &why))?;
+        let journal = Journal { file: RefCell::new(file), path: path.to_path_buf(), attempts, deaths, rows };
+        // a line that was cut off ends here
+        journal.add("\nbegun")?;
         Ok(journal)
     }
 
-    fn write(&self) -> Result<(), Failure> {
-        let cases: String = self.deaths.borrow().iter().map(|(number, deaths)| format!("{number} {deaths}\n")).collect();
-        write_text(&self.path, &format!("{}\n{cases}", self.attempts))
+    fn add(&self, line: &str) -> Result<(), Failure> {
+        let written = self.file.borrow_mut().write_all(format!("{line}\n").as_bytes());
+        written.map_err(|why| unwritten(&self.path, &why))
     }
 
+    /// How often the program ended while a case was worked on.
     fn deaths(&self, number: u64) -> u32 {
-        self.deaths.borrow().iter().find(|(of, _)| *of == number).map_or(0, |(_, deaths)| *deaths)
+        self.deaths.get(&number).copied().unwrap_or(0)
     }
 
-    /// A case is worked on: until it is left, the program may end by it.
+    /// The row of a case, if an earlier run computed it.
+    fn row(&self, number: u64) -> Option<String> {
+        self.rows.get(&number).cloned()
+    }
+
+    /// A case is worked on: until its row is there, the program may end by it.
     fn enter(&self, number: u64) -> Result<(), Failure> {
-        let deaths = self.deaths(number) + 1;
-        self.deaths.borrow_mut().retain(|(of, _)| *of != number);
-        self.deaths.borrow_mut().push((number, deaths));
-        self.write()
+        self.add(&format!("enter {number}"))
     }
 
-    fn leave(&self, number: u64) -> Result<(), Failure> {
-        self.deaths.borrow_mut().retain(|(of, _)| *of != number);
-        self.write()
+    fn leave(&self, number: u64, row: &str) -> Result<(), Failure> {
+        self.add(&format!("row {number} {row}"))
     }
 
     /// The chunk is there. A journal that stays says nothing.
     fn end(self) {
         _ = std::fs::remove_file(&self.path);
     }
+}
+
+fn unwritten(path: &Path, why: &std::io::Error) -> Failure {
+    Failure::Input(format!("cannot write {}: {why}", path.display()))
 }

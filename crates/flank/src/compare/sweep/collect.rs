@@ -21,16 +21,8 @@ use crate::solve::{self, SolveOptions, bound, geometry, solve_surface};
 /// Positions of a pitch at which contacts are looked at.
 const POSITIONS: u32 = 24;
 /// The words for points, in the order of their columns.
-const STATUSES: [&str; 8] = [
-    "solved",
-    "out_of_range",
-    "undercut",
-    "trimmed",
-    "ambiguous",
-    "undecided",
-    "singular",
-    "not_converged",
-];
+const STATUSES: [&str; 8] =
+    ["solved", "out_of_range", "undercut", "trimmed", "ambiguous", "undecided", "singular", "not_converged"];
 const EASE_OFF: [&str; 9] = [
     "slope_rows [um]",
     "slope_columns [um]",
@@ -44,6 +36,7 @@ const EASE_OFF: [&str; 9] = [
 ];
 const CURVATURE: [&str; 4] = ["k1_lowest [1/mm]", "k1_highest [1/mm]", "k2_lowest [1/mm]", "k2_highest [1/mm]"];
 const WIDTH: [&str; 2] = ["turn [deg]", "width [mm]"];
+const LIMITS: [&str; 2] = ["singular_line", "contact_limit"];
 const PLACE: [&str; 6] = ["x [mm]", "y [mm]", "z [mm]", "nx", "ny", "nz"];
 
 /// One thing that is collected.
@@ -53,6 +46,8 @@ pub(super) enum Collected {
     Points,
     /// How many points of all samples miss what these require.
     Requirements,
+    /// How many points the lines have in the ranges where surfaces turn back, and where the tool's contact ends.
+    Limits,
     /// How far a surface lies off that of the job itself.
     EaseOff(String),
     /// How far one surface is turned from another in the middle of the grid.
@@ -66,25 +61,43 @@ pub(super) enum Collected {
 }
 
 impl Collected {
+    /// All that is named in some texts, of which each may hold several parted by commas.
+    ///
+    /// # Errors
+    /// As for [`Collected::read`].
+    pub(super) fn read_all(texts: &[String]) -> Result<Vec<Collected>, Failure> {
+        let mut parts: Vec<String> = Vec::new();
+        for word in texts.iter().flat_map(|text| text.split(',')) {
+            match parts.last_mut() {
+                // `width:a,b` and `at:a[1,2]` have commas of their own
+                Some(last) if last.starts_with("width:") && !last.contains(',') => {
+                    *last += &format!(",{}", word.trim())
+                }
+                Some(last) if last.contains('[') && !last.contains(']') => *last += &format!(",{}", word.trim()),
+                _ => parts.push(word.trim().to_string()),
+            }
+        }
+        parts.iter().map(|text| Collected::read(text)).collect()
+    }
+
     /// # Errors
     /// What can be written, if it is none of that.
-    pub(super) fn read(text: &str) -> Result<Collected, Failure> {
+    fn read(text: &str) -> Result<Collected, Failure> {
         let name = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_string());
         let found = match text.split_once(':') {
             None if text == "points" => Some(Collected::Points),
             None if text == "requirements" => Some(Collected::Requirements),
+            None if text == "limits" => Some(Collected::Limits),
             Some(("ease_off", of)) => name(of).map(Collected::EaseOff),
             Some(("curvature", of)) => name(of).map(Collected::Curvature),
             Some(("contact", of)) => name(of).map(Collected::Contact),
-            Some(("width", of)) => {
-                of.split_once(',').and_then(|(a, b)| Some(Collected::Width([name(a)?, name(b)?])))
-            }
+            Some(("width", of)) => of.split_once(',').and_then(|(a, b)| Some(Collected::Width([name(a)?, name(b)?]))),
             Some(("at", of)) => place(of).map(|(of, at)| Collected::At(of, at)),
             _ => None,
         };
         found.ok_or_else(|| {
             Failure::Request(format!(
-                "option `collect {text}`: write points, requirements, ease_off:SURFACE, width:SURFACE,SURFACE, curvature:SURFACE, \
+                "option `collect {text}`: write points, requirements, limits, ease_off:SURFACE, width:SURFACE,SURFACE, curvature:SURFACE, \
                  at:SURFACE[row,column] or contact:CONTACT"
             ))
         })
@@ -94,22 +107,26 @@ impl Collected {
     pub(super) fn heads(&self, job: &Job<'_>) -> Vec<String> {
         let of = |prefix: String, names: &[&str]| names.iter().map(|name| format!("{prefix}.{name}")).collect();
         match self {
-            Collected::Points => {
-                STATUSES.iter().map(|word| format!("points.{word}")).chain(["points.worst_residual".to_string()]).collect()
-            }
+            Collected::Points => STATUSES
+                .iter()
+                .map(|word| format!("points.{word}"))
+                .chain(["points.worst_residual".to_string()])
+                .collect(),
             Collected::Requirements => vec!["requirements.missed".to_string()],
+            Collected::Limits => of("limits".to_string(), &LIMITS),
             Collected::EaseOff(surface) => of(format!("ease_off:{surface}"), &EASE_OFF),
             Collected::Width([a, b]) => of(format!("width:{a},{b}"), &WIDTH),
             Collected::Curvature(surface) => of(format!("curvature:{surface}"), &CURVATURE),
             Collected::At(surface, [row, column]) => of(format!("at:{surface}[{row},{column}]"), &PLACE),
             Collected::Contact(contact) => {
                 let known = job.contacts.iter().find(|known| known.name == *contact);
-                let unit = |is_fine: bool| match known.is_some_and(|of| crate::project::units::is_angle(of.lag.dimension)) {
-                    true if is_fine => "urad",
-                    true => "deg",
-                    false if is_fine => "um",
-                    false => "mm",
-                };
+                let unit =
+                    |is_fine: bool| match known.is_some_and(|of| crate::project::units::is_angle(of.lag.dimension)) {
+                        true if is_fine => "urad",
+                        true => "deg",
+                        false if is_fine => "um",
+                        false => "mm",
+                    };
                 let names = [
                     format!("peak_to_peak [{}]", unit(true)),
                     format!("lag [{}]", unit(false)),
@@ -131,7 +148,7 @@ impl Collected {
     pub(super) fn check(&self, job: &Job<'_>) -> Result<(), Failure> {
         let sampled = |name: &String| sample_of(job, name).map(drop);
         match self {
-            Collected::Points | Collected::Requirements => Ok(()),
+            Collected::Points | Collected::Requirements | Collected::Limits => Ok(()),
             Collected::EaseOff(of) | Collected::Curvature(of) => sampled(of),
             Collected::Width([a, b]) => sampled(a).and_then(|()| sampled(b)),
             Collected::At(of, [row, column]) => {
@@ -206,7 +223,7 @@ impl Cases {
         collect: &[String],
         session: Session<'_>,
     ) -> Result<Cases, Failure> {
-        let collect: Vec<Collected> = collect.iter().map(|text| Collected::read(text)).collect::<Result<_, _>>()?;
+        let collect = Collected::read_all(collect)?;
         let graph = Graph::new();
         let (_, jobs) = crate::project::spec::jobs(&graph, &which, session.monitor())?;
         let job = &jobs[0];
@@ -267,7 +284,8 @@ impl Cases {
         }
         let jobs = compilation.take_jobs(which.job.as_deref());
         let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
-        let case = Case { job: &jobs[0], jobs: &jobs, which: &which, errors, session };
+        let origin = Origin::of_compilation(&compilation);
+        let case = Case { job: &jobs[0], jobs: &jobs, which: &which, origin, errors, session };
         let mut numbers = Vec::new();
         let mut why = String::new();
         for (of, nominal) in self.collect.iter().zip(&self.nominal) {
@@ -301,6 +319,7 @@ struct Case<'c, 'g> {
     job: &'c Job<'g>,
     jobs: &'c [Job<'g>],
     which: &'c JobSelection,
+    origin: Origin,
     errors: Vec<(String, MountingError)>,
     session: Session<'c>,
 }
@@ -326,6 +345,7 @@ impl Case<'_, '_> {
             (Collected::EaseOff(name), None) => Err(Failure::Input(format!("`{name}` has no nominal points"))),
             (Collected::Points, _) => self.points(),
             (Collected::Requirements, _) => self.requirements(),
+            (Collected::Limits, _) => self.limits(),
             (Collected::Width([a, b]), _) => self.width([a.as_str(), b.as_str()]),
             (Collected::Curvature(name), _) => self.curvature(name),
             (Collected::At(name, at), _) => self.at(name, *at),
@@ -355,6 +375,15 @@ impl Case<'_, '_> {
         Ok((vec![Some(missed as f64)], (missed > 0).then(|| "not_as_required".to_string())))
     }
 
+    fn limits(&self) -> Result<Numbers, Failure> {
+        let lines = solve::limits::lines(self.job, &self.job.surfaces, self.session)?;
+        let count = |kind: &str| {
+            let of_kind = lines.iter().filter(|line| line.kind == kind);
+            of_kind.map(|line| line.points.iter().filter(|point| is_solved(point)).count() as f64).sum()
+        };
+        Ok((["singular line", "contact limit"].map(|kind| Some(count(kind))).to_vec(), None))
+    }
+
     fn named(&self, name: &str) -> Result<Named<'_, '_>, Failure> {
         Ok(find(self.jobs, name)?)
     }
@@ -364,8 +393,8 @@ impl Case<'_, '_> {
         let of = self.named(name)?;
         let starts = Starts::beside(of.surface, (asked, points));
         let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, asked.counts), self.session);
-        let compared =
-            flank_solver::Deviation::new(&bound(of.job, of.surface)).expect("a job without errors leaves nothing unbound");
+        let compared = flank_solver::Deviation::new(&bound(of.job, of.surface))
+            .expect("a job without errors leaves nothing unbound");
         let middle = starts::middle(asked.counts);
         let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
         let turn = both.and_then(|(point, near)| compared.turn_to(point.position, near));
@@ -396,7 +425,7 @@ impl Case<'_, '_> {
 
     fn width(&self, [a, b]: [&str; 2]) -> Result<Numbers, Failure> {
         let found = deviation::measure([self.named(a)?, self.named(b)?], false, self.session)?;
-        let found = found.result(Vec::new(), &Origin::default());
+        let found = found.result(Vec::new(), &self.origin);
         let lost = found.turn_deg.is_none().then(|| found.not_done.first().map(kind_of).unwrap_or_default());
         Ok((vec![found.turn_deg, found.turn_mm], lost))
     }

@@ -71,16 +71,17 @@ fn directions(dimension: usize) -> [u64; DIGITS] {
     };
     let degree = degree as usize;
     for k in 0..DIGITS {
-        found[k] = match first.get(k) {
-            Some(odd) => odd << (DIGITS - 1 - k),
-            None => {
-                let far = found[k - degree];
-                let own = far ^ (far >> degree);
-                (1..degree).fold(own, |sum, j| {
-                    if coefficients >> (degree - 1 - j) & 1 == 1 { sum ^ found[k - j] } else { sum }
-                })
-            }
-        };
+        found[k] =
+            match first.get(k) {
+                Some(odd) => odd << (DIGITS - 1 - k),
+                None => {
+                    let far = found[k - degree];
+                    let own = far ^ (far >> degree);
+                    (1..degree).fold(own, |sum, j| {
+                        if coefficients >> (degree - 1 - j) & 1 == 1 { sum ^ found[k - j] } else { sum }
+                    })
+                }
+            };
     }
     found
 }
@@ -221,9 +222,12 @@ mod tests {
     /// Quantiles of the normal distribution to 16 digits, from tables: 0.975, 0.999, 1e-10.
     #[test]
     fn quantiles_are_those_of_tables() {
-        for (share, known) in
-            [(0.5, 0.0), (0.975, 1.959_963_984_540_054), (0.999, 3.090_232_306_167_813_5), (1e-10, -6.361_340_902_404_056)]
-        {
+        for (share, known) in [
+            (0.5, 0.0),
+            (0.975, 1.959_963_984_540_054),
+            (0.999, 3.090_232_306_167_813_5),
+            (1e-10, -6.361_340_902_404_056),
+        ] {
             assert!((normal(share) - known).abs() <= 2e-15 * known.abs().max(1.0), "{share}: {}", normal(share));
         }
     }

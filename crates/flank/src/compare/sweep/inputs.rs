@@ -44,13 +44,7 @@ impl KnownInput {
         let of = parameter(job, name)?;
         let unit = units::whole_symbol(of.dimension);
         let input = StudyInput { name: of.name.clone(), unit, is_axis: false };
-        Ok(KnownInput {
-            input,
-            dimension: of.dimension,
-            value: of.value,
-            range: of.range,
-            is_count: of.is_count,
-        })
+        Ok(KnownInput { input, dimension: of.dimension, value: of.value, range: of.range, is_count: of.is_count })
     }
 
     /// The size of the unit of its values.
@@ -70,7 +64,9 @@ impl KnownInput {
         let inside = match amount {
             ToleratedAmount::Length(mm) if self.dimension == Dimension::LENGTH => Some(mm),
             ToleratedAmount::Angle(radians) if units::is_angle(self.dimension) => Some(radians),
-            ToleratedAmount::Number(number) if self.dimension != Dimension::LENGTH && !units::is_angle(self.dimension) => {
+            ToleratedAmount::Number(number)
+                if self.dimension != Dimension::LENGTH && !units::is_angle(self.dimension) =>
+            {
                 Some(number)
             }
             ToleratedAmount::Share(share) if self.value != 0.0 => Some(share * self.value.abs()),
@@ -86,9 +82,15 @@ impl KnownInput {
                 _ if is_zero => format!(
                     "option `scatter {name}`: a share of a value that is zero is nothing: say how much, with a unit"
                 ),
-                Dimension::LENGTH => format!("option `scatter {name}`: this takes a length above zero, for example 0.01mm"),
-                Dimension::ANGLE => format!("option `scatter {name}`: this takes an angle above zero, for example 1arcmin"),
-                _ => format!("option `scatter {name}`: this takes a plain number above zero, or a share, for example 0.1%"),
+                Dimension::LENGTH => {
+                    format!("option `scatter {name}`: this takes a length above zero, for example 0.01mm")
+                }
+                Dimension::ANGLE => {
+                    format!("option `scatter {name}`: this takes an angle above zero, for example 1arcmin")
+                }
+                _ => format!(
+                    "option `scatter {name}`: this takes a plain number above zero, or a share, for example 0.1%"
+                ),
             })
         })?;
         Ok(inside / self.size())
@@ -142,7 +144,8 @@ fn parameter<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Parameter<'g>, 
     }
     let found: Vec<&Parameter<'g>> =
         job.parameters.iter().filter(|of| of.name.rsplit('.').next() == Some(own)).collect();
-    let list = |of: &mut dyn Iterator<Item = &String>| of.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let list =
+        |of: &mut dyn Iterator<Item = &String>| of.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     match found[..] {
         [one] => Ok(one),
         [] => {

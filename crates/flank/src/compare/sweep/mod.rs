@@ -52,7 +52,8 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         return Err(Failure::Request(message));
     };
     if request.collect.is_empty() {
-        let message = "say by the option `collect` what becomes of each case, for example `points` or `ease_off:SURFACE`";
+        let message =
+            "say by the option `collect` what becomes of each case, for example `points` or `ease_off:SURFACE`";
         return Err(Failure::Request(message.to_string()));
     }
     let which = JobSelection { job: Some(job.name.clone()), ..request.jobs.clone() };
@@ -64,7 +65,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         _ => None,
     };
     let (inputs, values) = cases::read(job, &which, &request.cases, table.as_deref())?;
-    let collect = request.collect.iter().map(|text| Collected::read(text)).collect::<Result<Vec<_>, _>>()?;
+    let collect = Collected::read_all(&request.collect)?;
     collect.iter().try_for_each(|of| of.check(job))?;
     let session = Session::new(request.evaluator, monitor);
     let chunk = {

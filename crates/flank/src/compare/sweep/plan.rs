@@ -157,7 +157,11 @@ pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// Copies all texts of a compilation into the folder of a study, as they lie to each other; the name of the spec there, and the hash of
 /// all.
-pub(super) fn keep_texts(compilation: &Compilation<'_>, spec: &Path, folder: &Path) -> Result<(String, String), Failure> {
+pub(super) fn keep_texts(
+    compilation: &Compilation<'_>,
+    spec: &Path,
+    folder: &Path,
+) -> Result<(String, String), Failure> {
     let texts: Vec<(PathBuf, String)> = compilation
         .sources
         .files()
