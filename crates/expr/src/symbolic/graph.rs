@@ -111,6 +111,8 @@ impl Store {
 pub struct Graph {
     store: RefCell<Store>,
     visits: RefCell<Visits>,
+    /// What tapes take for settings, with their first numbers.
+    pub(crate) settings: RefCell<Vec<(NodeId, f64)>>,
 }
 
 /// Where walks through the graph have been. The memory is kept, so that a walk costs only what it comes to.

@@ -5,6 +5,7 @@ pub(crate) mod evaluate;
 pub(crate) mod interpret;
 pub(crate) mod kernel;
 pub(crate) mod lanes;
+mod settings;
 
 use std::sync::Arc;
 
@@ -56,6 +57,8 @@ const _: () = assert!(size_of::<Instruction>() == 16);
 #[derive(Clone, Debug)]
 pub struct Tape {
     input_count: usize,
+    /// How many of the constants are settings: the first ones.
+    setting_count: usize,
     constants: Vec<f64>,
     curves: Vec<Arc<Curve>>,
     instructions: Vec<Instruction>,
@@ -108,18 +111,20 @@ impl Tape {
         definitions: &[(Expr<'_>, Expr<'_>)],
     ) -> Result<Tape, TapeError> {
         assert!(inputs.iter().all(|input| input.as_variable().is_some()), "inputs of a tape are variables");
+        let graph = outputs.iter().chain(inputs).next().map(|first| first.graph());
+        let settings = graph.map_or(Vec::new(), |graph| graph.settings.borrow().clone());
         let mut tape = Tape {
             input_count: inputs.len(),
-            constants: Vec::new(),
+            setting_count: settings.len(),
+            constants: settings.iter().map(|(_, value)| *value).collect(),
             curves: Vec::new(),
             instructions: Vec::new(),
             outputs: Vec::new(),
-            register_count: inputs.len(),
+            register_count: inputs.len() + settings.len(),
         };
-        let Some(first) = outputs.first() else {
+        let Some(graph) = graph.filter(|_| !outputs.is_empty()) else {
             return Ok(tape);
         };
-        let graph = first.graph();
         for &expr in
             outputs.iter().chain(inputs).chain(definitions.iter().flat_map(|(variable, value)| [variable, value]))
         {
@@ -141,8 +146,9 @@ impl Tape {
         );
         let outputs: Vec<usize> = outputs.iter().map(|output| output.expect("outputs are among them")).collect();
         let mut registers = Registers::new(&nodes, defined, &outputs);
+        let settings = settings.iter().enumerate().map(|(k, (id, _))| (*id, inputs.len() + k));
         let inputs: NodeMap<NodeId, usize> =
-            inputs.iter().enumerate().map(|(index, input)| (input.id, index)).collect();
+            settings.chain(inputs.iter().enumerate().map(|(index, input)| (input.id, index))).collect();
         tape.place_leaves(graph, &inputs, &mut registers)?;
         registers.next = (tape.input_count + tape.constants.len()) as u32;
         tape.instructions.reserve(nodes.len());

@@ -71,8 +71,10 @@ impl Varies {
 pub struct LaneTape {
     /// Registers of the first stage: inputs (those that are uniform are used), constants, then one for each result. Their
     /// values before it: the constants are among them.
-    pub(super) scalars: Vec<f64>,
+    pub(crate) scalars: Vec<f64>,
     result_count: usize,
+    /// How many of the constants are settings: the first ones.
+    pub(crate) setting_count: usize,
     pub(super) once: Vec<Instruction>,
     /// What depends on the lane alone; results have blocks of their own, which are named.
     pub(super) by_lane: Vec<LaneInstruction>,
@@ -82,7 +84,7 @@ pub struct LaneTape {
     pub(super) curves: Vec<Arc<Curve>>,
     pub(super) block_count: usize,
     /// The block of each input; none if it is uniform.
-    pub(super) inputs: Vec<Option<u32>>,
+    pub(crate) inputs: Vec<Option<u32>>,
     pub(super) varies: Vec<Varies>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
@@ -123,6 +125,7 @@ impl LaneTape {
         LaneTape {
             result_count: scalars.len() - tape.input_count() - tape.constants().len(),
             scalars,
+            setting_count: tape.setting_count(),
             once: division.once,
             by_lane: division.by_lane,
             kept: division.kept,
