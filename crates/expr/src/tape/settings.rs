@@ -38,12 +38,16 @@ impl Graph {
 impl Tape {
     /// The same tape with other numbers for its settings, in the order in which they were named.
     ///
+    /// A tape of nothing has none, whatever was named.
+    ///
     /// # Panics
     /// If there are not as many.
     #[must_use]
     pub fn with_settings(&self, values: &[f64]) -> Tape {
         let mut tape = self.clone();
-        tape.constants[..tape.setting_count].copy_from_slice(values);
+        if tape.setting_count > 0 {
+            tape.constants[..tape.setting_count].copy_from_slice(values);
+        }
         tape
     }
 
@@ -61,8 +65,10 @@ impl LaneTape {
     #[must_use]
     pub fn with_settings(&self, values: &[f64]) -> LaneTape {
         let mut tape = self.clone();
-        let first = tape.inputs.len();
-        tape.scalars[first..first + tape.setting_count].copy_from_slice(values);
+        if tape.setting_count > 0 {
+            let first = tape.inputs.len();
+            tape.scalars[first..first + tape.setting_count].copy_from_slice(values);
+        }
         tape
     }
 }

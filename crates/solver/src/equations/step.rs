@@ -108,6 +108,19 @@ impl GivenTapes {
     }
 }
 
+impl GivenTapes {
+    /// The same with other numbers for the settings of the tapes.
+    pub(crate) fn with_settings(&self, values: &[f64]) -> GivenTapes {
+        let changed = |tape: &Option<LaneTape>| tape.as_ref().map(|tape| tape.with_settings(values));
+        GivenTapes {
+            checked: self.checked.with_settings(values),
+            on_lines: changed(&self.on_lines),
+            expected: changed(&self.expected),
+            unknowns: self.unknowns.clone(),
+        }
+    }
+}
+
 /// How the inputs vary: unknowns and parameters freely, then the widths of the ranges.
 fn freely(unknowns: usize, parameters: usize) -> Vec<Varies> {
     [vec![Varies::Freely; unknowns + parameters], vec![Varies::Seldom; unknowns]].concat()

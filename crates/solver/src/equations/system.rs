@@ -37,6 +37,18 @@ pub(crate) struct LaneTapes {
     pub(crate) given: Option<GivenTapes>,
 }
 
+impl LaneTapes {
+    fn with_settings(&self, values: &[f64]) -> LaneTapes {
+        LaneTapes {
+            checked: self.checked.with_settings(values),
+            linearized: self.linearized.with_settings(values),
+            is_written_out: self.is_written_out,
+            expected: self.expected.as_ref().map(|tape| tape.with_settings(values)),
+            given: self.given.as_ref().map(|given| given.with_settings(values)),
+        }
+    }
+}
+
 impl System {
     /// The system `residuals = 0` in `unknowns`; `parameters` are given numbers for each solution.
     ///
@@ -114,6 +126,18 @@ impl System {
     /// the same, bit for bit.
     pub fn with_instruction_set(self, instructions: InstructionSet) -> System {
         System { instructions, ..self }
+    }
+
+    /// The same system with other numbers for the settings of its tapes.
+    pub(crate) fn with_settings(&self, values: &[f64]) -> System {
+        System {
+            tape: self.tape.with_settings(values),
+            residuals: self.residuals.with_settings(values),
+            conditions: self.conditions.with_settings(values),
+            lanes: self.lanes.with_settings(values),
+            in_lanes: OnceLock::new(),
+            ..*self
+        }
     }
 
     pub(crate) fn instructions(&self) -> InstructionSet {

@@ -65,6 +65,15 @@ impl SearchSystem {
         Ok(Some(SearchSystem { system, angles: Tape::new(&angles, &inputs)?, turns }))
     }
 
+    /// The same with other numbers for the settings of its tapes.
+    pub(crate) fn with_settings(&self, values: &[f64]) -> SearchSystem {
+        SearchSystem {
+            system: self.system.with_settings(values),
+            angles: self.angles.with_settings(values),
+            turns: self.turns.clone(),
+        }
+    }
+
     /// All roots in ranges of the unknowns; see [`all_roots`].
     pub(crate) fn all_roots(&self, ranges: &[Range], parameters: &[f64], most_boxes: u64) -> Roots {
         let mut inputs = box_of(ranges);

@@ -4,6 +4,7 @@ pub(crate) mod bands;
 pub(crate) mod body;
 pub(crate) mod bound;
 pub(crate) mod certify;
+pub(crate) mod family;
 pub(crate) mod points;
 
 use std::convert::Infallible;
@@ -171,6 +172,18 @@ impl SurfaceProblem {
     /// otherwise.
     pub fn boxes(self, most: u64) -> SurfaceProblem {
         SurfaceProblem { most_boxes: most, ..self }
+    }
+
+    /// The same problem with other numbers for the settings of its tapes.
+    pub(crate) fn with_settings(&self, values: &[f64]) -> SurfaceProblem {
+        SurfaceProblem {
+            system: self.system.with_settings(values),
+            search: self.search.as_ref().map(|search| search.with_settings(values)),
+            point: self.point.with_settings(values),
+            slopes: self.slopes.with_settings(values),
+            keep: (self.keep.0.with_settings(values), self.keep.1.clone()),
+            ..self.clone()
+        }
     }
 
     /// The system that is solved for each point.
