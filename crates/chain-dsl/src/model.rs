@@ -42,6 +42,9 @@ pub struct Job<'g> {
     pub millings: Vec<Milling<'g>>,
     /// What it is tested by, if that was asked for ([`Request::expectations`](crate::Request::expectations)).
     pub expectations: Vec<Expectation<'g>>,
+    /// Of its parameters those from whose values numbers of it follow that it does not hold as functions of them: ends of ranges, points
+    /// that are asked for, which branch of an `if` counts. With other values of the others it is the same job.
+    pub decisive: Vec<Expr<'g>>,
 }
 
 /// What a contact shall be like at its vertex, where the error is extreme. Places and directions are on the second flank.

@@ -61,8 +61,9 @@ struct Given<'g> {
 impl<'g> Given<'g> {
     /// As a number; NaN while it depends on parameters without values.
     fn number(&self, context: &mut Context<'g>, param: &Param) -> Option<f64> {
-        match context.constant(self.definition) {
+        match context.constant_kept(self.definition) {
             Constant::Unknown => Some(f64::NAN),
+            Constant::Known(value) if value.is_finite() => Some(value),
             _ => context.require_constant(self.definition, self.written, &shown_name(param)),
         }
     }
@@ -341,7 +342,7 @@ fn checked_step<'g>(
     }
     let value = context.evaluate(step, scope);
     let definition = context.require(&value, dimension, span, &what).ok_or(Refused)?;
-    if let Constant::Unknown = context.constant(definition) {
+    if let Constant::Unknown = context.constant_kept(definition) {
         return Ok(None);
     }
     let value = context.require_constant(definition, span, &what).ok_or(Refused)?;

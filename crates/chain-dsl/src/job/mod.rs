@@ -240,7 +240,9 @@ fn with_points<'g>(
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
-    (Job { expectations, ..built }, sampled)
+    let decisive = built.parameters.iter().map(|parameter| parameter.variable);
+    let decisive = decisive.filter(|variable| context.is_decisive(*variable)).collect();
+    (Job { expectations, decisive, ..built }, sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -272,6 +274,7 @@ impl<'g> Builder<'_, 'g> {
             wants: self.wants,
             millings: self.millings,
             expectations: Vec::new(),
+            decisive: Vec::new(),
         }
     }
 

@@ -256,6 +256,8 @@ impl<'g> System<'g> {
         others.extend(
             context.variables_of(&residuals).into_iter().filter(|it| !variables.contains(it) && !targets.contains(it)),
         );
+        // the points that a spline goes through are numbers
+        others[targets.len()..].iter().for_each(|other| _ = context.constant(*other));
         let parameters: Vec<f64> = others[targets.len()..].iter().map(|other| context.value_of(*other)).collect();
         if parameters.iter().any(|value| value.is_nan()) || unknowns.iter().any(|unknown| !unknown.range.continuous) {
             return None;

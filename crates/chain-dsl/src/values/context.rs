@@ -1,6 +1,6 @@
 //! What a compilation knows while it runs: variables with their values, functions, findings.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
@@ -92,6 +92,8 @@ pub(crate) struct Context<'g> {
     is_unmet: bool,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
     steps: Cell<usize>,
+    /// Which variables have decided a number of the model, an `if` or how far something is laid out, by their numbers.
+    decisive: RefCell<Vec<bool>>,
     /// A limit on the work has been exceeded and reported.
     exhausted: bool,
     /// Points of the samples so far.
@@ -119,6 +121,7 @@ impl<'g> Context<'g> {
             is_unmet: false,
             moving: HashSet::new(),
             steps: Cell::new(0),
+            decisive: RefCell::default(),
             exhausted: false,
             sample_points: 0,
             call_depth: 0,
@@ -200,7 +203,10 @@ impl<'g> Context<'g> {
             let role = self.roles[index];
             match self.ranges[index] {
                 _ if role.stands_still() && self.values[index].is_nan() => Err(Unranged::Unknown),
-                _ if role.stands_still() => Ok((variable, Interval::point(self.values[index]))),
+                _ if role.stands_still() => {
+                    self.decide(&[index]);
+                    Ok((variable, Interval::point(self.values[index])))
+                }
                 // a range that depends on parameters without values
                 Some(range) if !range.continuous => Err(Unranged::Unknown),
                 Some(range) => Ok((variable, range)),
@@ -251,8 +257,34 @@ impl<'g> Context<'g> {
         &self.values
     }
 
-    /// The number that an expression of parameters is.
+    /// The number that an expression of parameters is, which decides something.
     pub(crate) fn constant(&self, expr: Expr<'g>) -> Constant {
+        let found = self.constant_kept(expr);
+        if matches!(found, Constant::Known(_)) && expr.as_constant().is_none() {
+            let variables = self.graph.variables_of(&[expr]);
+            self.decide(&variables.iter().map(|variable| variable.index()).collect::<Vec<usize>>());
+        }
+        found
+    }
+
+    fn decide(&self, variables: &[usize]) {
+        let mut decisive = self.decisive.borrow_mut();
+        for &variable in variables {
+            if decisive.len() <= variable {
+                decisive.resize(variable + 1, false);
+            }
+            decisive[variable] = true;
+        }
+    }
+
+    /// Whether a number of the model follows from the value of a variable beside its surfaces, which are functions of it.
+    pub(crate) fn is_decisive(&self, variable: Expr<'g>) -> bool {
+        let index = variable.as_variable().map(|variable| variable.index());
+        index.is_some_and(|index| self.decisive.borrow().get(index).copied().unwrap_or(false))
+    }
+
+    /// The number that an expression of parameters is, for a parameter of which the model keeps the expression as well.
+    pub(crate) fn constant_kept(&self, expr: Expr<'g>) -> Constant {
         if let Some(value) = expr.as_constant() {
             return Constant::Known(value);
         }

@@ -1,8 +1,7 @@
 //! Settings of tapes: variables that get another number without the tape being laid out anew.
 
 use crate::symbolic::graph::{Expr, Graph};
-use crate::tape::Tape;
-use crate::tape::lanes::LaneTape;
+use crate::tape::{Instruction, Operation, Tape};
 
 impl Graph {
     /// Calls something whose tapes take these variables for settings: numbers that a tape has from the beginning and that
@@ -36,6 +35,17 @@ impl Graph {
 }
 
 impl Tape {
+    /// Whether its outputs depend on its settings.
+    pub fn uses_settings(&self) -> bool {
+        let settings = self.input_count..self.input_count + self.setting_count;
+        let is_setting = |register: u32| settings.contains(&(register as usize));
+        let reads = |step: &Instruction| match step.operation {
+            Operation::Binary(_) | Operation::Settled | Operation::Widened => is_setting(step.a) || is_setting(step.b),
+            Operation::Unary(_) | Operation::Curve(_) | Operation::Middle | Operation::SinCos => is_setting(step.a),
+        };
+        self.instructions.iter().any(reads) || self.outputs.iter().any(|output| is_setting(*output))
+    }
+
     /// The same tape with other numbers for its settings, in the order in which they were named.
     ///
     /// A tape of nothing has none, whatever was named.
@@ -57,27 +67,11 @@ impl Tape {
     }
 }
 
-impl LaneTape {
-    /// The same tape with other numbers for its settings; machine code that was made is shared.
-    ///
-    /// # Panics
-    /// If there are not as many as the tape has that it was laid out from.
-    #[must_use]
-    pub fn with_settings(&self, values: &[f64]) -> LaneTape {
-        let mut tape = self.clone();
-        if tape.setting_count > 0 {
-            let first = tape.inputs.len();
-            tape.scalars[first..first + tape.setting_count].copy_from_slice(values);
-        }
-        tape
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::tape::evaluate::ScalarEvaluator;
-    use crate::tape::lanes::{InstructionSet, LaneEvaluator, Varies};
+    use crate::tape::lanes::{InstructionSet, LaneEvaluator, LaneTape, Varies};
 
     /// One by one and in lanes of every kind, with machine code that was made before: the bits of a tape that has the numbers from
     /// the beginning, where nothing can be computed in advance.
@@ -92,7 +86,7 @@ mod tests {
         let lanes = LaneTape::with_inputs(&made, &[Varies::Freely, Varies::Seldom]);
         for instructions in InstructionSet::available() {
             // what was made of it before is not made again
-            LaneEvaluator::new(&lanes, instructions).run();
+            lanes.translate(instructions);
             for values in [[0.25, -1.5], [0.5, 2.0], [-3.0, 0.125]] {
                 let tape = made.with_settings(&values);
                 let [mut one, mut other] = [[0.0; 3]; 2];

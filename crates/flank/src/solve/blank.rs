@@ -24,7 +24,13 @@ pub(crate) fn outline(solid: &Solid) -> Outline {
 
 /// Marks the solved points of a surface that lie beyond the outline of its solid.
 pub(crate) fn cut(job: &Job<'_>, surface: &GeneratedSurface<'_>, points: &mut [SurfacePoint]) {
-    let Some(solid) = of(job, surface) else { return };
+    if let Some(solid) = of(job, surface) {
+        cut_by(solid, points);
+    }
+}
+
+/// The same for the blank of a solid.
+pub(crate) fn cut_by(solid: &Solid, points: &mut [SurfacePoint]) {
     let outline = outline(solid);
     for point in points.iter_mut().filter(|point| point.outcome == Outcome::Solved) {
         let [x, y, z] = point.position;

@@ -1,6 +1,7 @@
 //! Secondary cutting: the tool takes away, in another position, what it generates.
 
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Process, ToolShape};
+use flank_expr::Expr;
 use flank_expr::geometry::Surface;
 use flank_solver::{BoundSurface, Judged, Range, SecondaryCutting, SurfacePoint, Unseen};
 
@@ -29,13 +30,28 @@ pub(crate) fn judge<'g>(
     points: &mut [SurfacePoint],
     counts: [usize; 2],
 ) -> Positions {
+    match tool_positions(job, surface, &job.bindings()) {
+        Ok(cutting) => Positions::Seen(cutting.judge(points, counts)),
+        Err(none) => none,
+    }
+}
+
+/// What the points of a surface are checked against: its tool in all positions, with these values of the parameters.
+///
+/// # Errors
+/// What is to be said where there is nothing.
+pub(crate) fn tool_positions<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    values: &[(Expr<'g>, Expr<'g>)],
+) -> Result<SecondaryCutting, Positions> {
     let motions = &surface.generation.motions;
     if motions.is_empty() {
         // one position is all there is
-        return Positions::Seen(Judged::default());
+        return Err(Positions::Seen(Judged::default()));
     }
     if surface.generation.process != Process::Envelope {
-        return Positions::Unseen("all other positions, the tool is an edge");
+        return Err(Positions::Unseen("all other positions, the tool is an edge"));
     }
     let Some(_) = piece(surface) else {
         let is_given = matches!(&surface.generation.tool, ToolShape::Surface(tool) if tool.given > 0);
@@ -44,9 +60,8 @@ pub(crate) fn judge<'g>(
         } else {
             "all other positions, the tool is generated itself"
         };
-        return Positions::Unseen(reason);
+        return Err(Positions::Unseen(reason));
     };
-    let values = job.bindings();
     let mut names: Vec<&str> = Vec::new();
     let all = job.surfaces.iter().enumerate().filter(|(_, other)| is_of_same_tool(surface, other));
     let pieces: Vec<_> = all
@@ -54,14 +69,13 @@ pub(crate) fn judge<'g>(
             let is_new = !names.contains(&other.generation.tool_name.as_str());
             names.push(&other.generation.tool_name);
             let (shape, ranges) = piece(other).filter(|_| is_new)?;
-            Some((number, BoundSurface::new(shape, ranges, &values)))
+            Some((number, BoundSurface::new(shape, ranges, values)))
         })
         .collect();
     let own = ranges(surface)[2..].to_vec();
-    let t_work_tool = surface.generation.driven.substituted(&values);
-    let cutting = SecondaryCutting::new(&pieces, &t_work_tool, (motions, own))
-        .expect("a job without errors leaves nothing unbound");
-    Positions::Seen(cutting.judge(points, counts))
+    let t_work_tool = surface.generation.driven.substituted(values);
+    Ok(SecondaryCutting::new(&pieces, &t_work_tool, (motions, own))
+        .expect("a job without errors leaves nothing unbound"))
 }
 
 /// Marks the points of a grid that the tools of the surfaces which trim it cut away in positions that generate nothing beside them: at the

@@ -55,6 +55,22 @@ impl Deviation {
         })
     }
 
+    /// The same of a surface that was given while settings were open ([`Graph::with_settings`](flank_expr::Graph::with_settings)), with
+    /// these values of them.
+    #[must_use]
+    pub fn with_settings(&self, values: &[f64]) -> Deviation {
+        Deviation {
+            along_normal: self.along_normal.with_settings(values),
+            around_axis: self.around_axis.with_settings(values),
+            ranges: self.ranges.clone(),
+        }
+    }
+
+    /// Makes the machine code that those with other settings share.
+    pub fn translate(&self) {
+        self.along_normal.translate();
+    }
+
     /// The turn about the z axis, radians, that brings the surface to a point. `near` is a point of the surface from which it is
     /// looked for: one with the same z and distance from the axis, if there is one. `None` if the surface does not come
     /// to the point within its ranges.

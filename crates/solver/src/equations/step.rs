@@ -109,6 +109,10 @@ impl GivenTapes {
 }
 
 impl GivenTapes {
+    pub(crate) fn tapes(&self) -> impl Iterator<Item = &LaneTape> {
+        [&self.checked].into_iter().chain(&self.on_lines).chain(&self.expected)
+    }
+
     /// The same with other numbers for the settings of the tapes.
     pub(crate) fn with_settings(&self, values: &[f64]) -> GivenTapes {
         let changed = |tape: &Option<LaneTape>| tape.as_ref().map(|tape| tape.with_settings(values));

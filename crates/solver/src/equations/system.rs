@@ -38,6 +38,12 @@ pub(crate) struct LaneTapes {
 }
 
 impl LaneTapes {
+    fn translate(&self, instructions: InstructionSet) {
+        let LaneTapes { checked, linearized, is_written_out: _, expected, given } = self;
+        let given = given.iter().flat_map(|given| given.tapes());
+        [checked, linearized].into_iter().chain(expected).chain(given).for_each(|tape| tape.translate(instructions));
+    }
+
     fn with_settings(&self, values: &[f64]) -> LaneTapes {
         LaneTapes {
             checked: self.checked.with_settings(values),
@@ -126,6 +132,11 @@ impl System {
     /// the same, bit for bit.
     pub fn with_instruction_set(self, instructions: InstructionSet) -> System {
         System { instructions, ..self }
+    }
+
+    /// Makes the machine code of its tapes, which those with other settings share.
+    pub(crate) fn translate(&self) {
+        self.lanes.translate(self.instructions);
     }
 
     /// The same system with other numbers for the settings of its tapes.

@@ -46,6 +46,8 @@ impl SurfaceFamily {
     ) -> Result<SurfaceFamily, TapeError> {
         let graph = coordinates[0].graph();
         let problem = graph.with_settings(settings, || SurfaceProblem::new(surface, coordinates).and_then(made))?;
+        problem.system.translate();
+        problem.slopes.translate(problem.system.instructions());
         Ok(SurfaceFamily { problem })
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::InstructionSet;
 use super::native::{Native, Vectors};
 use crate::symbolic::curve::Curve;
 use crate::symbolic::op::{Binary, Unary};
@@ -71,10 +72,10 @@ impl Varies {
 pub struct LaneTape {
     /// Registers of the first stage: inputs (those that are uniform are used), constants, then one for each result. Their
     /// values before it: the constants are among them.
-    pub(crate) scalars: Vec<f64>,
+    pub(super) scalars: Vec<f64>,
     result_count: usize,
     /// How many of the constants are settings: the first ones.
-    pub(crate) setting_count: usize,
+    setting_count: usize,
     pub(super) once: Vec<Instruction>,
     /// What depends on the lane alone; results have blocks of their own, which are named.
     pub(super) by_lane: Vec<LaneInstruction>,
@@ -84,7 +85,7 @@ pub struct LaneTape {
     pub(super) curves: Vec<Arc<Curve>>,
     pub(super) block_count: usize,
     /// The block of each input; none if it is uniform.
-    pub(crate) inputs: Vec<Option<u32>>,
+    pub(super) inputs: Vec<Option<u32>>,
     pub(super) varies: Vec<Varies>,
     /// The block of each output.
     pub(super) outputs: Vec<u32>,
@@ -169,6 +170,29 @@ impl LaneTape {
     /// those for each run.
     pub fn stages(&self) -> [usize; 3] {
         [self.once.len(), self.by_lane.len(), self.each.len()]
+    }
+}
+
+impl LaneTape {
+    /// Makes the machine code that evaluators of these instructions want, if there is any: copies made from then on share it.
+    pub fn translate(&self, instructions: InstructionSet) {
+        if let Some(vectors) = instructions.native {
+            self.native(vectors);
+        }
+    }
+
+    /// The same tape with other numbers for its settings; machine code that was made is shared.
+    ///
+    /// # Panics
+    /// If there are not as many as the tape has that it was laid out from.
+    #[must_use]
+    pub fn with_settings(&self, values: &[f64]) -> LaneTape {
+        let mut tape = self.clone();
+        if tape.setting_count > 0 {
+            let first = tape.inputs.len();
+            tape.scalars[first..first + tape.setting_count].copy_from_slice(values);
+        }
+        tape
     }
 }
 

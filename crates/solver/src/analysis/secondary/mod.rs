@@ -54,4 +54,21 @@ impl SecondaryCutting {
             ranges,
         })
     }
+
+    /// The same of a tool and motions that were given while settings were open ([`Graph::with_settings`](flank_expr::Graph::with_settings)),
+    /// with these values of them.
+    #[must_use]
+    pub fn with_settings(&self, values: &[f64]) -> SecondaryCutting {
+        SecondaryCutting {
+            pieces: self.pieces.iter().map(|piece| piece.with_settings(values)).collect(),
+            pose: self.pose.with_settings(values),
+            ranges: self.ranges.clone(),
+        }
+    }
+
+    /// Makes the machine code that those with other settings share.
+    pub fn translate(&self) {
+        self.pieces.iter().for_each(Piece::translate);
+        self.pose.translate();
+    }
 }

@@ -128,6 +128,10 @@ impl Piece {
         let slopes = parts.iter().flat_map(|part| bound.unknowns.iter().map(|&p| part.derivative(p)));
         let outputs: Vec<Expr<'_>> = parts.iter().copied().chain(slopes).flat_map(|vector| vector.0).collect();
         let tape = PlaceTape::new(&outputs, &bound.unknowns)?;
+        Ok(Piece::of_tape(number, tape, ranges))
+    }
+
+    fn of_tape(number: usize, tape: PlaceTape, ranges: [Range; 2]) -> Piece {
         let mut piece = Piece {
             number,
             tape,
@@ -144,7 +148,17 @@ impl Piece {
         let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
         piece.hull = [low, high].map(Option::unwrap_or_default);
         (piece.cells, piece.steps, piece.blocks) = (cells, steps, blocks);
-        Ok(piece)
+        piece
+    }
+
+    /// The same with other values of the settings; the net is made anew only if it depends on them.
+    pub(super) fn with_settings(&self, values: &[f64]) -> Piece {
+        let tape = self.tape.with_settings(values);
+        if self.tape.uses_settings() { Piece::of_tape(self.number, tape, self.ranges) } else { Piece { tape, ..self.clone() } }
+    }
+
+    pub(super) fn translate(&self) {
+        self.tape.translate();
     }
 
     pub(super) fn seen(&self) -> Seen<'_> {

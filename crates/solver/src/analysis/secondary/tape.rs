@@ -22,6 +22,18 @@ impl PlaceTape {
         Ok(PlaceTape { lanes: LaneTape::new(&tape), tape })
     }
 
+    pub(super) fn with_settings(&self, values: &[f64]) -> PlaceTape {
+        PlaceTape { tape: self.tape.with_settings(values), lanes: self.lanes.with_settings(values) }
+    }
+
+    pub(super) fn uses_settings(&self) -> bool {
+        self.tape.uses_settings()
+    }
+
+    pub(super) fn translate(&self) {
+        self.lanes.translate(InstructionSet::fastest());
+    }
+
     pub(super) fn output_count(&self) -> usize {
         self.tape.output_count()
     }
