@@ -44,7 +44,7 @@ impl Plan {
         let inputs = self.inputs.iter().map(|input| input.head());
         let heads = ["case".to_string(), "number".to_string()].into_iter().chain(inputs);
         let all: Vec<String> = heads
-            .chain(["verdict".to_string(), "why".to_string()])
+            .chain(["verdict", "why", "branch"].map(str::to_string))
             .chain(self.heads.iter().cloned())
             .map(|head| if head.contains(',') { format!("\"{head}\"") } else { head })
             .collect();
@@ -54,7 +54,7 @@ impl Plan {
     fn row(&self, number: u64, values: &[f64], found: &Found) -> String {
         let mut row = format!("{},{number}", self.hash_of_case(values));
         values.iter().for_each(|value| _ = write!(row, ",{}", shown(*value)));
-        _ = write!(row, ",{},{}", found.verdict, found.why);
+        _ = write!(row, ",{},{},{}", found.verdict, found.why, found.branch);
         found.numbers.iter().for_each(|number| {
             row.push(',');
             row.extend(number.filter(|number| number.is_finite()).map(shown));
@@ -142,7 +142,7 @@ impl Work<'_> {
         let values = self.plan.values(number);
         let until = self.plan.limit.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
         let watch = CaseMonitor { until, is_late: AtomicBool::new(false) };
-        let found = match self.cases.solved(&values, Session::new(self.evaluator, &watch)) {
+        let found = match self.cases.solved((number, &values), Session::new(self.evaluator, &watch)) {
             Err(Failure::Cancelled) => self.cases.nothing("limit", "took too long"),
             other => other?,
         };

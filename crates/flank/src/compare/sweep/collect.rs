@@ -7,6 +7,7 @@ use flank_export::Values;
 use flank_expr::Graph;
 use flank_solver::{EaseOff, Outcome, SurfacePoint};
 
+use super::compiled::Compiled;
 use super::inputs::StudyInput;
 use crate::compare::deviation;
 use crate::compare::map::{Named, find, is_solved};
@@ -194,13 +195,23 @@ pub(super) struct Found {
     pub(super) verdict: &'static str,
     /// A code: of the first error of the spec, of the first thing that was not done.
     pub(super) why: String,
+    /// `searched` among all branches, or `followed` from the job itself.
+    pub(super) branch: &'static str,
     pub(super) numbers: Vec<Option<f64>>,
 }
 
+impl Found {
+    pub(super) fn of_numbers(numbers: Vec<Option<f64>>, why: Option<String>, is_followed: bool) -> Found {
+        let verdict = if why.is_none() { "done" } else { "not all solved" };
+        let branch = if is_followed { "followed" } else { "searched" };
+        Found { verdict, why: why.unwrap_or_default(), branch, numbers }
+    }
+}
+
 /// The points of a surface as the job itself has them.
-struct NominalPoints {
-    asked: Asked,
-    points: Vec<SurfacePoint>,
+pub(super) struct NominalPoints {
+    pub(super) asked: Asked,
+    pub(super) points: Vec<SurfacePoint>,
 }
 
 /// What all cases of a study have in common.
@@ -212,6 +223,8 @@ pub(super) struct Cases {
     widths: Vec<usize>,
     /// Of those that are compared with the job itself.
     nominal: Vec<Option<NominalPoints>>,
+    /// Where cases differ by numbers in the equations alone.
+    compiled: Option<Compiled>,
 }
 
 impl Cases {
@@ -238,18 +251,19 @@ impl Cases {
                 None => Ok(Some(NominalPoints { asked, points })),
             }
         });
-        let nominal = nominal.collect::<Result<_, _>>()?;
+        let nominal: Vec<Option<NominalPoints>> = nominal.collect::<Result<_, _>>()?;
         collect.iter().try_for_each(|of| of.check(job))?;
         let widths = collect.iter().map(|of| of.heads(job).len()).collect();
-        Ok(Cases { which, inputs, collect, widths, nominal })
+        let compiled = Compiled::new(job, &inputs, (&collect, &nominal), session)?;
+        Ok(Cases { which, inputs, collect, widths, nominal, compiled })
     }
 
     /// A case with these values of the inputs; whatever happens becomes a verdict.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub(super) fn solved(&self, values: &[f64], session: Session<'_>) -> Result<Found, Failure> {
-        match catch_unwind(AssertUnwindSafe(|| self.found(values, session))) {
+    pub(super) fn solved(&self, case: (u64, &[f64]), session: Session<'_>) -> Result<Found, Failure> {
+        match catch_unwind(AssertUnwindSafe(|| self.found(case, session))) {
             Ok(Ok(found)) => Ok(found),
             Ok(Err(Failure::Cancelled)) => Err(Failure::Cancelled),
             Ok(Err(Failure::Findings(findings))) => {
@@ -264,10 +278,15 @@ impl Cases {
 
     /// A case of which nothing is known.
     pub(super) fn nothing(&self, verdict: &'static str, why: &str) -> Found {
-        Found { verdict, why: why.to_string(), numbers: vec![None; self.widths.iter().sum()] }
+        Found { verdict, why: why.to_string(), branch: "", numbers: vec![None; self.widths.iter().sum()] }
     }
 
-    fn found(&self, values: &[f64], session: Session<'_>) -> Result<Found, Failure> {
+    fn found(&self, case: (u64, &[f64]), session: Session<'_>) -> Result<Found, Failure> {
+        session.check()?;
+        if let Some(compiled) = &self.compiled {
+            return Ok(compiled.found(case, &self.nominal, |verdict, why| self.nothing(verdict, why)));
+        }
+        let values = case.1;
         let given = || self.inputs.iter().zip(values);
         let set = given().filter(|(input, _)| !input.is_axis).map(|(input, value)| input.as_setting(*value));
         let errors: Vec<(String, MountingError)> =
@@ -286,18 +305,14 @@ impl Cases {
         let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
         let origin = Origin::of_compilation(&compilation);
         let case = Case { job: &jobs[0], jobs: &jobs, which: &which, origin, errors, session };
-        let mut numbers = Vec::new();
-        let mut why = String::new();
+        let (mut numbers, mut why) = (Vec::new(), None);
         for (of, nominal) in self.collect.iter().zip(&self.nominal) {
             session.check()?;
             let (found, lost) = case.collected(of, nominal.as_ref())?;
             numbers.extend(found);
-            if why.is_empty() {
-                why = lost.unwrap_or_default();
-            }
+            why = why.or(lost);
         }
-        let verdict = if why.is_empty() { "done" } else { "not all solved" };
-        Ok(Found { verdict, why, numbers })
+        Ok(Found::of_numbers(numbers, why, false))
     }
 }
 
@@ -325,7 +340,52 @@ struct Case<'c, 'g> {
 }
 
 /// Numbers, and why some are missing.
-type Numbers = (Vec<Option<f64>>, Option<String>);
+pub(super) type Numbers = (Vec<Option<f64>>, Option<String>);
+
+/// How many points have which status, and the worst residual of those that are solved.
+pub(super) fn point_counts<'p>(points: impl Iterator<Item = &'p SurfacePoint>) -> Numbers {
+    let (mut counts, mut worst) = ([0_u32; STATUSES.len()], None::<f64>);
+    for point in points {
+        let word = point.outcome.word();
+        counts.iter_mut().zip(STATUSES).filter(|(_, known)| *known == word).for_each(|(count, _)| *count += 1);
+        if is_solved(point) {
+            worst = Some(worst.map_or(point.residual, |worst| worst.max(point.residual)));
+        }
+    }
+    let lost = (1..STATUSES.len()).find(|k| counts[*k] > 0).map(|k| STATUSES[k].to_string());
+    (counts.iter().map(|count| Some(f64::from(*count))).chain([worst]).collect(), lost)
+}
+
+/// How far a surface lies off that of the job itself, of which `near` are points at the same places.
+pub(super) fn ease_off_numbers(
+    compared: &flank_solver::Deviation,
+    NominalPoints { asked, points }: &NominalPoints,
+    near: &[SurfacePoint],
+) -> Numbers {
+    let middle = starts::middle(asked.counts);
+    let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
+    let Some(turn) = both.and_then(|(point, near)| compared.turn_to(point.position, near)) else {
+        return (vec![None; EASE_OFF.len()], Some("no_deviation".to_string()));
+    };
+    let off: Vec<Option<f64>> = compared.map(points, near, turn).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
+    let known: Vec<f64> = off.iter().flatten().copied().collect();
+    let ease_off = EaseOff::of_deviations(&off, asked.counts);
+    let square = known.iter().map(|um| um * um).sum::<f64>() / known.len() as f64;
+    let end = |of: fn(f64, f64) -> f64| known.iter().copied().reduce(of);
+    let numbers = vec![
+        ease_off.map(|of| of.slopes[0]),
+        ease_off.map(|of| of.slopes[1]),
+        ease_off.map(|of| of.crownings[0]),
+        ease_off.map(|of| of.crownings[1]),
+        ease_off.map(|of| of.bias),
+        (!known.is_empty()).then(|| square.sqrt()),
+        end(f64::min),
+        end(f64::max),
+        Some(turn.to_degrees()),
+    ];
+    let is_whole = known.len() == points.iter().filter(|point| is_solved(point)).count();
+    (numbers, (!is_whole).then(|| "no_deviation".to_string()))
+}
 
 impl Case<'_, '_> {
     fn options(&self) -> SolveOptions<'_> {
@@ -354,18 +414,13 @@ impl Case<'_, '_> {
     }
 
     fn points(&self) -> Result<Numbers, Failure> {
-        let mut counts = [0; STATUSES.len()];
-        let mut worst: Option<f64> = None;
+        let mut all = Vec::new();
         for surface in &self.job.surfaces {
-            let Some(solved) = solve_surface(self.job, surface, self.options()) else { continue };
-            let summary = solved?.summary;
-            for (count, word) in counts.iter_mut().zip(STATUSES) {
-                *count += summary.outcomes.get(word).copied().unwrap_or(0);
-            }
-            worst = summary.worst_residual.into_iter().chain(worst).reduce(f64::max);
+            let Some(sample) = &surface.sample else { continue };
+            self.session.check()?;
+            all.extend(solve::points(self.job, surface, sample, self.options()).points);
         }
-        let lost = (1..STATUSES.len()).find(|k| counts[*k] > 0).map(|k| STATUSES[k].to_string());
-        Ok((counts.iter().map(|count| Some(*count as f64)).chain([worst]).collect(), lost))
+        Ok(point_counts(all.iter()))
     }
 
     fn requirements(&self) -> Result<Numbers, Failure> {
@@ -395,32 +450,8 @@ impl Case<'_, '_> {
         let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, asked.counts), self.session);
         let compared = flank_solver::Deviation::new(&bound(of.job, of.surface))
             .expect("a job without errors leaves nothing unbound");
-        let middle = starts::middle(asked.counts);
-        let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
-        let turn = both.and_then(|(point, near)| compared.turn_to(point.position, near));
-        let Some(turn) = turn else {
-            let why = lost.map_or_else(|| "no_deviation".to_string(), |lost| kind_of(&lost));
-            return Ok((vec![None; EASE_OFF.len()], Some(why)));
-        };
-        let off: Vec<Option<f64>> =
-            compared.map(points, &near, turn).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
-        let known: Vec<f64> = off.iter().flatten().copied().collect();
-        let ease_off = EaseOff::of_deviations(&off, asked.counts);
-        let square = known.iter().map(|um| um * um).sum::<f64>() / known.len() as f64;
-        let end = |of: fn(f64, f64) -> f64| known.iter().copied().reduce(of);
-        let numbers = vec![
-            ease_off.map(|of| of.slopes[0]),
-            ease_off.map(|of| of.slopes[1]),
-            ease_off.map(|of| of.crownings[0]),
-            ease_off.map(|of| of.crownings[1]),
-            ease_off.map(|of| of.bias),
-            (!known.is_empty()).then(|| square.sqrt()),
-            end(f64::min),
-            end(f64::max),
-            Some(turn.to_degrees()),
-        ];
-        let is_whole = known.len() == points.iter().filter(|point| is_solved(point)).count();
-        Ok((numbers, (!is_whole).then(|| "no_deviation".to_string())))
+        let (numbers, why) = ease_off_numbers(&compared, nominal, &near);
+        Ok((numbers, lost.map(|lost| kind_of(&lost)).or(why)))
     }
 
     fn width(&self, [a, b]: [&str; 2]) -> Result<Numbers, Failure> {

@@ -3,6 +3,7 @@
 mod cases;
 mod chunks;
 mod collect;
+mod compiled;
 mod drawn;
 mod inputs;
 mod plan;
@@ -73,7 +74,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         let start = Instant::now();
         let count = TRIED.min(values.count());
         for number in 0..count {
-            tried.solved(&values.of_case(number, &inputs), session)?;
+            tried.solved((number, &values.of_case(number, &inputs)), session)?;
         }
         let each = start.elapsed().as_secs_f64() / count as f64;
         ((CHUNK * rayon::current_num_threads() as f64 / each) as u64).clamp(FEWEST, MOST)
