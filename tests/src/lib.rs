@@ -167,7 +167,7 @@ fn ranges(surface: &GeneratedSurface<'_>) -> Vec<Range> {
 }
 
 /// Where `flank solve` follows a surface beyond its ranges.
-fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
+pub fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     let at_least = |dimension| if dimension == Dimension::ANGLE { std::f64::consts::TAU } else { 0.0 };
     let wider = surface.unknowns.iter().zip(ranges(surface));
     wider.map(|(u, range)| if u.is_count { range } else { range.beyond(at_least(u.dimension)) }).collect()

@@ -86,7 +86,7 @@ pub use solid::sheets::{BodySheet, SheetFace};
 pub use surface::bands::Band;
 pub use surface::body::is_inside_out;
 pub use surface::bound::BoundSurface;
-pub use surface::family::SurfaceFamily;
 pub use surface::certify::Certifier;
+pub use surface::family::SurfaceFamily;
 pub use surface::points::{SurfacePoint, SurfacePoints};
 pub use surface::{MOST_AT_ONCE, SurfaceProblem};

@@ -182,7 +182,14 @@ impl SurfaceProblem {
             point: self.point.with_settings(values),
             slopes: self.slopes.with_settings(values),
             keep: (self.keep.0.with_settings(values), self.keep.1.clone()),
-            ..self.clone()
+            asked: self.asked,
+            ranges: self.ranges.clone(),
+            several: self.several,
+            kept_ranges: self.kept_ranges.clone(),
+            periodic: self.periodic.clone(),
+            reach: self.reach.clone(),
+            at_once: self.at_once,
+            most_boxes: self.most_boxes,
         }
     }
 

@@ -367,7 +367,8 @@ pub(super) fn ease_off_numbers(
     let Some(turn) = both.and_then(|(point, near)| compared.turn_to(point.position, near)) else {
         return (vec![None; EASE_OFF.len()], Some("no_deviation".to_string()));
     };
-    let off: Vec<Option<f64>> = compared.map(points, near, turn).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
+    let off: Vec<Option<f64>> =
+        compared.map(points, near, turn).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
     let known: Vec<f64> = off.iter().flatten().copied().collect();
     let ease_off = EaseOff::of_deviations(&off, asked.counts);
     let square = known.iter().map(|um| um * um).sum::<f64>() / known.len() as f64;

@@ -151,11 +151,13 @@ impl<'g> Opened<'_, 'g> {
     fn points(&self) -> Option<CompiledNumbers> {
         let sampled = self.job.surfaces.iter().filter(|surface| surface.sample.is_some());
         let all = sampled.map(|surface| {
-            let sample = surface.sample.as_ref().filter(|_| surface.trimmed_by.is_empty() && surface.cut_by.is_none())?;
+            let sample =
+                surface.sample.as_ref().filter(|_| surface.trimmed_by.is_empty() && surface.cut_by.is_none())?;
             let (targets, counts) = (sample.targets(), sample.counts);
             let family = self.family(surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
             let graph = self.settings[0].0.graph();
-            let tool = graph.with_settings(self.settings, || secondary::tool_positions(self.job, surface, self.bindings));
+            let tool =
+                graph.with_settings(self.settings, || secondary::tool_positions(self.job, surface, self.bindings));
             let tool = tool.ok().inspect(SecondaryCutting::translate);
             let blank = blank::of(self.job, surface).cloned();
             let mut own = Sampled { family, targets, counts, start: None, nominal: Vec::new(), tool, blank };

@@ -154,7 +154,11 @@ impl Piece {
     /// The same with other values of the settings; the net is made anew only if it depends on them.
     pub(super) fn with_settings(&self, values: &[f64]) -> Piece {
         let tape = self.tape.with_settings(values);
-        if self.tape.uses_settings() { Piece::of_tape(self.number, tape, self.ranges) } else { Piece { tape, ..self.clone() } }
+        if self.tape.uses_settings() {
+            Piece::of_tape(self.number, tape, self.ranges)
+        } else {
+            Piece { tape, ..self.clone() }
+        }
     }
 
     pub(super) fn translate(&self) {
