@@ -204,7 +204,7 @@ impl<'g> Context<'g> {
             match self.ranges[index] {
                 _ if role.stands_still() && self.values[index].is_nan() => Err(Unranged::Unknown),
                 _ if role.stands_still() => {
-                    self.decide(&[index]);
+                    self.decide([index]);
                     Ok((variable, Interval::point(self.values[index])))
                 }
                 // a range that depends on parameters without values
@@ -259,17 +259,17 @@ impl<'g> Context<'g> {
 
     /// The number that an expression of parameters is, which decides something.
     pub(crate) fn constant(&self, expr: Expr<'g>) -> Constant {
-        let found = self.constant_kept(expr);
-        if matches!(found, Constant::Known(_)) && expr.as_constant().is_none() {
-            let variables = self.graph.variables_of(&[expr]);
-            self.decide(&variables.iter().map(|variable| variable.index()).collect::<Vec<usize>>());
-        }
-        found
+        self.evaluated(expr, true)
     }
 
-    fn decide(&self, variables: &[usize]) {
+    /// The same for a parameter, of which the model keeps the expression as well.
+    pub(crate) fn constant_kept(&self, expr: Expr<'g>) -> Constant {
+        self.evaluated(expr, false)
+    }
+
+    fn decide(&self, variables: impl IntoIterator<Item = usize>) {
         let mut decisive = self.decisive.borrow_mut();
-        for &variable in variables {
+        for variable in variables {
             if decisive.len() <= variable {
                 decisive.resize(variable + 1, false);
             }
@@ -283,8 +283,7 @@ impl<'g> Context<'g> {
         index.is_some_and(|index| self.decisive.borrow().get(index).copied().unwrap_or(false))
     }
 
-    /// The number that an expression of parameters is, for a parameter of which the model keeps the expression as well.
-    pub(crate) fn constant_kept(&self, expr: Expr<'g>) -> Constant {
+    fn evaluated(&self, expr: Expr<'g>, decides: bool) -> Constant {
         if let Some(value) = expr.as_constant() {
             return Constant::Known(value);
         }
@@ -299,6 +298,9 @@ impl<'g> Context<'g> {
         }
         if variables.iter().any(|variable| self.values[variable.index()].is_nan()) {
             return Constant::Unknown;
+        }
+        if decides {
+            self.decide(variables.iter().map(|variable| variable.index()));
         }
         Constant::Known(self.graph.evaluate(&[expr], &self.values)[0])
     }
