@@ -90,7 +90,7 @@ pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::is_reserved;
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files, ValueSource};
 pub use language::check::{CheckResult, Checked, check};
 pub use language::derive::derive;
 pub use language::derive::result::{
@@ -125,6 +125,7 @@ pub use report::result::{
     InputSource, NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
     SolidEdge,
 };
+pub use solve::arrays::{FieldArray, PointGrid};
 pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
 pub use solve::body::mounted::{MountedSolid, Mounting};

@@ -244,7 +244,7 @@ fn points<'g>(
         geometry: false,
         sensitivity: false,
         certificates: false,
-        together: None,
+        together: None, arrays: false,
         of_shown: false,
         session,
     };

@@ -119,7 +119,7 @@ impl<'j, 'g> Source<'j, 'g> {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: Some("carrying its tool over"),
+            together: Some("carrying its tool over"), arrays: false,
             of_shown: false,
             session,
         };

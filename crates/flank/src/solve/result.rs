@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use flank_export::fixed;
-use flank_solver::{CutBy, Outcome, SurfacePoint};
+use flank_solver::{CutBy, Outcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -12,6 +12,7 @@ use crate::project::answer::{Answer, Timing};
 use crate::project::columns::aligned;
 use crate::project::quantity::{Extent, NamedValue, UnitSymbol};
 use crate::project::remark::{NotDone, Remark};
+use crate::solve::arrays::PointGrid;
 
 /// Solved surfaces of one job, in numbers, of `flank solve`; the points are in the files. Lengths are mm, angles degrees.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -84,7 +85,7 @@ pub struct SurfaceResult {
     #[serde(skip)]
     pub certified: Option<Certified>,
     #[serde(skip)]
-    pub(super) points: PointArrays,
+    pub(super) points: PointGrid,
 }
 
 /// A line on a surface.
@@ -94,7 +95,7 @@ pub struct LineResult {
     #[serde(flatten)]
     pub summary: PointSummary,
     #[serde(skip)]
-    pub(super) points: PointArrays,
+    pub(super) points: PointGrid,
 }
 
 /// The values of one field of numbers over the solved points of a surface.
@@ -293,40 +294,45 @@ impl From<Outcome> for Status {
     }
 }
 
-/// The points of a grid, row by row.
-#[derive(Clone, Debug, Default)]
-pub(super) struct PointArrays {
-    counts: [usize; 2],
-    positions: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
-    unknowns: Vec<f64>,
-    statuses: Vec<Status>,
-    residuals: Vec<f64>,
-}
-
-impl PointArrays {
-    pub(super) fn new(counts: [usize; 2], unknowns: usize, points: &[SurfacePoint]) -> PointArrays {
-        let mut all = PointArrays {
-            counts,
-            positions: Vec::with_capacity(points.len()),
-            normals: Vec::with_capacity(points.len()),
-            unknowns: Vec::with_capacity(points.len() * unknowns),
-            statuses: points.iter().map(|point| point.outcome.into()).collect(),
-            residuals: points.iter().map(|point| point.residual).collect(),
-        };
-        for point in points {
-            if matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_) | Outcome::Undecided) {
-                all.positions.push(point.position);
-                all.normals.push(point.normal);
-                all.unknowns.extend_from_slice(&point.unknowns);
-            } else {
-                // of a point that is not there nothing is known but why
-                all.positions.push([f64::NAN; 3]);
-                all.normals.push([f64::NAN; 3]);
-                all.unknowns.resize(all.unknowns.len() + unknowns, f64::NAN);
+impl From<flank_export::Outcome> for Status {
+    fn from(outcome: flank_export::Outcome) -> Status {
+        match outcome {
+            flank_export::Outcome::Solved => Status::Solved,
+            flank_export::Outcome::Undercut => Status::Undercut,
+            flank_export::Outcome::Trimmed => Status::Trimmed,
+            flank_export::Outcome::Undecided => Status::Undecided,
+            flank_export::Outcome::Unsolved(word) => {
+                Status::ALL.into_iter().find(|status| status.word() == word).unwrap_or(Status::NotConverged)
             }
         }
-        all
+    }
+}
+
+impl Status {
+    /// All of them.
+    pub const ALL: [Status; 8] = [
+        Status::Solved,
+        Status::OutOfRange,
+        Status::Undercut,
+        Status::Trimmed,
+        Status::Ambiguous,
+        Status::Undecided,
+        Status::Singular,
+        Status::NotConverged,
+    ];
+
+    /// As documents and tables have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Solved => "solved",
+            Status::OutOfRange => "out_of_range",
+            Status::Undercut => "undercut",
+            Status::Trimmed => "trimmed",
+            Status::Ambiguous => "ambiguous",
+            Status::Undecided => "undecided",
+            Status::Singular => "singular",
+            Status::NotConverged => "not_converged",
+        }
     }
 }
 
@@ -372,6 +378,16 @@ impl SurfaceResult {
     pub fn residuals(&self) -> &[f64] {
         &self.points.residuals
     }
+
+    /// All that is known of its points.
+    pub fn grid(&self) -> &PointGrid {
+        &self.points
+    }
+
+    /// Takes all that is known of its points out of the result, whose arrays are empty afterwards.
+    pub fn take_grid(&mut self) -> PointGrid {
+        std::mem::take(&mut self.points)
+    }
 }
 
 impl LineResult {
@@ -383,6 +399,11 @@ impl LineResult {
     /// What became of each point.
     pub fn statuses(&self) -> &[Status] {
         &self.points.statuses
+    }
+
+    /// Takes all that is known of its points out of the result, whose arrays are empty afterwards.
+    pub fn take_grid(&mut self) -> PointGrid {
+        std::mem::take(&mut self.points)
     }
 }
 

@@ -173,7 +173,7 @@ impl<'j, 'g> Tested<'j, 'g> {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: None,
+            together: None, arrays: false,
             of_shown: false,
             session: self.session,
         }

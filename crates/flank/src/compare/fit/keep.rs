@@ -58,7 +58,7 @@ impl Keep {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: None,
+            together: None, arrays: false,
             of_shown: false,
             session,
         };
