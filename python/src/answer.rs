@@ -13,6 +13,9 @@ pub(crate) struct Answer {
     told: Box<dyn Told>,
     #[pyo3(get)]
     grids: Vec<Py<Grid>>,
+    /// Of settings that were fitted.
+    #[pyo3(get)]
+    covariance: Vec<Vec<f64>>,
 }
 
 /// What every result can be asked.
@@ -57,13 +60,18 @@ impl Answer {
     /// A result with what is to be handed over in arrays.
     pub(crate) fn new<A: flank::Answer>(py: Python<'_>, answer: A, grids: Vec<PointGrid>) -> PyResult<Answer> {
         let grids = grids.into_iter().map(|grid| Py::new(py, Grid::new(py, grid)?)).collect::<PyResult<_>>()?;
-        Ok(Answer { told: Box::new(answer), grids })
+        Ok(Answer { told: Box::new(answer), grids, covariance: Vec::new() })
+    }
+
+    /// With how settings that were fitted scatter together.
+    pub(crate) fn with_covariance(self, covariance: Vec<Vec<f64>>) -> Answer {
+        Answer { covariance, ..self }
     }
 
     /// A document that has a text of its own.
     pub(crate) fn of_document(result: &impl serde::Serialize, text: &impl Display) -> Answer {
         let told = Document { document: document(result), text: text.to_string() };
-        Answer { told: Box::new(told), grids: Vec::new() }
+        Answer { told: Box::new(told), grids: Vec::new(), covariance: Vec::new() }
     }
 }
 

@@ -44,7 +44,8 @@ pub(crate) fn layout(py: Python<'_>, path: PathBuf, text: String) -> PyResult<St
 pub(crate) fn test(py: Python<'_>, paths: Vec<PathBuf>, filter: Option<String>, snapshot: bool) -> PyResult<Answer> {
     let result = run(py, move |monitor| {
         let found = flank::find_specs(&paths)?;
-        let requests = found.into_iter().map(|path| TestRequest { filter: filter.clone(), snapshot, ..TestRequest::new(path) });
+        let requests =
+            found.into_iter().map(|path| TestRequest { filter: filter.clone(), snapshot, ..TestRequest::new(path) });
         flank::test(&requests.collect::<Vec<_>>(), monitor)
     })?;
     Ok(Answer::of_document(&result, &result))

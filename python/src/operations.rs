@@ -190,7 +190,8 @@ pub(crate) fn deviation(
         py,
         move |monitor| flank::deviation(&request, monitor),
         |found: &mut flank::DeviationResult| {
-            let labels = found.directions.each_ref().map(|of| of.as_ref().map_or(String::new(), |of| of.direction.clone()));
+            let labels =
+                found.directions.each_ref().map(|of| of.as_ref().map_or(String::new(), |of| of.direction.clone()));
             vec![PointGrid {
                 name: found.from.clone(),
                 frame: found.from_frame.clone(),
@@ -247,7 +248,10 @@ pub(crate) fn fit(
     given.put("share", &mut request.share)?;
     given.put("within", &mut request.within)?;
     given.put("resolution", &mut request.resolution)?;
-    one(py, move |monitor| flank::fit(&request, monitor), no_grids)
+    let found = run(py, move |monitor| flank::fit(&request, monitor))?;
+    let settings = found.identification.as_ref().unwrap_or(&found.correction);
+    let covariance = settings.covariance.clone();
+    Ok(Answer::new(py, found, Vec::new())?.with_covariance(covariance))
 }
 
 #[pyfunction]
@@ -374,7 +378,8 @@ pub(crate) fn convert(py: Python<'_>, job: &Job, to: PathBuf, options: &Bound<'_
         emit: given.kinds("emit")?,
         emit_form: given.kinds("emit_form")?,
     };
-    one(py, move |monitor| flank::convert(&request, monitor).map_err(unfit), no_grids).map_err(|error| reclassed(py, error))
+    one(py, move |monitor| flank::convert(&request, monitor).map_err(unfit), no_grids)
+        .map_err(|error| reclassed(py, error))
 }
 
 /// What another machine cannot do is not solved.

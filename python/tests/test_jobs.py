@@ -63,6 +63,10 @@ def test_all_findings_come_at_once():
 
 
 def _wrong_texts():
+    return list(_wrong_texts_of_pages())
+
+
+def _wrong_texts_of_pages():
     """Of each page about an error its first text, which a test of the project holds to have it."""
     for page in sorted((ROOT / "docs/errors").glob("E*.md")):
         blocks = re.findall(r"```chain[^\n]*\n(.*?)```", page.read_text(), re.S)
@@ -76,6 +80,10 @@ def test_every_code_is_raised(code, text, tmp_path):
     codes = {finding["code"] for finding in found}
     if code not in codes:
         pytest.skip(f"the first text of the page needs files, or has {codes}")
+    if code.startswith("E06"):
+        # what a spec expects is looked at by `check` and `test` alone
+        assert flank.loads(text)
+        return
     with pytest.raises(flank.SpecError) as caught:
         flank.loads(text)
     assert code in {error["code"] for error in caught.value.errors()}
@@ -121,8 +129,8 @@ def test_a_pickle_is_text_and_values(job, tmp_path):
 
 def test_several_jobs_are_named():
     jobs = flank.load_all("specs/bevel/ease_off_19x62.chain")
-    assert list(jobs) == ["conjugate", "basic", "pinion"]
-    with pytest.raises(flank.InputError, match="conjugate, basic, pinion"):
+    assert list(jobs) == ["pinion", "basic", "conjugate"]
+    with pytest.raises(flank.InputError, match="pinion, basic, conjugate"):
         flank.load("specs/bevel/ease_off_19x62.chain")
     assert flank.load("specs/bevel/ease_off_19x62.chain", "basic") == jobs["basic"]
     with pytest.raises(flank.SpecError) as caught:
@@ -188,10 +196,10 @@ def test_a_fork_works(job):
 
 LONG = """
     import time, flank, signal
-    job = flank.load("benches/spiral_bevel.chain", "flank").with_values(rows=3000, columns=3000)
+    job = flank.load("benches/spiral_bevel.chain", "flank").with_values(rows=4000, columns=4000)
     print("begun", flush=True)
     try:
-        job.solve(geometry=True, arrays=False)
+        job.solve(arrays=False)
     except KeyboardInterrupt:
         print("interrupted", flush=True)
     print(len(flank.load("specs/bevel/pinion_19x62.chain").solve()), flush=True)
@@ -202,7 +210,7 @@ def test_ctrl_c_ends_a_long_solve(tmp_path):
     program = [sys.executable, "-c", textwrap.dedent(LONG)]
     with subprocess.Popen(program, stdout=subprocess.PIPE, text=True, cwd=ROOT) as process:
         assert process.stdout.readline() == "begun\n"
-        time.sleep(0.5)
+        time.sleep(0.2)
         start = time.perf_counter()
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted\n"
@@ -238,11 +246,11 @@ def test_memory_stays(job):
     def resident():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
-    text = Path(PINION).read_text()
+    common = "benches/spiral_bevel.chain"
 
     def cycle(times):
         for _ in range(times):
-            flank.loads(text, name=PINION).solve()
+            flank.load(common, "flank").solve()
 
     cycle(100)
     before = resident()

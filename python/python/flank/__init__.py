@@ -127,7 +127,7 @@ def load_all(path: _Path) -> dict[str, Job]:
 
     >>> import flank
     >>> list(flank.load_all("specs/bevel/ease_off_19x62.chain"))
-    ['conjugate', 'basic', 'pinion']
+    ['pinion', 'basic', 'conjugate']
     """
     return {native.name: Job(native) for native in _flank.load(_os.fspath(path), [])}
 

@@ -9,6 +9,7 @@ _Floats = npt.NDArray[np.float64]
 @final
 class Answer:
     grids: list[Grid]
+    covariance: list[list[float]]
     def document(self) -> str: ...
     def text(self) -> str: ...
 

@@ -223,8 +223,8 @@ class SurfacePoints:
         return grid
 
     def _there(self, values: Any) -> Any:
-        if values is None:
-            raise InputError(f"the points of {self.name} are not kept: leave out `arrays=False`, or there are none")
+        if values is None or self.counts == (0, 0):
+            raise InputError(f"the points of {self.name} are not kept: leave out `arrays=False`")
         return values
 
     def __repr__(self) -> str:

@@ -107,7 +107,7 @@ class Result:
         text = self._answer.text()
         lines = (text.replace(self._inside, "") if self._inside else text).rstrip().splitlines()
         # no file was asked for
-        return "\n".join(line for line in lines if line != "wrote ").rstrip()
+        return "\n".join(line for line in lines if line.strip() != "wrote").rstrip()
 
     def __repr__(self) -> str:
         return str(self)
@@ -420,6 +420,12 @@ class Fit(_WithSettings):
     def predicted_um(self) -> Floats:
         """The deviations that are to be expected after the correction, um: (rows, columns)."""
         return self._map("predicted_um")
+
+    @property
+    def covariance(self) -> Floats:
+        """How the settings that were found scatter together, in their units and the order of `standard_deviations`; empty where nothing
+        tells how the points scatter."""
+        return np.array(self._answer.covariance, dtype=float)
 
     def _map(self, name: str) -> Floats:
         flank = self._read()["flanks"][0]

@@ -59,7 +59,8 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let mut origin = Origin::of_compilation(&compilation);
-    let others = request.reference_jobs.as_ref().map(|others| spec::jobs(&graph, others, monitor)).transpose()?;
+    let other_graph = Graph::new();
+    let others = request.reference_jobs.as_ref().map(|others| spec::jobs(&other_graph, others, monitor)).transpose()?;
     let surface = find(&jobs, &request.surface)?;
     let session = Session::new(request.evaluator, monitor);
     let measured = match second {
@@ -89,7 +90,8 @@ fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> Vec<Remark> {
         geometry: false,
         sensitivity: false,
         certificates: false,
-        together: None, arrays: false,
+        together: None,
+        arrays: false,
         of_shown: false,
         session,
     };

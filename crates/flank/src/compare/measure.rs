@@ -17,8 +17,8 @@ use crate::project::requests::{MeasureRequest, Session};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve;
-use crate::solve::arrays::PointGrid;
 use crate::solve::SolveOptions;
+use crate::solve::arrays::PointGrid;
 
 /// Rows and columns of the grid that shows how a flank lies.
 const TRIAL: usize = 13;
@@ -197,7 +197,15 @@ impl<'j, 'g> Placed<'j, 'g> {
 
 /// Points alone.
 fn wanted(session: Session<'_>) -> SolveOptions<'_> {
-    SolveOptions { geometry: false, sensitivity: false, certificates: false, together: None, arrays: false, of_shown: false, session }
+    SolveOptions {
+        geometry: false,
+        sensitivity: false,
+        certificates: false,
+        together: None,
+        arrays: false,
+        of_shown: false,
+        session,
+    }
 }
 
 /// So many shares from end to end, without the margins.

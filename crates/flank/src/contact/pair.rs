@@ -244,7 +244,8 @@ fn points<'g>(
         geometry: false,
         sensitivity: false,
         certificates: false,
-        together: None, arrays: false,
+        together: None,
+        arrays: false,
         of_shown: false,
         session,
     };

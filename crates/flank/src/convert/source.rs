@@ -119,7 +119,8 @@ impl<'j, 'g> Source<'j, 'g> {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: Some("carrying its tool over"), arrays: false,
+            together: Some("carrying its tool over"),
+            arrays: false,
             of_shown: false,
             session,
         };

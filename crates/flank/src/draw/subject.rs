@@ -43,7 +43,8 @@ impl<'j, 'g> Subject<'j, 'g> {
             geometry: kinds.contains(&PlotKind::Curvature) || kinds.is_empty(),
             sensitivity: kinds.contains(&PlotKind::Sensitivity),
             certificates: false,
-            together: None, arrays: false,
+            together: None,
+            arrays: false,
             of_shown: true,
             session,
         };

@@ -33,7 +33,15 @@ use functions::Functions;
 
 /// What a surface can be coloured by and what a click shows of a point.
 fn wanted(session: Session<'_>) -> SolveOptions<'_> {
-    SolveOptions { geometry: true, sensitivity: true, certificates: false, together: None, arrays: false, of_shown: true, session }
+    SolveOptions {
+        geometry: true,
+        sensitivity: true,
+        certificates: false,
+        together: None,
+        arrays: false,
+        of_shown: true,
+        session,
+    }
 }
 
 /// Share of what a motion passes over that its slider goes beyond.

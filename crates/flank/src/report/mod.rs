@@ -106,7 +106,8 @@ impl<'j, 'g> Findings<'j, 'g> {
             geometry: true,
             sensitivity: true,
             certificates: request.certify,
-            together: None, arrays: false,
+            together: None,
+            arrays: false,
             of_shown: true,
             session: Session::new(request.evaluator, monitor),
         };

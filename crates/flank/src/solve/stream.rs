@@ -94,7 +94,8 @@ pub(crate) fn check_kept<'s, 'g: 's>(
             count * OF_NUMBER * (numbers_of_all(surface, sample, wanted) + in_arrays) + DRAWN * DRAWN * of_shown
         };
         let flag = || {
-            let flags = [(wanted.geometry && !wanted.of_shown, "option `geometry`"), (wanted.arrays, "option `arrays`")];
+            let flags =
+                [(wanted.geometry && !wanted.of_shown, "option `geometry`"), (wanted.arrays, "option `arrays`")];
             flags.into_iter().find_map(|(is_given, name)| is_given.then(|| name.to_string()))
         };
         needed = needed.or(all_needed.or_else(flag).filter(|_| count > KEPT));
@@ -206,8 +207,8 @@ impl<'j, 'g> Streamed<'j, 'g> {
         let step = counts.map(|count| count.div_ceil(DRAWN).max(1));
         let mut summary = Summary::new(self.surface.unknowns.len(), counts);
         let mut drawn = Vec::new();
-        let mut arrays =
-            in_arrays.then(|| PointGrid::of_surface(self.surface, &self.surface.name, (counts, self.sample.labels.clone())));
+        let mut arrays = in_arrays
+            .then(|| PointGrid::of_surface(self.surface, &self.surface.name, (counts, self.sample.labels.clone())));
         let all = counts[0] * counts[1];
         let mut described = described.then(|| Described::new(self.job, self.surface, self.sample, all));
         let effort = self.solve(|band| -> Result<(), Failure> {

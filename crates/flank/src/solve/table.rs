@@ -45,10 +45,14 @@ impl Solved<'_, '_> {
         let moved: Vec<_> = self.sensitivity.iter().flat_map(Sensitivity::fields).collect();
         let points = match (&self.streamed, self.arrays.take()) {
             (Some(streamed), Some(grid)) => grid.with_fields(streamed.fields()),
-            (Some(_), None) => PointGrid::default(),
-            (None, _) => PointGrid::of_surface(self.surface, &self.surface.name, (self.counts(), self.sample.labels.clone()))
-                .with_points(&self.points)
-                .with_fields(self.fields.iter().chain(&moved)),
+            (Some(_), None) => {
+                PointGrid::of_surface(self.surface, &self.surface.name, ([0; 2], self.sample.labels.clone()))
+            }
+            (None, _) => {
+                PointGrid::of_surface(self.surface, &self.surface.name, (self.counts(), self.sample.labels.clone()))
+                    .with_points(&self.points)
+                    .with_fields(self.fields.iter().chain(&moved))
+            }
         };
         SurfaceResult { points, ..self.result() }
     }
@@ -58,7 +62,8 @@ impl Line<'_, '_> {
     /// Its points, counted, and its points.
     pub(crate) fn result(&self) -> LineResult {
         let labels = [String::new(), "along the line".to_string()];
-        let points = PointGrid::of_surface(self.surface, &self.name, ([1, self.points.len()], labels)).with_points(&self.points);
+        let points =
+            PointGrid::of_surface(self.surface, &self.name, ([1, self.points.len()], labels)).with_points(&self.points);
         LineResult { summary: self.told(), points }
     }
 

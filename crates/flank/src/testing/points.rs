@@ -173,7 +173,8 @@ impl<'j, 'g> Tested<'j, 'g> {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: None, arrays: false,
+            together: None,
+            arrays: false,
             of_shown: false,
             session: self.session,
         }

@@ -58,7 +58,8 @@ impl Keep {
             geometry: false,
             sensitivity: false,
             certificates: false,
-            together: None, arrays: false,
+            together: None,
+            arrays: false,
             of_shown: false,
             session,
         };

@@ -42,7 +42,8 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let mut origin = Origin::of_compilation(&compilation);
     let session = Session::new(request.evaluator, monitor);
     let of = find(&jobs, &request.surface)?;
-    let others = request.from_jobs.as_ref().map(|others| spec::jobs(&graph, others, monitor)).transpose()?;
+    let other_graph = Graph::new();
+    let others = request.from_jobs.as_ref().map(|others| spec::jobs(&other_graph, others, monitor)).transpose()?;
     let among = others.as_ref().map_or(&jobs, |(_, others)| others);
     let aims = match (&request.measured, request.is_wish(), &request.from) {
         (Some(file), ..) => {
