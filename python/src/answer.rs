@@ -22,6 +22,7 @@ pub(crate) struct Answer {
 trait Told: Send + Sync {
     fn document(&self) -> String;
     fn text(&self) -> String;
+    fn seconds(&self) -> Option<f64>;
 }
 
 impl<A: flank::Answer> Told for A {
@@ -31,6 +32,10 @@ impl<A: flank::Answer> Told for A {
 
     fn text(&self) -> String {
         self.to_string()
+    }
+
+    fn seconds(&self) -> Option<f64> {
+        self.timing().map(|timing| timing.elapsed.as_secs_f64())
     }
 }
 
@@ -47,6 +52,10 @@ impl Told for Document {
 
     fn text(&self) -> String {
         self.text.clone()
+    }
+
+    fn seconds(&self) -> Option<f64> {
+        None
     }
 }
 
@@ -85,5 +94,10 @@ impl Answer {
     /// The text for people.
     fn text(&self) -> String {
         self.told.text()
+    }
+
+    /// From the request to the result, if that was measured.
+    fn seconds(&self) -> Option<f64> {
+        self.told.seconds()
     }
 }

@@ -19,6 +19,9 @@ pub(crate) struct Job {
 /// Name, value, unit, range, step, document, giver, whether it counts, whether it is an error of the machine.
 type Parameter = (String, f64, String, Option<(f64, f64)>, Option<f64>, String, Option<String>, bool, bool);
 
+/// Name, frame, counts of the sample.
+type Surface = (String, String, Option<(usize, usize)>);
+
 /// The jobs of a spec, or one of them with other values. Texts lie over the files of their paths.
 #[pyfunction]
 #[pyo3(signature = (path, texts, name=None, set=Vec::new()))]
@@ -116,8 +119,8 @@ impl Job {
         self.job.parameters().iter().map(of).collect()
     }
 
-    /// Name, frame, and counts of the sample.
-    fn surfaces(&self) -> Vec<(String, String, Option<(usize, usize)>)> {
+    /// As [`Surface`].
+    fn surfaces(&self) -> Vec<Surface> {
         let of = |of: &flank::JobSurface| (of.name.clone(), of.frame.clone(), of.counts.map(|[r, c]| (r, c)));
         self.job.surfaces().iter().map(of).collect()
     }

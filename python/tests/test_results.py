@@ -28,7 +28,7 @@ def results(job):
         "flank.settings/1": flank.load("specs/bevel/thesis_gear.chain").convert("specs/machines/cradle.chain", fit="work_offset"),
         "flank.solid/1": job.solid(),
         "flank.mesh/1": job.mesh(elements=(3, 4, 3)),
-        "flank.mill/1": flank.load("specs/bevel/milled_pinion.chain").mill(),
+        "flank.mill/1": flank.load("specs/bevel/milled_pinion.chain").mill("finish"),
         "flank.plot/2": job.plot("machine"),
         "flank.view/2": job.view(),
         "flank.report/2": flank.load("specs/hobbing/helical_gear.chain").report(),

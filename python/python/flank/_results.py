@@ -87,6 +87,11 @@ class Result:
         """Whether all was done that was asked for."""
         return not self._read().get("not_done", [])
 
+    @property
+    def seconds(self) -> float | None:
+        """How long the program worked from the request to the result; `None` where it does not measure that. Documents leave it out."""
+        return self._answer.seconds()
+
     def strict(self) -> Self:
         """Itself.
 
