@@ -12,10 +12,10 @@ NOTEBOOKS = sorted((ROOT / "python/notebooks").glob("*.ipynb"))
 
 
 def _texts(cell):
+    # how a stream is cut into pieces depends on the clock
+    yield "".join("".join(output.text) for output in cell.get("outputs", []) if output.output_type == "stream")
     for output in cell.get("outputs", []):
-        if output.output_type == "stream":
-            yield "".join(output.text)
-        elif "data" in output and "text/plain" in output.data:
+        if "data" in output and "text/plain" in output.data:
             yield "".join(output.data["text/plain"])
 
 

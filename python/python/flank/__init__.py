@@ -106,7 +106,7 @@ def load(path: _Path, job: str | None = None) -> Job:
 
     >>> import flank
     >>> flank.load("specs/hobbing/helical_gear.chain").parameters["teeth"].value
-    25.0
+    31.0
     """
     return _one(_flank.load(_os.fspath(path), [], job), job)
 
@@ -181,10 +181,8 @@ def format(text: str, *, name: str = "text.chain") -> str:
     """A spec's text as it is laid out.
 
     >>> import flank
-    >>> print(flank.format("machine m{axis C:rotary}"), end="")
-    machine m {
-        axis C : rotary
-    }
+    >>> flank.format("machine m{axis C:rotary}")
+    'machine m { axis C : rotary }\\n'
     """
     return _flank.layout(name, text)
 
@@ -206,7 +204,12 @@ setattr(test, "__test__", False)
 
 
 def codes() -> list[dict[str, str]]:
-    """All codes of findings with `severity` and `title`."""
+    """All codes of findings with `severity` and `title`.
+
+    >>> import flank
+    >>> flank.codes()[0]["code"]
+    'E0001'
+    """
     found: list[dict[str, str]] = _json.loads(_flank.codes())
     return found
 

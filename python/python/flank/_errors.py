@@ -14,7 +14,7 @@ class SpecError(Error):
 
     >>> import flank
     >>> try:
-    ...     flank.loads("job j { motion t : angle in 1 deg .. 2 }")
+    ...     flank.loads("machine m { param width : length = 20 axis C : rotary frame bed }")
     ... except flank.SpecError as error:
     ...     error.errors()[0]["code"]
     'E0301'

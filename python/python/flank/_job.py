@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from flank._points import Floats
 from flank._quantities import Quantity, amounts, count, errors, length, names, number, text
 
 Path_ = str | os.PathLike[str]
+R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,7 +270,7 @@ class Job:
         >>> import flank
         >>> gear = flank.load("specs/bevel/pinion_19x62.chain").solid()
         >>> round(gear.solids["pinion"]["volume_mm3"])
-        82556
+        71368
         """
         options = {
             "part": part,
@@ -285,6 +286,10 @@ class Job:
         """Bodies as bricks for finite elements: some neighbouring teeth, all of them with `teeth=None`.
 
         `elements` are bricks up a flank, along the tooth, and from flank to flank; `order` is 1 or 2.
+
+        >>> import flank
+        >>> flank.load("specs/bevel/pinion_19x62.chain").mesh(elements=(3, 4, 3)).solids["pinion"]["element"]
+        'C3D8'
         """
         lows = (1, 1, 3)
         sides = [count(size, f"elements[{k}]", lows[k], 1000) for k, size in enumerate(elements)]
@@ -337,7 +342,12 @@ class Job:
         return _results.Plot(answer, again, folder, files)
 
     def view(self, height: int = 600) -> _results.Page:
-        """A page of the job in 3-D with sliders. A notebook shows it in a frame of this height; nothing is loaded from elsewhere."""
+        """A page of the job in 3-D with sliders. A notebook shows it in a frame of this height; nothing is loaded from elsewhere.
+
+        >>> import flank
+        >>> flank.load("specs/bevel/pinion_19x62.chain").view().html[:15].lower()
+        '<!doctype html>'
+        """
         return self._page(_flank.view, {}, height)
 
     def report(
@@ -348,7 +358,13 @@ class Job:
         date: str | None = None,
         height: int = 800,
     ) -> _results.Page:
-        """A page about the job to attach to an order. Its document has all numbers."""
+        """A page about the job to attach to an order. Its document has all numbers.
+
+        >>> import flank
+        >>> report = flank.load("specs/hobbing/helical_gear.chain").report()
+        >>> report["asked"] == report["solved"]
+        True
+        """
         options = {"certify": certify, "step": length(step, "step"), "date": date, "format": ["html"]}
         return self._page(_flank.report, options, height)
 
@@ -367,7 +383,12 @@ class Job:
         margin: tuple[float, float] | None = None,
         lines: int | None = None,
     ) -> _results.MeasuringGrid:
-        """Nominal points of a flank: `rows` from root to tip, `columns` along the tooth, without `margin` at each end (shares)."""
+        """Nominal points of a flank: `rows` from root to tip, `columns` along the tooth, without `margin` at each end (shares).
+
+        >>> import flank
+        >>> flank.load("specs/bevel/pinion_19x62.chain").measuring_grid("concave").points.labels
+        ('root -> tip', 'toe -> heel')
+        """
         options = {
             "surface": [self[surface].name],
             "rows": count(rows, "rows", 2, 1000),
@@ -390,6 +411,12 @@ class Job:
         """How far measured points lie off a surface, um along the normal, plus is material.
 
         `measured` is a file, or positions (rows, columns, 3), mm, from root to tip and along the tooth, NaN where nothing was measured.
+
+        >>> import flank
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+        >>> made = job.with_values({"m.radial_distance": "98.0 mm"})
+        >>> job.inspect("concave", made.measuring_grid("concave", 5, 9).xyz).um.shape
+        (5, 9)
         """
         options = {
             "rows": count(rows, "rows", 1, 10_000),
@@ -434,6 +461,13 @@ class Job:
         `measured` is a file, positions as for `inspect`, or what `inspect` gave. `vary` names the settings; without it some are chosen.
         `also` is a further surface that was measured in the same position. `ease_off` has `crowning`, `slope` (each from root to tip, along
         the tooth) and `bias`, um, from the surface `from_`. `keep` names surfaces that stay, in the `middle` or along their `line`.
+
+        >>> import flank
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+        >>> made = job.with_values({"m.radial_distance": "98.0 mm"})
+        >>> fit = job.fit("concave", made.measuring_grid("concave", 5, 9).xyz, vary="m.radial_distance")
+        >>> round(fit["identification"]["settings"][0]["new"], 4)
+        98.0
         """
         base: dict[str, Any] = {
             "vary": names(vary),
@@ -469,7 +503,12 @@ class Job:
     def synthesis(
         self, want: str, *, vary: str | Iterable[str] = (), round: Mapping[str, Quantity] | None = None
     ) -> _results.Synthesis:
-        """The settings with which a contact is where the job wants it (`want NAME in CONTACT = vertex(…)`)."""
+        """The settings with which a contact is where the job wants it (`want NAME in CONTACT = vertex(…)`).
+
+        >>> import flank
+        >>> flank.load("specs/pairs/bevel_19x62.chain").synthesis("centred")["surface"]
+        'gear_convex'
+        """
         options = {"vary": names(vary), "round": amounts(round or {}, "round")}
         native = self._native
         answer = _flank.synthesis(native, want, options)
@@ -520,7 +559,12 @@ class Job:
         vhj: bool = False,
         certify: bool = False,
     ) -> dict[str, _results.Contact]:
-        """All contacts of the job, or one, by their names. Arguments as for `contact`."""
+        """All contacts of the job, or one, by their names. Arguments as for `contact`.
+
+        >>> import flank
+        >>> list(flank.load("specs/pairs/bevel_19x62.chain").contacts())
+        ['drive_side']
+        """
         options = {
             "contact": name,
             "errors": _errors(errors),
@@ -552,6 +596,11 @@ class Job:
         `errors` are mounting errors by axis: `{"m.E": "0.1 mm", "m.S": "2 arcmin"}`; `positions` are those over a pitch; `compound` is the
         thickness of the marking compound. `sensitivity` adds what each axis and setting does, `vhj` the mountings that bring the contact to
         toe, middle and heel, `certify` proofs.
+
+        >>> import flank
+        >>> contact = flank.load("specs/pairs/bevel_19x62.chain").contact("drive_side", errors={"m.E": "0.1 mm"})
+        >>> round(contact["error"]["peak_to_peak"], 2)
+        140.08
         """
         found = self.contacts(
             name,
@@ -575,7 +624,12 @@ class Job:
         spaces: int = 1,
         verify: Path_ | None = None,
     ) -> dict[str, _results.Milling]:
-        """All millings of the job, or one, by their names. Arguments as for `mill`."""
+        """All millings of the job, or one, by their names. Arguments as for `mill`.
+
+        >>> import flank
+        >>> list(flank.load("specs/bevel/milled_pinion.chain").millings())
+        ['finish', 'other']
+        """
         options = {
             "milling": name,
             "tool_centre_control": tool_centre_control,
@@ -605,6 +659,10 @@ class Job:
         """Passes of an end mill over a surface on a five-axis machine: ridges, blocks, axes; programs by `write`.
 
         `feed` is mm/min, `spindle` 1/min; `verify` is a program that is read back.
+
+        >>> import flank
+        >>> flank.load("specs/bevel/milled_pinion.chain").mill("finish")["passes"]
+        57
         """
         found = self.millings(
             name,
@@ -635,6 +693,11 @@ class Job:
         `tolerance` takes the smallest order of polynomials that keeps the flank so near. `fit` names settings that are looked for.
 
         Raises `ConversionError` if the machine has not what it takes.
+
+        >>> import flank
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+        >>> job.convert("specs/machines/free_form.chain", positions=11).axes.shape
+        (11, 6)
         """
         options = {
             "surface": surface,
@@ -760,7 +823,7 @@ def _parameter(
     return Parameter(name, value, unit, ends, step, doc, given_by, is_count, is_error)
 
 
-def _single(found: dict[str, Any], what: str) -> Any:
+def _single(found: dict[str, R], what: str) -> R:
     if len(found) != 1:
         raise InputError(f"the job has several: name one {what} of {', '.join(found)}")
     return next(iter(found.values()))

@@ -13,10 +13,10 @@ from flank import _display
 from flank._errors import InputError
 
 if TYPE_CHECKING:
-    import pandas
-    import polars
-    import pyvista
-    import xarray
+    import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import polars  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import pyvista  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import xarray  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     from flank._flank import Grid
 
@@ -78,17 +78,20 @@ class SurfacePoints:
     @property
     def xyz(self) -> Floats:
         """Positions, mm: (rows, columns, 3)."""
-        return self._there(self._grid.xyz)
+        xyz: Floats = self._there(self._grid.xyz)
+        return xyz
 
     @property
     def normal(self) -> Floats:
         """Unit normals out of the material: (rows, columns, 3)."""
-        return self._there(self._grid.normal)
+        normal: Floats = self._there(self._grid.normal)
+        return normal
 
     @property
     def residual(self) -> Floats:
         """The largest absolute residual: (rows, columns)."""
-        return self._there(self._grid.residual)
+        residual: Floats = self._there(self._grid.residual)
+        return residual
 
     @property
     def status(self) -> npt.NDArray[np.str_]:

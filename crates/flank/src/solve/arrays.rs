@@ -127,8 +127,9 @@ impl PointGrid {
     }
 
     fn place(&mut self, position: [f64; 3], normal: [f64; 3], unknowns: &[f64]) {
-        self.positions.push(position);
-        self.normals.push(normal);
+        // no negative zero, as in files
+        self.positions.push(position.map(|x| x + 0.0));
+        self.normals.push(normal.map(|x| x + 0.0));
         self.unknowns.extend_from_slice(unknowns);
         self.unknowns.resize(self.positions.len() * self.unknown_names.len(), f64::NAN);
     }
