@@ -13,6 +13,10 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _flank {
+    /// Of the program.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+
     #[pymodule_export]
     use crate::answer::Answer;
     #[pymodule_export]

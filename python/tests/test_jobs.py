@@ -63,30 +63,36 @@ def test_all_findings_come_at_once():
 
 
 def _wrong_texts():
-    return list(_wrong_texts_of_pages())
-
-
-def _wrong_texts_of_pages():
-    """Of each page about an error its first text, which a test of the project holds to have it."""
+    """Of each page about an error its wrong text, which a test of the project holds to have it."""
     for page in sorted((ROOT / "docs/errors").glob("E*.md")):
-        blocks = re.findall(r"```chain[^\n]*\n(.*?)```", page.read_text(), re.S)
-        if blocks:
-            yield pytest.param(page.stem, blocks[0], id=page.stem)
+        kind, text = re.search(r"```chain,wrong([^\n]*)\n(.*?)```", page.read_text(), re.S).groups()
+        yield pytest.param(page.stem, text, "files" in kind, id=page.stem)
 
 
-@pytest.mark.parametrize(("code", "text"), _wrong_texts())
-def test_every_code_is_raised(code, text, tmp_path):
-    found = flank.check(text=text)["files"][0]["findings"]
-    codes = {finding["code"] for finding in found}
-    if code not in codes:
-        pytest.skip(f"the first text of the page needs files, or has {codes}")
+def _files(text, is_several, folder):
+    """The specs of a block; each of several files begins with its name."""
+    parts = re.split(r"^// (\S+\.(?:chain|csv))\n", text, flags=re.M)[1:] if is_several else ["example.chain", text]
+    for name, content in zip(parts[::2], parts[1::2]):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content)
+    return [folder / name for name in parts[::2] if name.endswith(".chain")]
+
+
+@pytest.mark.parametrize(("code", "text", "is_several"), list(_wrong_texts()))
+def test_every_code_is_raised(code, text, is_several, tmp_path):
+    specs = _files(text, is_several, tmp_path)
     if code.startswith("E06"):
         # what a spec expects is looked at by `check` and `test` alone
-        assert flank.loads(text)
+        found = {finding["code"] for spec in flank.check(*specs)["files"] for finding in spec["findings"]}
+        assert code in found and [flank.load(spec) for spec in specs]
         return
-    with pytest.raises(flank.SpecError) as caught:
-        flank.loads(text)
-    assert code in {error["code"] for error in caught.value.errors()}
+    codes = set()
+    for spec in specs:
+        try:
+            flank.load(spec)
+        except flank.SpecError as error:
+            codes |= {finding["code"] for finding in error.errors()}
+    assert code in codes
 
 
 def test_jobs_are_equal_by_text_and_values(job):

@@ -14,7 +14,6 @@ from __future__ import annotations
 import json as _json
 import os as _os
 from collections.abc import Iterable as _Iterable
-from importlib.metadata import version as _version
 from typing import Any as _Any
 
 from flank import _flank, _results
@@ -94,7 +93,7 @@ __all__ = [
     "threads",
 ]
 
-__version__ = _version("flank")
+__version__ = _flank.VERSION
 
 _Path = str | _os.PathLike[str]
 

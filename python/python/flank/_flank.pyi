@@ -3,6 +3,8 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
+VERSION: str
+
 _Options = dict[str, Any]
 _Floats = npt.NDArray[np.float64]
 
