@@ -135,10 +135,11 @@ pub use solve::body::result::{
 pub use solve::body::solid;
 pub use solve::result::{
     BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,
-    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, Status, SurfaceResult, ToolPositions,
+    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, SurfaceResult, ToolPositions,
     UsualChange,
 };
 pub use solve::solve;
+pub use solve::status::Status;
 pub use testing::result::{TestResult, TestedExpectation, TestedItem, TestedSnapshot, TestedSpec};
 pub use testing::{TestRequest, accept_snapshot, find_specs, junit, test, test_spec};
 

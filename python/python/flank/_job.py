@@ -167,7 +167,7 @@ class Job:
 
     @property
     def hash(self) -> str:
-        """SHA-256 of all its texts, as files say it."""
+        """SHA-256 of all its texts and of the values that were set from outside, as files say it."""
         return self._native.hash
 
     @property

@@ -157,7 +157,7 @@ impl Job {
         self.project.file()
     }
 
-    /// SHA-256 of all its texts, as files say it.
+    /// SHA-256 of all its texts and of the values that were set from outside, as files say it.
     pub fn hash(&self) -> &str {
         &self.hash
     }

@@ -5,7 +5,7 @@ use flank_export::{Field, Patch, Unit, Values};
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::quantity::{NamedUnit, UnitSymbol};
-use crate::solve::result::Status;
+use crate::solve::status::Status;
 
 /// The points of a surface, a measuring grid or a line in arrays, row by row: one array for each thing that is known of them. What is not
 /// known of a point is NaN.

@@ -23,6 +23,7 @@ pub(crate) mod secondary;
 pub(crate) mod sensitivity;
 pub(crate) mod solved;
 pub(crate) mod starts;
+pub(crate) mod status;
 pub(crate) mod step;
 pub(crate) mod stream;
 pub(crate) mod summary;
