@@ -3,12 +3,13 @@
 import doctest
 import importlib
 import inspect
+from pathlib import Path
 
 import pytest
 
 import flank
 
-MODULES = ["flank", *(f"flank.{name}" for name in ("_display", "_errors", "_job", "_points", "_quantities", "_results"))]
+MODULES = ["flank", *(f"flank.{path.stem}" for path in sorted(Path(flank.__file__).parent.glob("_[a-z]*.py")))]
 
 
 @pytest.mark.parametrize("module", MODULES)

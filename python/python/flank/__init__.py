@@ -16,7 +16,7 @@ import os as _os
 from collections.abc import Iterable as _Iterable
 from typing import Any as _Any
 
-from flank import _flank, _results
+from flank import _flank
 from flank._errors import (
     ConversionError,
     Error,
@@ -26,26 +26,20 @@ from flank._errors import (
     NotSolved,
     SpecError,
 )
-from flank._job import Job, Parameter, Parameters, Surface
+from flank._job import Job, Surface
+from flank._machines import Bricks, Derivation, Milling, Motion, Settings, Solids
+from flank._pages import Page, Plot
+from flank._parameters import Parameter, Parameters
 from flank._points import SurfacePoints
 from flank._quantities import count as _count
-from flank._quantities import names as _names
 from flank._results import (
-    Bricks,
     Contact,
-    Derivation,
     Deviation,
     Fit,
     MeasuringGrid,
-    Milling,
-    Motion,
-    Page,
-    Plot,
     Points,
     Result,
     Sensitivity,
-    Settings,
-    Solids,
     Synthesis,
     Tolerance,
 )

@@ -5,83 +5,28 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from flank import _display, _flank, _results
+from flank import _display, _flank, _machines, _pages, _results
+from flank._arguments import (
+    Measured,
+    Path_,
+    chosen,
+    correlation,
+    kept,
+    margin_shares,
+    mounting_errors,
+    parabola,
+    single,
+)
 from flank._errors import InputError
-from flank._points import Floats
-from flank._quantities import Quantity, amounts, count, errors, length, names, number, text
-
-Path_ = str | os.PathLike[str]
-R = TypeVar("R")
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """A parameter or a setting of a job."""
-
-    name: str
-    value: float
-    """In its unit."""
-    unit: str
-    """`mm`, `deg`, products of mm and rad; empty for a plain number."""
-    range: tuple[float, float] | None
-    """Between which values it must lie, if that is stated."""
-    step: float | None
-    """What it is set in multiples of, if that is stated."""
-    doc: str
-    given_by: str
-    """`the job`, `the caller`, or the machine or tool whose own value it is."""
-    is_count: bool
-    is_error: bool
-    """Whether it says how a machine differs from the nominal one, in which it is zero."""
-
-    def __repr__(self) -> str:
-        return f"Parameter({self.shown}, given by {self.given_by})"
-
-    @property
-    def shown(self) -> str:
-        """The value with its unit."""
-        value = int(self.value) if self.is_count else self.value
-        return f"{value!r} {self.unit}".strip()
-
-
-class Parameters(Mapping[str, Parameter]):
-    """The parameters and settings of a job by their names, each after those that it depends on."""
-
-    def __init__(self, all_of_them: Iterable[Parameter]) -> None:
-        self._all = {of.name: of for of in all_of_them}
-
-    def __getitem__(self, name: str) -> Parameter:
-        if name in self._all:
-            return self._all[name]
-        raise KeyError(f"there is no parameter `{name}`; there is: {', '.join(self._all)}")
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._all)
-
-    def __len__(self) -> int:
-        return len(self._all)
-
-    def _rows(self) -> list[list[str]]:
-        def row(of: Parameter) -> list[str]:
-            ends = "" if of.range is None else " .. ".join(f"{end:g}" for end in of.range)
-            return [of.name, of.shown, ends, of.given_by, " ".join(of.doc.split())]
-
-        return [row(of) for of in self._all.values()]
-
-    def __repr__(self) -> str:
-        return _display.aligned(self._rows())
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        head = ["name", "value", "range", "given by", "meaning"]
-        return {"text/plain": repr(self), "text/html": _display.table(self._rows(), head)}
+from flank._parameters import Parameters, parameter
+from flank._quantities import Quantity, amounts, count, length, names, number, text
 
 
 class Surface:
@@ -185,7 +130,7 @@ class Job:
     def parameters(self) -> Parameters:
         """Parameters and settings by their names."""
         if self._parameters is None:
-            self._parameters = Parameters(_parameter(*of) for of in self._native.parameters())
+            self._parameters = Parameters(parameter(*of) for of in self._native.parameters())
         return self._parameters
 
     @property
@@ -261,7 +206,7 @@ class Job:
         deviation: Quantity = "10 um",
         density: float = 7850.0,
         ball: Quantity | None = None,
-    ) -> _results.Solids:
+    ) -> _machines.Solids:
         """Closed bodies: of the whole `gear`, one `tooth` or one `space`.
 
         `deviation` is how far the middles of a mesh's edges may lie off the exact surfaces, `density` is kg/m³, `ball` the diameter of
@@ -278,11 +223,11 @@ class Job:
             "density": number(density, "density", 0.0),
             "ball": length(ball, "ball"),
         }
-        return _results.Solids(*self._asked(_flank.solid, options))
+        return _machines.Solids(*self._asked(_flank.solid, options))
 
     def mesh(
         self, teeth: int | None = 1, *, elements: tuple[int, int, int] = (8, 12, 6), order: int = 1
-    ) -> _results.Bricks:
+    ) -> _machines.Bricks:
         """Bodies as bricks for finite elements: some neighbouring teeth, all of them with `teeth=None`.
 
         `elements` are bricks up a flank, along the tooth, and from flank to flank; `order` is 1 or 2.
@@ -298,7 +243,7 @@ class Job:
             "elements": sides,
             "order": str(order),
         }
-        return _results.Bricks(*self._asked(_flank.mesh, options))
+        return _machines.Bricks(*self._asked(_flank.mesh, options))
 
     def plot(
         self,
@@ -314,7 +259,7 @@ class Job:
         size: tuple[int, int] = (1200, 900),
         formats: str | Iterable[str] = ("svg", "png"),
         no_origin: bool = False,
-    ) -> _results.Plot:
+    ) -> _pages.Plot:
         """Draws pictures: gear, surface, topography, traces, curvature, sensitivity, deviation, left, residual, contact-lines, section,
         machine, motion, pattern, error, gap, path. Without a kind, the first three that fit.
 
@@ -329,7 +274,7 @@ class Job:
             "reference": reference,
             "of": names(of),
             "contact": names(contact),
-            "errors": _errors(errors),
+            "errors": mounting_errors(errors),
             "positions": count(positions, "positions", 4, 10_000),
             "compound": length(compound, "compound"),
             "size": tuple(sides),
@@ -339,9 +284,9 @@ class Job:
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             answer, again = self._asked(_flank.plot, {**options, "out": folder})
             files = {file.name: file.read_bytes() for file in sorted(Path(folder).iterdir())}
-        return _results.Plot(answer, again, folder, files)
+        return _pages.Plot(answer, again, folder, files)
 
-    def view(self, height: int = 600) -> _results.Page:
+    def view(self, height: int = 600) -> _pages.Page:
         """A page of the job in 3-D with sliders. A notebook shows it in a frame of this height; nothing is loaded from elsewhere.
 
         >>> import flank
@@ -357,7 +302,7 @@ class Job:
         step: Quantity | None = None,
         date: str | None = None,
         height: int = 800,
-    ) -> _results.Page:
+    ) -> _pages.Page:
         """A page about the job to attach to an order. Its document has all numbers.
 
         >>> import flank
@@ -368,11 +313,11 @@ class Job:
         options = {"certify": certify, "step": length(step, "step"), "date": date, "format": ["html"]}
         return self._page(_flank.report, options, height)
 
-    def _page(self, operation: Operation, options: dict[str, Any], height: int) -> _results.Page:
+    def _page(self, operation: Operation, options: dict[str, Any], height: int) -> _pages.Page:
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             answer, again = self._asked(operation, {**options, "out": folder})
             page = next((file.read_text() for file in Path(folder).glob("*.html")), "")
-        return _results.Page(answer, again, folder, page, height)
+        return _pages.Page(answer, again, folder, page, height)
 
     def measuring_grid(
         self,
@@ -393,7 +338,7 @@ class Job:
             "surface": [self[surface].name],
             "rows": count(rows, "rows", 2, 1000),
             "columns": count(columns, "columns", 2, 1000),
-            "margin": _margin(margin),
+            "margin": margin_shares(margin),
             "lines": count(lines, "lines", 2, 1000),
         }
         return _results.MeasuringGrid(*self._asked(_flank.measure, options))
@@ -421,14 +366,14 @@ class Job:
         options = {
             "rows": count(rows, "rows", 1, 10_000),
             "columns": count(columns, "columns", 1, 10_000),
-            "margin": _margin(margin),
+            "margin": margin_shares(margin),
             "no_align": not align,
         }
-        with _Measured(measured) as (file, inside):
+        with Measured(measured) as (file, inside):
             native, own = self._native, self[surface].name
 
             def asked(more: dict[str, Any]) -> _flank.Answer:
-                with _Measured(measured) as (again, _):
+                with Measured(measured) as (again, _):
                     return _flank.deviation(native, own, {**options, "measured": again, **more})
 
             answer = _flank.deviation(native, own, {**options, "measured": file})
@@ -473,27 +418,27 @@ class Job:
             "vary": names(vary),
             "rows": count(rows, "rows", 1, 10_000),
             "columns": count(columns, "columns", 1, 10_000),
-            "margin": _margin(margin),
+            "margin": margin_shares(margin),
             "order": count(order, "order", 1, 2),
             "noise": length(noise, "noise"),
             "round": amounts(round or {}, "round"),
-            "keep": _kept(keep),
+            "keep": kept(keep),
             "as_it_lies": as_it_lies,
-            "is_thickness_free": _chosen(thickness, "thickness", ("fitted", "free")) == "free",
+            "is_thickness_free": chosen(thickness, "thickness", ("fitted", "free")) == "free",
             "share": number(share, "share", 0.0, 1.0),
             "within": length(within, "within"),
             "resolution": length(resolution, "resolution"),
         }
         other = self._reference(from_, base, "from") if from_ is not None else None
         if isinstance(ease_off, Mapping):
-            base["ease_off"] = _parabola(ease_off)
+            base["ease_off"] = parabola(ease_off)
         elif ease_off is not None:
             base["ease_off_table"] = os.fspath(ease_off)
         native, own = self._native, self[surface].name
         of = measured._measured if isinstance(measured, _results.Deviation) else measured
 
         def asked(more: dict[str, Any]) -> tuple[_flank.Answer, str]:
-            with _Measured(of) as (file, inside), _Measured(None if also is None else also[1]) as (second, _):
+            with Measured(of) as (file, inside), Measured(None if also is None else also[1]) as (second, _):
                 files = {"measured": file, "and": None if also is None else (also[0], second)}
                 return _flank.fit(native, own, {**base, **files, **more}, other), inside
 
@@ -535,7 +480,7 @@ class Job:
         >>> sorted(found.standard_deviations)[:3]
         ['bias', 'crowning_lengthwise', 'crowning_profilewise']
         """
-        pairs = [((a, b), _correlation(of)) for (a, b), of in (correlations or {}).items()]
+        pairs = [((a, b), correlation(of)) for (a, b), of in (correlations or {}).items()]
         options = {
             "scatter": amounts(scatter or {}, "scatter"),
             "correlations": pairs,
@@ -567,7 +512,7 @@ class Job:
         """
         options = {
             "contact": name,
-            "errors": _errors(errors),
+            "errors": mounting_errors(errors),
             "positions": count(positions, "positions", 4, 10_000),
             "compound": length(compound, "compound"),
             "sensitivity": sensitivity,
@@ -611,7 +556,7 @@ class Job:
             vhj=vhj,
             certify=certify,
         )
-        return _single(found, "contact")
+        return single(found, "contact")
 
     def millings(
         self,
@@ -623,7 +568,7 @@ class Job:
         approach: Quantity = "5 mm",
         spaces: int = 1,
         verify: Path_ | None = None,
-    ) -> dict[str, _results.Milling]:
+    ) -> dict[str, _machines.Milling]:
         """All millings of the job, or one, by their names. Arguments as for `mill`.
 
         >>> import flank
@@ -641,7 +586,7 @@ class Job:
         }
         native = self._native
         return {
-            json.loads(answer.document())["milling"]: _results.Milling(answer, _place(_flank.mill, native, options, k))
+            json.loads(answer.document())["milling"]: _machines.Milling(answer, _place(_flank.mill, native, options, k))
             for k, answer in enumerate(_flank.mill(native, options))
         }
 
@@ -655,7 +600,7 @@ class Job:
         approach: Quantity = "5 mm",
         spaces: int = 1,
         verify: Path_ | None = None,
-    ) -> _results.Milling:
+    ) -> _machines.Milling:
         """Passes of an end mill over a surface on a five-axis machine: ridges, blocks, axes; programs by `write`.
 
         `feed` is mm/min, `spindle` 1/min; `verify` is a program that is read back.
@@ -673,7 +618,7 @@ class Job:
             spaces=spaces,
             verify=verify,
         )
-        return _single(found, "milling")
+        return single(found, "milling")
 
     def convert(
         self,
@@ -687,7 +632,7 @@ class Job:
         positions: int = 101,
         order: int | None = None,
         tolerance: Quantity | None = None,
-    ) -> _results.Motion | _results.Settings:
+    ) -> _machines.Motion | _machines.Settings:
         """Carries the job over to another machine: positions of its axes and polynomials, or settings that do the same.
 
         `tolerance` takes the smallest order of polynomials that keeps the flank so near. `fit` names settings that are looked for.
@@ -716,7 +661,7 @@ class Job:
         def again(more: dict[str, Any]) -> _flank.Answer:
             return _flank.convert(native, target, {**options, **more})
 
-        return (_results.Motion if is_motion else _results.Settings)(answer, again)
+        return (_machines.Motion if is_motion else _machines.Settings)(answer, again)
 
     def derive(
         self,
@@ -725,7 +670,7 @@ class Job:
         cost: bool = False,
         to: Path_ | None = None,
         surface: str | None = None,
-    ) -> _results.Derivation:
+    ) -> _machines.Derivation:
         """The derivation, stage by stage, as text or LaTeX; the axes of the machine in `to` in closed form; or how many operations a point
         takes (`cost`).
 
@@ -736,7 +681,7 @@ class Job:
         options = {"latex": latex, "cost": cost, "to": None if to is None else os.fspath(to), "surface": surface}
         native = self._native
         answer = _flank.derive(native, options)
-        return _results.Derivation(answer, lambda more: _flank.derive(native, {**options, **more}))
+        return _machines.Derivation(answer, lambda more: _flank.derive(native, {**options, **more}))
 
     def _asked(self, operation: Operation, options: dict[str, Any]) -> tuple[_flank.Answer, _results.Again]:
         native = self._native
@@ -806,102 +751,3 @@ def _restored(file: str, texts: list[tuple[str, str]], name: str, overrides: lis
 
 def _place(operation: Operation, native: _flank.Job, options: dict[str, Any], place: int) -> _results.Again:
     return lambda more: operation(native, {**options, **more})[place]
-
-
-def _parameter(
-    name: str,
-    value: float,
-    unit: str,
-    ends: tuple[float, float] | None,
-    step: float | None,
-    doc: str,
-    giver: str | None,
-    is_count: bool,
-    is_error: bool,
-) -> Parameter:
-    given_by = "the caller" if giver is None else giver or "the job"
-    return Parameter(name, value, unit, ends, step, doc, given_by, is_count, is_error)
-
-
-def _single(found: dict[str, R], what: str) -> R:
-    if len(found) != 1:
-        raise InputError(f"the job has several: name one {what} of {', '.join(found)}")
-    return next(iter(found.values()))
-
-
-def _margin(margin: tuple[float, float] | None) -> list[float] | None:
-    if margin is None:
-        return None
-    shares = [float(share) for share in margin]
-    if len(shares) != 2 or not all(0 <= share < 0.5 for share in shares):
-        raise InputError(f"`margin` is {margin!r}: write two shares from 0 up to 0.5, from root to tip and along the tooth")
-    return shares
-
-
-def _errors(values: Mapping[str, Quantity] | None) -> list[tuple[str, str, float]]:
-    return errors(values or {}, "errors")
-
-
-def _chosen(value: str, what: str, known: tuple[str, ...]) -> str:
-    if value not in known:
-        raise InputError(f"`{what}` is {value!r}: it is {' or '.join(known)}")
-    return value
-
-
-def _correlation(value: float) -> float:
-    if not -1 < value < 1:
-        raise InputError(f"a correlation is {value!r}: it is above -1 and below 1")
-    return float(value)
-
-
-def _kept(keep: Mapping[str, str] | Iterable[str]) -> list[tuple[str, bool]]:
-    if isinstance(keep, Mapping):
-        return [(name, _chosen(place, "keep", ("middle", "line")) == "line") for name, place in keep.items()]
-    return [(name, False) for name in names(keep)]
-
-
-def _parabola(wish: Mapping[str, float | tuple[float, float]]) -> list[float]:
-    unknown = set(wish) - {"slope", "crowning", "bias"}
-    if unknown:
-        raise InputError(f"`ease_off` has `{sorted(unknown)[0]}`: it has slope, crowning and bias, um")
-
-    def both(key: str) -> list[float]:
-        value = wish.get(key, (0.0, 0.0))
-        if not isinstance(value, tuple | list) or len(value) != 2:
-            raise InputError(f"`ease_off` {key} is {value!r}: write two numbers, from root to tip and along the tooth, um")
-        return [float(of) for of in value]
-
-    bias = wish.get("bias", 0.0)
-    if isinstance(bias, tuple | list):
-        raise InputError(f"`ease_off` bias is {bias!r}: write one number, um")
-    return [*both("slope"), *both("crowning"), float(bias)]
-
-
-class _Measured:
-    """A file of measured points: as it is, or made of positions for as long as it is needed."""
-
-    def __init__(self, of: Path_ | npt.ArrayLike | None) -> None:
-        self._of = of
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
-
-    def __enter__(self) -> tuple[str | None, str]:
-        if self._of is None:
-            return None, ""
-        if isinstance(self._of, str | os.PathLike):
-            return os.fspath(self._of), ""
-        xyz: Floats = np.asarray(self._of, dtype=float)
-        if xyz.ndim != 3 or xyz.shape[2] != 3:
-            raise InputError(f"measured positions are an array of shape (rows, columns, 3), mm: not {xyz.shape}")
-        self._folder = tempfile.TemporaryDirectory(prefix="flank-")
-        file = Path(self._folder.name) / "measured.csv"
-        lines = [
-            f"{i + 1},{j + 1},{','.join(repr(float(x)) for x in xyz[i, j])}"
-            for i, j in np.ndindex(xyz.shape[:2])
-            if np.isfinite(xyz[i, j]).all()
-        ]
-        file.write_text("\n".join(["row,column,x,y,z", *lines, ""]))
-        return str(file), self._folder.name
-
-    def __exit__(self, *_: object) -> None:
-        if self._folder is not None:
-            self._folder.cleanup()

@@ -6,7 +6,7 @@ import copy
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -29,7 +29,7 @@ Path_ = str | os.PathLike[str]
 Again = Callable[[dict[str, Any]], "Answer"]
 """Asks for a result again, with further options."""
 
-_PICTURES = {"png", "svg"}
+PICTURES = {"png", "svg"}
 
 
 class Result:
@@ -189,9 +189,9 @@ class Points(Result):
         together. The job is solved again for that; the points are the same bits.
         """
         wanted = names(formats)
-        points = [name for name in wanted if name not in _PICTURES | {"step"}]
+        points = [name for name in wanted if name not in PICTURES | {"step"}]
         faces = length(step, "step") if "step" in wanted else None
-        return self._write(folder, format=points, step=faces, picture=bool(_PICTURES & set(wanted)), arrays=False)
+        return self._write(folder, format=points, step=faces, picture=bool(PICTURES & set(wanted)), arrays=False)
 
     def _picture(self) -> str | None:
         sampled = [grid for grid in self._grids.values() if min(grid.counts) > 1]
@@ -283,8 +283,8 @@ class Deviation(Result):
     def write(self, folder: Path_, formats: str | Iterable[str] = ("csv",)) -> list[str]:
         """Writes points with their deviation (csv, json, parquet, stl, obj, 3mf, vtp) and the map (png and svg, together)."""
         wanted = names(formats)
-        points = [name for name in wanted if name not in _PICTURES]
-        return self._write(folder, format=points, picture=bool(_PICTURES & set(wanted)))
+        points = [name for name in wanted if name not in PICTURES]
+        return self._write(folder, format=points, picture=bool(PICTURES & set(wanted)))
 
     def _picture(self) -> str | None:
         document = self._read()
@@ -359,15 +359,15 @@ class MeasuringGrid(Result):
             raise InputError(f"`{target}` ends in neither .csv nor .json")
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             file = Path(self._write(folder, format=[kind])[0])
-            _put(target, file.read_bytes())
+            put(target, file.read_bytes())
         return str(target)
 
     def _picture(self) -> str | None:
         return _display.outline([self.points])
 
 
-def _put(path: Path, content: bytes) -> None:
-    """A file that is whole or not there."""
+def put(path: Path, content: bytes) -> None:
+    """Writes a file that is whole or not there."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -511,204 +511,9 @@ class Contact(Result):
     def write(self, folder: Path_, formats: str | Iterable[str] = ("csv",)) -> list[str]:
         """Writes gaps and paths (csv, json, parquet, …) and a picture (png and svg, together)."""
         wanted = names(formats)
-        points = [name for name in wanted if name not in _PICTURES]
-        return self._write(folder, format=points, picture=bool(_PICTURES & set(wanted)))
+        points = [name for name in wanted if name not in PICTURES]
+        return self._write(folder, format=points, picture=bool(PICTURES & set(wanted)))
 
     def _picture(self) -> str | None:
         grid = next(iter(self.flanks.values()), None)
         return None if grid is None else _display.heights(grid["gap"], "um", grid.labels, f"gap on {grid.name}")
-
-
-class Motion(Result):
-    """How the axes of another machine move for the same work.
-
-    >>> import flank
-    >>> job = flank.load("specs/bevel/pinion_19x62.chain")
-    >>> motion = job.convert("specs/machines/free_form.chain", positions=11)
-    >>> motion.axes.shape, motion.names
-    ((11, 6), ['X', 'Y', 'Z', 'A', 'B', 'C'])
-    """
-
-    @property
-    def names(self) -> list[str]:
-        """The axes, in the order of `axes`."""
-        return [one["name"] for one in self._read()["axes"]]
-
-    @property
-    def units(self) -> list[str]:
-        """Their units."""
-        return [one["unit"] for one in self._read()["axes"]]
-
-    @property
-    def axes(self) -> Floats:
-        """Positions of the axes: (positions, axes), NaN where no posture was found."""
-        return np.array([one["axes"] for one in self._read()["positions"]], dtype=float)
-
-    @property
-    def motions(self) -> Floats:
-        """Values of the job's motions at these: (positions, motions)."""
-        return np.array([one["motions"] for one in self._read()["positions"]], dtype=float)
-
-    @property
-    def polynomials(self) -> dict[str, Floats]:
-        """Of each axis the factors of the powers of the motion less `document["polynomials"]["reference"]`, constant first."""
-        found = self._read()["polynomials"]
-        return {} if found is None else {name: np.array(factors) for name, factors in found["coefficients"].items()}
-
-    def nc(self, control: str, time: float) -> str:
-        """A program for a control (fanuc, siemens, linuxcnc, heidenhain) that runs the motion in a time, s."""
-        return self._text(nc=[control], time=float(time))
-
-    def function(self, language: str, form: str = "polynomials") -> str:
-        """A function in c, rust or javascript that computes the axes, by `polynomials` or in `exact` closed form."""
-        return self._text(emit=[language], emit_form=[form])
-
-    def _text(self, **options: Any) -> str:
-        with tempfile.TemporaryDirectory(prefix="flank-") as folder:
-            files = self._write(folder, **options)
-            if not files:
-                self._again({**options}).document()
-                raise NotSolved(str(self._answer.text()), json.dumps(self.not_done))
-            return Path(files[0]).read_text()
-
-    def write(
-        self,
-        folder: Path_,
-        formats: str | Iterable[str] = ("csv",),
-        *,
-        nc: str | Iterable[str] = (),
-        time: float | None = None,
-        emit: str | Iterable[str] = (),
-        emit_form: str | Iterable[str] = ("polynomials",),
-    ) -> list[str]:
-        """Writes positions and polynomials (csv, json), programs and functions."""
-        options: dict[str, Any] = {"format": names(formats) or None}
-        if names(nc):
-            options |= {"nc": names(nc), "time": time}
-        if names(emit):
-            options |= {"emit": names(emit), "emit_form": names(emit_form)}
-        return self._write(folder, **options)
-
-
-class Settings(Result):
-    """Settings of another machine with which it does the same."""
-
-    @property
-    def values(self) -> dict[str, str]:
-        """The settings with their units, as `with_values` takes them."""
-        return {one["name"]: f"{one['value']!r} {one['unit']}".strip() for one in self._read()["settings"]}
-
-
-class Milling(Result):
-    """Passes of a cutter over a surface, what they leave, and what a machine's axes do."""
-
-    def write(
-        self, folder: Path_, formats: str | Iterable[str] = ("csv",), *, nc: str | Iterable[str] = ()
-    ) -> list[str]:
-        """Writes cutter locations (csv, apt) and programs (fanuc, siemens, linuxcnc, heidenhain)."""
-        return self._write(folder, format=names(formats), nc=names(nc))
-
-
-class Solids(Result):
-    """Bodies: volume, mass, inertia, what gauges find."""
-
-    @property
-    def solids(self) -> dict[str, dict[str, Any]]:
-        """The numbers of each body by its name."""
-        return {one["name"]: copy.deepcopy(one) for one in self._read()["solids"]}
-
-    def write(self, folder: Path_, formats: str | Iterable[str] = ("step",), *, step: Quantity = "0.1 um") -> list[str]:
-        """Writes closed meshes (stl, obj, 3mf) and smooth bodies (step, `step` near to the exact surfaces)."""
-        wanted = names(formats)
-        faces = length(step, "step") if "step" in wanted else None
-        return self._write(folder, format=[name for name in wanted if name != "step"], step=faces)
-
-
-class Bricks(Result):
-    """Bodies cut into bricks for finite elements."""
-
-    @property
-    def solids(self) -> dict[str, dict[str, Any]]:
-        """The numbers of each body by its name."""
-        return {one["name"]: copy.deepcopy(one) for one in self._read()["solids"]}
-
-    def write(self, folder: Path_, formats: str | Iterable[str] = ("inp",)) -> list[str]:
-        """Writes input of CalculiX and Abaqus (inp) and of ParaView (vtu)."""
-        return self._write(folder, format=names(formats))
-
-
-class Derivation(Result):
-    """What was built from a job, stage by stage."""
-
-    @property
-    def page(self) -> str:
-        """The whole derivation, as text or LaTeX; empty of a table of operations."""
-        jobs = self._read()["jobs"]
-        return "\n".join(one["page"] for one in jobs if "page" in one)
-
-
-class Plot(Result):
-    """A picture, or several.
-
-    >>> import flank
-    >>> picture = flank.load("specs/bevel/pinion_19x62.chain").plot("section")
-    >>> "<svg" in picture.svg, picture.png[1:4]
-    (True, b'PNG')
-    """
-
-    def __init__(self, answer: Answer, again: Again, inside: str, files: Mapping[str, bytes]) -> None:
-        super().__init__(answer, again, inside)
-        self._files = dict(files)
-
-    @property
-    def pictures(self) -> dict[str, dict[str, bytes]]:
-        """Of each kind of picture its `svg` and its `png`."""
-        kinds = [one["what"] for one in self._read()["pictures"]]
-        names_of = {kind: [name for name in self._files if f".{kind}." in name] for kind in kinds}
-        return {kind: {name.rsplit(".", 1)[-1]: self._files[name] for name in found} for kind, found in names_of.items()}
-
-    def _one(self, form: str) -> bytes:
-        pictures = self.pictures
-        if len(pictures) != 1:
-            raise InputError(f"there are {len(pictures)} pictures ({', '.join(pictures)}): take one of `pictures`")
-        return next(iter(pictures.values()))[form]
-
-    @property
-    def svg(self) -> str:
-        """The one picture as SVG."""
-        return self._one("svg").decode()
-
-    @property
-    def png(self) -> bytes:
-        """The one picture as PNG."""
-        return self._one("png")
-
-    def save(self, path: Path_) -> str:
-        """Writes the one picture, SVG or PNG as the path ends, and gives the path."""
-        form = Path(path).suffix.lower().lstrip(".")
-        if form not in _PICTURES:
-            raise InputError(f"`{path}` ends in neither .svg nor .png")
-        _put(Path(path), self._one(form))
-        return str(path)
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        first = next(iter(self.pictures.values()), {})
-        svg = first["svg"].decode() if "svg" in first else None
-        return _display.bundle(str(self), svg, first.get("png"))
-
-
-class Page(Result):
-    """A page of HTML: the job in 3-D, or a report. A notebook shows it in a frame; nothing of it is loaded from elsewhere."""
-
-    def __init__(self, answer: Answer, again: Again, inside: str, html: str, height: int) -> None:
-        super().__init__(answer, again, inside)
-        self.html = html
-        self.height = height
-
-    def save(self, path: Path_) -> str:
-        """Writes the page and gives its path."""
-        _put(Path(path), self.html.encode())
-        return str(path)
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        return {"text/plain": str(self), "text/html": _display.frame(self.html, self.height)}
