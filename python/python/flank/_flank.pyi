@@ -3,6 +3,36 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Answer",
+    "Grid",
+    "Job",
+    "VERSION",
+    "check",
+    "codes",
+    "contact",
+    "convert",
+    "derive",
+    "deviation",
+    "explain",
+    "fit",
+    "layout",
+    "load",
+    "measure",
+    "mesh",
+    "mill",
+    "plot",
+    "report",
+    "schemas",
+    "solid",
+    "solve",
+    "synthesis",
+    "test",
+    "threads",
+    "tolerance",
+    "view",
+]
+
 VERSION: str
 
 _Options = dict[str, Any]

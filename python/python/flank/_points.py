@@ -13,10 +13,10 @@ from flank import _display
 from flank._errors import InputError
 
 if TYPE_CHECKING:
-    import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    import polars  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    import pyvista  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    import xarray  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import pandas as _pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import polars as _polars  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import pyvista as _pyvista  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import xarray as _xarray  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     from flank._flank import Grid
 
@@ -179,18 +179,18 @@ class SurfacePoints:
                 table[name] = values.ravel()
         return table
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> _pandas.DataFrame:
         """The columns as a frame of pandas; units are in `attrs["units"]`."""
-        frame: pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.columns())
+        frame: _pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.columns())
         frame.attrs["units"] = column_units([self])
         return frame
 
-    def to_polars(self) -> polars.DataFrame:
+    def to_polars(self) -> _polars.DataFrame:
         """The columns as a frame of polars."""
-        frame: polars.DataFrame = needed("polars", "to_polars").DataFrame(self.columns())
+        frame: _polars.DataFrame = needed("polars", "to_polars").DataFrame(self.columns())
         return frame
 
-    def to_xarray(self) -> xarray.Dataset:
+    def to_xarray(self) -> _xarray.Dataset:
         """A dataset of xarray over `i` and `j` (and `axis` of vectors), with units as attributes."""
         package = needed("xarray", "to_xarray")
         shape = ("i", "j")
@@ -205,16 +205,16 @@ class SurfacePoints:
             place = (*shape, "axis") if values.ndim == 3 else shape
             variables[name] = (place, values, {"units": units[name], "meaning": self.meanings.get(name, "")})
         attributes = {"surface": self.name, "frame": self.frame, "i": self.labels[0], "j": self.labels[1]}
-        dataset: xarray.Dataset = package.Dataset(variables, {"axis": ["x", "y", "z"]}, attributes)
+        dataset: _xarray.Dataset = package.Dataset(variables, {"axis": ["x", "y", "z"]}, attributes)
         return dataset
 
-    def to_pyvista(self) -> pyvista.StructuredGrid:
+    def to_pyvista(self) -> _pyvista.StructuredGrid:
         """A structured grid of pyvista with normals, status and fields at its points, mm. Points that are not there are NaN."""
         package = needed("pyvista", "to_pyvista")
         rows, columns = self.counts
         # the first index runs fastest
         turned = self.xyz.transpose(1, 0, 2).reshape(-1, 3)
-        grid: pyvista.StructuredGrid = package.StructuredGrid()
+        grid: _pyvista.StructuredGrid = package.StructuredGrid()
         grid.points = turned
         grid.dimensions = (rows, columns, 1)
         grid.points = self.xyz.transpose(1, 0, 2).reshape(-1, 3)

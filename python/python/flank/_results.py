@@ -19,8 +19,8 @@ from flank._points import Floats, SurfacePoints, column_units, joined, needed
 from flank._quantities import Quantity, length, names
 
 if TYPE_CHECKING:
-    import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
-    import polars  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import pandas as _pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    import polars as _polars  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     from flank._flank import Answer
     from flank._job import Job
@@ -171,15 +171,15 @@ class Points(Result):
         """The columns of tables over all surfaces: `surface`, `i`, `j`, `x`, …, `status`, then the fields. What a surface has not is NaN."""
         return joined(self._grids)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> _pandas.DataFrame:
         """The columns as a frame of pandas; units are in `attrs["units"]`."""
-        frame: pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.columns())
+        frame: _pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.columns())
         frame.attrs["units"] = column_units(self.values())
         return frame
 
-    def to_polars(self) -> polars.DataFrame:
+    def to_polars(self) -> _polars.DataFrame:
         """The columns as a frame of polars."""
-        frame: polars.DataFrame = needed("polars", "to_polars").DataFrame(self.columns())
+        frame: _polars.DataFrame = needed("polars", "to_polars").DataFrame(self.columns())
         return frame
 
     def write(self, folder: Path_, formats: str | Iterable[str] = ("csv",), *, step: Quantity = "0.1 um") -> list[str]:
