@@ -39,5 +39,8 @@ def test_each_notebook_is_a_page():
     summary = (ROOT / "docs/SUMMARY.md").read_text()
     for path in NOTEBOOKS:
         kept = ROOT / "docs/notebooks" / f"{path.stem}.md"
-        assert kept.read_text() == page(path), f"{kept.name}: python python/tests/make_pages.py renews it"
+        pictures = []
+        assert kept.read_text() == page(path, pictures), f"{kept.name}: python python/tests/make_pages.py renews it"
+        for number, picture in enumerate(pictures, 1):
+            assert (ROOT / f"docs/images/{path.stem}_{number}.svg").read_text() == picture
         assert re.search(rf"\(notebooks/{path.stem}\.md\)", summary)
