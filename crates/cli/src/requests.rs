@@ -35,6 +35,7 @@ impl Solve {
             geometry: self.geometry,
             sensitivity: self.sensitivity,
             certify: self.certify,
+            arrays: false,
             evaluator: self.evaluator.evaluator(),
         })
     }
@@ -130,6 +131,7 @@ impl Deviation {
             jobs: self.which.jobs()?,
             surface: self.surface.clone(),
             reference: self.reference.clone(),
+            reference_jobs: None,
             measured: self.measured.clone(),
             rows: self.rows,
             columns: self.columns,
@@ -167,6 +169,7 @@ impl Fit {
             ease_off: self.ease_off.as_ref().and_then(parabola),
             ease_off_table: self.ease_off.as_ref().and_then(table),
             from: self.from.clone(),
+            from_jobs: None,
             vary: self.vary.clone(),
             order: self.order,
             noise: self.noise,
@@ -293,6 +296,7 @@ impl Convert {
             tolerance: self.tolerance,
             out: self.out.clone(),
             format: self.format.clone(),
+            no_tables: false,
             nc: self.nc.clone(),
             time: self.time,
             emit: self.emit.clone(),

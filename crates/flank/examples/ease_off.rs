@@ -11,6 +11,7 @@ fn main() -> Result<(), Failure> {
         jobs: JobSelection::all(Project::open("specs/bevel/ease_off_19x62.chain", Arc::new(Disk))),
         surface: "pinion.concave".to_string(),
         reference: Some("conjugate.concave".to_string()),
+        reference_jobs: None,
         measured: None,
         rows: None,
         columns: None,

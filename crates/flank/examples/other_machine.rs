@@ -32,6 +32,7 @@ fn main() -> Result<(), Failure> {
         order: None,
         tolerance: Some(1e-4),
         out: None,
+        no_tables: false,
         format: vec![TableFormat::Csv],
         nc: Vec::new(),
         time: None,

@@ -93,7 +93,7 @@ pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::is_reserved;
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files, ValueSource};
 pub use language::check::{CheckResult, Checked, check};
 pub use language::derive::derive;
 pub use language::derive::result::{
@@ -128,6 +128,7 @@ pub use report::result::{
     InputSource, NotChecked, PassedMotion, ReportResult, ReportedLine, ReportedPicture, ReportedSurface, SampledGrid,
     SolidEdge,
 };
+pub use solve::arrays::{FieldArray, PointGrid};
 pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
 pub use solve::body::mounted::{MountedSolid, Mounting};
@@ -137,10 +138,11 @@ pub use solve::body::result::{
 pub use solve::body::solid;
 pub use solve::result::{
     BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,
-    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, Status, SurfaceResult, ToolPositions,
+    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, SurfaceResult, ToolPositions,
     UsualChange,
 };
 pub use solve::solve;
+pub use solve::status::Status;
 pub use testing::result::{TestResult, TestedExpectation, TestedItem, TestedSnapshot, TestedSpec};
 pub use testing::{TestRequest, accept_snapshot, find_specs, junit, test, test_spec};
 

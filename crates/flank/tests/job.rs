@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use flank::{
-    Answer, Disk, Failure, Files, JobSelection, NotDoneKind, Project, RemarkKind, SolveRequest, SolveResult, Status,
-    Unwatched, solve,
+    Answer, DeviationRequest, Disk, EvaluatorOptions, Failure, Files, JobSelection, NotDoneKind, Project, RemarkKind,
+    SolveRequest, SolveResult, Status, Unwatched, ValueSource, deviation, solve,
 };
 
 /// The disk, with a count of what is read from it.
@@ -150,4 +150,72 @@ fn there_is_no_other_job() {
     assert!(matches!(project.job("helical_gear", &wrong), Err(Failure::Findings(_))));
     let twice = ["30", "31"].map(|value| ("teeth".to_string(), value.to_string()));
     assert!(matches!(project.job("helical_gear", &twice), Err(Failure::Request(_))));
+}
+
+/// Arrays hold the points of large surfaces too, if that is asked for, and nothing is written without a format.
+#[test]
+fn arrays_keep_the_points_of_large_surfaces() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/spiral_bevel.chain");
+    let set = ["rows", "columns"].map(|name| (name.to_string(), "300".to_string()));
+    let job = Project::open(file, Arc::new(Disk)).job("flank", &set).expect("it is right");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("job_nowhere");
+    let _ = std::fs::remove_dir_all(&out);
+    let more = SolveRequest::new(&job);
+    let request =
+        SolveRequest { out: out.clone(), format: Vec::new(), no_picture: true, arrays: true, geometry: true, ..more };
+    let mut results = Vec::new();
+    solve(&request, &Unwatched, &mut |result| results.push(result)).expect("it can be solved");
+    assert!(!out.exists(), "no file, no folder");
+    let surface = &mut results[0].surfaces[0];
+    assert!(!surface.is_streamed());
+    let grid = surface.take_grid();
+    assert_eq!((grid.counts, grid.positions.len(), grid.statuses.len()), ([300, 300], 90_000, 90_000));
+    let k1 = grid.fields.iter().find(|field| field.name == "k1").expect("it is asked for");
+    assert!(k1.width == 1 && k1.values.len() == 90_000 && k1.values.iter().all(|x| x.is_finite()));
+    let roll = grid.unknown_names.iter().position(|of| of.name == "phi").expect("it is an unknown");
+    assert_eq!(grid.unknown(roll)[0], grid.unknowns[roll].to_degrees());
+    assert!(surface.positions().is_empty(), "they are taken");
+}
+
+/// Surfaces are compared with those of the same job with other values.
+#[test]
+fn a_reference_may_have_other_values() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/bevel/pinion_19x62.chain");
+    let project = Project::open(file, Arc::new(Disk));
+    let nominal = project.job("pinion_19x62", &[]).expect("it is right");
+    let set = [("m.radial_distance".to_string(), "98 mm".to_string())];
+    let other = project.job("pinion_19x62", &set).expect("it is right");
+    assert!(nominal.texts() == other.texts() && nominal.hash() != other.hash(), "values are a part of the hash");
+    let compared = |job: &flank::Job, reference: &flank::Job| {
+        let request = DeviationRequest {
+            jobs: job.into(),
+            surface: "concave".to_string(),
+            reference: Some("concave".to_string()),
+            reference_jobs: Some(reference.into()),
+            measured: None,
+            rows: None,
+            columns: None,
+            margin: None,
+            no_align: true,
+            out: Path::new(env!("CARGO_TARGET_TMPDIR")).join("job_reference"),
+            format: Vec::new(),
+            no_picture: true,
+            evaluator: EvaluatorOptions::default(),
+        };
+        deviation(&request, &Unwatched).expect("both are solved")
+    };
+    let [there, back] = [compared(&other, &nominal), compared(&nominal, &other)];
+    let [there, back] = [there.middle_um, back.middle_um].map(|um| um.expect("they meet"));
+    // some um by 0.04 mm of one setting; the second order is far below a hundredth of that
+    assert!(there.abs() > 1.0 && (there + back).abs() < 0.01 * there.abs(), "{there} {back}");
+    assert!(compared(&nominal, &nominal).rms_um.expect("they meet") < 1e-6);
+}
+
+#[test]
+fn all_jobs_of_a_spec() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/bevel/ease_off_19x62.chain");
+    let jobs = Project::open(file, Arc::new(Disk)).jobs(&[]).expect("they are right");
+    assert_eq!(jobs.iter().map(flank::Job::name).collect::<Vec<_>>(), ["pinion", "basic", "conjugate"]);
+    let from_job = jobs[0].parameters().iter().filter(|of| of.given_by == ValueSource::Job).count();
+    assert!(from_job > 0 && jobs[0].parameters().iter().any(|of| of.range.is_some()));
 }

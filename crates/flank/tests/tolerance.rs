@@ -80,6 +80,7 @@ fn linear_tolerances_are_those_of_random_cases() {
             jobs,
             surface: "off.concave".to_string(),
             reference: Some("nominal.concave".to_string()),
+            reference_jobs: None,
             measured: None,
             rows: None,
             columns: None,

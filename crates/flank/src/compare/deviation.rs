@@ -59,11 +59,16 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let mut origin = Origin::of_compilation(&compilation);
+    let other_graph = Graph::new();
+    let others = request.reference_jobs.as_ref().map(|others| spec::jobs(&other_graph, others, monitor)).transpose()?;
     let surface = find(&jobs, &request.surface)?;
     let session = Session::new(request.evaluator, monitor);
     let measured = match second {
         Second::DeviationMap(file) => inspect::inspect(surface, file, (request, session), &mut origin)?,
-        Second::Surface(from) => measure([surface, find(&jobs, from)?], request.no_align, session)?,
+        Second::Surface(from) => {
+            let among = others.as_ref().map_or(&jobs, |(_, others)| others);
+            measure([surface, find(among, from)?], request.no_align, session)?
+        }
     };
     let written = measured.write(request, &origin, monitor)?;
     let result = measured.result(written, &origin);
@@ -86,6 +91,7 @@ fn trimmed(measured: &DeviationMap<'_, '_>, session: Session) -> Vec<Remark> {
         sensitivity: false,
         certificates: false,
         together: None,
+        arrays: false,
         of_shown: false,
         session,
     };

@@ -324,7 +324,7 @@ impl DeviationMap<'_, '_> {
         monitor: &dyn Monitor,
     ) -> Result<Vec<String>, Failure> {
         let dataset = self.dataset(&request.jobs, origin);
-        let mut folder = Folder::at(&request.out, origin, monitor)?;
+        let mut folder = Folder::at(&request.out, origin, monitor);
         let map = || self.picture(&dataset, &PictureOptions::default());
         let map = (!request.no_picture).then(map);
         folder.picture_after(&self.name(), map.as_ref(), |folder| {

@@ -18,6 +18,7 @@ use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve;
 use crate::solve::SolveOptions;
+use crate::solve::arrays::PointGrid;
 
 /// Rows and columns of the grid that shows how a flank lies.
 const TRIAL: usize = 13;
@@ -60,7 +61,7 @@ pub fn measure(
         }
         let header = solve::header(&[job], &request.jobs, &origin);
         let grid = MeasuringGrid { header, margins: request.margins(), flanks };
-        let mut folder = Folder::at(&request.out, &origin, monitor)?;
+        let mut folder = Folder::at(&request.out, &origin, monitor);
         for format in &request.format {
             folder.grid(&format!("{}.grid", job.name), &grid, *format)?;
         }
@@ -196,7 +197,15 @@ impl<'j, 'g> Placed<'j, 'g> {
 
 /// Points alone.
 fn wanted(session: Session<'_>) -> SolveOptions<'_> {
-    SolveOptions { geometry: false, sensitivity: false, certificates: false, together: None, of_shown: false, session }
+    SolveOptions {
+        geometry: false,
+        sensitivity: false,
+        certificates: false,
+        together: None,
+        arrays: false,
+        of_shown: false,
+        session,
+    }
 }
 
 /// So many shares from end to end, without the margins.
@@ -290,6 +299,7 @@ fn result(grid: &MeasuringGrid, files: Vec<String>) -> MeasureResult {
         files,
         remarks: Vec::new(),
         not_done: Vec::new(),
+        grids: grid.flanks.iter().flat_map(|flank| &flank.parts).map(|(_, patch)| PointGrid::of_patch(patch)).collect(),
     }
 }
 

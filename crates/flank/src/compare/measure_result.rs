@@ -10,6 +10,7 @@ use crate::project::answer::Answer;
 use crate::project::columns::aligned;
 use crate::project::remark::{NotDone, Remark};
 use crate::project::units;
+use crate::solve::arrays::PointGrid;
 
 /// What was written for a measuring machine, of `flank measure`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -29,6 +30,9 @@ pub struct MeasureResult {
     pub remarks: Vec<Remark>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
+    /// The nominal points of each part of each flank, in their order.
+    #[serde(skip)]
+    pub grids: Vec<PointGrid>,
 }
 
 /// One flank for a measuring machine.

@@ -13,9 +13,10 @@ use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::requests::{ContactRequest, Session};
 use crate::project::spec::Origin;
+use crate::solve::arrays::PointGrid;
 use crate::solve::header;
 
-/// Writes them and names them.
+/// Writes them and names them; with the points that they have, in arrays.
 ///
 /// # Errors
 /// If one cannot be written.
@@ -25,7 +26,7 @@ pub(crate) fn write(
     rolling: &Rolling,
     (maps, drawn): (&[GapMap], DrawnContact),
     (request, origin, session): (&ContactRequest, &Origin, Session),
-) -> Result<Vec<String>, Failure> {
+) -> Result<(Vec<String>, Vec<PointGrid>), Failure> {
     let name = format!("{}.{}", job.name, members.contact.name);
     let mut header = header(&[job], &request.jobs, origin);
     header.conventions.push(format!(
@@ -39,7 +40,8 @@ pub(crate) fn write(
     });
     let paths = (0..2).map(|member| path(job, members, rolling, member));
     let dataset = Dataset { header, patches: flanks.into_iter().chain(paths).collect() };
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     folder.picture_after(&name, picture.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
-    folder.finish()
+    let grids = dataset.patches.iter().map(PointGrid::of_patch).collect();
+    Ok((folder.finish()?, grids))
 }

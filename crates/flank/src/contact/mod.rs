@@ -122,7 +122,7 @@ fn of_contact(
         (None, Vec::new())
     };
     let shown = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
-    let files = files::write(job, &members, &rolling, (&patterns, shown), (request, origin, session))?;
+    let (files, grids) = files::write(job, &members, &rolling, (&patterns, shown), (request, origin, session))?;
     let result = summary.of_rolling(&rolling, &patterns);
     Ok(ContactResult {
         influences,
@@ -131,6 +131,7 @@ fn of_contact(
         clearances: rooms.clearances,
         proven,
         files,
+        grids,
         not_done: origin.located(&[job], [&result.not_done[..], &rooms.not_done, &open].concat()),
         remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result

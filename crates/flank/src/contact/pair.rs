@@ -245,6 +245,7 @@ fn points<'g>(
         sensitivity: false,
         certificates: false,
         together: None,
+        arrays: false,
         of_shown: false,
         session,
     };

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::project::answer::{Answer, Timing};
 use crate::project::remark::{NotDone, Remark};
+use crate::solve::arrays::PointGrid;
 
 /// Where two flanks touch while a pair rolls, and how evenly they turn each other, of `flank contact`. Angles are deg, lengths mm, unless a
 /// name ends otherwise; the error is what the contact adds to the wanted law of the driven member.
@@ -58,6 +59,9 @@ pub struct ContactResult {
     pub not_done: Vec<NotDone>,
     /// What is to be known beside it, as stderr has it.
     pub remarks: Vec<Remark>,
+    /// The points of both flanks with the least gap to the mate, and the path of contact on both.
+    #[serde(skip)]
+    pub grids: Vec<PointGrid>,
     #[serde(skip)]
     pub(super) timing: Timing,
 }

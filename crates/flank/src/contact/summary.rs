@@ -95,6 +95,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             vhj: Vec::new(),
             proven: None,
             files: Vec::new(),
+            grids: Vec::new(),
             not_done: Vec::new(),
             remarks: Vec::new(),
             timing: Timing::default(),

@@ -55,7 +55,7 @@ pub(super) fn write(
             functions.push((format!("{name}.{}", language.extension()), text));
         }
     }
-    let mut folder = Folder::at(request.out(), origin, session.monitor())?;
+    let mut folder = Folder::at(request.out(), origin, session.monitor());
     for format in distinct(request.formats()) {
         folder.motion(&name, &motion, format)?;
     }

@@ -120,6 +120,7 @@ impl<'j, 'g> Source<'j, 'g> {
             sensitivity: false,
             certificates: false,
             together: Some("carrying its tool over"),
+            arrays: false,
             of_shown: false,
             session,
         };

@@ -247,7 +247,7 @@ fn write(
     (request, session): (&PlotRequest, Session<'_>),
     origin: &Origin,
 ) -> Result<Vec<WrittenPicture>, Failure> {
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     let mut written = Vec::new();
     for (what, drawing) in drawings {
         let before = folder.written.len();

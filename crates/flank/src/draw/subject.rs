@@ -44,6 +44,7 @@ impl<'j, 'g> Subject<'j, 'g> {
             sensitivity: kinds.contains(&PlotKind::Sensitivity),
             certificates: false,
             together: None,
+            arrays: false,
             of_shown: true,
             session,
         };

@@ -33,7 +33,15 @@ use functions::Functions;
 
 /// What a surface can be coloured by and what a click shows of a point.
 fn wanted(session: Session<'_>) -> SolveOptions<'_> {
-    SolveOptions { geometry: true, sensitivity: true, certificates: false, together: None, of_shown: true, session }
+    SolveOptions {
+        geometry: true,
+        sensitivity: true,
+        certificates: false,
+        together: None,
+        arrays: false,
+        of_shown: true,
+        session,
+    }
 }
 
 /// Share of what a motion passes over that its slider goes beyond.
@@ -147,7 +155,7 @@ fn write<'g>(
         }
     }
     let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
-    let mut folder = Folder::at(&request.out, origin, monitor)?;
+    let mut folder = Folder::at(&request.out, origin, monitor);
     folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
     let file = folder.finish()?.remove(0);
     let path = request.out.join(format!("{}.html", job.name));

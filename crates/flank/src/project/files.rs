@@ -30,10 +30,9 @@ pub(crate) struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    /// The folder, made if it is not there.
-    pub(crate) fn at(path: &'a Path, origin: &'a Origin, monitor: &'a dyn Monitor) -> Result<Folder<'a>, Failure> {
-        make_folder(path)?;
-        Ok(Folder { path, origin, files: FileSet::default(), monitor, written: Vec::new() })
+    /// The folder, made with its first file if it is not there.
+    pub(crate) fn at(path: &'a Path, origin: &'a Origin, monitor: &'a dyn Monitor) -> Folder<'a> {
+        Folder { path, origin, files: FileSet::default(), monitor, written: Vec::new() }
     }
 
     /// Gives all files their names, and returns these.
@@ -220,6 +219,9 @@ impl<'a> Folder<'a> {
             )));
         }
         check(self.monitor)?;
+        if self.written.is_empty() {
+            make_folder(self.path)?;
+        }
         let written = self.files.write(&path, content);
         // what stood in its way may be that
         check(self.monitor)?;
@@ -235,7 +237,7 @@ impl<'a> Folder<'a> {
 /// What stands in the way.
 pub fn write_texts(folder: &Path, texts: &[(String, String)]) -> Result<Vec<String>, Failure> {
     let origin = Origin::default();
-    let mut folder = Folder::at(folder, &origin, &Unwatched)?;
+    let mut folder = Folder::at(folder, &origin, &Unwatched);
     texts.iter().try_for_each(|(name, text)| folder.text(name, text))?;
     folder.finish()
 }

@@ -1,8 +1,9 @@
 //! A job by itself.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use flank_chain_dsl::{Buffers, compile_request};
+use flank_chain_dsl::{Buffers, Compilation, ValueSource, compile_request};
 use flank_expr::Graph;
 
 use crate::project::Project;
@@ -19,6 +20,8 @@ pub struct Job {
     name: String,
     set: Vec<(String, String)>,
     project: Project,
+    hash: String,
+    texts: Arc<[(PathBuf, String)]>,
     doc: Vec<String>,
     parameters: Vec<JobParameter>,
     surfaces: Vec<JobSurface>,
@@ -36,6 +39,16 @@ pub struct JobParameter {
     pub unit: String,
     /// Whether it is a whole number.
     pub is_count: bool,
+    /// Whether it says how a machine differs from the nominal one, in which it is zero.
+    pub is_error: bool,
+    /// Between which values it must lie, in its unit, if that is stated.
+    pub range: Option<[f64; 2]>,
+    /// What it is set in multiples of, in its unit, if that is stated.
+    pub step: Option<f64>,
+    /// Its doc comment, line by line.
+    pub doc: Vec<String>,
+    /// Who gives it its value.
+    pub given_by: ValueSource,
 }
 
 /// A surface that a job generates.
@@ -55,7 +68,19 @@ impl Project {
     /// # Errors
     /// What is wrong with the spec or the values, or that there is no such job.
     pub fn job(&self, name: &str, set: &[(String, String)]) -> Result<Job, Failure> {
-        let asked = JobSelection { project: self.clone(), job: Some(name.to_string()), set: set.to_vec() };
+        Ok(self.compiled_jobs(Some(name), set)?.remove(0))
+    }
+
+    /// All jobs of the spec, in its order, with other values for parameters and settings as in [`JobSelection::set`].
+    ///
+    /// # Errors
+    /// What is wrong with the spec or the values, or that there is no job.
+    pub fn jobs(&self, set: &[(String, String)]) -> Result<Vec<Job>, Failure> {
+        self.compiled_jobs(None, set)
+    }
+
+    fn compiled_jobs(&self, name: Option<&str>, set: &[(String, String)]) -> Result<Vec<Job>, Failure> {
+        let asked = JobSelection { project: self.clone(), job: name.map(str::to_string), set: set.to_vec() };
         asked.check()?;
         let graph = Graph::new();
         let mut compilation = compile_request(&graph, self.file(), &asked.request());
@@ -63,30 +88,61 @@ impl Project {
         if compilation.has_errors() {
             return Err(Failure::Findings(findings));
         }
-        let job = spec::asked_for(&mut compilation, &asked, &Unwatched)?.remove(0);
-        let texts = compilation.sources.files().filter_map(|(_, source)| Some((source.file.as_ref()?, &source.text)));
-        let files =
-            texts.fold(Buffers::over(self.shared_files()), |files, (file, text)| files.with(file, text.clone()));
-        let parameter = |of: &flank_chain_dsl::Parameter<'_>| JobParameter {
+        let jobs = spec::asked_for(&mut compilation, &asked, &Unwatched)?;
+        let texts = texts(&compilation);
+        let files = texts.iter().fold(Buffers::over(self.shared_files()), |files, (file, text)| files.with(file, text));
+        let project = Project::open(self.file(), Arc::new(files));
+        let hash = spec::Origin::of_compilation(&compilation).hash;
+        // of several jobs each has its own
+        let set_of = |job: &flank_chain_dsl::Job<'_>| match name {
+            Some(_) => set.to_vec(),
+            None => set.iter().filter(|(name, _)| asked.changes(name, job)).cloned().collect(),
+        };
+        let job = |job: &flank_chain_dsl::Job<'_>| Job {
+            name: job.name.clone(),
+            set: set_of(job),
+            project: project.clone(),
+            hash: hash.clone(),
+            texts: Arc::clone(&texts),
+            doc: job.doc.clone(),
+            parameters: job.parameters.iter().map(JobParameter::new).collect(),
+            surfaces: job.surfaces.iter().map(JobSurface::new).collect(),
+            warnings: findings.clone(),
+        };
+        Ok(jobs.iter().map(job).collect())
+    }
+}
+
+/// All texts that were read, by the paths of their files without links.
+fn texts(compilation: &Compilation<'_>) -> Arc<[(PathBuf, String)]> {
+    let texts = compilation.sources.files();
+    texts.filter_map(|(_, source)| Some((source.file.clone()?, source.text.clone()))).collect()
+}
+
+impl JobParameter {
+    fn new(of: &flank_chain_dsl::Parameter<'_>) -> JobParameter {
+        let shown = |x: f64| units::shown(of.dimension, x);
+        JobParameter {
             name: of.name.clone(),
-            value: units::shown(of.dimension, of.value),
+            value: shown(of.value),
             unit: units::whole_symbol(of.dimension),
             is_count: of.is_count,
-        };
-        let surface = |of: &flank_chain_dsl::GeneratedSurface<'_>| JobSurface {
+            is_error: of.is_error,
+            range: of.range.map(|(low, high)| [low, high].map(shown)),
+            step: of.step.map(shown),
+            doc: of.doc.clone(),
+            given_by: of.given_by.clone(),
+        }
+    }
+}
+
+impl JobSurface {
+    fn new(of: &flank_chain_dsl::GeneratedSurface<'_>) -> JobSurface {
+        JobSurface {
             name: of.name.clone(),
             frame: of.frame.clone(),
             counts: of.sample.as_ref().map(|sample| sample.counts),
-        };
-        Ok(Job {
-            name: name.to_string(),
-            set: set.to_vec(),
-            project: Project::open(self.file(), Arc::new(files)),
-            doc: job.doc.clone(),
-            parameters: job.parameters.iter().map(parameter).collect(),
-            surfaces: job.surfaces.iter().map(surface).collect(),
-            warnings: findings,
-        })
+        }
     }
 }
 
@@ -94,6 +150,31 @@ impl Job {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The file of its spec, as it was named.
+    pub fn file(&self) -> &Path {
+        self.project.file()
+    }
+
+    /// SHA-256 of all its texts and of the values that were set from outside, as files say it.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// All texts that it is made of, the spec first, each with the path of its file without links.
+    pub fn texts(&self) -> &[(PathBuf, String)] {
+        &self.texts
+    }
+
+    /// The values that were set from outside the text.
+    pub fn set(&self) -> &[(String, String)] {
+        &self.set
+    }
+
+    /// Its spec with all its texts.
+    pub fn project(&self) -> &Project {
+        &self.project
     }
 
     /// Its doc comment, line by line.

@@ -148,6 +148,8 @@ pub struct SolveRequest {
     pub sensitivity: bool,
     /// Also a proof for each point that exactly one root lies near it.
     pub certify: bool,
+    /// Results hold the points of all surfaces in arrays, also of those that are otherwise too many to keep.
+    pub arrays: bool,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }
@@ -222,6 +224,7 @@ impl SolveRequest {
             geometry: false,
             sensitivity: false,
             certify: false,
+            arrays: false,
             evaluator: EvaluatorOptions::default(),
         }
     }
@@ -299,6 +302,8 @@ pub struct DeviationRequest {
     pub surface: String,
     /// The surface that it is compared with.
     pub reference: Option<String>,
+    /// The jobs that the reference is looked for in, where they are others: the same ones with other values, or those of another spec.
+    pub reference_jobs: Option<JobSelection>,
     /// Measured points that are compared with the surface.
     pub measured: Option<PathBuf>,
     /// Rows of the grid that was measured; the largest that the file names otherwise.
@@ -351,6 +356,8 @@ pub struct FitRequest {
     pub ease_off_table: Option<PathBuf>,
     /// The surface that the ease-off is one from; it is sampled in the spec.
     pub from: Option<String>,
+    /// The jobs that this surface is looked for in, where they are others: the same ones with other values, or those of another spec.
+    pub from_jobs: Option<JobSelection>,
     /// The parameters and settings that may change; some of those that the job gives a value, if none is named.
     pub vary: Vec<String>,
     /// Whether only slopes (1), or slopes, crownings and bias (2) are fitted; the rest of the deviations is left as it is.
@@ -394,6 +401,7 @@ impl FitRequest {
             ease_off: None,
             ease_off_table: None,
             from: None,
+            from_jobs: None,
             vary: Vec::new(),
             order: None,
             noise: None,
@@ -704,6 +712,8 @@ pub struct ConvertRequest {
     pub out: Option<PathBuf>,
     /// Files with positions and polynomials; CSV if nothing is named.
     pub format: Vec<TableFormat>,
+    /// No files with positions and polynomials.
+    pub no_tables: bool,
     /// NC programs.
     pub nc: Vec<NcDialect>,
     /// Seconds that the motion takes.
@@ -727,7 +737,11 @@ impl ConvertRequest {
 
     /// What files with positions and polynomials there are to be.
     pub(crate) fn formats(&self) -> &[TableFormat] {
-        if self.format.is_empty() { &[TableFormat::Csv] } else { &self.format }
+        match &self.format[..] {
+            [] if self.no_tables => &[],
+            [] => &[TableFormat::Csv],
+            formats => formats,
+        }
     }
 
     /// What is asked for that there is only of a motion, not of settings.

@@ -107,6 +107,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             sensitivity: true,
             certificates: request.certify,
             together: None,
+            arrays: false,
             of_shown: true,
             session: Session::new(request.evaluator, monitor),
         };

@@ -65,7 +65,7 @@ impl Target {
         monitor: &dyn Monitor,
     ) -> Result<Vec<String>, Failure> {
         let job = &findings.job.name;
-        let mut folder = Folder::at(&self.folder, findings.origin, monitor)?;
+        let mut folder = Folder::at(&self.folder, findings.origin, monitor);
         let faces: Vec<&Face> = findings.faces.iter().filter_map(|smooth| smooth.face.as_ref()).collect();
         if !faces.is_empty() {
             folder.step(job, &findings.header, &faces)?;

@@ -1,5 +1,6 @@
 //! `flank solve`
 
+pub(crate) mod arrays;
 pub(crate) mod blank;
 pub(crate) mod body;
 pub(crate) mod branches;
@@ -22,6 +23,7 @@ pub(crate) mod secondary;
 pub(crate) mod sensitivity;
 pub(crate) mod solved;
 pub(crate) mod starts;
+pub(crate) mod status;
 pub(crate) mod step;
 pub(crate) mod stream;
 pub(crate) mod summary;
@@ -71,6 +73,7 @@ pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
         sensitivity: request.sensitivity,
         certificates: request.certify,
         together: None,
+        arrays: request.arrays,
         of_shown: false,
         session: Session::new(request.evaluator, monitor),
     };
@@ -119,11 +122,12 @@ fn solved_job(
         step::told(&faces),
         secondary::given_up(solved.iter().map(Solved::positions_tried)),
     ];
+    let lines = lines.iter().map(|line| line.result()).collect();
     Ok(SolveResult {
         job: job.name.clone(),
         spec: shown_path(request.jobs.file()),
-        surfaces: solved.iter().map(Solved::result_with_points).collect(),
-        lines: lines.iter().map(|line| line.result()).collect(),
+        surfaces: solved.into_iter().map(Solved::into_result).collect(),
+        lines,
         faces: step::results(&faces),
         files,
         remarks: origin.located(&[job], remarks.concat()),
@@ -155,7 +159,7 @@ fn write_files(
     (name, session): (&str, Session<'_>),
     (request, origin): (&SolveRequest, &Origin),
 ) -> Result<Vec<String>, Failure> {
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     // the surfaces come first among the patches; of those with too many points a patch holds some
     let streamed = solved.iter().map(|solved| solved.streamed.as_ref().map(|streamed| streamed as &dyn Banded));
     let patches = dataset.patches.iter().chain(outside).zip(streamed.chain(std::iter::repeat(None)));

@@ -12,5 +12,7 @@ pub(crate) struct SolveOptions<'m> {
     pub(crate) together: Option<&'static str>,
     /// Whether geometry and sensitivity are wanted of the points that are shown alone, where a surface has too many to keep.
     pub(crate) of_shown: bool,
+    /// Whether points are kept in arrays even where they are too many to keep with all that is known of them.
+    pub(crate) arrays: bool,
     pub(crate) session: Session<'m>,
 }

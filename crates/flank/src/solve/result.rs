@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use flank_export::fixed;
-use flank_solver::{CutBy, Outcome, SurfacePoint};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -12,6 +11,8 @@ use crate::project::answer::{Answer, Timing};
 use crate::project::columns::aligned;
 use crate::project::quantity::{Extent, NamedValue, UnitSymbol};
 use crate::project::remark::{NotDone, Remark};
+use crate::solve::arrays::PointGrid;
+use crate::solve::status::Status;
 
 /// Solved surfaces of one job, in numbers, of `flank solve`; the points are in the files. Lengths are mm, angles degrees.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -84,7 +85,7 @@ pub struct SurfaceResult {
     #[serde(skip)]
     pub certified: Option<Certified>,
     #[serde(skip)]
-    pub(super) points: PointArrays,
+    pub(super) points: PointGrid,
 }
 
 /// A line on a surface.
@@ -94,7 +95,7 @@ pub struct LineResult {
     #[serde(flatten)]
     pub summary: PointSummary,
     #[serde(skip)]
-    pub(super) points: PointArrays,
+    pub(super) points: PointGrid,
 }
 
 /// The values of one field of numbers over the solved points of a surface.
@@ -256,80 +257,6 @@ pub struct SmoothFace {
     pub is_exact_enough: bool,
 }
 
-/// What became of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Status {
-    /// All residuals are within their tolerance and all unknowns in their ranges.
-    Solved,
-    /// There is a root, but one of the unknowns lies outside its range, or where the sample's `keep` does not take it.
-    OutOfRange,
-    /// The tool that generates the point cuts it away.
-    Undercut,
-    /// Another surface of the job cuts it away.
-    Trimmed,
-    /// The ranges hold several branches, and nothing says which one is meant.
-    Ambiguous,
-    /// It is not clear whether another surface cuts it away.
-    Undecided,
-    /// The equations do not fix a single point there, or the surface has no normal or no tangent plane.
-    Singular,
-    /// No root was found.
-    NotConverged,
-}
-
-impl From<Outcome> for Status {
-    fn from(outcome: Outcome) -> Status {
-        match outcome {
-            Outcome::Solved => Status::Solved,
-            Outcome::CutAway(CutBy::Other(_) | CutBy::Blank(_)) => Status::Trimmed,
-            Outcome::CutAway(_) => Status::Undercut,
-            Outcome::Undecided => Status::Undecided,
-            Outcome::Outside { .. } | Outcome::NotKept { .. } => Status::OutOfRange,
-            Outcome::Singular => Status::Singular,
-            Outcome::NotConverged { .. } => Status::NotConverged,
-            Outcome::Ambiguous => Status::Ambiguous,
-        }
-    }
-}
-
-/// The points of a grid, row by row.
-#[derive(Clone, Debug, Default)]
-pub(super) struct PointArrays {
-    counts: [usize; 2],
-    positions: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
-    unknowns: Vec<f64>,
-    statuses: Vec<Status>,
-    residuals: Vec<f64>,
-}
-
-impl PointArrays {
-    pub(super) fn new(counts: [usize; 2], unknowns: usize, points: &[SurfacePoint]) -> PointArrays {
-        let mut all = PointArrays {
-            counts,
-            positions: Vec::with_capacity(points.len()),
-            normals: Vec::with_capacity(points.len()),
-            unknowns: Vec::with_capacity(points.len() * unknowns),
-            statuses: points.iter().map(|point| point.outcome.into()).collect(),
-            residuals: points.iter().map(|point| point.residual).collect(),
-        };
-        for point in points {
-            if matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_) | Outcome::Undecided) {
-                all.positions.push(point.position);
-                all.normals.push(point.normal);
-                all.unknowns.extend_from_slice(&point.unknowns);
-            } else {
-                // of a point that is not there nothing is known but why
-                all.positions.push([f64::NAN; 3]);
-                all.normals.push([f64::NAN; 3]);
-                all.unknowns.resize(all.unknowns.len() + unknowns, f64::NAN);
-            }
-        }
-        all
-    }
-}
-
 impl SurfaceResult {
     /// Rows and columns of the points; zero where they are not kept.
     pub fn counts(&self) -> [usize; 2] {
@@ -372,6 +299,16 @@ impl SurfaceResult {
     pub fn residuals(&self) -> &[f64] {
         &self.points.residuals
     }
+
+    /// All that is known of its points.
+    pub fn grid(&self) -> &PointGrid {
+        &self.points
+    }
+
+    /// Takes all that is known of its points out of the result, whose arrays are empty afterwards.
+    pub fn take_grid(&mut self) -> PointGrid {
+        std::mem::take(&mut self.points)
+    }
 }
 
 impl LineResult {
@@ -383,6 +320,11 @@ impl LineResult {
     /// What became of each point.
     pub fn statuses(&self) -> &[Status] {
         &self.points.statuses
+    }
+
+    /// Takes all that is known of its points out of the result, whose arrays are empty afterwards.
+    pub fn take_grid(&mut self) -> PointGrid {
+        std::mem::take(&mut self.points)
     }
 }
 

@@ -61,6 +61,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         points,
         lines: sample.counts.map(|count| (0..count).collect()),
         streamed: None,
+        arrays: None,
         needed,
         effort,
         branches,
@@ -83,7 +84,7 @@ fn in_bands<'j, 'g>(
     wanted: SolveOptions<'j>,
 ) -> Result<Solved<'j, 'g>, Failure> {
     let mut streamed = Streamed::new(job, surface, sample, wanted);
-    let Kept { summary, effort, drawn } = streamed.look(wanted.geometry && !wanted.of_shown)?;
+    let Kept { summary, effort, drawn, arrays } = streamed.look(wanted.geometry && !wanted.of_shown, wanted.arrays)?;
     let is_of_drawn = wanted.geometry && wanted.of_shown;
     Ok(Solved {
         surface,
@@ -95,6 +96,7 @@ fn in_bands<'j, 'g>(
         elsewhere: elsewhere(streamed.problem(), &effort),
         kept_out: kept_out(job, surface, (&effort, &summary), wanted.session),
         summary,
+        arrays,
         streamed: Some(streamed),
         effort,
         radii: None,

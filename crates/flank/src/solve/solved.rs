@@ -5,6 +5,7 @@ use flank_export::Field;
 use flank_expr::Expr;
 use flank_solver::{GridReport, SurfacePoint};
 
+use crate::solve::arrays::PointGrid;
 use crate::solve::cut::Cut;
 use crate::solve::limits::Line;
 use crate::solve::reach::Needed;
@@ -29,6 +30,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) lines: [Vec<usize>; 2],
     /// What hands over the points if they are too many to keep.
     pub(crate) streamed: Option<Streamed<'j, 'g>>,
+    /// All points of a streamed surface, if arrays are wanted.
+    pub(crate) arrays: Option<PointGrid>,
     pub(crate) effort: GridReport,
     /// Where it meets the surfaces that trim it, in their order.
     pub(crate) trims: Vec<Line<'j, 'g>>,

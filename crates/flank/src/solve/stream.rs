@@ -8,6 +8,7 @@ use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem}
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
+use crate::solve::arrays::PointGrid;
 use crate::solve::blank;
 use crate::solve::geometry::{self, Described, TOGETHER};
 use crate::solve::options::SolveOptions;
@@ -24,6 +25,8 @@ const MOST_BYTES: usize = 1 << 30;
 const OF_POINT: usize = size_of::<SurfacePoint>() + size_of::<Point>() + 2 * 16;
 const OF_UNKNOWN: usize = 2 * size_of::<f64>();
 const OF_NUMBER: usize = size_of::<f64>();
+/// Numbers of a point in arrays beside its unknowns: place, normal, residual and status.
+const IN_ARRAYS: usize = 8;
 /// Points that are solved at once where numbers are kept of all of them: beside these the bands are small.
 const BESIDE_NUMBERS: usize = 1 << 17;
 /// Points that are handed over at once, if rows are not longer than that.
@@ -64,6 +67,8 @@ pub(crate) struct Kept {
     pub(crate) effort: GridReport,
     /// Those in some rows and columns, for pictures.
     pub(crate) drawn: Vec<SurfacePoint>,
+    /// All of them in arrays, if these are wanted.
+    pub(crate) arrays: Option<PointGrid>,
 }
 
 /// What the points of a job take where they are kept.
@@ -85,9 +90,14 @@ pub(crate) fn check_kept<'s, 'g: 's>(
         } else {
             let shown = SolveOptions { geometry: wanted.geometry && wanted.of_shown, ..wanted };
             let of_shown = bytes_of_point(job, surface, sample, shown);
-            count * OF_NUMBER * numbers_of_all(surface, sample, wanted) + DRAWN * DRAWN * of_shown
+            let in_arrays = if wanted.arrays { IN_ARRAYS + surface.unknowns.len() } else { 0 };
+            count * OF_NUMBER * (numbers_of_all(surface, sample, wanted) + in_arrays) + DRAWN * DRAWN * of_shown
         };
-        let flag = || (wanted.geometry && !wanted.of_shown).then(|| "option `geometry`".to_string());
+        let flag = || {
+            let flags =
+                [(wanted.geometry && !wanted.of_shown, "option `geometry`"), (wanted.arrays, "option `arrays`")];
+            flags.into_iter().find_map(|(is_given, name)| is_given.then(|| name.to_string()))
+        };
         needed = needed.or(all_needed.or_else(flag).filter(|_| count > KEPT));
     }
     if bytes <= MOST_BYTES {
@@ -188,15 +198,17 @@ impl<'j, 'g> Streamed<'j, 'g> {
         self.sample.counts.map(|count| (0..count).step_by(count.div_ceil(DRAWN).max(1)).collect())
     }
 
-    /// Looks at all points; where they are `described`, files show what each is like.
+    /// Looks at all points; where they are `described`, files show what each is like, and in arrays they are kept if these are wanted.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub(crate) fn look(&mut self, described: bool) -> Result<Kept, Failure> {
+    pub(crate) fn look(&mut self, described: bool, in_arrays: bool) -> Result<Kept, Failure> {
         let counts = self.sample.counts;
         let step = counts.map(|count| count.div_ceil(DRAWN).max(1));
         let mut summary = Summary::new(self.surface.unknowns.len(), counts);
         let mut drawn = Vec::new();
+        let mut arrays = in_arrays
+            .then(|| PointGrid::of_surface(self.surface, &self.surface.name, (counts, self.sample.labels.clone())));
         let all = counts[0] * counts[1];
         let mut described = described.then(|| Described::new(self.job, self.surface, self.sample, all));
         let effort = self.solve(|band| -> Result<(), Failure> {
@@ -207,6 +219,7 @@ impl<'j, 'g> Streamed<'j, 'g> {
                 for (number, point) in numbers.zip(points) {
                     let place = [band.rows().start + number / counts[1], number % counts[1]];
                     summary.add(&point);
+                    arrays.iter_mut().for_each(|arrays| arrays.push(&point));
                     if place[0].is_multiple_of(step[0]) && place[1].is_multiple_of(step[1]) {
                         drawn.push(point);
                     }
@@ -215,7 +228,7 @@ impl<'j, 'g> Streamed<'j, 'g> {
             Ok(())
         })?;
         self.outline.fields = described.map_or(Vec::new(), Described::fields);
-        Ok(Kept { summary, effort, drawn })
+        Ok(Kept { summary, effort, drawn, arrays })
     }
 
     /// What is known of each of its points.

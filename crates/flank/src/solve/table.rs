@@ -4,6 +4,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
 
 use crate::project::quantity::Extent;
 use crate::project::remark::{NotDone, NotDoneKind};
+use crate::solve::arrays::PointGrid;
 use crate::solve::branches;
 use crate::solve::certify;
 use crate::solve::cut::Cut;
@@ -11,7 +12,7 @@ use crate::solve::fields;
 use crate::solve::limits::Line;
 use crate::solve::reasons;
 use crate::solve::required;
-use crate::solve::result::{LineResult, PointArrays, PointSummary, SurfaceResult};
+use crate::solve::result::{LineResult, PointSummary, SurfaceResult};
 use crate::solve::sensitivity::Sensitivity;
 use crate::solve::solved::Solved;
 use crate::solve::summary::{Ends, Summary};
@@ -35,15 +36,23 @@ impl Solved<'_, '_> {
             tool_positions: self.positions.told(),
             not_as_required: required::told(self),
             certified: certify::proven(self),
-            points: PointArrays::default(),
+            points: PointGrid::default(),
         }
     }
 
     /// The same with all points, unless there are too many to keep.
-    pub(crate) fn result_with_points(&self) -> SurfaceResult {
-        let points = match &self.streamed {
-            Some(_) => PointArrays::default(),
-            None => PointArrays::new(self.counts(), self.surface.unknowns.len(), &self.points),
+    pub(crate) fn into_result(mut self) -> SurfaceResult {
+        let moved: Vec<_> = self.sensitivity.iter().flat_map(Sensitivity::fields).collect();
+        let points = match (&self.streamed, self.arrays.take()) {
+            (Some(streamed), Some(grid)) => grid.with_fields(streamed.fields()),
+            (Some(_), None) => {
+                PointGrid::of_surface(self.surface, &self.surface.name, ([0; 2], self.sample.labels.clone()))
+            }
+            (None, _) => {
+                PointGrid::of_surface(self.surface, &self.surface.name, (self.counts(), self.sample.labels.clone()))
+                    .with_points(&self.points)
+                    .with_fields(self.fields.iter().chain(&moved))
+            }
         };
         SurfaceResult { points, ..self.result() }
     }
@@ -52,7 +61,9 @@ impl Solved<'_, '_> {
 impl Line<'_, '_> {
     /// Its points, counted, and its points.
     pub(crate) fn result(&self) -> LineResult {
-        let points = PointArrays::new([1, self.points.len()], self.surface.unknowns.len(), &self.points);
+        let labels = [String::new(), "along the line".to_string()];
+        let points =
+            PointGrid::of_surface(self.surface, &self.name, ([1, self.points.len()], labels)).with_points(&self.points);
         LineResult { summary: self.told(), points }
     }
 

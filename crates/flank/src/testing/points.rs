@@ -174,6 +174,7 @@ impl<'j, 'g> Tested<'j, 'g> {
             sensitivity: false,
             certificates: false,
             together: None,
+            arrays: false,
             of_shown: false,
             session: self.session,
         }

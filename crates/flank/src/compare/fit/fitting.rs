@@ -234,11 +234,18 @@ impl<'a, 'g> Fitting<'a, 'g> {
                 uncertain_by: uncertain.filter(|_| held.is_none() && is_told).map(shown),
             }
         };
+        let scale = |k: usize| units::shown(self.problem.settings[k].dimension, 1.0);
+        let covariance = |variance: f64| {
+            let row =
+                |&i: &usize| free.iter().map(|&k| variance * of.fit.covariance[i][k] * scale(i) * scale(k)).collect();
+            free.iter().map(row).collect()
+        };
         AdjustedSettings {
             settings: free.iter().map(setting).collect(),
             left_um: 1e3 * rms(&of.fit.residuals),
             steps: of.fit.steps,
             is_settled: of.fit.end == SearchEnd::Settled,
+            covariance: variance.map_or(Vec::new(), covariance),
         }
     }
 

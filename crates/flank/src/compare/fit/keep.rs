@@ -59,6 +59,7 @@ impl Keep {
             sensitivity: false,
             certificates: false,
             together: None,
+            arrays: false,
             of_shown: false,
             session,
         };

@@ -42,6 +42,9 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let mut origin = Origin::of_compilation(&compilation);
     let session = Session::new(request.evaluator, monitor);
     let of = find(&jobs, &request.surface)?;
+    let other_graph = Graph::new();
+    let others = request.from_jobs.as_ref().map(|others| spec::jobs(&other_graph, others, monitor)).transpose()?;
+    let among = others.as_ref().map_or(&jobs, |(_, others)| others);
     let aims = match (&request.measured, request.is_wish(), &request.from) {
         (Some(file), ..) => {
             let first = Aim::measured(of, file, (request, session), &mut origin)?;
@@ -52,7 +55,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
             let second = second.collect::<Result<Vec<_>, Failure>>()?;
             [first].into_iter().chain(second).collect()
         }
-        (None, true, Some(from)) => vec![Aim::ease_off(of, from, &jobs, (request, session), &mut origin)?],
+        (None, true, Some(from)) => vec![Aim::ease_off(of, from, among, (request, session), &mut origin)?],
         _ => return Err(Failure::Request(NO_AIM.to_string())),
     };
     let open = settings::open(of.job, &request.vary)?;

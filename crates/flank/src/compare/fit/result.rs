@@ -118,6 +118,9 @@ pub struct AdjustedSettings {
     pub steps: usize,
     /// Whether no further step made it less.
     pub is_settled: bool,
+    /// Of the settings in their order and units, from what is left; empty where nothing tells how the points scatter.
+    #[serde(skip)]
+    pub covariance: Vec<Vec<f64>>,
 }
 
 /// A setting that is changed.

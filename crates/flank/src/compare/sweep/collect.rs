@@ -392,6 +392,7 @@ impl Case<'_, '_> {
     fn options(&self) -> SolveOptions<'_> {
         SolveOptions {
             geometry: false,
+            arrays: false,
             sensitivity: false,
             certificates: false,
             together: None,

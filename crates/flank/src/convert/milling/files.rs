@@ -41,7 +41,7 @@ pub(super) fn write(
         }
         _ => Vec::new(),
     };
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     for format in &request.format {
         match format {
             CutterFormat::Csv => folder.text(&format!("{name}.csv"), &table(target, milled))?,

@@ -51,7 +51,7 @@ fn meshed(
     session: Session<'_>,
 ) -> Result<MeshResult, Failure> {
     let header = header(&[job], &request.jobs, origin);
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     let (mut solids, mut not_done) = (Vec::new(), Vec::new());
     for solid in &job.solids {
         let _working = session.begin(format!("meshing {}", solid.name))?;

@@ -54,7 +54,7 @@ fn built(
     session: Session<'_>,
 ) -> Result<SolidResult, Failure> {
     let header = header(&[job], &request.jobs, origin);
-    let mut folder = Folder::at(&request.out, origin, session.monitor())?;
+    let mut folder = Folder::at(&request.out, origin, session.monitor());
     let (mut solids, mut not_done, mut made) = (Vec::new(), Vec::new(), Vec::new());
     for solid in &job.solids {
         let _working = session.begin(format!("building {}", solid.name))?;

@@ -1,0 +1,241 @@
+"""Tooth surfaces of any machine, from text specs.
+
+A job is loaded, solved and compared; results are arrays of numpy and documents with the names of `--json`. Lengths are mm, angles degrees,
+normals point out of the material. No file is written unless a call names one.
+
+>>> import flank
+>>> job = flank.load("specs/bevel/pinion_19x62.chain")
+>>> job.solve()["concave"].xyz.shape
+(15, 31, 3)
+"""
+
+from __future__ import annotations
+
+import json as _json
+import os as _os
+from collections.abc import Iterable as _Iterable
+from typing import Any as _Any
+
+from flank import _flank
+from flank._errors import (
+    ConversionError,
+    Error,
+    FileError,
+    InputError,
+    InternalError,
+    NotSolved,
+    SpecError,
+)
+from flank._job import Job, Surface
+from flank._machines import Bricks, Derivation, Milling, Motion, Settings, Solids
+from flank._pages import Page, Plot
+from flank._parameters import Parameter, Parameters
+from flank._points import SurfacePoints
+from flank._quantities import count as _count
+from flank._results import (
+    Contact,
+    Deviation,
+    Fit,
+    MeasuringGrid,
+    Points,
+    Result,
+    Sensitivity,
+    Synthesis,
+    Tolerance,
+)
+
+__all__ = [
+    "Bricks",
+    "Contact",
+    "ConversionError",
+    "Derivation",
+    "Deviation",
+    "Error",
+    "FileError",
+    "Fit",
+    "InputError",
+    "InternalError",
+    "Job",
+    "MeasuringGrid",
+    "Milling",
+    "Motion",
+    "NotSolved",
+    "Page",
+    "Parameter",
+    "Parameters",
+    "Plot",
+    "Points",
+    "Result",
+    "Sensitivity",
+    "Settings",
+    "Solids",
+    "SpecError",
+    "Surface",
+    "SurfacePoints",
+    "Synthesis",
+    "Tolerance",
+    "check",
+    "codes",
+    "deviation",
+    "explain",
+    "format",
+    "load",
+    "load_all",
+    "loads",
+    "schemas",
+    "test",
+    "threads",
+]
+
+__version__ = _flank.VERSION
+
+_Path = str | _os.PathLike[str]
+
+
+def load(path: _Path, job: str | None = None) -> Job:
+    """A job of a spec file; it is named where the file holds several.
+
+    Raises `SpecError` with all that is wrong with the spec.
+
+    >>> import flank
+    >>> flank.load("specs/hobbing/helical_gear.chain").parameters["teeth"].value
+    31.0
+    """
+    return _one(_flank.load(_os.fspath(path), [], job), job)
+
+
+def loads(text: str, job: str | None = None, *, name: str = "text.chain") -> Job:
+    """A job of a text, which is taken for the file `name`: what it uses is looked for from there.
+
+    >>> import flank
+    >>> text = open("specs/hobbing/helical_gear.chain").read()
+    >>> flank.loads(text, name="specs/hobbing/mine.chain").name
+    'helical_gear'
+    """
+    return _one(_flank.load(name, [(name, text)], job), job)
+
+
+def load_all(path: _Path) -> dict[str, Job]:
+    """All jobs of a spec file by their names.
+
+    >>> import flank
+    >>> list(flank.load_all("specs/bevel/ease_off_19x62.chain"))
+    ['pinion', 'basic', 'conjugate']
+    """
+    return {native.name: Job(native) for native in _flank.load(_os.fspath(path), [])}
+
+
+def _one(found: list[_flank.Job], wanted: str | None) -> Job:
+    if len(found) != 1:
+        known = ", ".join(native.name for native in found)
+        raise InputError(f"the spec holds several jobs: name one with `job=`, of {known}")
+    return Job(found[0])
+
+
+def deviation(surface: Surface, from_: Surface, *, align: bool = True) -> Deviation:
+    """How far a surface lies off another one of the same body, um along the normal of the latter, plus is material: the ease-off.
+
+    The surface is turned about z to meet the other in the middle of its grid, unless `align` is false. Both may be of jobs with different
+    values or specs.
+
+    >>> import flank
+    >>> jobs = flank.load_all("specs/bevel/ease_off_19x62.chain")
+    >>> e = flank.deviation(jobs["pinion"]["concave"], from_=jobs["basic"]["concave"])
+    >>> e.counts, round(e.rms, 2)
+    ((25, 45), 25.77)
+    """
+    options = {"reference": from_.name, "no_align": not align}
+    native, other = surface.job._native, from_.job._native
+    name = surface.name
+
+    def asked(more: dict[str, _Any]) -> _flank.Answer:
+        return _flank.deviation(native, name, {**options, **more}, other)
+
+    return Deviation(asked({}), asked)
+
+
+def check(*specs: _Path, text: str | None = None) -> dict[str, _Any]:
+    """What is wrong with spec files, or with a text: the document of `flank check --json`.
+
+    >>> import flank
+    >>> flank.check("specs/bevel/pinion_19x62.chain")["files"][0]["ok"]
+    True
+    """
+    if text is not None:
+        name = _os.fspath(specs[0]) if specs else "text.chain"
+        answer = _flank.check([(name, text)])
+    else:
+        answer = _flank.check([(_os.fspath(spec), None) for spec in specs])
+    document: dict[str, _Any] = _json.loads(answer.document())
+    return document
+
+
+def format(text: str, *, name: str = "text.chain") -> str:
+    """A spec's text as it is laid out.
+
+    >>> import flank
+    >>> flank.format("machine m{axis C:rotary}")
+    'machine m { axis C : rotary }\\n'
+    """
+    return _flank.layout(name, text)
+
+
+def test(*paths: _Path, filter: str | None = None, snapshot: bool = True) -> dict[str, _Any]:
+    """Checks what specs expect: the document of `flank test --json`.
+
+    >>> import flank
+    >>> flank.test("specs/hobbing/helical_gear.chain")["failed"]
+    0
+    """
+    answer = _flank.test([_os.fspath(path) for path in paths], filter, snapshot)
+    document: dict[str, _Any] = _json.loads(answer.document())
+    return document
+
+
+# a function of users, and no test of ours
+setattr(test, "__test__", False)
+
+
+def codes() -> list[dict[str, str]]:
+    """All codes of findings with `severity` and `title`.
+
+    >>> import flank
+    >>> flank.codes()[0]["code"]
+    'E0001'
+    """
+    found: list[dict[str, str]] = _json.loads(_flank.codes())
+    return found
+
+
+def explain(code: str) -> str:
+    """The page about a code of findings, Markdown.
+
+    >>> import flank
+    >>> flank.explain("E0301").splitlines()[0]
+    '# E0301: a value has the wrong dimension'
+    """
+    page = _flank.explain(code)
+    if page is None:
+        raise InputError(f"there is no code `{code}`; there is: {', '.join(one['code'] for one in codes())}")
+    return page
+
+
+def schemas() -> dict[str, dict[str, _Any]]:
+    """The JSON schemas of all documents by their names.
+
+    >>> import flank
+    >>> "flank.solve/3" in flank.schemas()
+    True
+    """
+    return {name: _json.loads(text) for name, text in _flank.schemas()}
+
+
+def threads(count: int | None = None) -> int:
+    """Sets on how many threads an operation works, and gives the number before. 0, as at the beginning, shares all processors among all
+    operations; 1 is for programs that parallelise outside. Without a number nothing changes. No bit of a result depends on it.
+
+    >>> import flank
+    >>> flank.threads()
+    0
+    """
+    return _flank.threads(_count(count, "count", 0, 1024))

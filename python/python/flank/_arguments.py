@@ -1,0 +1,110 @@
+"""Arguments of jobs as the native half takes them."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from flank._errors import InputError
+from flank._points import Floats
+from flank._quantities import Quantity, errors, names
+
+Path_ = str | os.PathLike[str]
+R = TypeVar("R")
+
+
+def single(found: dict[str, R], what: str) -> R:
+    """The one of some results."""
+    if len(found) != 1:
+        raise InputError(f"the job has several: name one {what} of {', '.join(found)}")
+    return next(iter(found.values()))
+
+
+def margin_shares(margin: tuple[float, float] | None) -> list[float] | None:
+    """What is left out at each end of a grid."""
+    if margin is None:
+        return None
+    shares = [float(share) for share in margin]
+    if len(shares) != 2 or not all(0 <= share < 0.5 for share in shares):
+        raise InputError(f"`margin` is {margin!r}: write two shares from 0 up to 0.5, from root to tip and along the tooth")
+    return shares
+
+
+def mounting_errors(values: Mapping[str, Quantity] | None) -> list[tuple[str, str, float]]:
+    """Axes with how far they are off."""
+    return errors(values or {}, "errors")
+
+
+def chosen(value: str, what: str, known: tuple[str, ...]) -> str:
+    """One of some words."""
+    if value not in known:
+        raise InputError(f"`{what}` is {value!r}: it is {' or '.join(known)}")
+    return value
+
+
+def correlation(value: float) -> float:
+    """A number above -1 and below 1."""
+    if not -1 < value < 1:
+        raise InputError(f"a correlation is {value!r}: it is above -1 and below 1")
+    return float(value)
+
+
+def kept(keep: Mapping[str, str] | Iterable[str]) -> list[tuple[str, bool]]:
+    """Surfaces that stay, each with whether it is kept along a line."""
+    if isinstance(keep, Mapping):
+        return [(name, chosen(place, "keep", ("middle", "line")) == "line") for name, place in keep.items()]
+    return [(name, False) for name in names(keep)]
+
+
+def parabola(wish: Mapping[str, float | tuple[float, float]]) -> list[float]:
+    """A wanted ease-off: slopes, crownings, bias."""
+    unknown = set(wish) - {"slope", "crowning", "bias"}
+    if unknown:
+        raise InputError(f"`ease_off` has `{sorted(unknown)[0]}`: it has slope, crowning and bias, um")
+
+    def both(key: str) -> list[float]:
+        value = wish.get(key, (0.0, 0.0))
+        if not isinstance(value, tuple | list) or len(value) != 2:
+            raise InputError(f"`ease_off` {key} is {value!r}: write two numbers, from root to tip and along the tooth, um")
+        return [float(of) for of in value]
+
+    bias = wish.get("bias", 0.0)
+    if isinstance(bias, tuple | list):
+        raise InputError(f"`ease_off` bias is {bias!r}: write one number, um")
+    return [*both("slope"), *both("crowning"), float(bias)]
+
+
+class Measured:
+    """A file of measured points: as it is, or made of positions for as long as it is needed."""
+
+    def __init__(self, of: Path_ | npt.ArrayLike | None) -> None:
+        self._of = of
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    def __enter__(self) -> tuple[str | None, str]:
+        if self._of is None:
+            return None, ""
+        if isinstance(self._of, str | os.PathLike):
+            return os.fspath(self._of), ""
+        xyz: Floats = np.asarray(self._of, dtype=float)
+        if xyz.ndim != 3 or xyz.shape[2] != 3:
+            raise InputError(f"measured positions are an array of shape (rows, columns, 3), mm: not {xyz.shape}")
+        self._folder = tempfile.TemporaryDirectory(prefix="flank-")
+        file = Path(self._folder.name) / "measured.csv"
+        lines = [
+            f"{i + 1},{j + 1},{','.join(repr(float(x)) for x in xyz[i, j])}"
+            for i, j in np.ndindex(xyz.shape[:2])
+            if np.isfinite(xyz[i, j]).all()
+        ]
+        file.write_text("\n".join(["row,column,x,y,z", *lines, ""]))
+        return str(file), self._folder.name
+
+    def __exit__(self, *_: object) -> None:
+        if self._folder is not None:
+            self._folder.cleanup()

@@ -1,0 +1,138 @@
+"""Quantities: `"98.1 mm"`, `(98.1, "mm")`, a quantity of pint, and bare numbers where a number has no unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from flank._errors import InputError
+
+Quantity = Any
+"""A text with a unit, a pair of number and unit, a quantity of pint, or a number."""
+
+Amount = tuple[str, str, float]
+"""A name, the kind of an amount, and its size: mm, radians, a number or a share."""
+
+_DEGREE = math.pi / 180
+_UNITS: dict[str, tuple[str, float]] = {
+    "nm": ("length", 1e-6),
+    "um": ("length", 1e-3),
+    "µm": ("length", 1e-3),
+    "mm": ("length", 1.0),
+    "m": ("length", 1e3),
+    "in": ("length", 25.4),
+    "deg": ("angle", _DEGREE),
+    "arcmin": ("angle", _DEGREE / 60),
+    "arcsec": ("angle", _DEGREE / 3600),
+    "mrad": ("angle", 1e-3),
+    "rad": ("angle", 1.0),
+    "%": ("share", 1e-2),
+    "": ("number", 1.0),
+}
+_TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
+
+
+def text(value: Quantity) -> str:
+    """A quantity in the words of the language, which says what is wrong with it.
+
+    >>> from flank._quantities import text
+    >>> text((98.1, "mm")), text("98.1 mm"), text(17)
+    ('98.1 mm', '98.1 mm', '17')
+    """
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple) and len(value) == 2:
+        return f"{_number(value[0])} {value[1]}"
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return _of_pint(value)
+    return _number(value)
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, bool) or not hasattr(value, "__float__"):
+        raise InputError(f"a value is a text with a unit, a pair of number and unit, or a number: not {value!r}")
+    number = float(value)
+    if not math.isfinite(number):
+        raise InputError(f"a value is a finite number: not {value!r}")
+    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+
+
+def _of_pint(value: Any) -> str:
+    if value.check("[length]"):
+        return f"{_number(value.to('mm').magnitude)} mm"
+    if value.dimensionless and str(value.units) not in ("dimensionless", ""):
+        return f"{_number(value.to('radian').magnitude)} rad"
+    if value.dimensionless:
+        return _number(value.magnitude)
+    raise InputError(f"a length, an angle or a number is wanted: not {value}")
+
+
+def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
+    words = text(value)
+    match = _TEXT.fullmatch(words)
+    unit = _UNITS.get(match[2]) if match else None
+    if match is None or unit is None:
+        raise InputError(f"`{what}` is `{words}`: write a number with a unit, for example {example}")
+    return unit[0], float(match[1]) * unit[1]
+
+
+def length(value: Quantity | None, what: str) -> float | None:
+    """A length above zero in mm; `None` stays."""
+    if value is None:
+        return None
+    kind, size = _parsed(value, what, '"0.1 um"')
+    if kind != "length":
+        raise InputError(f"`{what}` is `{text(value)}`: write a length with its unit, for example \"0.1 um\"")
+    if size <= 0:
+        raise InputError(f"`{what}` is `{text(value)}`: a length above zero is needed")
+    return size
+
+
+def amounts(values: Mapping[str, Quantity], what: str) -> list[Amount]:
+    """Names with amounts above zero: `{"m.radial_distance": "5 um", "m.ratio_of_roll": "0.01 %"}`."""
+    all_of_them = []
+    for name, value in values.items():
+        kind, size = _parsed(value, f"{what}[{name!r}]", '"5 um", "1 arcmin" or "0.01 %"')
+        if size <= 0:
+            raise InputError(f"`{what}[{name!r}]` is `{text(value)}`: an amount is above zero")
+        all_of_them.append((name, kind, size))
+    return all_of_them
+
+
+def errors(values: Mapping[str, Quantity], what: str) -> list[Amount]:
+    """Axes with how far they are off: `{"m.E": "0.1 mm", "m.S": "2 arcmin"}`."""
+    all_of_them = []
+    for name, value in values.items():
+        kind, size = _parsed(value, f"{what}[{name!r}]", '"0.1 mm" or "2 arcmin"')
+        if kind not in ("length", "angle"):
+            raise InputError(f"`{what}[{name!r}]` is `{text(value)}`: write it with a unit, \"0.1 mm\" or \"2 arcmin\"")
+        all_of_them.append((name, kind, size))
+    return all_of_them
+
+
+def count(value: int | None, what: str, low: int, high: int) -> int | None:
+    """A whole number within a range; `None` stays."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not hasattr(value, "__index__") or not low <= int(value) <= high:
+        raise InputError(f"`{what}` is {value!r}: write a whole number from {low} to {high}")
+    return int(value)
+
+
+def number(value: float | None, what: str, low: float, high: float = math.inf) -> float | None:
+    """A number above one end, and at the most the other; `None` stays."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not hasattr(value, "__float__") or not low < float(value) <= high:
+        end = "" if high == math.inf else f" and at the most {high:g}"
+        raise InputError(f"`{what}` is {value!r}: write a number above {low:g}{end}")
+    return float(value)
+
+
+def names(value: str | Iterable[str] | None) -> list[str]:
+    """One name or several."""
+    if value is None:
+        return []
+    return [value] if isinstance(value, str) else [str(name) for name in value]

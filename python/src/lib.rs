@@ -1,0 +1,35 @@
+//! The native half of the Python package `flank`: requests in, answers out. The names that users know stand in `python/flank`.
+
+mod answer;
+mod failure;
+mod grid;
+mod job;
+mod language;
+mod operations;
+mod options;
+mod run;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _flank {
+    /// Of the program.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_export]
+    use crate::answer::Answer;
+    #[pymodule_export]
+    use crate::grid::Grid;
+    #[pymodule_export]
+    use crate::job::{Job, load};
+    #[pymodule_export]
+    use crate::language::{check, codes, explain, layout, schemas, test};
+    #[pymodule_export]
+    use crate::operations::{
+        contact, convert, derive, deviation, fit, measure, mesh, mill, plot, report, solid, solve, synthesis,
+        tolerance, view,
+    };
+    #[pymodule_export]
+    use crate::run::threads;
+}

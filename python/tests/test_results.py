@@ -1,0 +1,262 @@
+"""Results: documents with the names of `--json`, arrays, files, pictures."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import PAIR
+
+import flank
+
+
+@pytest.fixture(scope="module")
+def results(job):
+    """One result of each kind."""
+    pair = flank.load(PAIR)
+    other = job.with_values({"m.radial_distance": "98 mm"})
+    grid = job.measuring_grid("concave")
+    measured = other.measuring_grid("concave").xyz
+    return {
+        "flank.solve/3": job.solve(geometry=True, sensitivity=True, limits=True),
+        "flank.deviation/1": flank.deviation(other["concave"], from_=job["concave"]),
+        "flank.measure/1": grid,
+        "flank.fit/1": job.fit("concave", measured, vary="m.radial_distance"),
+        "flank.contact/1": pair.contact("drive_side", sensitivity=True, vhj=True),
+        "flank.synthesis/1": pair.synthesis("centred"),
+        "flank.tolerance/1": job.tolerance("concave", scatter={"m.radial_distance": "5 um"}, sweep=10),
+        "flank.convert/2": job.convert("specs/machines/free_form.chain", positions=11),
+        "flank.settings/1": flank.load("specs/bevel/thesis_gear.chain").convert("specs/machines/cradle.chain", fit="work_offset"),
+        "flank.solid/1": job.solid(),
+        "flank.mesh/1": job.mesh(elements=(3, 4, 3)),
+        "flank.mill/1": flank.load("specs/bevel/milled_pinion.chain").mill("finish"),
+        "flank.plot/2": job.plot("machine"),
+        "flank.view/2": job.view(),
+        "flank.report/2": flank.load("specs/hobbing/helical_gear.chain").report(),
+        "flank.derivation/2": job.derive(),
+        "flank.cost/2": job.derive(cost=True),
+    }
+
+
+def _schema(name):
+    base = name.split("/")[0]
+    return next(schema for known, schema in flank.schemas().items() if known.split("/")[0] == base)
+
+
+def test_documents_keep_their_schemas(results):
+    jsonschema = pytest.importorskip("jsonschema")
+    for name, result in results.items():
+        document = json.loads(result.json())
+        assert document["schema"].split("/")[0] == name.split("/")[0]
+        schema = _schema(name)
+        jsonschema.validate(document, schema)
+        assert set(document) <= set(schema["properties"]), name
+        assert document == result.document
+    for document in [flank.check("specs/bevel/pinion_19x62.chain"), flank.test("specs/hobbing/spur_gear.chain")]:
+        jsonschema.validate(document, _schema(document["schema"]))
+
+
+def test_documents_are_copies(results):
+    result = results["flank.deviation/1"]
+    result.document["rms_um"] = 0.0
+    assert result["rms_um"] > 0 and result["rms_um"] == result.rms
+    with pytest.raises(KeyError, match="rms_um"):
+        result["rms"]
+
+
+def test_results_name_no_folder_that_is_gone(results):
+    for name, result in results.items():
+        assert "flank-" not in result.json() and "flank-" not in str(result), name
+        assert str(result), name
+
+
+def test_displays_are_small(results, job):
+    for name, result in results.items():
+        bundle = result._repr_mimebundle_()
+        assert bundle["text/plain"], name
+        # the page alone is large, and is shown only by `view` and `report`
+        if name not in ("flank.view/2", "flank.report/2"):
+            assert sum(map(len, bundle.values())) < 200_000 + len(bundle["text/plain"]), name
+    for name in ["flank.solve/3", "flank.deviation/1", "flank.measure/1", "flank.fit/1", "flank.contact/1"]:
+        svg = results[name]._repr_mimebundle_()["image/svg+xml"]
+        assert svg.startswith("<svg") and svg.endswith("</svg>") and "nan" not in svg, name
+    shown = job._repr_mimebundle_()
+    assert "m.radial_distance" in shown["text/html"] and "<img" in shown["text/html"]
+    assert len(shown["text/html"]) < 200_000
+    assert "97.95940290780507 mm" in shown["text/plain"]
+    assert "<table" in job.parameters._repr_mimebundle_()["text/html"]
+
+
+def test_the_page_stands_in_a_frame(results):
+    page = results["flank.view/2"]
+    shown = page._repr_mimebundle_()["text/html"]
+    assert shown.startswith("<iframe srcdoc=") and "allow-same-origin" not in shown
+    assert page.html.lower().startswith("<!doctype html>")
+
+
+def test_deviations_are_those_of_both_values(job):
+    """The order of the surfaces turns the sign."""
+    other = job.with_values({"m.radial_distance": "97.96 mm"})
+    there = flank.deviation(other["concave"], from_=job["concave"], align=False)
+    back = flank.deviation(job["concave"], from_=other["concave"], align=False)
+    # of changes of some um the second order is below a thousandth
+    assert np.nanmax(np.abs(there.um + back.um)) < 1e-3 * np.nanmax(np.abs(there.um))
+    same = flank.deviation(job["concave"], from_=job["concave"], align=False)
+    assert np.nanmax(np.abs(same.um)) < 1e-6
+
+
+def test_a_measured_flank_gives_its_settings(job, tmp_path):
+    moved = job.with_values({"m.radial_distance": "98.05 mm", "m.machine_root_angle": "15.7 deg"})
+    xyz = moved.measuring_grid("concave", 5, 9).xyz
+    found = job.inspect("concave", xyz)
+    assert found.um.shape == (5, 9) and found["measured"] == "measured.csv" and found.rms > 1
+    fit = job.fit("concave", found, vary=["m.radial_distance", "m.machine_root_angle"])
+    identified = {one["name"]: one["new"] for one in fit["identification"]["settings"]}
+    assert identified["m.radial_distance"] == pytest.approx(98.05, abs=1e-4)
+    assert identified["m.machine_root_angle"] == pytest.approx(15.7, abs=1e-4)
+    assert np.nanmax(np.abs(fit.left_um)) < 1e-2 < np.nanmax(np.abs(fit.before_um))
+    assert fit.table["name"] == ["m.radial_distance", "m.machine_root_angle"]
+    # the correction goes the other way
+    assert fit.job.parameters["m.radial_distance"].value < job.parameters["m.radial_distance"].value
+    assert set(fit.standard_deviations) == set(identified)
+    assert np.sqrt(np.diag(fit.covariance)) == pytest.approx(list(fit.standard_deviations.values()), rel=1e-12)
+    hole = np.array(xyz)
+    hole[0, 0] = np.nan
+    assert np.isnan(job.inspect("concave", hole).um[0, 0])
+    grid = job.measuring_grid("concave", rows=5, columns=9)
+    path = grid.write(tmp_path / "nominal.csv")
+    assert open(path).read().startswith("#")
+    with pytest.raises(flank.InputError, match="csv"):
+        grid.write(tmp_path / "nominal.txt")
+
+
+def test_a_wanted_ease_off(job):
+    vary = ["m.radial_distance", "m.machine_root_angle", "m.ratio_of_roll", "m.cradle_angle", "c.outside_point_radius"]
+    fit = job.fit("concave", ease_off={"crowning": (0, 20)}, from_=job["concave"], order=2, vary=vary)
+    reached = fit["ease_off"]["reached"]
+    assert reached["crownings_um"][1] == pytest.approx(20, abs=0.5)
+    with pytest.raises(flank.InputError, match="bias"):
+        job.fit("concave", ease_off={"twist": 2}, from_=job["concave"])
+    with pytest.raises(flank.InputError, match="measured"):
+        job.fit("concave")
+
+
+def test_contacts(results):
+    contact = results["flank.contact/1"]
+    assert set(contact.flanks) == set(contact.paths) == {"pinion_concave", "gear_convex"}
+    assert contact.flanks["gear_convex"]["gap"].shape == contact.flanks["gear_convex"].counts
+    assert contact.error.shape == contact.turn.shape and len(contact.turn) > 60
+    # the error is that to its middle, where it is extreme
+    assert abs(contact.error).min() < 1e-6
+    pair = flank.load(PAIR)
+    assert set(pair.contacts()) >= {"drive_side"}
+    mounted = pair.contact("drive_side", errors={"m.E": "0.1 mm"})
+    assert mounted["mounted"] == [{"axis": "m.E", "value": 0.1, "unit": "mm"}]
+    with pytest.raises(flank.InputError, match="unit"):
+        pair.contact("drive_side", errors={"m.E": 0.1})
+
+
+def test_motions(results, tmp_path, job):
+    motion = results["flank.convert/2"]
+    assert motion.axes.shape == (11, 6) and motion.motions.shape == (11, 1) and not np.isnan(motion.axes).any()
+    away = np.radians(motion.motions[:, 0]) - motion["polynomials"]["reference"]
+    # the polynomials are about the middle of the motion, and angles among their values are degrees
+    first = motion.polynomials[motion.names[0]]
+    value = np.polynomial.polynomial.polyval(away, first)
+    assert np.abs(value - motion.axes[:, 0]).max() <= motion["polynomials"]["remainders"]["seen"][motion.names[0]] * 1.01
+    program = motion.nc("fanuc", time=20)
+    assert "G1" in program or "G01" in program
+    assert "double" in motion.function("c")
+    written = motion.write(tmp_path, ["csv", "json"], nc="linuxcnc", time=20)
+    assert sorted(name.rsplit(".", 1)[-1] for name in written) == ["csv", "json", "ngc"]
+    with pytest.raises(flank.InputError, match="lathe"):
+        motion.nc("lathe", time=20)
+
+
+def test_another_machine_that_cannot(job, tmp_path):
+    lathe = tmp_path / "lathe.chain"
+    lathe.write_text("machine lathe { axis C : rotary frame bed frame work in bed = rotate_z(C) }")
+    with pytest.raises(flank.ConversionError):
+        job.convert(lathe)
+
+
+def test_settings_of_another_machine(results):
+    settings = results["flank.settings/1"]
+    assert isinstance(settings, flank.Settings) and "work_offset" in settings.values
+
+
+def test_bodies_and_bricks(results, tmp_path):
+    body = results["flank.solid/1"]
+    numbers = body.solids["pinion"]
+    assert numbers["teeth"] == 19
+    # the mesh is inside by its deviation at most
+    assert numbers["mesh"]["volume_mm3"] == pytest.approx(numbers["volume_mm3"], abs=0.01 * numbers["area_mm2"])
+    written = body.write(tmp_path, ["step", "stl"])
+    assert sorted(name.rsplit(".", 1)[-1] for name in written) == ["step", "stl"]
+    bricks = results["flank.mesh/1"].write(tmp_path, ["inp", "vtu"])
+    assert sorted(name.rsplit(".", 1)[-1] for name in bricks) == ["inp", "vtu"]
+
+
+def test_milling(results, tmp_path):
+    milling = results["flank.mill/1"]
+    assert milling["passes"] > 1 and milling["cusp"]["height_um"] > 0
+    written = milling.write(tmp_path, "csv", nc="heidenhain")
+    assert len(written) >= 2
+
+
+def test_pictures(job, tmp_path):
+    picture = job.plot("section")
+    assert picture.save(tmp_path / "s.svg") == str(tmp_path / "s.svg")
+    assert (tmp_path / "s.svg").read_text() == picture.svg
+    both = job.plot(["section", "machine"], formats="svg")
+    assert list(both.pictures) == ["section", "machine"]
+    with pytest.raises(flank.InputError, match="section, machine"):
+        both.save(tmp_path / "both.svg")
+    with pytest.raises(flank.InputError, match="pdf"):
+        job.plot("section", formats="pdf")
+    with pytest.raises(flank.InputError, match="drawing"):
+        job.plot("drawing")
+
+
+def test_reports_hold_the_numbers(results, tmp_path):
+    report = results["flank.report/2"]
+    path = report.save(tmp_path / "report.html")
+    assert open(path).read() == report.html
+    assert report["asked"] > 0
+
+
+def test_derivations(job):
+    assert "\\" in job.derive(latex=True).page
+    cost = job.derive(cost=True)
+    assert cost.page == "" and cost["jobs"][0]["surfaces"]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda job: job.solid(deviation=0.01),
+        lambda job: job.solid(deviation="0 um"),
+        lambda job: job.solid(density=-1),
+        lambda job: job.solid("half"),
+        lambda job: job.mesh(teeth=0),
+        lambda job: job.mesh(elements=(1, 1, 1)),
+        lambda job: job.mesh(order=3),
+        lambda job: job.measuring_grid("concave", rows=1),
+        lambda job: job.measuring_grid("concave", margin=(0.6, 0.1)),
+        lambda job: job.inspect("concave", [[1.0, 2.0, 3.0]]),
+        lambda job: job.inspect("concave", np.zeros((5, 9, 3))),
+        lambda job: job.fit("concave", "grid.csv", share=2),
+        lambda job: job.fit("concave", "grid.csv", thickness="thin"),
+        lambda job: job.tolerance("concave", scatter={"m.radial_distance": "5 furlongs"}),
+        lambda job: job.tolerance("concave", correlations={("m.radial_distance", "c.blade_angle"): 1.0}),
+        lambda job: job.contact(),
+        lambda job: job.mill(),
+        lambda job: job.plot("section", size=(1, 1)),
+        lambda job: job.synthesis("centred"),
+        lambda job: job.solve().write("x", "dwg"),
+        lambda job: flank.explain("E9999"),
+    ],
+)
+def test_what_does_not_go_together_is_told(job, call):
+    with pytest.raises(flank.Error) as caught:
+        call(job)
+    assert not isinstance(caught.value, flank.InternalError) and str(caught.value)
