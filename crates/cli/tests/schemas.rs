@@ -161,6 +161,11 @@ fn comparisons_and_pictures() {
     let tolerance = ["tolerance", PINION, "concave", "--json", "--scatter", "radial_distance=5um,ratio_of_roll=0.01%"];
     judge.run(&[&tolerance[..], &["--sweep", "20"]].concat(), 0);
     judge.run(&[&tolerance[..], &["--budget", "bias=1nm"]].concat(), 2);
+    let study = out.join("study").display().to_string();
+    let vary = "m.radial_distance=97.9mm..98.1mm by 2";
+    let sweep = ["sweep", PINION, "--json", "--vary", vary, "--collect", "at:concave[0,0]", "--out", &study];
+    judge.run(&sweep, 0);
+    judge.run(&["sweep", "status", &study, "--json"], 0);
     judge.run(&[&tolerance[..], &["--budget", "bias=0.001um"]].concat(), 3);
     judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
@@ -170,6 +175,7 @@ fn comparisons_and_pictures() {
         "flank.deviation/1",
         "flank.fit/1",
         "flank.tolerance/1",
+        "flank.sweep/1",
         "flank.plot/2",
         "flank.view/2",
         "flank.measure/1",
@@ -250,7 +256,7 @@ fn failures_of_all_commands() {
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
     let shipped = schemas();
-    assert_eq!(shipped.len(), 31, "no document comes or goes unseen");
+    assert_eq!(shipped.len(), 32, "no document comes or goes unseen");
     for (name, schema) in &shipped {
         assert!(jsonschema::meta::is_valid(schema), "{name} is no schema");
         let (kind, version) =
