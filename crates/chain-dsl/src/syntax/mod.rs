@@ -20,7 +20,7 @@ mod scan;
 mod tests;
 mod words;
 
-use crate::diagnostics::source::FileId;
+use crate::diagnostics::source::{FileId, Span};
 use crate::diagnostics::{Diagnostic, Severity};
 
 pub(crate) use concrete::{Kind, Part};
@@ -74,6 +74,16 @@ pub(crate) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
 /// Whether a word belongs to the language, so that nothing can be called by it.
 pub fn is_reserved(word: &str) -> bool {
     words::reserved(word).is_some()
+}
+
+/// All words of a text in order: names, keywords, units.
+pub fn words(text: &str, file: FileId) -> Vec<Span> {
+    if limits::too_long(text, file).is_some() {
+        return Vec::new();
+    }
+    let scan = scan::Scan::new(text, file);
+    let words = (0..scan.tokens.len()).filter(|index| scan.kind(*index) == Some(scan::Kind::Word));
+    words.map(|index| scan.place(index)).collect()
 }
 
 /// All comments of a text, in order.
