@@ -68,4 +68,4 @@ pub use model::{
     OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
     SampleGrid, Solid, ToolShape, ValueSource, WantedContact,
 };
-pub use values::dimension::Dimension;
+pub use values::dimension::{Dimension, unit_size};

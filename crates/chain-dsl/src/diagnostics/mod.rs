@@ -87,7 +87,8 @@ impl Diagnostic {
         let Some((span, unit)) = self.lacks_unit.take() else { return self };
         let text = sources.text(span);
         // units stand behind numbers only
-        let is_number = text.trim_start_matches('-').chars().all(|letter| letter.is_ascii_digit() || ".eE".contains(letter));
+        let is_number =
+            text.trim_start_matches('-').chars().all(|letter| letter.is_ascii_digit() || ".eE".contains(letter));
         let written = if is_number { format!("{text} {unit}") } else { format!("({text}) * 1 {unit}") };
         self.cure(format!("write `{written}`"), span, written)
     }

@@ -25,6 +25,7 @@ use crate::diagnostics::{Diagnostic, Severity};
 
 pub(crate) use concrete::{Kind, Part};
 pub use scan::{Comment, CommentKind};
+pub use words::Vocabulary;
 
 /// Reads a text. Never fails: what did not parse is reported, and what stands around it is in the tree.
 ///
@@ -76,14 +77,51 @@ pub fn is_reserved(word: &str) -> bool {
     words::reserved(word).is_some()
 }
 
-/// All words of a text in order: names, keywords, units.
-pub fn words(text: &str, file: FileId) -> Vec<Span> {
+/// A word or a sign of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token {
+    /// Where it stands.
+    pub span: Span,
+    /// What it looks like.
+    pub kind: TokenKind,
+}
+
+/// What a word or a sign looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TokenKind {
+    /// A name, a keyword, a unit.
+    Word,
+    /// Digits with fraction and exponent.
+    Number,
+    /// `"text"`, perhaps without its end.
+    Text,
+    /// A sign of the language.
+    Sign,
+    /// Anything else.
+    Strange,
+}
+
+/// All words and signs of a text, in order.
+pub fn tokens(text: &str, file: FileId) -> Vec<Token> {
     if limits::too_long(text, file).is_some() {
         return Vec::new();
     }
     let scan = scan::Scan::new(text, file);
-    let words = (0..scan.tokens.len()).filter(|index| scan.kind(*index) == Some(scan::Kind::Word));
-    words.map(|index| scan.place(index)).collect()
+    let kind = |kind| match kind {
+        scan::Kind::Word => TokenKind::Word,
+        scan::Kind::Number => TokenKind::Number,
+        scan::Kind::Text | scan::Kind::OpenText => TokenKind::Text,
+        scan::Kind::Sign => TokenKind::Sign,
+        scan::Kind::Strange => TokenKind::Strange,
+    };
+    let tokens = scan.tokens.iter();
+    let span = |token: &scan::Token| Span { file, start: token.start, end: token.end };
+    tokens.map(|token| Token { span: span(token), kind: kind(token.kind) }).collect()
+}
+
+/// The words of the language.
+pub fn vocabulary() -> Vocabulary {
+    words::vocabulary()
 }
 
 /// All comments of a text, in order.

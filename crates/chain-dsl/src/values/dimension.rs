@@ -109,6 +109,11 @@ pub(crate) fn unit(name: &str) -> Option<(f64, Dimension)> {
     Some((size, dimension))
 }
 
+/// A unit in mm or radians, with its dimension; `None` if there is no such unit.
+pub fn unit_size(name: &str) -> Option<(f64, Dimension)> {
+    unit(name)
+}
+
 /// A number with its unit in mm or radians, correctly rounded where one operation is enough: 20 um is 20/1000.
 pub(crate) fn convert(value: f64, name: &str, exponent: i32) -> Option<f64> {
     use std::f64::consts::PI;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::syntax::{is_reserved, words};
-use flank_chain_dsl::{Compilation, Target, compile_file};
+use flank_chain_dsl::syntax::{TokenKind, is_reserved, tokens, vocabulary};
+use flank_chain_dsl::{Compilation, Entry, Target, compile_file};
 use flank_expr::Graph;
 
 fn specs() -> Vec<PathBuf> {
@@ -23,23 +23,26 @@ fn specs() -> Vec<PathBuf> {
     all
 }
 
-/// Words that are no names where no entry stands: they belong to a statement.
-const OF_STATEMENTS: [&str; 37] = [
-    "profile", "cut", "nc", "error", "insert", "close", "unknown", "solid", "contact", "want", "mill", "expect", "linear",
-    "rotary", "inside", "outside", "towards", "where", "along", "about", "for", "as", "keep", "with", "near", "within",
-    "travel", "nothing", "of", "passes", "both", "ways", "clear", "scallop", "step", "chord", "lead",
-];
-
+/// What leads nowhere, or to a definition of another name.
 fn lost<'c>(compilation: &'c Compilation<'_>) -> Vec<String> {
     let (index, sources) = (&compilation.index, &compilation.sources);
     let Some((main, text)) = sources.files().find(|(_, file)| file.file.is_some()) else { return Vec::new() };
     let mut lost = Vec::new();
-    for word in words(&text.text, main) {
+    let words = vocabulary();
+    let is_of_statements = |word: &str| {
+        let lists = [words.in_machine, words.in_tool, words.in_surface, words.in_job, words.inside, words.choices];
+        lists.iter().any(|list| list.contains(&word))
+    };
+    for word in tokens(&text.text, main).iter().filter(|token| token.kind == TokenKind::Word).map(|token| token.span) {
         let said = sources.text(word);
-        let entry = index.at(main, word.start).filter(|entry| entry.span.start <= word.start && word.end <= entry.span.end);
+        let entry =
+            index.at(main, word.start).filter(|entry| entry.span.start <= word.start && word.end <= entry.span.end);
         let is_found = match entry {
-            Some(entry) => !matches!(entry.target, Target::Missing(_)),
-            None => is_reserved(said) || OF_STATEMENTS.contains(&said) || ["tilt", "stock"].contains(&said),
+            Some(Entry { target: Target::Missing(_), .. }) => false,
+            Some(Entry { target: Target::Symbol(id), .. }) => sources.text(index.symbol(*id).name) == said,
+            Some(_) => true,
+            // a word of a statement, not a name
+            None => is_reserved(said) || is_of_statements(said),
         };
         if !is_found {
             let (path, line, column) = sources.place(word);

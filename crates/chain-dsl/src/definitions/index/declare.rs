@@ -216,7 +216,8 @@ impl<'a> Names<'a> {
     }
 
     fn job_names(&mut self, owner: Option<SymbolId>, statement: &'a JobStatement) -> Vec<(&'a str, SymbolId)> {
-        let mut simple = |kind, name: &'a Name, extent| vec![(name.node.as_str(), self.define(kind, name, extent, owner))];
+        let mut simple =
+            |kind, name: &'a Name, extent| vec![(name.node.as_str(), self.define(kind, name, extent, owner))];
         match statement {
             JobStatement::Param(param) => vec![(&param.name.node, self.param(param, owner))],
             JobStatement::Let(binding) => vec![(&binding.name.node, self.binding(binding, owner))],
@@ -237,7 +238,9 @@ impl<'a> Names<'a> {
             }
             JobStatement::Surface(surface) => {
                 let names = surface.names.iter();
-                let defined = |name: &'a Name| (name.node.as_str(), self.define(NameKind::Surface, name, surface.value.span, owner));
+                let defined = |name: &'a Name| {
+                    (name.node.as_str(), self.define(NameKind::Surface, name, surface.value.span, owner))
+                };
                 names.map(defined).collect()
             }
             JobStatement::Solid(solid) => simple(NameKind::Solid, &solid.name, solid.value.span),
@@ -249,7 +252,8 @@ impl<'a> Names<'a> {
             JobStatement::Mill(mill) => simple(NameKind::Milling, &mill.name, mill.frame.span),
             JobStatement::Sample(sample) => {
                 let named = sample.surfaces.iter().filter_map(|sampled| sampled.name.as_ref());
-                let defined = |name: &'a Name| (name.node.as_str(), self.define(NameKind::Sample, name, sample.span, owner));
+                let defined =
+                    |name: &'a Name| (name.node.as_str(), self.define(NameKind::Sample, name, sample.span, owner));
                 named.map(defined).collect()
             }
             JobStatement::Mount { .. }

@@ -7,8 +7,25 @@ use crate::syntax::ast::{Call, Dimension, Expression, ExpressionKind, Path, Rang
 
 /// What every point has, and what samples and milling passes run by.
 const OF_POINTS: [&str; 19] = [
-    "x", "y", "z", "rho", "polar_angle", "nx", "ny", "nz", "toe_root", "heel_root", "toe_tip", "heel_tip", "lengthwise",
-    "profilewise", "points", "k1", "k2", "gaussian_curvature", "mean_curvature",
+    "x",
+    "y",
+    "z",
+    "rho",
+    "polar_angle",
+    "nx",
+    "ny",
+    "nz",
+    "toe_root",
+    "heel_root",
+    "toe_tip",
+    "heel_tip",
+    "lengthwise",
+    "profilewise",
+    "points",
+    "k1",
+    "k2",
+    "gaussian_curvature",
+    "mean_curvature",
 ];
 
 /// Where an expression stands.
@@ -35,7 +52,9 @@ impl<'a> Names<'a> {
         match &expression.kind {
             ExpressionKind::Number(_, units) => units.iter().for_each(|(unit, _)| self.word(unit.span, WordKind::Unit)),
             ExpressionKind::Text(_) | ExpressionKind::Error => {}
-            ExpressionKind::Path(path) => { self.path(path, place, Wanted::Value, NameKind::Value); },
+            ExpressionKind::Path(path) => {
+                self.path(path, place, Wanted::Value, NameKind::Value);
+            }
             ExpressionKind::Call(call) => self.call(call, place),
             ExpressionKind::Vector(parts) => parts.iter().for_each(|part| self.expression(part, place)),
             ExpressionKind::Unary(_, a) => self.expression(a, place),
@@ -191,8 +210,37 @@ fn is_known(name: &str) -> bool {
         || WORDS.contains(&name)
 }
 
+/// All functions, transforms and ways to make a surface.
+pub(crate) fn functions() -> Vec<&'static str> {
+    let transforms = super::super::transforms::names().iter().copied();
+    let mut all: Vec<&'static str> = crate::values::functions::names().chain(transforms).chain(WORDS).collect();
+    all.sort_unstable();
+    all
+}
+
 /// Functions that mean something only where they stand.
-const WORDS: [&str; 25] = [
-    "table", "curve", "grid", "envelope", "sweep", "move", "turned", "vertex", "about", "line", "arc", "spline", "thickness",
-    "span", "over_balls", "turn", "rms", "lowest", "highest", "slope", "crowning", "bias", "position", "points", "at",
+const WORDS: [&str; 23] = [
+    "table",
+    "curve",
+    "grid",
+    "envelope",
+    "sweep",
+    "move",
+    "turned",
+    "vertex",
+    "about",
+    "line",
+    "arc",
+    "spline",
+    "thickness",
+    "span",
+    "over_balls",
+    "turn",
+    "rms",
+    "lowest",
+    "highest",
+    "slope",
+    "crowning",
+    "bias",
+    "position",
 ];

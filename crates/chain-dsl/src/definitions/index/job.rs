@@ -74,7 +74,9 @@ impl<'a> Names<'a> {
                 self.surfaces(&surface.value, place);
             }
             JobStatement::Trim { surface, by } | JobStatement::Cut { surface, by } => {
-                [surface, by].into_iter().for_each(|path| { self.surface(path, place); });
+                [surface, by].into_iter().for_each(|path| {
+                    self.surface(path, place);
+                });
             }
             JobStatement::Profile(profile) => {
                 place.is_at_points = true;
@@ -85,7 +87,9 @@ impl<'a> Names<'a> {
                 self.surfaces(&solid.value, place);
             }
             JobStatement::Contact(contact) => {
-                contact.surfaces.iter().for_each(|path| { self.surface(path, place); });
+                contact.surfaces.iter().for_each(|path| {
+                    self.surface(path, place);
+                });
                 for argument in &contact.arguments {
                     argument.name.iter().for_each(|name| self.word(name.span, WordKind::Argument));
                     self.expression(&argument.value, place);
@@ -126,7 +130,9 @@ impl<'a> Names<'a> {
         for argument in &call.arguments {
             argument.name.iter().for_each(|name| self.word(name.span, WordKind::Argument));
             match &argument.value.kind {
-                ExpressionKind::Path(path) => { self.surface(path, place); },
+                ExpressionKind::Path(path) => {
+                    self.surface(path, place);
+                }
                 _ => self.expression(&argument.value, place),
             }
         }
@@ -161,13 +167,7 @@ impl<'a> Names<'a> {
     }
 
     /// A coordinate that points are asked for by, perhaps defined here.
-    fn coordinate(
-        &mut self,
-        job: SymbolId,
-        key: &'a Name,
-        definition: Option<&'a Expression>,
-        place: &mut Place<'a>,
-    ) {
+    fn coordinate(&mut self, job: SymbolId, key: &'a Name, definition: Option<&'a Expression>, place: &mut Place<'a>) {
         let Some(definition) = definition else {
             // coordinates of the points come before values of the job
             let unknown = place.surfaces.iter().find_map(|surface| self.unknown(*surface, &key.node, 0));
@@ -197,7 +197,9 @@ impl<'a> Names<'a> {
         }
         mill.attitudes.iter().for_each(|(_, value)| self.expression(value, place));
         for clear in &mill.clearances {
-            [&clear.surface, &clear.body].into_iter().for_each(|path| { self.surface(path, place); });
+            [&clear.surface, &clear.body].into_iter().for_each(|path| {
+                self.surface(path, place);
+            });
             self.expression(&clear.distance, place);
         }
     }
@@ -233,10 +235,11 @@ impl<'a> Names<'a> {
 
     /// Values at the points of a surface, or of surfaces that the values name themselves.
     fn expected_of(&mut self, surface: Option<&'a Path>, values: [&'a Expression; 3], place: &mut Place<'a>) {
-        let named = |names: &Self, path: &Path, place: &Place<'a>| match names.value(&path.segments.first()?.node, place) {
-            Target::Symbol(id) if [NameKind::Surface, NameKind::Sample].contains(&names.kind(id)) => Some(id),
-            _ => None,
-        };
+        let named =
+            |names: &Self, path: &Path, place: &Place<'a>| match names.value(&path.segments.first()?.node, place) {
+                Target::Symbol(id) if [NameKind::Surface, NameKind::Sample].contains(&names.kind(id)) => Some(id),
+                _ => None,
+            };
         if let Some(path) = surface {
             self.surface(path, place);
             place.surfaces.extend(named(self, path, place));
@@ -252,7 +255,9 @@ impl<'a> Names<'a> {
         for value in values {
             // a surface, or a value
             match &value.kind {
-                ExpressionKind::Path(path) => { self.surface(path, place); },
+                ExpressionKind::Path(path) => {
+                    self.surface(path, place);
+                }
                 _ => self.expression(value, place),
             }
         }

@@ -117,7 +117,12 @@ impl<'a> Names<'a> {
     }
 
     /// The machine or tool of an instance as a job sees it, with the settings there.
-    pub(super) fn instance(&self, job: Option<SymbolId>, id: SymbolId, name: &str) -> (Option<SymbolId>, &'a [Argument]) {
+    pub(super) fn instance(
+        &self,
+        job: Option<SymbolId>,
+        id: SymbolId,
+        name: &str,
+    ) -> (Option<SymbolId>, &'a [Argument]) {
         let replaced = job.into_iter().flat_map(|job| self.line(job)).find_map(|members| {
             // what a job states itself comes after what it changes of its parent
             if members.names.get(name) == Some(&id) {
@@ -131,7 +136,14 @@ impl<'a> Names<'a> {
     }
 
     /// What a name behind a dot leads to.
-    pub(super) fn member(&self, job: Option<SymbolId>, of: SymbolId, owner: &str, name: &str, wanted: Wanted) -> Target {
+    pub(super) fn member(
+        &self,
+        job: Option<SymbolId>,
+        of: SymbolId,
+        owner: &str,
+        name: &str,
+        wanted: Wanted,
+    ) -> Target {
         let symbol = |found: Option<SymbolId>, kind| found.map_or(Target::Missing(kind), Target::Symbol);
         match self.kind(of) {
             NameKind::MachineInstance => {
@@ -190,7 +202,8 @@ impl<'a> Names<'a> {
     /// Whether a setting is that of a parameter.
     fn names_parameter(&self, setting: &Argument, parameter: Span, instance: SymbolId) -> bool {
         let definition = self.index.symbol(instance).definition;
-        let found = setting.name.as_ref().zip(definition).and_then(|(name, of)| self.inside(of, &name.node, Wanted::Value));
+        let found =
+            setting.name.as_ref().zip(definition).and_then(|(name, of)| self.inside(of, &name.node, Wanted::Value));
         found.is_some_and(|found| self.index.symbol(found).name == parameter)
     }
 

@@ -13,6 +13,7 @@ use crate::diagnostics::source::{FileId, Span};
 use crate::syntax::ast;
 use crate::values::dimension::Dimension;
 
+pub(crate) use expression::functions;
 use members::Names;
 
 /// Index of a [`Symbol`] in [`Index::symbols`].

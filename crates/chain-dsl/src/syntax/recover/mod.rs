@@ -8,10 +8,10 @@ use std::ops::Range;
 
 use pest::iterators::Pair;
 
-use crate::diagnostics::source::Span;
-use crate::diagnostics::{Cure, Diagnostic};
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
+use crate::diagnostics::{Cure, Diagnostic};
 use crate::limits::MISTAKES;
 
 use super::ast::{Expression, ExpressionKind, File, Item};
