@@ -410,7 +410,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     machines.sort_by_key(|machine| machine.name.span);
     for machine in machines {
         context.begin_item();
-        context.owner.clone_from(&machine.name.node);
+        context.owner = machine.name.node.as_str().into();
         if let Some(flat) = machine::flatten(context, &items.machines, machine) {
             flat.build(context, &machine.name, Source::Definition, &nothing);
         }
@@ -419,7 +419,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     tools.sort_by_key(|tool| tool.name.span);
     for tool in tools {
         context.begin_item();
-        context.owner.clone_from(&tool.name.node);
+        context.owner = tool.name.node.as_str().into();
         tool::build(context, tool, Source::Definition, &nothing, &|_, _| true);
         context.step(tool.name.span);
     }

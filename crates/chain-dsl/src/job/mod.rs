@@ -20,6 +20,7 @@ mod want;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::rc::Rc;
 
 use flank_expr::Expr;
 
@@ -185,7 +186,7 @@ fn with_points<'g>(
     builder.user = is_variant.then_some(job.name.span);
     let end = job.span.end.saturating_sub(1);
     builder.end = (!is_variant || job.extends.is_some()).then_some(Span { start: end, end, ..job.span });
-    context.owner.clone_from(&job.name.node);
+    context.owner = job.name.node.as_str().into();
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {
             surface.value.each(&mut |part| {
@@ -550,9 +551,9 @@ impl<'g> Builder<'_, 'g> {
 }
 
 /// Says that the values to come are those of a machine or tool of the job; gives back what the job is called.
-fn instance_owner(context: &mut Context<'_>, name: &Name) -> String {
+fn instance_owner(context: &mut Context<'_>, name: &Name) -> Rc<str> {
     let own = format!("{}.{}", context.owner, name.node);
-    std::mem::replace(&mut context.owner, own)
+    std::mem::replace(&mut context.owner, own.into())
 }
 
 /// The names of the surfaces of a job.

@@ -99,7 +99,7 @@ pub(crate) struct Context<'g> {
     pub(crate) sample_points: usize,
     pub(crate) call_depth: usize,
     /// Whose values are looked at: `job.m`.
-    pub(crate) owner: String,
+    pub(crate) owner: Rc<str>,
     /// What names amount to.
     noted: Vec<NotedValue<'g>>,
 }
@@ -108,7 +108,7 @@ pub(crate) struct Context<'g> {
 struct NotedValue<'g> {
     name: Span,
     written: Span,
-    of: String,
+    of: Rc<str>,
     value: Expr<'g>,
     dimension: Dimension,
 }
@@ -136,7 +136,7 @@ impl<'g> Context<'g> {
             exhausted: false,
             sample_points: 0,
             call_depth: 0,
-            owner: String::new(),
+            owner: Rc::from(""),
             noted: Vec::new(),
         }
     }
@@ -146,7 +146,7 @@ impl<'g> Context<'g> {
         if let Value::Scalar(value, dimension) = value
             && !self.owner.is_empty()
         {
-            let (of, value, dimension) = (self.owner.clone(), *value, *dimension);
+            let (of, value, dimension) = (Rc::clone(&self.owner), *value, *dimension);
             self.noted.push(NotedValue { name, written, of, value, dimension });
         }
     }
@@ -160,7 +160,7 @@ impl<'g> Context<'g> {
         let known = known.map(|(NotedValue { name, written, of, dimension, .. }, value)| KnownValue {
             name,
             written,
-            of,
+            of: of.to_string(),
             value,
             dimension,
         });

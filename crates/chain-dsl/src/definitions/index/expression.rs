@@ -169,7 +169,7 @@ impl<'a> Names<'a> {
         };
         match found {
             Some(id) => self.enter(call.function.span, Target::Symbol(id), false),
-            None if is_known(name) => self.word(call.function.span, WordKind::Function),
+            None if self.is_function(name) => self.word(call.function.span, WordKind::Function),
             None => self.enter(call.function.span, Target::Missing(NameKind::Function), false),
         }
         let is_table = ["table", "curve", "grid"].contains(&name);
@@ -179,6 +179,14 @@ impl<'a> Names<'a> {
             }
             self.argument(&argument.value, is_table, place);
         }
+    }
+
+    /// Whether the language brings a function, a transform or a way to make a surface along.
+    fn is_function(&mut self, name: &str) -> bool {
+        if self.functions.is_empty() {
+            self.functions = functions();
+        }
+        self.functions.binary_search(&name).is_ok()
     }
 
     /// Columns of tables are named by themselves, and have dimensions.
@@ -201,13 +209,6 @@ impl<'a> Names<'a> {
         let found = self.inside(machine, &name.node, Wanted::Other);
         self.refer(name, found.filter(|found| self.kind(*found) == NameKind::Frame), NameKind::Frame);
     }
-}
-
-/// Whether the language brings a function, a transform or a way to make a surface along.
-fn is_known(name: &str) -> bool {
-    super::super::transforms::names().contains(&name)
-        || crate::values::functions::names().any(|known| known == name)
-        || WORDS.contains(&name)
 }
 
 /// All functions, transforms and ways to make a surface.

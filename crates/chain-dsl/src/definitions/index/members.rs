@@ -47,6 +47,8 @@ pub(super) struct Names<'a> {
     pub(super) members: HashMap<SymbolId, Members<'a>>,
     /// Coordinates that the samples of a job define.
     pub(super) coordinates: Vec<(&'a str, SymbolId)>,
+    /// Functions of the language, sorted; empty until one is looked for.
+    pub(super) functions: Vec<&'static str>,
 }
 
 impl<'a> Names<'a> {

@@ -201,7 +201,8 @@ impl Index {
             target: Target::File(*file),
             is_definition: false,
         }));
-        index.entries.sort_unstable();
+        // they come in runs that are in order
+        index.entries.sort_by_key(|entry| (u64::from(entry.span.file.0) << 32) | u64::from(entry.span.start));
         // a name in a list is met once for each of its statement's parts
         index.entries.dedup_by_key(|entry| entry.span);
         index

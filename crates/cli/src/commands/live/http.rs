@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const PULSE: Duration = Duration::from_secs(10);
 
 /// Answers until the program ends.
-pub(super) fn serve(listener: &TcpListener, port: u16, secret: &str, pages: &Arc<Pages>) {
+pub(super) fn serve(listener: &TcpListener, secret: &str, pages: &Arc<Pages>) {
     let open = Arc::new(AtomicUsize::new(0));
     for stream in listener.incoming().flatten() {
         if open.load(Ordering::Relaxed) >= MOST_CONNECTIONS {
@@ -29,7 +29,7 @@ pub(super) fn serve(listener: &TcpListener, port: u16, secret: &str, pages: &Arc
         let (counted, pages, secret) = (Arc::clone(&open), Arc::clone(pages), secret.to_string());
         let started = std::thread::Builder::new().name("live reader".to_string()).spawn(move || {
             // a browser that goes away is no error
-            let _ = answer(&stream, port, &secret, &pages);
+            let _ = answer(&stream, &secret, &pages);
             counted.fetch_sub(1, Ordering::Relaxed);
         });
         if started.is_err() {
@@ -38,13 +38,11 @@ pub(super) fn serve(listener: &TcpListener, port: u16, secret: &str, pages: &Arc
     }
 }
 
-fn answer(stream: &TcpStream, port: u16, secret: &str, pages: &Pages) -> io::Result<()> {
+fn answer(stream: &TcpStream, secret: &str, pages: &Pages) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let Some(request) = Request::read(stream)? else { return plain(stream, "400 Bad Request", "no request\n") };
-    // a name that somebody else's page made lead here
-    let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
-    if !request.host.as_ref().is_some_and(|host| own.contains(host)) {
+    if !request.host.as_deref().is_some_and(is_own) {
         return plain(stream, "403 Forbidden", "served for this machine only\n");
     }
     if request.method != "GET" {
@@ -62,6 +60,12 @@ fn answer(stream: &TcpStream, port: u16, secret: &str, pages: &Pages) -> io::Res
             None => plain(stream, "404 Not Found", "there is nothing here\n"),
         },
     }
+}
+
+/// Whether a host is this machine, on whatever port: editors may forward one. A name that somebody else's page made lead here is none.
+fn is_own(host: &str) -> bool {
+    let (name, port) = host.split_once(':').unwrap_or((host, ""));
+    ["127.0.0.1", "localhost"].contains(&name) && port.bytes().all(|digit| digit.is_ascii_digit())
 }
 
 fn plain(stream: &TcpStream, status: &str, text: &str) -> io::Result<()> {

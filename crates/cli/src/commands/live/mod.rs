@@ -39,7 +39,7 @@ impl Live {
         let own = secret.clone();
         std::thread::Builder::new()
             .name("live page".to_string())
-            .spawn(move || http::serve(&listener, port, &own, &served))?;
+            .spawn(move || http::serve(&listener, &own, &served))?;
         Ok(Live { url: format!("http://127.0.0.1:{port}/{secret}/"), pages })
     }
 

@@ -15,13 +15,19 @@ type Stamp = Option<(SystemTime, u64)>;
 
 /// Shows a spec, and again whenever one of its files changes, until nobody reads what is printed any more.
 pub(super) fn follow(file: &Path, mut show: impl FnMut(Project)) {
+    let mut watched = vec![file.to_path_buf()];
     loop {
         let project = Project::open(file, Arc::new(Disk));
-        let read: BTreeMap<PathBuf, Stamp> = files(file, &project).into_iter().map(|path| stamped(&path)).collect();
-        show(project);
+        // before it is shown: what is saved meanwhile counts as a change
+        let mut read: BTreeMap<PathBuf, Stamp> = watched.iter().map(|path| stamped(path)).collect();
+        show(project.clone());
+        for (path, stamp) in files(file, &project).iter().map(|path| stamped(path)) {
+            read.entry(path).or_insert(stamp);
+        }
         while read.iter().all(|(path, stamp)| stamped(path).1 == *stamp) {
             std::thread::sleep(EVERY);
         }
+        watched = read.into_keys().collect();
     }
 }
 

@@ -182,7 +182,7 @@ impl Analysis {
         let is_driven = word == "drive" && !cursor.statement.contains(&"=");
         match self.kind(id) {
             NameKind::MachineInstance if is_driven => {
-                let free = self.free_axes(item, first, of);
+                let free = self.free_axes(item, first, of, cursor.word);
                 list.symbols(free, &[NameKind::Axis], 0);
             }
             NameKind::MachineInstance if matches!(before_path, Some("on" | "in")) => {
@@ -202,13 +202,18 @@ impl Analysis {
     }
 
     /// The axes of a machine that nothing drives, fixes or couples yet.
-    fn free_axes(&self, job: Option<SymbolId>, instance: &str, machine: SymbolId) -> Vec<SymbolId> {
+    fn free_axes(&self, job: Option<SymbolId>, instance: &str, machine: SymbolId, word: usize) -> Vec<SymbolId> {
         let axes = self.members(machine).into_iter().filter(|id| self.kind(*id) == NameKind::Axis);
         let job = job.map(|job| self.index.symbol(job).extent);
         let is_free = |axis: &SymbolId| {
             let symbol = self.index.symbol(*axis);
             let of_unknown = self.before(symbol.name).ends_with("unknown");
-            let is_bound = self.index.uses(*axis).any(|entry| {
+            // the one that is being written drives nothing yet
+            let written = self
+                .index
+                .uses(*axis)
+                .filter(|entry| entry.span.file != self.main || entry.span.start as usize != word);
+            let is_bound = { written }.any(|entry| {
                 let before = self.before(entry.span);
                 let in_machine = before.ends_with("fix") || before.ends_with("couple");
                 let in_job = job
@@ -360,7 +365,7 @@ impl Analysis {
             ("drive", "drive" | ",") if !has_equals => {
                 for id in members.iter().copied().filter(|id| self.kind(*id) == NameKind::MachineInstance) {
                     let Some(machine) = self.index.symbol(id).definition else { continue };
-                    for axis in self.free_axes(item, self.name(id), machine) {
+                    for axis in self.free_axes(item, self.name(id), machine, cursor.word) {
                         let path = format!("{}.{}", self.name(id), self.name(axis));
                         list.add(&path, CompletionKind::Name(NameKind::Axis), self.signature(axis), 0);
                     }

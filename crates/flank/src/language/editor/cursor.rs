@@ -1,7 +1,7 @@
 //! What stands around a place in a text that is being written.
 
 use flank_chain_dsl::FileId;
-use flank_chain_dsl::syntax::{TokenKind, Vocabulary, comments, tokens, vocabulary};
+use flank_chain_dsl::syntax::{TokenKind, Vocabulary, comments, is_reserved, tokens, vocabulary};
 
 /// The surroundings of a place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -137,7 +137,9 @@ impl<'t> Cursor<'t> {
             Some(_) => return is_new_line && calls.is_empty(),
         };
         let ends = self.before.last().is_none_or(|last| is_end(last));
-        list.contains(&said) && ends && (calls.is_empty() || is_new_line)
+        // a word that is no name begins a statement, whatever was left open on the line before
+        let is_sure = is_new_line && is_reserved(said);
+        list.contains(&said) && (is_sure || (ends && (calls.is_empty() || is_new_line)))
     }
 
     /// Whether what stands before may be whole.

@@ -42,7 +42,11 @@ impl Analysis {
                 let range = symbol.range.map_or(String::new(), |span| format!(" (in {})", self.one_line(span)));
                 format!("{name} : {dimension}{value}{range}")
             }
-            _ => format!("{} {}", symbol.kind.described(), self.one_line(symbol.extent)),
+            _ => {
+                let whole = self.one_line(symbol.extent);
+                let head = whole.split(" {").next().unwrap_or_default();
+                format!("{} {head}", symbol.kind.described())
+            }
         }
     }
 

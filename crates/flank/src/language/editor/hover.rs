@@ -52,7 +52,7 @@ impl Analysis {
                 let about = format!(
                     "{} of the shipped library, in `{}`. `flank new {said}` takes it into the project.",
                     kind.described(),
-                    found.file.display()
+                    shipped::ShippedFiles::inside(&found.file).unwrap_or(&found.file).display()
                 );
                 let signature = format!("{} {said}", kind.described());
                 Some(Hover { span, signature, about: vec![about], parameters: Vec::new() })
@@ -81,10 +81,8 @@ impl Analysis {
         if symbol.kind == NameKind::Axis {
             about.extend(self.laws(id));
         }
-        if !entry.is_definition
-            && let Some((path, line, _)) = Some(self.sources.place(symbol.name))
-        {
-            about.push(format!("defined in {}, line {line}", path.display().to_string().replace('\\', "/")));
+        if !entry.is_definition {
+            about.push(format!("defined in {}", self.told_place(symbol.name)));
         }
         let name = self.name(id);
         let parameters = values.iter().map(|value| format!("{}.{name}", value.of)).collect();
@@ -97,12 +95,10 @@ impl Analysis {
         if !matches!(symbol.kind, NameKind::Parameter | NameKind::MachineError) {
             return None;
         }
-        let (path, line, _) = self.sources.place(written);
-        let path = path.display().to_string().replace('\\', "/");
         if symbol.value == Some(written) {
             return Some("by default".to_string());
         }
-        (written != symbol.name).then(|| format!("given in {path}, line {line}: `{}`", self.one_line(written)))
+        (written != symbol.name).then(|| format!("given in {}: `{}`", self.told_place(written), self.one_line(written)))
     }
 
     /// The laws of an axis, wherever it is driven, fixed or coupled.
@@ -110,12 +106,18 @@ impl Analysis {
         let mut laws = Vec::new();
         for entry in self.index.uses(axis) {
             if let Some((word, law)) = self.law_at(entry.span) {
-                let (path, line, _) = self.sources.place(entry.span);
-                let path = path.display().to_string().replace('\\', "/");
-                laws.push(format!("`{word}` in {path}, line {line}: `{law}`"));
+                laws.push(format!("`{word}` in {}: `{law}`", self.told_place(entry.span)));
             }
         }
         laws
+    }
+
+    /// File and line, the file as seen from the folder above that of the spec.
+    fn told_place(&self, span: Span) -> String {
+        let (path, line, _) = self.sources.place(span);
+        let above = self.sources.file(self.main).path.parent().and_then(|folder| folder.parent());
+        let path = above.and_then(|above| path.strip_prefix(above).ok()).unwrap_or(path);
+        format!("{}, line {line}", crate::project::shown_path(path))
     }
 
     /// The word and the law of the statement that begins with the path of an axis, if one does.

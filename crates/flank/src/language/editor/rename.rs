@@ -1,7 +1,7 @@
 //! A new name for something, everywhere.
 
-use flank_chain_dsl::FileId;
 use flank_chain_dsl::syntax::{TokenKind, is_reserved, tokens};
+use flank_chain_dsl::{FileId, Symbol, SymbolId};
 use thiserror::Error;
 
 use crate::language::editor::analysis::{Analysis, TextSpan};
@@ -58,13 +58,34 @@ impl Analysis {
         }
         let Some(id) = self.symbol_at(definition) else { return Ok(()) };
         let own = self.index.root(id);
+        let owners: Vec<Option<SymbolId>> = self.alike(own).map(|symbol| symbol.owner).collect();
+        let is_beside = |owner: Option<SymbolId>| {
+            let is_related = |other: &Option<SymbolId>| match (owner, *other) {
+                (Some(owner), Some(other)) => self.extends(owner, other) || self.extends(other, owner),
+                (owner, other) => owner == other,
+            };
+            owners.iter().any(is_related)
+        };
         let beside = self.index.symbols.iter().zip(0u32..).find(|(symbol, other)| {
-            let is_own = self.index.root(flank_chain_dsl::SymbolId(*other)) == own;
-            !is_own && symbol.owner == self.index.symbol(own).owner && self.sources.text(symbol.name) == name
+            let is_own = self.index.root(SymbolId(*other)) == own;
+            !is_own && self.sources.text(symbol.name) == name && is_beside(symbol.owner)
         });
         match beside {
             Some((symbol, _)) => Err(RenameError::Taken(name.to_string(), self.sources.place(symbol.name).1)),
             None => Ok(()),
         }
+    }
+
+    /// All that goes back to one definition.
+    fn alike(&self, root: SymbolId) -> impl Iterator<Item = &Symbol> {
+        let all = self.index.symbols.iter().zip(0u32..);
+        all.filter(move |(_, id)| self.index.root(SymbolId(*id)) == root).map(|(symbol, _)| symbol)
+    }
+
+    /// Whether a definition is another one, or extends it.
+    fn extends(&self, id: SymbolId, other: SymbolId) -> bool {
+        let line = std::iter::successors(Some(id), |id| self.index.symbol(*id).definition);
+        // as many steps as there are definitions: a circle is wrong, and ends here
+        line.take(self.index.symbols.len()).any(|id| id == other)
     }
 }

@@ -51,9 +51,9 @@ impl Analysis {
 
     /// What `let`s and settings amount to that stand in a part of the spec; also plain numbers with `literals`.
     pub fn inlay_values(&self, from: usize, to: usize, literals: bool) -> Vec<InlayValue> {
-        let mut found: Vec<InlayValue> = Vec::new();
         let mut seen: Vec<(u32, Option<String>)> = Vec::new();
-        for value in self.index.values.iter().filter(|value| value.written.file == self.main) {
+        let values = self.index.symbols.iter().flat_map(|symbol| self.counting(symbol));
+        for value in values.filter(|value| value.written.file == self.main) {
             let end = value.written.end as usize;
             if !(from..=to).contains(&end) || value.written == value.name {
                 continue;
@@ -69,8 +69,9 @@ impl Analysis {
                 None => seen.push((value.written.end, Some(shown))),
             }
         }
-        found
-            .extend(seen.into_iter().filter_map(|(at, value)| Some(InlayValue { offset: at as usize, value: value? })));
+        let known = seen.into_iter();
+        let known = known.filter_map(|(at, value)| Some(InlayValue { offset: at as usize, value: value? }));
+        let mut found: Vec<InlayValue> = known.collect();
         found.sort_by_key(|inlay| inlay.offset);
         found
     }
