@@ -93,7 +93,7 @@ def main():
         took = {"keystroke to findings": [editor.edit(uri, "didChange", contentChanges=[change]) for _ in range(3)]}
         at = list(places(text))
         for what in ["hover", "completion", "definition"]:
-            asked = at[:: max(1, len(at) // 20)]
+            asked = at[:: max(1, len(at) // 8)]
             params = [{"textDocument": {"uri": uri}, "position": place} for place in asked]
             took[what] = [editor.ask(f"textDocument/{what}", one)[0] for one in params]
         for what, found in took.items():

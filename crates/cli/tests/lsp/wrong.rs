@@ -219,13 +219,14 @@ fn mutated_conversations_end_nothing() {
         let method = methods[random.below(methods.len())];
         let place = |random: &mut Random| json!({ "line": random.below(9), "character": random.below(40) });
         let (start, end) = (place(&mut random), place(&mut random));
+        let new_name = ["other", "frame", "", "Ω", "bed"][random.below(5)];
         let mut params = json!({
             "textDocument": { "uri": uri, "version": number + 2 },
             "position": start,
             "range": { "start": start, "end": end },
             "context": { "diagnostics": [], "includeDeclaration": true },
             "options": { "tabSize": 4, "insertSpaces": true },
-            "newName": ["other", "frame", "", "Ω", "bed"][random.below(5)],
+            "newName": new_name,
         });
         if method == "didChange" {
             let text = ["}", "{", "\u{1F600}", "axis ", "\n", "m.", "", "\"", "\r", "frame b in"][random.below(10)];
