@@ -71,12 +71,13 @@ try {
     say("the lenses are there");
     await lens.first().click();
     let shown;
-    for (const end = Date.now() + 60_000; Date.now() < end && !shown; await page.waitForTimeout(100)) {
+    for (const end = Date.now() + 20_000; Date.now() < end && !shown; await page.waitForTimeout(100)) {
         for (const frame of page.frames().filter((frame) => frame.url().includes("/page/"))) {
             if (await frame.evaluate(() => document.body?.dataset.ready === "true").catch(() => false)) shown = frame;
         }
     }
-    if (!shown) fail(`no page beside the text: ${page.frames().map((frame) => frame.url()).join(" ")}`);
+    if (!shown) await page.screenshot({ path: `${folder}/page.png` });
+    if (!shown) fail(`no page beside the text: ${page.frames().map((frame) => frame.url().slice(0, 120)).join(" ")}`);
     say(`the page shows ${await shown.evaluate(() => document.getElementById("tally").textContent)}`);
     await page.screenshot({ path: `${folder}/page.png` });
     if (readFileSync(`${folder}/work/lathe.chain`, "utf8") !== spec) fail("the spec was written");

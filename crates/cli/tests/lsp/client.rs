@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use gen_lsp_types::{PublishDiagnosticsParams, Request};
@@ -114,10 +114,7 @@ impl Client {
     }
 
     fn next(&mut self, end: Instant) -> Option<Value> {
-        match self.from.recv_timeout(end.saturating_duration_since(Instant::now())) {
-            Ok(message) => Some(message),
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => None,
-        }
+        self.from.recv_timeout(end.saturating_duration_since(Instant::now())).ok()
     }
 
     fn keep(&mut self, message: Value) {

@@ -86,7 +86,7 @@ fn whole(mut stream: &TcpStream, status: &str, kind: &str, text: &str) -> io::Re
 /// Server-sent events: what is shown now, then each change.
 fn events(mut stream: &TcpStream, pages: &Pages) -> io::Result<()> {
     stream.write_all(
-        b"HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n",
+        b"HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store, no-transform\r\nConnection: close\r\n\r\n",
     )?;
     let mut number = 0;
     loop {

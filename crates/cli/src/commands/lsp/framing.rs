@@ -102,6 +102,6 @@ mod tests {
         assert_eq!(all(format!("nonsense\r\n{exit}").as_bytes()), ["no header", "exit"]);
         assert_eq!(all(format!("Content-Length: -1\r\n{exit}").as_bytes()), ["no header", "exit"]);
         assert_eq!(all(format!("Content-Length: 18446744073709551615\r\n\r\n{exit}").as_bytes()), Vec::<String>::new());
-        assert_eq!(all(exit[..exit.len() - 1].as_bytes()), Vec::<String>::new());
+        assert_eq!(all(&exit.as_bytes()[..exit.len() - 1]), Vec::<String>::new());
     }
 }

@@ -78,6 +78,8 @@ pub(super) struct Server<W> {
     /// Specs that are to be compiled, and when.
     due: BTreeSet<PathBuf>,
     due_at: Option<Instant>,
+    /// What was changed last: its own findings come first.
+    edited: Option<PathBuf>,
     picture_at: Option<(Instant, PathBuf)>,
     influences: Arc<BTreeMap<String, String>>,
     outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
@@ -104,6 +106,7 @@ impl<W: Write> Server<W> {
             findings: Findings::default(),
             due: BTreeSet::new(),
             due_at: None,
+            edited: None,
             picture_at: None,
             influences: Arc::default(),
             outcomes: Arc::default(),
@@ -243,43 +246,41 @@ impl<W: Write> Server<W> {
 
     fn answer(&mut self, request: Request) -> io::Result<()> {
         match request.method.as_str() {
-            "textDocument/hover" => self.from_snapshot(request, |snapshot, params| Ok(browse::hover(snapshot, params))),
+            "textDocument/hover" => self.answer_from(request, |snapshot, params| Ok(browse::hover(snapshot, params))),
             "textDocument/definition" => {
-                self.from_snapshot(request, |snapshot, params| Ok(browse::definition(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(browse::definition(snapshot, params)))
             }
             "textDocument/references" => {
-                self.from_snapshot(request, |snapshot, params| Ok(browse::references(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(browse::references(snapshot, params)))
             }
             "textDocument/documentSymbol" => {
-                self.from_snapshot(request, |snapshot, params| Ok(browse::symbols(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(browse::symbols(snapshot, params)))
             }
             "textDocument/foldingRange" => {
-                self.from_snapshot(request, |snapshot, params| Ok(browse::folding(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(browse::folding(snapshot, params)))
             }
             "textDocument/completion" => {
-                self.from_snapshot(request, |snapshot, params| Ok(edit::completion(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(edit::completion(snapshot, params)))
             }
             "textDocument/formatting" => {
-                self.from_snapshot(request, |snapshot, params| Ok(edit::format(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(edit::format(snapshot, params)))
             }
             "textDocument/rangeFormatting" => {
-                self.from_snapshot(request, |snapshot, params| Ok(edit::format_range(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(edit::format_range(snapshot, params)))
             }
             "textDocument/codeAction" => {
-                self.from_snapshot(request, |snapshot, params| Ok(edit::code_actions(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(edit::code_actions(snapshot, params)))
             }
-            "textDocument/prepareRename" => self.from_snapshot(request, edit::prepare_rename),
-            "textDocument/rename" => self.from_snapshot(request, edit::rename),
+            "textDocument/prepareRename" => self.answer_from(request, edit::prepare_rename),
+            "textDocument/rename" => self.answer_from(request, edit::rename),
             "textDocument/semanticTokens/full" => {
-                self.from_snapshot(request, |snapshot, params| Ok(look::tokens(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(look::tokens(snapshot, params)))
             }
             "textDocument/inlayHint" => {
-                self.from_snapshot(request, |snapshot, params| Ok(look::inlay_hints(snapshot, params)))
+                self.answer_from(request, |snapshot, params| Ok(look::inlay_hints(snapshot, params)))
             }
-            "textDocument/codeLens" => {
-                self.from_snapshot(request, |snapshot, params| Ok(look::lenses(snapshot, params)))
-            }
-            "workspace/textDocumentContent" => self.from_snapshot(request, |_, params| tasks::content(params)),
+            "textDocument/codeLens" => self.answer_from(request, |snapshot, params| Ok(look::lenses(snapshot, params))),
+            "workspace/textDocumentContent" => self.answer_from(request, |_, params| tasks::content(params)),
             "workspace/executeCommand" => self.execute(request),
             method => {
                 let message = format!("`{method}` is not served");
@@ -289,7 +290,7 @@ impl<W: Write> Server<W> {
     }
 
     /// Answers on another thread, from the texts as they are now.
-    fn from_snapshot<P, R>(
+    fn answer_from<P, R>(
         &mut self,
         request: Request,
         answer: impl FnOnce(&Snapshot, P) -> Result<R, String> + Send + 'static,
@@ -402,6 +403,7 @@ impl<W: Write> Server<W> {
             Some(file) => {
                 self.due.extend(self.findings.readers(file));
                 self.due.insert(file.to_path_buf());
+                self.edited = Some(file.to_path_buf());
             }
             None => self.due.extend(self.documents.paths().cloned()),
         }
@@ -411,7 +413,9 @@ impl<W: Write> Server<W> {
     fn wake(&mut self, now: Instant) {
         if self.due_at.is_some_and(|at| at <= now) {
             self.due_at = None;
-            for spec in std::mem::take(&mut self.due) {
+            let mut due: Vec<PathBuf> = std::mem::take(&mut self.due).into_iter().collect();
+            due.sort_by_key(|spec| Some(spec) != self.edited.as_ref());
+            for spec in due {
                 let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
                 let (snapshot, events) = (self.snapshot(), self.events.clone());
                 self.spawn(move || {
@@ -455,7 +459,7 @@ impl<W: Write> Server<W> {
                 if self.shows_documents {
                     self.ask("window/showDocument", serde_json::json!({ "uri": page, "takeFocus": true }))?;
                 }
-                tasks::page(&page).map(|text| Value::from(text))
+                tasks::page(&page).map(Value::from)
             }
             asked => self.tasks.start(asked, &self.documents),
         };
