@@ -24,7 +24,7 @@ fn specs() -> Vec<PathBuf> {
 }
 
 /// What leads nowhere, or to a definition of another name.
-fn lost<'c>(compilation: &'c Compilation<'_>) -> Vec<String> {
+fn lost(compilation: &Compilation<'_>) -> Vec<String> {
     let (index, sources) = (&compilation.index, &compilation.sources);
     let Some((main, text)) = sources.files().find(|(_, file)| file.file.is_some()) else { return Vec::new() };
     let mut lost = Vec::new();
