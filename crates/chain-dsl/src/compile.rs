@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use flank_expr::Graph;
 
+use crate::definitions::index::Index;
 use crate::definitions::instance::{Overrides, Source};
 use crate::definitions::machine::{self, Machines};
 use crate::definitions::tool::{self, Tools};
@@ -23,7 +24,7 @@ use crate::load::{self, Loaded};
 use crate::model::{Job, within};
 use crate::syntax::ast::{self, Item};
 use crate::syntax::parse_expression;
-use crate::values::context::{Context, Role, did_you_mean, quoted};
+use crate::values::context::{Context, Role, did_you_mean, quoted, suggesting};
 use crate::values::dimension::Dimension;
 use crate::values::functions;
 use crate::values::table_files::Tables;
@@ -45,6 +46,8 @@ pub struct Compilation<'g> {
     pub machines: Vec<MachineExpectations<'g>>,
     /// The errors that the file is to have, with the places where that is said.
     pub expected_errors: Vec<(String, Span)>,
+    /// All names of the texts, also of wrong ones.
+    pub index: Index,
     main: Option<FileId>,
     /// The names of the values from outside.
     set: Vec<Name>,
@@ -169,7 +172,7 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 }
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compilation<'g> {
-    let Loaded { from, mut sources, files, diagnostics, lacks_files, projects, beside } = loaded;
+    let Loaded { from, mut sources, files, diagnostics, lacks_files, used, projects, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(from, projects, &sources));
     context.lacks_files = lacks_files;
@@ -217,12 +220,15 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
         }
     }
     graph.set_room(None);
+    let mut index = Index::of_files(&files, &used);
+    index.values = context.known_values();
     context.tables.tell(&mut sources);
     let failed = context.has_errors();
-    let mut diagnostics = context.finish();
+    let mut diagnostics: Vec<Diagnostic> =
+        context.finish().into_iter().map(|diagnostic| diagnostic.with_unit(&sources)).collect();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
     let (jobs, machine, machines) = if failed { Default::default() } else { (jobs, machine, machines) };
-    Compilation { sources, diagnostics, jobs, machine, machines, expected_errors, main, set: overrides.names }
+    Compilation { sources, diagnostics, jobs, machine, machines, expected_errors, index, main, set: overrides.names }
 }
 
 /// The last machine of a file by itself.
@@ -338,9 +344,7 @@ impl Items {
             if !parent.node.is_empty() && !context.lacks_files && context.tells_more() {
                 let above = self.jobs.iter().map(|item| item.job.name.node.as_str());
                 let message = format!("there is no job `{}` above this one", parent.node);
-                let mut diagnostic = Diagnostic::new(Code::UnknownName, parent.span, message);
-                diagnostic.help = did_you_mean(&parent.node, above);
-                context.report(diagnostic);
+                context.report(suggesting(Diagnostic::new(Code::UnknownName, parent.span, message), parent, above));
             }
             return;
         };
@@ -406,6 +410,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     machines.sort_by_key(|machine| machine.name.span);
     for machine in machines {
         context.begin_item();
+        context.owner = machine.name.node.as_str().into();
         if let Some(flat) = machine::flatten(context, &items.machines, machine) {
             flat.build(context, &machine.name, Source::Definition, &nothing);
         }
@@ -414,6 +419,7 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     tools.sort_by_key(|tool| tool.name.span);
     for tool in tools {
         context.begin_item();
+        context.owner = tool.name.node.as_str().into();
         tool::build(context, tool, Source::Definition, &nothing, &|_, _| true);
         context.step(tool.name.span);
     }

@@ -47,13 +47,14 @@ mod values;
 pub use compile::{
     Compilation, MachineExpectations, Request, compile_file, compile_request, compile_text, compile_with_machine,
 };
+pub use definitions::index::{Entry, Index, KnownValue, NameKind, Symbol, SymbolId, Target, WordKind};
 pub use derivation::{derivation, described, equations};
 pub use diagnostics::codes::Code;
 pub use diagnostics::explain::UnknownCode;
 pub use diagnostics::render::render;
 pub use diagnostics::source::{FileId, Name, SourceFile, Sources, Span, Spanned};
 pub use diagnostics::spelling::closest;
-pub use diagnostics::{Diagnostic, Note, Severity};
+pub use diagnostics::{Cure, Diagnostic, Note, Severity};
 pub use format::format;
 pub use job::expect::model::{
     ContactNumber, DeviationNumber, Expectation, Expected, PointColumn, PointSet, Quantity, SolidNumber,
@@ -67,4 +68,4 @@ pub use model::{
     OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
     SampleGrid, Solid, ToolShape, ValueSource, WantedContact,
 };
-pub use values::dimension::{Dimension, unit};
+pub use values::dimension::{Dimension, unit_size};

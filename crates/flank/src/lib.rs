@@ -92,18 +92,27 @@ pub use exchange::made::{MadeKind, NewJob};
 pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
-pub use flank_chain_dsl::syntax::is_reserved;
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files, ValueSource};
-pub use language::check::{CheckResult, Checked, check};
+pub use flank_chain_dsl::syntax::{Vocabulary, is_reserved, vocabulary};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files, NameKind, ValueSource, WordKind};
+pub use language::check::{CheckResult, Checked, check, check_with_names};
 pub use language::derive::derive;
 pub use language::derive::result::{
     CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
 };
+pub use language::editor::analysis::{Analysis, LocatedFinding, TextCure, TextEdit, TextSpan, analyse};
+pub use language::editor::completion::{Completion, CompletionKind};
+pub use language::editor::hover::Hover;
+pub use language::editor::names::{IndexedName, IndexedValue};
+pub use language::editor::navigation::Reference;
+pub use language::editor::outline::{Fold, OutlineItem, OutlinedJob};
+pub use language::editor::rename::RenameError;
+pub use language::editor::shipped::ShippedFiles;
+pub use language::editor::tokens::{ClassifiedWord, InlayValue, WordClass};
 pub use language::errors::{ErrorCode, Explanation, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
-pub use page::view;
+pub use page::{page_texts, view};
 pub use project::answer::{Answer, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
@@ -111,7 +120,7 @@ pub use project::choices::{
 };
 pub use project::failure::Failure;
 pub use project::files::write_texts;
-pub use project::findings::{Finding, Findings, Note, Place, Severity};
+pub use project::findings::{Finding, FindingCure, Findings, Note, Place, Severity};
 pub use project::job::{Job, JobParameter, JobSurface};
 pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
@@ -182,6 +191,7 @@ const _: () = {
     is_shared::<ReportResult>();
     is_shared::<TestRequest>();
     is_shared::<TestResult>();
+    is_shared::<Analysis>();
     is_shared::<Checked>();
     is_shared::<Findings>();
     is_shared::<Layout>();

@@ -160,6 +160,9 @@ impl<'a, 'g> Binder<'a, 'g> {
                 piece: None,
             });
         }
+        if let Some(given) = &given {
+            context.note_value(param.name.span, given.written, &Value::Scalar(variable, dimension));
+        }
         if let Some(Given { definition, written, by: given_by }) = given {
             let doc = param.doc.clone();
             self.parameters.push(Parameter {

@@ -303,6 +303,7 @@ impl<'a> Flat<'a> {
                 }
                 MachineStatement::Let(binding) => {
                     let value = context.evaluate(&binding.value, &scope);
+                    context.note_value(binding.name.span, binding.value.span, &value);
                     scope.insert(binding.name.node.clone(), value);
                 }
                 _ => {}

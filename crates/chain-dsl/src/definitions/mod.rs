@@ -2,6 +2,7 @@
 
 pub(crate) mod closure;
 pub(crate) mod implicit_surface;
+pub(crate) mod index;
 pub(crate) mod instance;
 pub(crate) mod machine;
 pub(crate) mod material_side;

@@ -92,6 +92,7 @@ pub(crate) fn build<'g>(
             ToolStatement::Param(param) => binder.bind(context, param, &mut scope),
             ToolStatement::Let(binding) => {
                 let value = context.evaluate(&binding.value, &scope);
+                context.note_value(binding.name.span, binding.value.span, &value);
                 scope.insert(binding.name.node.clone(), value);
             }
             ToolStatement::Profile(written) => profile::build(context, written, &mut scope, None),

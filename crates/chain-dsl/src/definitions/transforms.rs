@@ -29,6 +29,11 @@ const NAMES: [&str; 14] = [
     "mirror_z",
 ];
 
+/// Names of the transforms.
+pub(crate) fn names() -> &'static [&'static str] {
+    &NAMES
+}
+
 const AXES: [Axis<'static>; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// An explicit matrix may deviate this much from a rotation: it is written with finitely many digits.

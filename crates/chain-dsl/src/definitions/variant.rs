@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::syntax::ast::{Argument, Change, Expected, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
-use crate::values::context::{Context, did_you_mean};
+use crate::values::context::{Context, suggesting};
 
 /// The job that a variant of an earlier one stands for.
 pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Job {
@@ -97,9 +97,8 @@ fn made(context: &mut Context<'_>, job: &mut Job, change: &Change, parent: &str)
         }
         (None, _) => {
             let message = format!("job `{parent}` has no parameter, machine or tool `{}`", name.node);
-            let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
-            diagnostic.help = did_you_mean(&name.node, known.iter().map(String::as_str));
-            context.report(diagnostic);
+            let diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
+            context.report(suggesting(diagnostic, name, known.iter().map(String::as_str)));
         }
         _ => {
             let message = format!("`{}` has no settings of its own", name.node);

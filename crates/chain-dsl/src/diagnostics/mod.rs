@@ -7,7 +7,7 @@ pub(crate) mod source;
 pub(crate) mod spelling;
 
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Span;
+use crate::diagnostics::source::{Sources, Span};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -27,6 +27,17 @@ pub struct Note {
     pub text: String,
 }
 
+/// A change of the text that mends a finding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cure {
+    /// What it does: "write `hob`".
+    pub title: String,
+    /// What is replaced; nothing, where something is put in.
+    pub span: Span,
+    /// What is written there.
+    pub replacement: String,
+}
+
 /// One finding about a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
@@ -40,12 +51,17 @@ pub struct Diagnostic {
     pub notes: Vec<Note>,
     /// What to write instead.
     pub help: Option<String>,
+    /// Changes that mend it, the likeliest first.
+    pub cures: Vec<Cure>,
+    /// A value that lacks a unit, and the unit: how it is added shows in the text.
+    pub(crate) lacks_unit: Option<(Span, &'static str)>,
 }
 
 impl Diagnostic {
     /// A finding without further places and without help.
     pub fn new(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { code, span, message: message.into(), notes: Vec::new(), help: None }
+        let message = message.into();
+        Diagnostic { code, span, message, notes: Vec::new(), help: None, cures: Vec::new(), lacks_unit: None }
     }
 
     /// Adds a way out.
@@ -58,6 +74,23 @@ impl Diagnostic {
     pub fn note(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
         self.notes.push(Note { span, text: text.into() });
         self
+    }
+
+    /// Adds a change of the text that mends it.
+    pub fn cure(mut self, title: impl Into<String>, span: Span, replacement: impl Into<String>) -> Diagnostic {
+        self.cures.push(Cure { title: title.into(), span, replacement: replacement.into() });
+        self
+    }
+
+    /// Turns a unit that lacks into a change of the text.
+    pub(crate) fn with_unit(mut self, sources: &Sources) -> Diagnostic {
+        let Some((span, unit)) = self.lacks_unit.take() else { return self };
+        let text = sources.text(span);
+        // units stand behind numbers only
+        let is_number =
+            text.trim_start_matches('-').chars().all(|letter| letter.is_ascii_digit() || ".eE".contains(letter));
+        let written = if is_number { format!("{text} {unit}") } else { format!("({text}) * 1 {unit}") };
+        self.cure(format!("write `{written}`"), span, written)
     }
 
     /// Error or warning: a property of the code.

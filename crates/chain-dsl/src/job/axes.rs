@@ -118,8 +118,13 @@ impl<'g> Builder<'_, 'g> {
                     .iter()
                     .find(|axis| axis.name.node == idle[0])
                     .map_or("0 mm", |axis| if axis.dimension == Some(Dimension::ANGLE) { "0 deg" } else { "0 mm" });
-                let help = format!("if it stands still: `drive {}.{} = {zero}`", name.node, idle[0]);
-                context.report(Diagnostic::new(Code::UndrivenAxis, name.span, message).help(help));
+                let drive = format!("drive {}.{} = {zero}", name.node, idle[0]);
+                let mut diagnostic = Diagnostic::new(Code::UndrivenAxis, name.span, message)
+                    .help(format!("if it stands still: `{drive}`"));
+                if let Some(end) = self.end {
+                    diagnostic = diagnostic.cure(format!("add `{drive}`"), end, format!("    {drive}\n"));
+                }
+                context.report(diagnostic);
             }
             let frames = built.frames.clone();
             machines.push(Machine { name: name.node.clone(), definition: definition.clone(), axes, frames });

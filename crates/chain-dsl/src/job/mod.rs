@@ -20,6 +20,7 @@ mod want;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::rc::Rc;
 
 use flank_expr::Expr;
 
@@ -93,6 +94,8 @@ struct Builder<'a, 'g> {
     named: Vec<Vec<String>>,
     /// Of a job that is a variant of another one: its name, where its values come from.
     user: Option<Span>,
+    /// Where its text ends, before the closing brace; none where it has no statements of its own.
+    end: Option<Span>,
     /// Whether axes without a law are free.
     stands_alone: bool,
     /// What splines of the job go through.
@@ -125,6 +128,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             named_samples: Vec::new(),
             named: Vec::new(),
             user: None,
+            end: None,
             stands_alone,
             sampled: SampledPoints::default(),
         }
@@ -180,6 +184,9 @@ fn with_points<'g>(
     let mut builder = Builder::new(definitions, false);
     builder.sampled = sampled;
     builder.user = is_variant.then_some(job.name.span);
+    let end = job.span.end.saturating_sub(1);
+    builder.end = (!is_variant || job.extends.is_some()).then_some(Span { start: end, end, ..job.span });
+    context.owner = job.name.node.as_str().into();
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {
             surface.value.each(&mut |part| {
@@ -294,6 +301,7 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Let(binding) => {
                 self.define(context, &binding.name);
                 let value = context.evaluate(&binding.value, &self.scope);
+                context.note_value(binding.name.span, binding.value.span, &value);
                 self.scope.insert(binding.name.node.clone(), value);
             }
             JobStatement::Motion(motion) | JobStatement::Unknown(motion) => {
@@ -361,7 +369,9 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let source = self.source(instance);
+        let job = instance_owner(context, &instance.name);
         let built = flat.build(context, &definition.name, source, self.definitions.overrides);
+        context.owner = job;
         let axes = self.machines.iter().map(|(_, _, built)| built.axes.len()).sum::<usize>() + built.axes.len();
         if axes > limits::AXES.most {
             return context.report(limits::AXES.exceeded(instance.name.span));
@@ -398,7 +408,9 @@ impl<'g> Builder<'_, 'g> {
             let mut paths = self.named.iter().filter(|path| is_named(path, surface));
             paths.any(|path| piece.is_none() || path.get(2).is_none_or(|it| Some(it.as_str()) == piece))
         };
+        let job = instance_owner(context, &instance.name);
         let built = tool::build(context, definition, source, self.definitions.overrides, &wanted);
+        context.owner = job;
         self.expose(&instance.name, &built.scope);
         self.tools.push((instance.name.clone(), definition.name.node.clone(), built));
     }
@@ -539,6 +551,12 @@ impl<'g> Builder<'_, 'g> {
         }
         self.mounts.insert(name.node.clone(), (place, name.span));
     }
+}
+
+/// Says that the values to come are those of a machine or tool of the job; gives back what the job is called.
+fn instance_owner(context: &mut Context<'_>, name: &Name) -> Rc<str> {
+    let own = format!("{}.{}", context.owner, name.node);
+    std::mem::replace(&mut context.owner, own.into())
 }
 
 /// The names of the surfaces of a job.

@@ -44,7 +44,7 @@ impl Files for Disk {
     fn read(&self, real: &Path, most: usize) -> Result<String> {
         ask_plain(real)?;
         let mut text = String::new();
-        std::fs::File::open(real)?.take(most as u64 + 1).read_to_string(&mut text)?;
+        std::fs::File::open(real)?.take((most as u64).saturating_add(1)).read_to_string(&mut text)?;
         limited(text, most)
     }
 }

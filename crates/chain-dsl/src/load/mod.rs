@@ -24,6 +24,8 @@ pub(crate) struct Loaded {
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether a file is used that was not read: what it declares is not known.
     pub(crate) lacks_files: bool,
+    /// Where files are used, with those that are.
+    pub(crate) used: Vec<(Span, FileId)>,
     /// The project folder of each file; a text that is not a file has none.
     pub(crate) projects: HashMap<FileId, PathBuf>,
     /// The file that was asked for beside the main one.
@@ -52,6 +54,7 @@ pub(crate) fn load(from: Arc<dyn Files>, path: &Path, beside: Option<&Path>) -> 
             files: Vec::new(),
             diagnostics: Vec::new(),
             lacks_files: false,
+            used: Vec::new(),
             projects: HashMap::new(),
             beside: None,
         },
@@ -126,7 +129,16 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
         }
     }
     let (from, projects) = (Arc::new(files::Disk), HashMap::new());
-    Loaded { from, sources, files: vec![(id, file)], diagnostics, lacks_files, projects, beside: None }
+    Loaded {
+        from,
+        sources,
+        files: vec![(id, file)],
+        diagnostics,
+        lacks_files,
+        used: Vec::new(),
+        projects,
+        beside: None,
+    }
 }
 
 /// The nearest folder above a file, given without links, that holds a `.git` or a `flank.toml`; else the folder above that of the
@@ -208,6 +220,7 @@ impl Loader {
             None if self.bytes > limits::ALL_BYTES.most => self.exceeded(limits::ALL_BYTES, used),
             None => self.read(&shown, &real, Some(used.span)),
         }
+        self.loaded.used.extend(self.known.get(&real).map(|file| (used.span, *file)));
     }
 
     fn exceeded(&mut self, limit: Limit, used: &Name) {

@@ -20,11 +20,12 @@ mod scan;
 mod tests;
 mod words;
 
-use crate::diagnostics::source::FileId;
+use crate::diagnostics::source::{FileId, Span};
 use crate::diagnostics::{Diagnostic, Severity};
 
 pub(crate) use concrete::{Kind, Part};
 pub use scan::{Comment, CommentKind};
+pub use words::Vocabulary;
 
 /// Reads a text. Never fails: what did not parse is reported, and what stands around it is in the tree.
 ///
@@ -74,6 +75,53 @@ pub(crate) fn too_long(text: &str, file: FileId) -> Option<Diagnostic> {
 /// Whether a word belongs to the language, so that nothing can be called by it.
 pub fn is_reserved(word: &str) -> bool {
     words::reserved(word).is_some()
+}
+
+/// A word or a sign of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token {
+    /// Where it stands.
+    pub span: Span,
+    /// What it looks like.
+    pub kind: TokenKind,
+}
+
+/// What a word or a sign looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TokenKind {
+    /// A name, a keyword, a unit.
+    Word,
+    /// Digits with fraction and exponent.
+    Number,
+    /// `"text"`, perhaps without its end.
+    Text,
+    /// A sign of the language.
+    Sign,
+    /// Anything else.
+    Strange,
+}
+
+/// All words and signs of a text, in order.
+pub fn tokens(text: &str, file: FileId) -> Vec<Token> {
+    if limits::too_long(text, file).is_some() {
+        return Vec::new();
+    }
+    let scan = scan::Scan::new(text, file);
+    let kind = |kind| match kind {
+        scan::Kind::Word => TokenKind::Word,
+        scan::Kind::Number => TokenKind::Number,
+        scan::Kind::Text | scan::Kind::OpenText => TokenKind::Text,
+        scan::Kind::Sign => TokenKind::Sign,
+        scan::Kind::Strange => TokenKind::Strange,
+    };
+    let tokens = scan.tokens.iter();
+    let span = |token: &scan::Token| Span { file, start: token.start, end: token.end };
+    tokens.map(|token| Token { span: span(token), kind: kind(token.kind) }).collect()
+}
+
+/// The words of the language.
+pub fn vocabulary() -> Vocabulary {
+    words::vocabulary()
 }
 
 /// All comments of a text, in order.

@@ -44,6 +44,58 @@ const FREE: &[&str] =
 /// Words inside statements and expressions.
 const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else", "and", "or", "not"];
 
+/// Words inside statements that are names elsewhere.
+const INSIDE: &[&str] = &[
+    "step", "as", "keep", "along", "about", "towards", "where", "for", "with", "of", "near", "within", "travel",
+    "nothing", "passes", "both", "ways", "clear", "scallop", "chord", "lead", "tilt", "stock",
+];
+
+/// What an axis is, and the sides of a surface.
+const CHOICES: &[&str] = &["linear", "rotary", "inside", "outside"];
+
+/// The words of the language, each in one or several lists.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vocabulary {
+    /// Words that begin an item.
+    pub items: &'static [&'static str],
+    /// Words that begin a statement in a machine.
+    pub in_machine: &'static [&'static str],
+    /// Words that begin a statement in a tool.
+    pub in_tool: &'static [&'static str],
+    /// Words that begin a statement in a tool's surface.
+    pub in_surface: &'static [&'static str],
+    /// Words that begin a statement in a job.
+    pub in_job: &'static [&'static str],
+    /// Words inside statements and expressions, which are no names.
+    pub connecting: &'static [&'static str],
+    /// Words inside statements that are names elsewhere.
+    pub inside: &'static [&'static str],
+    /// What an axis is, and the sides of a surface.
+    pub choices: &'static [&'static str],
+    /// Units, in the order in which messages list them.
+    pub units: &'static [&'static str],
+    /// Dimensions.
+    pub dimensions: &'static [&'static str],
+    /// Functions, transforms, ways to make a surface.
+    pub functions: Vec<&'static str>,
+}
+
+pub(super) fn vocabulary() -> Vocabulary {
+    Vocabulary {
+        items: ITEMS,
+        in_machine: IN_MACHINE,
+        in_tool: IN_TOOL,
+        in_surface: IN_SURFACE,
+        in_job: IN_JOB,
+        connecting: CONNECTING,
+        inside: INSIDE,
+        choices: CHOICES,
+        units: UNITS,
+        dimensions: DIMENSIONS,
+        functions: crate::definitions::index::functions(),
+    }
+}
+
 /// Units as they are listed in messages.
 pub(super) const UNITS: &[&str] = &["mm", "um", "µm", "cm", "inch", "deg", "rad", "arcmin", "arcsec", "rev"];
 
@@ -75,5 +127,31 @@ pub(super) fn reserved(word: &str) -> Option<Reserved> {
         Some(Reserved::Keyword)
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// Words in quotes: those of the grammar.
+    fn quoted(grammar: &str) -> BTreeSet<&str> {
+        let lines = grammar.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let texts = lines.flat_map(|line| line.split('"').skip(1).step_by(2));
+        texts.filter(|text| text.chars().count() > 1 && text.chars().all(char::is_alphabetic)).collect()
+    }
+
+    #[test]
+    fn the_vocabulary_is_that_of_the_grammar() {
+        let of = vocabulary();
+        let lists =
+            [of.items, of.in_machine, of.in_tool, of.in_surface, of.in_job, of.connecting, of.inside, of.choices];
+        let known: BTreeSet<&str> =
+            lists.iter().chain(&[of.units, of.dimensions]).flat_map(|list| list.iter().copied()).collect();
+        let mut grammar = quoted(include_str!("grammar.pest"));
+        assert!(grammar.remove(GREEK_MICROMETRE));
+        assert_eq!(known, grammar);
     }
 }

@@ -6,6 +6,7 @@ use std::rc::Rc;
 
 use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape, VariableId};
 
+use crate::definitions::index::KnownValue;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::diagnostics::spelling::closest;
@@ -99,6 +100,19 @@ pub(crate) struct Context<'g> {
     /// Points of the samples so far.
     pub(crate) sample_points: usize,
     pub(crate) call_depth: usize,
+    /// Whose values are looked at: `job.m`.
+    pub(crate) owner: Rc<str>,
+    /// What names amount to.
+    noted: Vec<NotedValue<'g>>,
+}
+
+/// What a name amounts to, not yet a number.
+struct NotedValue<'g> {
+    name: Span,
+    written: Span,
+    of: Rc<str>,
+    value: Expr<'g>,
+    dimension: Dimension,
 }
 
 impl<'g> Context<'g> {
@@ -125,7 +139,39 @@ impl<'g> Context<'g> {
             exhausted: false,
             sample_points: 0,
             call_depth: 0,
+            owner: Rc::from(""),
+            noted: Vec::new(),
         }
+    }
+
+    /// Notes what a name amounts to, for the index of names.
+    pub(crate) fn note_value(&mut self, name: Span, written: Span, value: &Value<'g>) {
+        if let Value::Scalar(value, dimension) = value
+            && !self.owner.is_empty()
+        {
+            let (of, value, dimension) = (Rc::clone(&self.owner), *value, *dimension);
+            self.noted.push(NotedValue { name, written, of, value, dimension });
+        }
+    }
+
+    /// What names amount to, as far as it is known and stands still, sorted by where they are defined.
+    pub(crate) fn known_values(&mut self) -> Vec<KnownValue> {
+        let noted = std::mem::take(&mut self.noted);
+        let exprs: Vec<Expr<'g>> = noted.iter().map(|noted| noted.value).collect();
+        let values = self.graph.evaluate(&exprs, &self.values);
+        let known = noted.into_iter().zip(values).filter(|(_, value)| value.is_finite());
+        let known = known.map(|(NotedValue { name, written, of, dimension, .. }, value)| KnownValue {
+            name,
+            written,
+            of: of.to_string(),
+            value,
+            dimension,
+        });
+        let mut known: Vec<KnownValue> = known.collect();
+        known.sort_by(|a, b| (a.name, &a.of).cmp(&(b.name, &b.of)));
+        // a job is built again where splines go through points of its samples
+        known.dedup_by(|a, b| (a.name, &a.of, a.value) == (b.name, &b.of, b.value));
+        known
     }
 
     /// Reports the second definition of a name, unless the parser has reported that the name is missing.
@@ -339,7 +385,10 @@ impl<'g> Context<'g> {
                 let wanted_text = Value::Scalar(self.graph.constant(0.0), wanted).described();
                 let message = format!("{what} must be {wanted_text}, this is {}", other.described());
                 let mut diagnostic = Diagnostic::new(Code::WrongDimension, span, message);
-                diagnostic.help = unit_help(wanted, other);
+                if let Some((help, unit)) = unit_help(wanted, other) {
+                    diagnostic = diagnostic.help(help);
+                    diagnostic.lacks_unit = Some((span, unit));
+                }
                 self.report(diagnostic);
                 None
             }
@@ -364,9 +413,7 @@ impl<'g> Context<'g> {
             return;
         }
         let message = format!("there is no {kind} `{}`", name.node);
-        let mut diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
-        diagnostic.help = did_you_mean(&name.node, known);
-        self.report(diagnostic);
+        self.report(suggesting(Diagnostic::new(Code::UnknownName, name.span, message), name, known));
     }
 
     /// The same for what other files may declare: nothing is missing while one that is used could not be read, which has been reported.
@@ -398,8 +445,8 @@ impl<'g> Context<'g> {
     }
 }
 
-/// What to write where a plain number stands for an angle or a length.
-fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<String> {
+/// What to write where a plain number stands for an angle or a length, and the unit.
+fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<(String, &'static str)> {
     let Value::Scalar(expr, Dimension::NUMBER) = found else {
         return None;
     };
@@ -409,10 +456,26 @@ fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<String> {
         _ => return None,
     };
     Some(match expr.as_constant() {
-        Some(value) => format!("give it a unit: `{value} {unit}`"),
-        None if wanted == Dimension::ANGLE => "a number of radians becomes an angle by `* 1 rad`".to_string(),
-        None => format!("a number of millimetres becomes a length by `* 1 {unit}`"),
+        Some(value) => (format!("give it a unit: `{value} {unit}`"), unit),
+        None if wanted == Dimension::ANGLE => ("a number of radians becomes an angle by `* 1 rad`".to_string(), "rad"),
+        None => (format!("a number of millimetres becomes a length by `* 1 {unit}`"), unit),
     })
+}
+
+/// A finding about a name with the nearest of the known ones, or all of them.
+pub(crate) fn suggesting<'a>(
+    mut diagnostic: Diagnostic,
+    name: &Name,
+    known: impl Iterator<Item = &'a str>,
+) -> Diagnostic {
+    let known: Vec<&str> = known.collect();
+    diagnostic.help = did_you_mean(&name.node, known.iter().copied());
+    // of those alike, the one that the sentence names
+    let meant = diagnostic.help.as_deref().and_then(|help| help.strip_prefix("did you mean `")?.strip_suffix("`?"));
+    match meant.map(str::to_string) {
+        Some(meant) => diagnostic.cure(format!("write `{meant}`"), name.span, meant),
+        None => diagnostic,
+    }
 }
 
 /// The nearest of the known names, as a sentence.

@@ -92,7 +92,7 @@ impl fmt::Display for Dimension {
 /// A unit: its size in mm or radians and its dimension.
 ///
 /// `None` if there is no such unit.
-pub fn unit(name: &str) -> Option<(f64, Dimension)> {
+pub fn unit_size(name: &str) -> Option<(f64, Dimension)> {
     use std::f64::consts::PI;
     let (size, dimension) = match name {
         "mm" => (1.0, Dimension::LENGTH),
@@ -112,7 +112,7 @@ pub fn unit(name: &str) -> Option<(f64, Dimension)> {
 /// A number with its unit in mm or radians, correctly rounded where one operation is enough: 20 um is 20/1000.
 pub(crate) fn convert(value: f64, name: &str, exponent: i32) -> Option<f64> {
     use std::f64::consts::PI;
-    let (size, _) = unit(name)?;
+    let (size, _) = unit_size(name)?;
     Some(match (name, exponent) {
         ("um" | "µm" | "μm", 1) => value / 1e3,
         ("deg", 1) => value * PI / 180.0,

@@ -144,7 +144,7 @@ impl<'g> Context<'g> {
     fn number(&mut self, value: f64, units: &[(crate::diagnostics::source::Name, i32)]) -> Value<'g> {
         let (mut number, mut product) = (value, Dimension::NUMBER);
         for (name, exponent) in units {
-            let Some((_, base)) = dimension::unit(&name.node) else {
+            let Some((_, base)) = dimension::unit_size(&name.node) else {
                 self.unknown(name, "unit", ["mm", "um", "cm", "inch", "deg", "rad", "rev"].into_iter());
                 return Value::Poison;
             };
@@ -286,7 +286,10 @@ impl<'g> Context<'g> {
         let mut diagnostic = Diagnostic::new(Code::WrongDimension, operator_span, message)
             .note(spans.0, Value::Scalar(a, da).described())
             .note(spans.1, Value::Scalar(b, db).described());
-        diagnostic.help = missing_unit((a, da), (b, db));
+        if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
+            diagnostic = diagnostic.help(help);
+            diagnostic.lacks_unit = Some((if is_first { spans.0 } else { spans.1 }, unit));
+        }
         self.report(diagnostic);
         Value::Poison
     }
@@ -339,7 +342,10 @@ impl<'g> Context<'g> {
         if da.sum(db).is_none() {
             let message = format!("cannot compare {da} and {db}");
             let mut diagnostic = Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message);
-            diagnostic.help = missing_unit((a, da), (b, db));
+            if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
+                diagnostic = diagnostic.help(help);
+                diagnostic.lacks_unit = Some((if is_first { spans.0 } else { spans.1 }, unit));
+            }
             self.report(diagnostic);
             return Value::Poison;
         }
@@ -537,19 +543,24 @@ impl<'g> Context<'g> {
     }
 }
 
-/// What to write where a plain number meets a length or an angle.
-fn missing_unit<'g>((a, da): (Expr<'g>, Dimension), (b, db): (Expr<'g>, Dimension)) -> Option<String> {
-    let (number, other) = match (da, db) {
-        (Dimension::NUMBER, other) => (a, other),
-        (other, Dimension::NUMBER) => (b, other),
+/// What to write where a plain number meets a length or an angle, the unit, and whether the first of them is the number.
+fn missing_unit<'g>(
+    (a, da): (Expr<'g>, Dimension),
+    (b, db): (Expr<'g>, Dimension),
+) -> Option<(String, &'static str, bool)> {
+    let (number, other, is_first) = match (da, db) {
+        (Dimension::NUMBER, other) => (a, other, true),
+        (other, Dimension::NUMBER) => (b, other, false),
         _ => return None,
     };
-    let value = number.as_constant();
-    match (other, value) {
-        (Dimension::LENGTH, Some(value)) => Some(format!("give the number its unit: `{value} mm`")),
-        (Dimension::ANGLE, Some(value)) => {
-            Some(format!("give the number its unit (`{value} deg`), or make the angle a number by `/ 1 rad`"))
-        }
+    let value = number.as_constant()?;
+    match other {
+        Dimension::LENGTH => Some((format!("give the number its unit: `{value} mm`"), "mm", is_first)),
+        Dimension::ANGLE => Some((
+            format!("give the number its unit (`{value} deg`), or make the angle a number by `/ 1 rad`"),
+            "deg",
+            is_first,
+        )),
         _ => None,
     }
 }

@@ -230,7 +230,7 @@ fn size_of_unit(name: &str, unit: Option<&str>, dimension: Dimension) -> Result<
     };
     // a number is taken as it is
     let is_number = unit == "1" || unit.contains(['/', '^']);
-    match dimension::unit(unit) {
+    match dimension::unit_size(unit) {
         Some((size, found)) if found == dimension => Ok(size),
         Some((_, found)) => {
             Err(format!("column `{name}` is {} {found}, not {} {dimension}", article(found), article(dimension)))

@@ -5,6 +5,7 @@ mod files;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
 mod hostile;
+mod index;
 mod models;
 mod profiles;
 

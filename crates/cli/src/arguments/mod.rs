@@ -103,6 +103,8 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Write a page to look at: the machine moves, the tool generates the work, in 3-D, without a network
     View(View),
+    /// Serve an editor: findings while typing, hover, completion, names, and a page that follows
+    Lsp(Lsp),
     /// Make a job of one in the library, with all that it uses; or take a machine or a tool of it
     New(New),
     /// The JSON schemas of all that the program prints and writes as JSON
@@ -136,6 +138,7 @@ impl Command {
             Command::Import(arguments) => arguments.json,
             Command::Fmt(arguments) => arguments.json,
             Command::View(arguments) => arguments.json,
+            Command::Lsp(_) => false,
             Command::New(arguments) => arguments.json,
             Command::Schema(arguments) => arguments.json,
             Command::Completions(arguments) => arguments.json,
@@ -167,6 +170,7 @@ impl Command {
             | Command::Explain(_)
             | Command::Import(_)
             | Command::Fmt(_)
+            | Command::Lsp(_)
             | Command::New(_)
             | Command::Schema(_)
             | Command::Completions(_)
@@ -350,6 +354,9 @@ pub(crate) struct Check {
     /// Print the findings as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    /// With --json, also all names: place, what each is, where it is defined, its values
+    #[arg(long, requires = "json")]
+    pub(crate) index: bool,
 }
 
 #[derive(Args, Debug)]
@@ -462,7 +469,8 @@ the page then solves the same equations anew, from the points solved here.
 Examples:
   flank view specs/bevel/pinion_19x62.chain
   flank view specs/hobbing/helical_gear.chain --set teeth=37 --out pages
-  flank view specs/bevel/ease_off_19x62.chain --job conjugate --json")]
+  flank view specs/bevel/ease_off_19x62.chain --job conjugate --json
+  flank view specs/bevel/pinion_19x62.chain --serve     a page on this machine that follows each save")]
 pub(crate) struct View {
     #[command(flatten)]
     pub(crate) which: JobArguments,
@@ -472,9 +480,21 @@ pub(crate) struct View {
     /// Print files and sizes as JSON
     #[arg(long)]
     pub(crate) json: bool,
+    /// Write no file: serve the page on this machine and print where; it follows what is saved, until the program is ended
+    #[arg(long, conflicts_with_all = ["json", "out"])]
+    pub(crate) serve: bool,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
 }
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Editors start it by themselves; it reads and writes the Language Server Protocol on stdin and stdout, and writes no file that nobody
+asked for.
+
+Examples:
+  flank lsp    for an editor; see docs/editors.md")]
+pub(crate) struct Lsp {}
 
 #[derive(Args, Debug)]
 #[command(after_help = "\

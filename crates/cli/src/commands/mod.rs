@@ -4,6 +4,8 @@ pub(crate) mod check;
 pub(crate) mod explain;
 pub(crate) mod fmt;
 pub(crate) mod import;
+pub(crate) mod live;
+pub(crate) mod lsp;
 pub(crate) mod new;
 pub(crate) mod operations;
 pub(crate) mod schema;

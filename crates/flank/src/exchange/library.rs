@@ -19,8 +19,18 @@ pub(crate) fn defines(path: &str, name: &str) -> bool {
 }
 
 /// All specs with their paths within the library.
-pub(super) fn texts() -> impl Iterator<Item = (&'static Path, &'static str)> {
+pub(crate) fn texts() -> impl Iterator<Item = (&'static Path, &'static str)> {
     files(&LIBRARY).filter(|(path, _)| path.extension().is_some_and(|extension| extension == "chain"))
+}
+
+/// The text of a file by its path within the library.
+pub(crate) fn text(path: &Path) -> Option<&'static str> {
+    LIBRARY.get_file(path)?.contents_utf8()
+}
+
+/// Whether there is such a folder.
+pub(crate) fn has_folder(path: &Path) -> bool {
+    path.as_os_str().is_empty() || LIBRARY.get_dir(path).is_some()
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {

@@ -1,9 +1,10 @@
 //! Whether specs are right.
 
-use flank_expr::Graph;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::language::editor::analysis::analyse;
+use crate::language::editor::names::IndexedName;
 use crate::project::findings::{Finding, Findings};
 use crate::project::{Project, shown_path};
 
@@ -25,15 +26,26 @@ pub struct Checked {
     /// Errors and warnings, in the order of their places.
     #[schemars(with = "Vec<Finding>")]
     pub findings: Findings,
+    /// All names with what they lead to, where they are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Vec<IndexedName>")]
+    pub names: Option<Vec<IndexedName>>,
 }
 
 /// Parses a spec, resolves its names and checks dimensions.
 pub fn check(project: &Project) -> Checked {
-    let graph = Graph::new();
-    let compilation = project.compiled(&graph);
-    Checked {
-        file: shown_path(project.file()),
-        ok: !compilation.has_errors(),
-        findings: Findings::new(&compilation.diagnostics, &compilation.sources),
-    }
+    checked(project, false)
+}
+
+/// The same with the index of names.
+pub fn check_with_names(project: &Project) -> Checked {
+    checked(project, true)
+}
+
+fn checked(project: &Project, with_names: bool) -> Checked {
+    let analysis = analyse(project);
+    let findings = Findings::new(&analysis.diagnostics, &analysis.sources);
+    let [errors, _] = findings.counts();
+    let names = with_names.then(|| analysis.indexed());
+    Checked { file: shown_path(project.file()), ok: errors == 0, findings, names }
 }

@@ -3,6 +3,7 @@
 
 pub(crate) mod check;
 pub(crate) mod derive;
+pub(crate) mod editor;
 pub(crate) mod errors;
 pub(crate) mod layout;
 pub(crate) mod schemas;

@@ -11,7 +11,7 @@ mod thin;
 mod tools;
 
 use flank_chain_dsl::{Job, RangedVariable};
-use flank_draw::{PageBody, PageMotion, Scene};
+use flank_draw::{PageBody, PageMotion, Scene, write_page};
 use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
 
@@ -20,8 +20,7 @@ use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
-use crate::project::requests::Session;
-use crate::project::requests::ViewRequest;
+use crate::project::requests::{EvaluatorOptions, JobSelection, Session, ViewRequest};
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::limits::Line;
@@ -52,21 +51,59 @@ const BEYOND: f64 = 0.15;
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep, or that a file cannot be written.
 pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(ViewResult)) -> Result<(), Failure> {
+    let put = |name: &str, origin: &Origin, dataset: &Dataset, scene: &Scene| {
+        let mut folder = Folder::at(&request.out, origin, monitor);
+        folder.page(name, dataset, scene)?;
+        let file = folder.finish()?.remove(0);
+        let path = request.out.join(format!("{name}.html"));
+        let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
+        Ok(Written { files: vec![file], bytes })
+    };
+    pages((&request.jobs, request.evaluator), monitor, put, each)
+}
+
+/// The same pages as texts, which are given to `take` by the name of their job before its result is.
+///
+/// # Errors
+/// What is wrong with the spec, that no job asks for points, that there are too many to keep.
+pub fn page_texts(
+    jobs: &JobSelection,
+    evaluator: EvaluatorOptions,
+    monitor: &dyn Monitor,
+    take: &mut dyn FnMut(&str, String),
+    each: &mut dyn FnMut(ViewResult),
+) -> Result<(), Failure> {
+    let put = |name: &str, _: &Origin, dataset: &Dataset, scene: &Scene| {
+        let mut text = Vec::new();
+        write_page(dataset, scene, &mut text).map_err(|error| error.to_string())?;
+        let bytes = text.len() as u64;
+        take(name, String::from_utf8(text).map_err(|error| error.to_string())?);
+        Ok(Written { files: Vec::new(), bytes })
+    };
+    pages((jobs, evaluator), monitor, put, each)
+}
+
+fn pages(
+    (selection, evaluator): (&JobSelection, EvaluatorOptions),
+    monitor: &dyn Monitor,
+    mut put: impl FnMut(&str, &Origin, &Dataset, &Scene) -> Result<Written, Failure>,
+    each: &mut dyn FnMut(ViewResult),
+) -> Result<(), Failure> {
     let graph = Graph::new();
-    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let (compilation, jobs) = spec::jobs(&graph, selection, monitor)?;
     let origin = Origin::of_compilation(&compilation);
     for job in solve::asked(&jobs, monitor)? {
-        let wanted = wanted(Session::new(request.evaluator, monitor));
+        let wanted = wanted(Session::new(evaluator, monitor));
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
         let solved: Vec<Solved<'_, '_>> = solved.collect::<Result<_, _>>()?;
         let trims = solved.iter().flat_map(|solved| &solved.trims);
         let lines: Vec<&Line<'_, '_>> = trims.filter(|line| !line.points.is_empty()).collect();
-        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], &request.jobs, &origin));
+        let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], selection, &origin));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = tally(&solved, &mut dataset.patches);
         let mut not_done = table::failures(job, &solved);
-        let contacts = contacts::rolled(job, &request.jobs, wanted.session)?;
+        let contacts = contacts::rolled(job, selection, wanted.session)?;
         contacts::add_gaps(&contacts, &solved, &mut dataset.patches);
         not_done.extend(contacts.iter().flat_map(contacts::Shown::refused));
         let mut remarks = Vec::new();
@@ -76,16 +113,16 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
             None
         } else {
             let bodies = bodies::page_bodies(job, &solved, wanted.session)?;
-            let page = write(&graph, job, (&solved, &contacts, bodies), &dataset, (request, &origin, monitor))?;
-            remarks.extend(page.shown_in_part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
-            Some(page)
+            let (shown, scene, part) = prepared(&graph, job, (&solved, &contacts, bodies), &dataset);
+            remarks.extend(part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
+            Some(put(&job.name, &origin, &shown, &scene)?)
         };
         each(ViewResult {
             job: job.name.clone(),
             asked: tally.asked,
             solved: tally.solved,
             bytes: written.as_ref().map(|page| page.bytes),
-            files: written.into_iter().map(|page| page.file).collect(),
+            files: written.map_or(Vec::new(), |page| page.files),
             remarks,
             not_done: origin.located(&[job], not_done),
         });
@@ -114,21 +151,20 @@ fn is_something(field: &Field) -> bool {
     }
 }
 
-/// A page that stands in its folder.
+/// A page that is where it belongs.
 struct Written {
-    file: String,
+    /// None of a text.
+    files: Vec<String>,
     bytes: u64,
-    /// Which of the points it shows, if not all.
-    shown_in_part: Option<String>,
 }
 
-fn write<'g>(
+/// The points that a page shows, what it shows beside them, and which of the points it shows, if not all.
+fn prepared<'g>(
     graph: &'g Graph,
     job: &Job<'g>,
     (solved, contacts, bodies): (&[Solved<'_, 'g>], &[contacts::Shown<'_, 'g>], Vec<PageBody>),
     dataset: &Dataset,
-    (request, origin, monitor): (&ViewRequest, &Origin, &dyn Monitor),
-) -> Result<Written, Failure> {
+) -> (Dataset, Scene, Option<String>) {
     let (surfaces, lines) = dataset.patches.split_at(solved.len());
     let step = thin::step(surfaces);
     let mut scene = Scene { bodies, ..scene(graph, job, solved, contacts) };
@@ -154,13 +190,8 @@ fn write<'g>(
             }
         }
     }
-    let shown = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
-    let mut folder = Folder::at(&request.out, origin, monitor);
-    folder.page(&job.name, &Dataset { header: dataset.header.clone(), patches: shown }, &scene)?;
-    let file = folder.finish()?.remove(0);
-    let path = request.out.join(format!("{}.html", job.name));
-    let bytes = std::fs::metadata(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?.len();
-    Ok(Written { file, bytes, shown_in_part })
+    let patches = surfaces.iter().map(|patch| thin::thinned(patch, step)).chain(lines.iter().cloned()).collect();
+    (Dataset { header: dataset.header.clone(), patches }, scene, shown_in_part)
 }
 
 /// What the page shows beside the points.

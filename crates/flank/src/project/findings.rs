@@ -38,6 +38,19 @@ pub struct Finding {
     pub notes: Vec<Note>,
     /// What to write instead.
     pub help: Option<String>,
+    /// Changes of the text that mend it, the likeliest first.
+    pub cures: Vec<FindingCure>,
+}
+
+/// A change of a text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct FindingCure {
+    /// What it does.
+    pub title: String,
+    /// What is replaced; its text is empty where something is put in.
+    pub place: Place,
+    /// What is written there.
+    pub replacement: String,
 }
 
 /// Another place that belongs to a finding.
@@ -100,6 +113,15 @@ impl Findings {
                 .map(|note| Note { place: Place::of_span(&self.sources, note.span), text: note.text.clone() })
                 .collect(),
             help: diagnostic.help.clone(),
+            cures: diagnostic
+                .cures
+                .iter()
+                .map(|cure| FindingCure {
+                    title: cure.title.clone(),
+                    place: Place::of_span(&self.sources, cure.span),
+                    replacement: cure.replacement.clone(),
+                })
+                .collect(),
         }
     }
 }

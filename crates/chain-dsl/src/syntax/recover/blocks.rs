@@ -13,7 +13,7 @@ use super::super::grammar::Rule;
 use super::super::scan::Kind;
 use super::super::{pieces, salvage, words};
 use super::block::Block;
-use super::{Recover, did_you_mean};
+use super::{Recover, mean};
 
 /// Items inside each other that are still read as such.
 const NESTED_ITEMS: usize = 4;
@@ -205,14 +205,19 @@ impl<'s> Recover<'s> {
         let assigns = scan.say(first + 1) == "=";
         let meant = closest(word, block.words().iter().copied()).filter(|meant| !assigns || *meant == "at");
         let named = if assigns { first } else { first + 1 };
+        let place = scan.place(first);
         let help = match meant {
-            Some(meant) => did_you_mean(meant),
+            Some(_) => String::new(),
             None if scan.is_name(named) && scan.say(named + 1) == "=" => {
                 format!("write `let {} = …` to give a value a name", scan.short(named))
             }
             None => list,
         };
-        self.report(first, format!("{} does not begin a statement", scan.quote(first))).help = Some(help);
+        let diagnostic = self.report(first, format!("{} does not begin a statement", scan.quote(first)));
+        match meant {
+            Some(meant) => mean(diagnostic, place, meant),
+            None => diagnostic.help = Some(help),
+        }
         if meant == Some("surface") && matches!(block, Block::Tool(_)) {
             return self.tool_surface(block, false);
         }

@@ -8,9 +8,10 @@ use std::ops::Range;
 
 use pest::iterators::Pair;
 
-use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
+use crate::diagnostics::{Cure, Diagnostic};
 use crate::limits::MISTAKES;
 
 use super::ast::{Expression, ExpressionKind, File, Item};
@@ -174,7 +175,8 @@ impl<'s> Recover<'s> {
             return;
         };
         let message = format!("expected {LIST}, found {}", self.scan.quote(self.at));
-        self.report(self.at, message).help = Some(did_you_mean(meant));
+        let place = self.scan.place(self.at);
+        mean(self.report(self.at, message), place, meant);
         self.item(meant, false);
     }
 
@@ -190,7 +192,15 @@ impl<'s> Recover<'s> {
     fn swapped(&mut self) {
         let (name, word) = (self.scan.short(self.at), self.scan.say(self.at + 1));
         let message = format!("expected `{word}` before `{name}`, not after it");
-        self.report(self.at, message).help = Some(format!("write `{word} {name}`"));
+        let place = self.scan.extent(self.at..self.at + 2);
+        let (whole, word) = (self.scan.say(self.at), word.to_string());
+        let diagnostic = self.report(self.at, message);
+        diagnostic.help = Some(format!("write `{word} {name}`"));
+        diagnostic.cures.push(Cure {
+            title: format!("write `{word} {name}`"),
+            span: place,
+            replacement: format!("{word} {whole}"),
+        });
     }
 
     /// Reports what can begin nothing.
@@ -211,6 +221,8 @@ impl<'s> Recover<'s> {
     }
 }
 
-fn did_you_mean(word: &str) -> String {
-    format!("did you mean `{word}`?")
+/// Says which word was meant.
+fn mean(diagnostic: &mut Diagnostic, place: Span, word: &str) {
+    diagnostic.help = Some(format!("did you mean `{word}`?"));
+    diagnostic.cures.push(Cure { title: format!("write `{word}`"), span: place, replacement: word.to_string() });
 }

@@ -173,5 +173,5 @@ fn text(value: f64, unit: &str) -> String {
 
 /// Of a plain unit, in mm or radians, and what it measures.
 pub(super) fn size_of_unit(unit: &str) -> Option<(f64, Dimension)> {
-    flank_chain_dsl::unit(unit)
+    flank_chain_dsl::unit_size(unit)
 }

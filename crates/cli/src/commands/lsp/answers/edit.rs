@@ -1,0 +1,237 @@
+//! Completion, layout, changes that mend findings, new names.
+
+use std::collections::HashMap;
+
+use flank::{Completion, CompletionKind, NameKind, TextEdit as Edit, lay_out};
+use gen_lsp_types::{
+    CodeAction, CodeActionKind, CodeActionParams, CodeActionResponse, Command, CompletionItem, CompletionItemKind,
+    CompletionItemTextEdit, CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams,
+    DocumentRangeFormattingParams, InsertTextFormat, PrepareRenameParams, PrepareRenamePlaceholder,
+    PrepareRenameResult, RenameParams, TextEdit, Uri, WorkspaceEdit,
+};
+
+use super::browse::all_references;
+use crate::commands::lsp::diagnostics::diagnostic;
+use crate::commands::lsp::position::Lines;
+use crate::commands::lsp::snapshot::{Opened, Snapshot};
+use crate::commands::lsp::uri::{ERRORS, LIBRARY};
+
+pub(crate) fn completion(snapshot: &Snapshot, params: CompletionParams) -> Option<CompletionResponse> {
+    let at = params.text_document_position_params;
+    let opened = snapshot.opened(&at.text_document.uri)?;
+    let found = opened.analysis.completions(opened.offset(at.position));
+    let lines = opened.lines();
+    let items = found.iter().enumerate().map(|(rank, proposal)| item(proposal, rank, &lines)).collect();
+    let list = CompletionList { is_incomplete: false, item_defaults: None, apply_kind: None, items };
+    Some(CompletionResponse::CompletionList(list))
+}
+
+fn item(proposal: &Completion, rank: usize, lines: &Lines<'_>) -> CompletionItem {
+    let range = lines.range(proposal.replaces.start, proposal.replaces.end);
+    let format = if proposal.is_snippet { InsertTextFormat::Snippet } else { InsertTextFormat::PlainText };
+    CompletionItem {
+        label: proposal.label.clone(),
+        kind: Some(item_kind(proposal.kind)),
+        detail: (!proposal.detail.is_empty()).then(|| proposal.detail.clone()),
+        // editors sort by this text
+        sort_text: Some(format!("{rank:04}")),
+        insert_text_format: Some(format),
+        text_edit: Some(CompletionItemTextEdit::TextEdit(TextEdit { range, new_text: proposal.text.clone() })),
+        ..CompletionItem::default()
+    }
+}
+
+fn item_kind(kind: CompletionKind) -> CompletionItemKind {
+    match kind {
+        CompletionKind::Keyword => CompletionItemKind::Keyword,
+        CompletionKind::Unit => CompletionItemKind::Unit,
+        CompletionKind::Setting => CompletionItemKind::Property,
+        CompletionKind::Snippet => CompletionItemKind::Snippet,
+        CompletionKind::Function | CompletionKind::Name(NameKind::Function) => CompletionItemKind::Function,
+        CompletionKind::Name(NameKind::Machine | NameKind::Tool | NameKind::Job) => CompletionItemKind::Class,
+        CompletionKind::Name(NameKind::Parameter | NameKind::MachineError) => CompletionItemKind::Property,
+        CompletionKind::Name(NameKind::Value) => CompletionItemKind::Constant,
+        CompletionKind::Name(NameKind::Frame) => CompletionItemKind::Module,
+        CompletionKind::Name(_) => CompletionItemKind::Variable,
+    }
+}
+
+/// Whether a text is the library's, which is read only.
+fn is_shipped(opened: &Opened<'_>) -> bool {
+    opened.document.uri.starts_with(LIBRARY)
+}
+
+pub(crate) fn format(snapshot: &Snapshot, params: DocumentFormattingParams) -> Option<Vec<TextEdit>> {
+    let opened = snapshot.opened(&params.text_document.uri)?;
+    formatted(snapshot, &opened, None)
+}
+
+pub(crate) fn format_range(snapshot: &Snapshot, params: DocumentRangeFormattingParams) -> Option<Vec<TextEdit>> {
+    let opened = snapshot.opened(&params.text_document.uri)?;
+    let lines = [params.range.start.line as usize, params.range.end.line as usize];
+    formatted(snapshot, &opened, Some(lines))
+}
+
+/// The lines that the layout changes, of a range or of all; nothing where the text is wrong.
+fn formatted(snapshot: &Snapshot, opened: &Opened<'_>, within: Option<[usize; 2]>) -> Option<Vec<TextEdit>> {
+    if is_shipped(opened) {
+        return Some(Vec::new());
+    }
+    let laid = lay_out(&snapshot.project(&opened.path)).ok()?;
+    let (before, after) = (&*opened.document.text, &*laid.text);
+    let (old, new): (Vec<&str>, Vec<&str>) =
+        (before.split_inclusive('\n').collect(), after.split_inclusive('\n').collect());
+    let mut edits = Vec::new();
+    for [old_from, old_to, new_from, new_to] in changed(&old, &new) {
+        let is_wanted = within.is_none_or(|[first, last]| old_from <= last && old_to.max(old_from + 1) > first);
+        if is_wanted {
+            let start: usize = old[..old_from].iter().map(|line| line.len()).sum();
+            let end = start + old[old_from..old_to].iter().map(|line| line.len()).sum::<usize>();
+            edits.push(TextEdit { range: opened.lines().range(start, end), new_text: new[new_from..new_to].concat() });
+        }
+    }
+    Some(edits)
+}
+
+/// The runs of lines that differ: from and to in the first, from and to in the second.
+fn changed(old: &[&str], new: &[&str]) -> Vec<[usize; 4]> {
+    /// How far ahead lines that are the same again are looked for.
+    const AHEAD: usize = 200;
+    let (mut a, mut b, mut found) = (0, 0, Vec::new());
+    while a < old.len() || b < new.len() {
+        if a < old.len() && b < new.len() && old[a] == new[b] {
+            (a, b) = (a + 1, b + 1);
+            continue;
+        }
+        // the nearest pair of lines that are the same
+        let meeting = (1..AHEAD).find_map(|steps| {
+            (0..=steps).map(|first| (a + first, b + steps - first)).find(
+                |(x, y)| matches!((old.get(*x), new.get(*y)), (Some(x), Some(y)) if x == y && !x.trim().is_empty()),
+            )
+        });
+        let (x, y) = meeting.unwrap_or((old.len(), new.len()));
+        found.push([a, x, b, y]);
+        (a, b) = (x, y);
+    }
+    found
+}
+
+pub(crate) fn code_actions(snapshot: &Snapshot, params: CodeActionParams) -> Option<Vec<CodeActionResponse>> {
+    let opened = snapshot.opened(&params.text_document.uri)?;
+    let lines = opened.lines();
+    let (from, to) = (lines.offset(params.range.start), lines.offset(params.range.end));
+    let mut actions = Vec::new();
+    let mut explained = Vec::new();
+    let wants = |kind: &CodeActionKind| params.context.only.as_ref().is_none_or(|only| only.contains(kind));
+    for found in opened.analysis.findings() {
+        if found.span.file != opened.path || found.span.start > to || found.span.end < from {
+            continue;
+        }
+        let shown = diagnostic(&found, &opened.analysis, snapshot);
+        for (number, cure) in found.cures.iter().enumerate().filter(|_| wants(&CodeActionKind::QuickFix)) {
+            actions.push(CodeActionResponse::CodeAction(CodeAction {
+                title: cure.title.clone(),
+                kind: Some(CodeActionKind::QuickFix),
+                diagnostics: shown.clone().map(|shown| vec![shown]),
+                is_preferred: Some(number == 0),
+                edit: Some(workspace_edit(snapshot, &opened, std::slice::from_ref(&cure.edit))?),
+                ..CodeAction::default()
+            }));
+        }
+        if !explained.contains(&found.finding.code) && params.context.only.is_none() {
+            explained.push(found.finding.code);
+        }
+    }
+    for code in explained {
+        let command = Command {
+            title: format!("explain {code}"),
+            tooltip: None,
+            command: "flank.explain".to_string(),
+            arguments: Some(vec![format!("{ERRORS}:/{code}.md").into()]),
+        };
+        actions.push(CodeActionResponse::Command(command));
+    }
+    Some(actions)
+}
+
+fn workspace_edit(snapshot: &Snapshot, opened: &Opened<'_>, edits: &[Edit]) -> Option<WorkspaceEdit> {
+    let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+    for edit in edits {
+        let location = snapshot.location(&opened.analysis, &edit.span)?;
+        let edit = TextEdit { range: location.range, new_text: edit.replacement.clone() };
+        changes.entry(location.uri).or_default().push(edit);
+    }
+    Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
+}
+
+pub(crate) fn prepare_rename(
+    snapshot: &Snapshot,
+    params: PrepareRenameParams,
+) -> Result<Option<PrepareRenameResult>, String> {
+    let at = params.text_document_position_params;
+    let Some(opened) = snapshot.opened(&at.text_document.uri) else { return Ok(None) };
+    let span = opened.analysis.renamed(opened.offset(at.position)).map_err(|error| error.to_string())?;
+    let placeholder = opened.document.text.get(span.start..span.end).unwrap_or_default().to_string();
+    let range = opened.lines().range(span.start, span.end);
+    Ok(Some(PrepareRenameResult::PrepareRenamePlaceholder(PrepareRenamePlaceholder { range, placeholder })))
+}
+
+/// A new name in all open texts and those that they use. A name that makes a text wrong is refused.
+pub(crate) fn rename(snapshot: &Snapshot, params: RenameParams) -> Result<Option<WorkspaceEdit>, String> {
+    let at = params.text_document_position_params;
+    let Some(opened) = snapshot.opened(&at.text_document.uri) else { return Ok(None) };
+    let offset = opened.offset(at.position);
+    opened.analysis.renamed(offset).map_err(|error| error.to_string())?;
+    let Some(definition) = opened.analysis.first_definition(offset) else { return Ok(None) };
+    opened.analysis.check_name(&definition, &params.new_name).map_err(|error| error.to_string())?;
+    let all = all_references(snapshot, &definition);
+    let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+    for (_, location) in &all {
+        let edit = TextEdit { range: location.range, new_text: params.new_name.clone() };
+        changes.entry(location.uri.clone()).or_default().push(edit);
+    }
+    let spans: Vec<Edit> =
+        all.into_iter().map(|(found, _)| Edit { span: found.span, replacement: params.new_name.clone() }).collect();
+    check_renamed(snapshot, &spans)?;
+    Ok(Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }))
+}
+
+/// Compiles the open specs with the new name: none may have more errors than before.
+fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
+    let mut renamed = snapshot.clone();
+    renamed.analyses = Default::default();
+    let mut files: Vec<_> = edits.iter().map(|edit| edit.span.file.clone()).collect();
+    files.sort();
+    files.dedup();
+    for file in files {
+        let mut text = flank::Files::read(&snapshot.documents, &file, usize::MAX).map_err(|error| error.to_string())?;
+        let mut own: Vec<&Edit> = edits.iter().filter(|edit| edit.span.file == file).collect();
+        own.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
+        own.iter().for_each(|edit| text.replace_range(edit.span.start..edit.span.end, &edit.replacement));
+        let uri = snapshot.documents.uri_of(&file);
+        renamed.documents.open(crate::commands::lsp::documents::Document { uri, version: 0, text: text.into() });
+    }
+    for path in snapshot.documents.paths() {
+        let count = |of: &Snapshot| of.analysis(path).findings().len();
+        if count(&renamed) > count(snapshot) {
+            let found = renamed.analysis(path).findings();
+            let told = found.first().map_or(String::new(), |first| format!(": {}", first.finding.message));
+            return Err(format!("with this name {} would be wrong{told}", path.display()));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::changed;
+
+    #[test]
+    fn only_lines_that_differ_change() {
+        let old = ["a\n", "b \n", "c\n", "d\n"];
+        assert_eq!(changed(&old, &["a\n", "b\n", "c\n", "d\n"]), [[1, 2, 1, 2]]);
+        assert_eq!(changed(&old, &["a\n", "b \n", "x\n", "c\n", "d\n"]), [[2, 2, 2, 3]]);
+        assert_eq!(changed(&old, &["a\n"]), [[1, 4, 1, 1]]);
+        assert!(changed(&old, &old).is_empty());
+    }
+}

@@ -1,0 +1,490 @@
+//! The loop: changes in their order, answers from snapshots.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use flank::Analysis;
+use gen_lsp_types::{
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams, DidSaveTextDocumentParams,
+    InitializeParams,
+};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::answers::{browse, edit, look};
+use super::capabilities;
+use super::diagnostics::Findings;
+use super::documents::{Document, Documents};
+use super::snapshot::{Analyses, Options, Snapshot};
+use super::tasks::{self, Tasks};
+
+/// Findings wait until nothing has changed for so long.
+const SILENCE: Duration = Duration::from_millis(80);
+/// A picture that follows changes, not only saves, waits for so long.
+const PICTURE_SILENCE: Duration = Duration::from_millis(300);
+/// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
+const STACK: usize = 16 << 20;
+/// Threads that answer.
+const ANSWERING: usize = 2;
+
+/// What the loop hears of.
+#[derive(Debug)]
+pub(super) enum Event {
+    Message(Message),
+    /// Something that is no message, and why.
+    Unreadable(String),
+    /// Nothing more is read.
+    End,
+    /// An answer, and the texts that it is about: of older ones it is dropped.
+    Answer {
+        response: Response,
+        about: Option<(PathBuf, i32)>,
+    },
+    /// What is found in a spec.
+    Analysed {
+        spec: PathBuf,
+        version: i32,
+        analysis: Arc<Analysis>,
+    },
+    /// A job is solved, or not.
+    Solved(tasks::Outcome),
+    /// Something for the editor.
+    Tell(Notification),
+}
+
+/// How far the conversation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Begun,
+    Open,
+    ShutDown,
+}
+
+pub(super) struct Server<W> {
+    to: W,
+    events: SyncSender<Event>,
+    pool: OnceLock<Option<ThreadPool>>,
+    phase: Phase,
+    documents: Documents,
+    analyses: Analyses,
+    findings: Findings,
+    /// Specs that are to be compiled, and when.
+    due: BTreeSet<PathBuf>,
+    due_at: Option<Instant>,
+    /// What was changed last: its own findings come first.
+    edited: Option<PathBuf>,
+    picture_at: Option<(Instant, PathBuf)>,
+    influences: Arc<BTreeMap<String, String>>,
+    outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
+    tasks: Tasks,
+    options: Options,
+    /// Whether the picture follows changes, too.
+    picture_follows_changes: bool,
+    refreshes_lenses: bool,
+    shows_documents: bool,
+    /// Of requests to the editor.
+    asked: i32,
+}
+
+impl<W: Write> Server<W> {
+    pub(super) fn new(to: W, events: SyncSender<Event>) -> Server<W> {
+        Server {
+            to,
+            tasks: Tasks::new(events.clone()),
+            events,
+            pool: OnceLock::new(),
+            phase: Phase::Begun,
+            documents: Documents::default(),
+            analyses: Analyses::default(),
+            findings: Findings::default(),
+            due: BTreeSet::new(),
+            due_at: None,
+            edited: None,
+            picture_at: None,
+            influences: Arc::default(),
+            outcomes: Arc::default(),
+            options: Options::default(),
+            picture_follows_changes: false,
+            refreshes_lenses: false,
+            shows_documents: false,
+            asked: 0,
+        }
+    }
+
+    /// Serves until the end; true if the editor has shut it down before.
+    pub(super) fn run(&mut self, events: &Receiver<Event>) -> io::Result<bool> {
+        loop {
+            let now = Instant::now();
+            let next = [self.due_at, self.picture_at.as_ref().map(|(at, _)| *at)].into_iter().flatten().min();
+            let event = match next {
+                Some(at) if at <= now => {
+                    self.wake(now);
+                    continue;
+                }
+                Some(at) => events.recv_timeout(at - now),
+                None => events.recv().map_err(RecvTimeoutError::from),
+            };
+            match event {
+                Ok(Event::Message(Message::Notification(message))) if message.method == "exit" => {
+                    return Ok(self.phase == Phase::ShutDown);
+                }
+                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ok(self.phase == Phase::ShutDown),
+                Ok(event) => self.take(event)?,
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    fn take(&mut self, event: Event) -> io::Result<()> {
+        match event {
+            Event::Message(Message::Request(request)) => self.request(request),
+            Event::Message(Message::Notification(notification)) => self.notification(notification),
+            Event::Message(Message::Response(_)) | Event::End => Ok(()),
+            Event::Unreadable(reason) => self.unreadable(&reason),
+            Event::Answer { response, about } => {
+                let is_old = about.is_some_and(|(path, version)| {
+                    self.documents.get(&path).is_none_or(|document| document.version != version)
+                });
+                if is_old {
+                    let message = "the text has changed meanwhile".to_string();
+                    return self
+                        .send(&Response::new_err(response.id, ErrorCode::ContentModified as i32, message).into());
+                }
+                self.send(&response.into())
+            }
+            Event::Analysed { spec, version, analysis } => self.analysed(&spec, version, &analysis),
+            Event::Solved(outcome) => self.solved(outcome),
+            Event::Tell(notification) => self.send(&notification.into()),
+        }
+    }
+
+    fn send(&mut self, message: &Message) -> io::Result<()> {
+        message.write(&mut self.to)
+    }
+
+    fn tell(&mut self, method: &str, params: impl Serialize) -> io::Result<()> {
+        self.send(&Notification::new(method.to_string(), params).into())
+    }
+
+    fn ask(&mut self, method: &str, params: impl Serialize) -> io::Result<()> {
+        self.asked += 1;
+        self.send(&Request::new(RequestId::from(format!("flank-{}", self.asked)), method.to_string(), params).into())
+    }
+
+    /// What cannot be read has no number to answer to.
+    fn unreadable(&mut self, reason: &str) -> io::Result<()> {
+        let error = serde_json::json!({ "code": ErrorCode::ParseError as i32, "message": reason });
+        let text = serde_json::json!({ "jsonrpc": "2.0", "id": null, "error": error }).to_string();
+        write!(self.to, "Content-Length: {}\r\n\r\n{text}", text.len())?;
+        self.to.flush()
+    }
+
+    fn refuse(&mut self, id: RequestId, code: ErrorCode, message: impl Into<String>) -> io::Result<()> {
+        self.send(&Response::new_err(id, code as i32, message.into()).into())
+    }
+
+    fn request(&mut self, request: Request) -> io::Result<()> {
+        match (self.phase, request.method.as_str()) {
+            (Phase::Begun, "initialize") => self.initialize(request),
+            (Phase::Begun, _) => self.refuse(request.id, ErrorCode::ServerNotInitialized, "`initialize` comes first"),
+            (Phase::ShutDown, _) => self.refuse(request.id, ErrorCode::InvalidRequest, "the server is shut down"),
+            (Phase::Open, "initialize") => {
+                self.refuse(request.id, ErrorCode::InvalidRequest, "it is initialized already")
+            }
+            (Phase::Open, "shutdown") => {
+                self.phase = Phase::ShutDown;
+                self.send(&Response::new_ok(request.id, Value::Null).into())
+            }
+            (Phase::Open, _) => self.answer(request),
+        }
+    }
+
+    fn initialize(&mut self, request: Request) -> io::Result<()> {
+        let params: InitializeParams = match serde_json::from_value(request.params) {
+            Ok(params) => params,
+            Err(error) => return self.refuse(request.id, ErrorCode::InvalidParams, error.to_string()),
+        };
+        let workspace = params.capabilities.workspace.as_ref();
+        let lens = workspace.and_then(|workspace| workspace.code_lens.as_ref());
+        self.refreshes_lenses = lens.and_then(|lens| lens.refresh_support).unwrap_or(false);
+        let window = params.capabilities.window.as_ref().and_then(|window| window.show_document.as_ref());
+        self.shows_documents = window.is_some_and(|show| show.support);
+        if let Some(options) = params.initialization_options {
+            self.set_options(&options);
+        }
+        self.phase = Phase::Open;
+        self.send(&Response::new_ok(request.id, capabilities::told()).into())
+    }
+
+    /// `{"inlayHints": {"literals": true}, "preview": {"onChange": true}}`
+    fn set_options(&mut self, options: &Value) {
+        let is_on = |path: &str| options.pointer(path).and_then(Value::as_bool);
+        if let Some(literals) = is_on("/inlayHints/literals") {
+            self.options.literal_values = literals;
+        }
+        if let Some(follows) = is_on("/preview/onChange") {
+            self.picture_follows_changes = follows;
+        }
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            documents: self.documents.clone(),
+            analyses: self.analyses.clone(),
+            influences: Arc::clone(&self.influences),
+            outcomes: Arc::clone(&self.outcomes),
+            options: self.options,
+        }
+    }
+
+    fn answer(&mut self, request: Request) -> io::Result<()> {
+        match request.method.as_str() {
+            "textDocument/hover" => self.answer_from(request, |snapshot, params| Ok(browse::hover(snapshot, params))),
+            "textDocument/definition" => {
+                self.answer_from(request, |snapshot, params| Ok(browse::definition(snapshot, params)))
+            }
+            "textDocument/references" => {
+                self.answer_from(request, |snapshot, params| Ok(browse::references(snapshot, params)))
+            }
+            "textDocument/documentSymbol" => {
+                self.answer_from(request, |snapshot, params| Ok(browse::symbols(snapshot, params)))
+            }
+            "textDocument/foldingRange" => {
+                self.answer_from(request, |snapshot, params| Ok(browse::folding(snapshot, params)))
+            }
+            "textDocument/completion" => {
+                self.answer_from(request, |snapshot, params| Ok(edit::completion(snapshot, params)))
+            }
+            "textDocument/formatting" => {
+                self.answer_from(request, |snapshot, params| Ok(edit::format(snapshot, params)))
+            }
+            "textDocument/rangeFormatting" => {
+                self.answer_from(request, |snapshot, params| Ok(edit::format_range(snapshot, params)))
+            }
+            "textDocument/codeAction" => {
+                self.answer_from(request, |snapshot, params| Ok(edit::code_actions(snapshot, params)))
+            }
+            "textDocument/prepareRename" => self.answer_from(request, edit::prepare_rename),
+            "textDocument/rename" => self.answer_from(request, edit::rename),
+            "textDocument/semanticTokens/full" => {
+                self.answer_from(request, |snapshot, params| Ok(look::tokens(snapshot, params)))
+            }
+            "textDocument/inlayHint" => {
+                self.answer_from(request, |snapshot, params| Ok(look::inlay_hints(snapshot, params)))
+            }
+            "textDocument/codeLens" => self.answer_from(request, |snapshot, params| Ok(look::lenses(snapshot, params))),
+            "workspace/textDocumentContent" => self.answer_from(request, |_, params| tasks::content(params)),
+            "workspace/executeCommand" => self.execute(request),
+            method => {
+                let message = format!("`{method}` is not served");
+                self.refuse(request.id, ErrorCode::MethodNotFound, message)
+            }
+        }
+    }
+
+    /// Answers on another thread, from the texts as they are now.
+    fn answer_from<P, R>(
+        &mut self,
+        request: Request,
+        answer: impl FnOnce(&Snapshot, P) -> Result<R, String> + Send + 'static,
+    ) -> io::Result<()>
+    where
+        P: DeserializeOwned + Send + 'static,
+        R: Serialize,
+    {
+        let uri = request.params.pointer("/textDocument/uri").and_then(Value::as_str);
+        let about = uri.and_then(|uri| self.documents.find(uri));
+        let about = about.map(|(path, document)| (path, document.version));
+        let params: P = match serde_json::from_value(request.params) {
+            Ok(params) => params,
+            Err(error) => return self.refuse(request.id, ErrorCode::InvalidParams, error.to_string()),
+        };
+        let (snapshot, events, id) = (self.snapshot(), self.events.clone(), request.id);
+        self.spawn(move || {
+            let answered = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| answer(&snapshot, params)));
+            let response = match answered {
+                Ok(Ok(result)) => Response::new_ok(id, result),
+                Ok(Err(reason)) => Response::new_err(id, ErrorCode::RequestFailed as i32, reason),
+                Err(_) => Response::new_err(id, ErrorCode::InternalError as i32, "the server has a fault".to_string()),
+            };
+            // where nobody hears any more, nobody asks
+            let _ = events.send(Event::Answer { response, about });
+        });
+        Ok(())
+    }
+
+    /// Does work on another thread; on this one, where the system lets none start.
+    fn spawn(&self, work: impl FnOnce() + Send + 'static) {
+        let pool = self.pool.get_or_init(|| {
+            let named = |number| format!("lsp {number}");
+            ThreadPoolBuilder::new().num_threads(ANSWERING).stack_size(STACK).thread_name(named).build().ok()
+        });
+        match pool {
+            Some(pool) => pool.spawn(work),
+            None => work(),
+        }
+    }
+
+    fn notification(&mut self, notification: Notification) -> io::Result<()> {
+        if self.phase != Phase::Open {
+            return Ok(());
+        }
+        let params = notification.params;
+        match notification.method.as_str() {
+            "textDocument/didOpen" => {
+                let Ok(DidOpenTextDocumentParams { text_document: opened }) = serde_json::from_value(params) else {
+                    return Ok(());
+                };
+                let document = Document { uri: opened.uri.0, version: opened.version, text: opened.text.into() };
+                let path = self.documents.open(document);
+                self.changed(Some(&path), Duration::ZERO);
+            }
+            "textDocument/didChange" => {
+                let Ok(params) = serde_json::from_value::<DidChangeTextDocumentParams>(params) else { return Ok(()) };
+                let uri = params.text_document.text_document_identifier.uri;
+                let Some(path) = self.documents.find(&uri.0).map(|(path, _)| path) else { return Ok(()) };
+                if self.documents.change(&path, params.text_document.version, params.content_changes) {
+                    self.changed(Some(&path), SILENCE);
+                    if self.picture_follows_changes {
+                        self.picture_at = Some((Instant::now() + PICTURE_SILENCE, path));
+                    }
+                }
+            }
+            "textDocument/didClose" => {
+                let Ok(params) = serde_json::from_value::<DidCloseTextDocumentParams>(params) else { return Ok(()) };
+                let Some(path) = self.documents.find(&params.text_document.uri.0).map(|(path, _)| path) else {
+                    return Ok(());
+                };
+                self.documents.close(&path);
+                self.due.remove(&path);
+                self.changed(Some(&path), SILENCE);
+                let snapshot = self.snapshot();
+                for told in self.findings.remove(&path, &snapshot) {
+                    self.tell("textDocument/publishDiagnostics", told)?;
+                }
+            }
+            "textDocument/didSave" => {
+                let Ok(params) = serde_json::from_value::<DidSaveTextDocumentParams>(params) else { return Ok(()) };
+                if let Some((path, _)) = self.documents.find(&params.text_document.uri.0) {
+                    self.show_picture(&path);
+                }
+            }
+            // files that are not open: whatever was read may be another text now
+            "workspace/didChangeWatchedFiles" => self.changed(None, SILENCE),
+            "workspace/didChangeConfiguration" => {
+                let settings = params.pointer("/settings/flank").or_else(|| params.get("settings"));
+                if let Some(settings) = settings.cloned() {
+                    self.set_options(&settings);
+                }
+            }
+            "flank/didFocus" => {
+                let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
+                if let Some((path, _)) = uri.and_then(|uri| self.documents.find(uri)) {
+                    self.tasks.focus(&path, &self.documents);
+                }
+            }
+            // others are for other servers
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A text has changed: what it is part of is compiled anew after a while.
+    fn changed(&mut self, file: Option<&Path>, after: Duration) {
+        self.analyses.forget(file, self.documents.generation);
+        match file {
+            Some(file) => {
+                self.due.extend(self.findings.readers(file));
+                self.due.insert(file.to_path_buf());
+                self.edited = Some(file.to_path_buf());
+            }
+            None => self.due.extend(self.documents.paths().cloned()),
+        }
+        self.due_at = Some(Instant::now() + after);
+    }
+
+    fn wake(&mut self, now: Instant) {
+        if self.due_at.is_some_and(|at| at <= now) {
+            self.due_at = None;
+            let mut due: Vec<PathBuf> = std::mem::take(&mut self.due).into_iter().collect();
+            due.sort_by_key(|spec| Some(spec) != self.edited.as_ref());
+            for spec in due {
+                let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
+                let (snapshot, events) = (self.snapshot(), self.events.clone());
+                self.spawn(move || {
+                    let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
+                    if let Ok(analysis) = analysed {
+                        let _ = events.send(Event::Analysed { spec, version, analysis });
+                    }
+                });
+            }
+        }
+        if let Some((_, path)) = self.picture_at.take_if(|(at, _)| *at <= now) {
+            self.show_picture(&path);
+        }
+    }
+
+    fn show_picture(&mut self, path: &Path) {
+        let readers = self.findings.readers(path);
+        self.tasks.follow(path, &readers, &self.documents);
+    }
+
+    fn analysed(&mut self, spec: &Path, version: i32, analysis: &Analysis) -> io::Result<()> {
+        // of an older text, or of one that is being compiled again, nothing is told
+        let is_now = self.documents.get(spec).is_some_and(|document| document.version == version);
+        if !is_now || self.due.contains(spec) {
+            return Ok(());
+        }
+        let snapshot = self.snapshot();
+        for told in self.findings.put(spec, analysis, &snapshot) {
+            self.tell("textDocument/publishDiagnostics", told)?;
+        }
+        Ok(())
+    }
+
+    fn execute(&mut self, request: Request) -> io::Result<()> {
+        let asked = match tasks::Asked::read(request.params) {
+            Ok(asked) => asked,
+            Err(reason) => return self.refuse(request.id, ErrorCode::InvalidParams, reason),
+        };
+        let started = match asked {
+            tasks::Asked::Explain { page } => {
+                if self.shows_documents {
+                    self.ask("window/showDocument", serde_json::json!({ "uri": page, "takeFocus": true }))?;
+                }
+                tasks::page(&page).map(Value::from)
+            }
+            asked => self.tasks.start(asked, &self.documents),
+        };
+        match started {
+            Ok(value) => self.send(&Response::new_ok(request.id, value).into()),
+            Err(reason) => self.refuse(request.id, ErrorCode::RequestFailed, reason),
+        }
+    }
+
+    fn solved(&mut self, outcome: tasks::Outcome) -> io::Result<()> {
+        let message = match &outcome.told {
+            Ok(told) => {
+                Arc::make_mut(&mut self.outcomes).insert((outcome.spec.clone(), outcome.job.clone()), told.clone());
+                Arc::make_mut(&mut self.influences).extend(outcome.influences);
+                serde_json::json!({ "type": 3, "message": format!("{}: {told}", outcome.job) })
+            }
+            Err(reason) => {
+                Arc::make_mut(&mut self.outcomes).remove(&(outcome.spec.clone(), outcome.job.clone()));
+                serde_json::json!({ "type": 1, "message": format!("{}: {reason}", outcome.job) })
+            }
+        };
+        self.tell("window/showMessage", message)?;
+        if self.refreshes_lenses {
+            self.ask("workspace/codeLens/refresh", Value::Null)?;
+        }
+        Ok(())
+    }
+}

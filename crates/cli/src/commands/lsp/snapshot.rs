@@ -1,0 +1,119 @@
+//! The texts at one moment, and what is known of them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use flank::{Analysis, Project, TextSpan, analyse};
+use gen_lsp_types::{Location, Position, Range, Uri};
+
+use super::documents::{Document, Documents};
+use super::position::Lines;
+
+/// What was compiled, for as long as none of its texts changes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Analyses {
+    known: Arc<Mutex<Known>>,
+}
+
+#[derive(Debug, Default)]
+struct Known {
+    /// Of changes, the last one that was heard of.
+    generation: u64,
+    of: BTreeMap<PathBuf, Arc<Analysis>>,
+}
+
+impl Analyses {
+    /// Forgets whatever a file is part of; all, if it is none in particular.
+    pub(super) fn forget(&self, file: Option<&Path>, generation: u64) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        known.generation = generation;
+        known.of.retain(|_, analysis| {
+            file.is_some_and(|file| !analysis.lacks_files() && !analysis.files().iter().any(|of| of == file))
+        });
+    }
+
+    fn get(&self, path: &Path) -> Option<Arc<Analysis>> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).of.get(path).cloned()
+    }
+
+    fn keep(&self, path: &Path, generation: u64, analysis: &Arc<Analysis>) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        // a text may have changed meanwhile
+        if known.generation == generation {
+            known.of.insert(path.to_path_buf(), Arc::clone(analysis));
+        }
+    }
+}
+
+/// All texts at one moment.
+#[derive(Clone, Debug)]
+pub(super) struct Snapshot {
+    pub(super) documents: Documents,
+    pub(super) analyses: Analyses,
+    /// What solves have found of parameters, `job.m.swivel`.
+    pub(super) influences: Arc<BTreeMap<String, String>>,
+    /// What stands beside the lenses of jobs, by path and job.
+    pub(super) outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
+    pub(super) options: Options,
+}
+
+/// What the editor has set.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Options {
+    /// Values beside plain numbers, too.
+    pub(super) literal_values: bool,
+}
+
+/// A text with what is known of it.
+pub(super) struct Opened<'s> {
+    pub(super) path: PathBuf,
+    pub(super) document: &'s Document,
+    pub(super) analysis: Arc<Analysis>,
+}
+
+impl Opened<'_> {
+    pub(super) fn lines(&self) -> Lines<'_> {
+        Lines::of(&self.document.text)
+    }
+
+    pub(super) fn offset(&self, position: Position) -> usize {
+        self.lines().offset(position)
+    }
+}
+
+impl Snapshot {
+    /// A text of the editor, compiled.
+    pub(super) fn opened(&self, uri: &Uri) -> Option<Opened<'_>> {
+        let (path, document) = self.documents.find(&uri.0)?;
+        let analysis = self.analysis(&path);
+        Some(Opened { path, document, analysis })
+    }
+
+    pub(super) fn analysis(&self, path: &Path) -> Arc<Analysis> {
+        if let Some(known) = self.analyses.get(path) {
+            return known;
+        }
+        let analysis = Arc::new(analyse(&self.project(path)));
+        self.analyses.keep(path, self.documents.generation, &analysis);
+        analysis
+    }
+
+    /// A spec over the texts of the editor.
+    pub(super) fn project(&self, path: &Path) -> Project {
+        Project::open(path, Arc::new(self.documents.clone()))
+    }
+
+    pub(super) fn location(&self, analysis: &Analysis, span: &TextSpan) -> Option<Location> {
+        Some(Location { uri: Uri(self.documents.uri_of(&span.file)), range: self.range(analysis, span)? })
+    }
+
+    pub(super) fn range(&self, analysis: &Analysis, span: &TextSpan) -> Option<Range> {
+        if let Some(text) = analysis.text_of(&span.file) {
+            return Some(Lines::of(text).range(span.start, span.end));
+        }
+        // of the library, into which no `use` leads
+        let text = flank::ShippedFiles::text(flank::ShippedFiles::inside(&span.file)?)?;
+        Some(Lines::of(text).range(span.start, span.end))
+    }
+}

@@ -1,0 +1,12 @@
+//! `flank lsp` over pipes, as an editor uses it.
+
+mod support;
+
+#[path = "lsp/client.rs"]
+mod client;
+#[path = "lsp/sessions.rs"]
+mod sessions;
+#[path = "lsp/shipped.rs"]
+mod shipped;
+#[path = "lsp/wrong.rs"]
+mod wrong;

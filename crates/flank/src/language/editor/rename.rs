@@ -1,0 +1,91 @@
+//! A new name for something, everywhere.
+
+use flank_chain_dsl::syntax::{TokenKind, is_reserved, tokens};
+use flank_chain_dsl::{FileId, Symbol, SymbolId};
+use thiserror::Error;
+
+use crate::language::editor::analysis::{Analysis, TextSpan};
+use crate::language::editor::shipped;
+
+/// Why something cannot have a name.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum RenameError {
+    /// There is nothing of the spec's own at the place.
+    #[error("there is no name of a definition here")]
+    NoName,
+    /// It belongs to the library, which is read only.
+    #[error(
+        "`{0}` belongs to the shipped library, which stays as it is; `flank new {0}` takes a copy into the project"
+    )]
+    OfLibrary(String),
+    /// The new name is none.
+    #[error("`{0}` is not a name: letters, digits and `_`, not beginning with a digit")]
+    NotAName(String),
+    /// The new name is a word of the language.
+    #[error("`{0}` is a word of the language")]
+    Reserved(String),
+    /// Something else has the name.
+    #[error("`{0}` is the name of something else there already: line {1}")]
+    Taken(String, usize),
+}
+
+impl Analysis {
+    /// The name at a byte of the spec that can be changed.
+    ///
+    /// # Errors
+    /// If there is none, or it is the library's.
+    pub fn renamed(&self, offset: usize) -> Result<TextSpan, RenameError> {
+        let entry = self.index.at(self.main, offset as u32).ok_or(RenameError::NoName)?;
+        let definition = self.first_definition(offset).ok_or(RenameError::NoName)?;
+        if shipped::is_shipped(&definition.file) {
+            return Err(RenameError::OfLibrary(self.sources.text(entry.span).to_string()));
+        }
+        self.text_span(entry.span).ok_or(RenameError::NoName)
+    }
+
+    /// Whether a definition may have a new name.
+    ///
+    /// # Errors
+    /// If it is none, or something beside it has it already.
+    pub fn check_name(&self, definition: &TextSpan, name: &str) -> Result<(), RenameError> {
+        let all = tokens(name, FileId(0));
+        let is_name = matches!(all.as_slice(), [token] if token.kind == TokenKind::Word && token.span.end as usize == name.len() && token.span.start == 0);
+        if !is_name {
+            return Err(RenameError::NotAName(name.to_string()));
+        }
+        if is_reserved(name) {
+            return Err(RenameError::Reserved(name.to_string()));
+        }
+        let Some(id) = self.symbol_at(definition) else { return Ok(()) };
+        let own = self.index.root(id);
+        let owners: Vec<Option<SymbolId>> = self.alike(own).map(|symbol| symbol.owner).collect();
+        let is_beside = |owner: Option<SymbolId>| {
+            let is_related = |other: &Option<SymbolId>| match (owner, *other) {
+                (Some(owner), Some(other)) => self.extends(owner, other) || self.extends(other, owner),
+                (owner, other) => owner == other,
+            };
+            owners.iter().any(is_related)
+        };
+        let beside = self.index.symbols.iter().zip(0u32..).find(|(symbol, other)| {
+            let is_own = self.index.root(SymbolId(*other)) == own;
+            !is_own && self.sources.text(symbol.name) == name && is_beside(symbol.owner)
+        });
+        match beside {
+            Some((symbol, _)) => Err(RenameError::Taken(name.to_string(), self.sources.place(symbol.name).1)),
+            None => Ok(()),
+        }
+    }
+
+    /// All that goes back to one definition.
+    fn alike(&self, root: SymbolId) -> impl Iterator<Item = &Symbol> {
+        let all = self.index.symbols.iter().zip(0u32..);
+        all.filter(move |(_, id)| self.index.root(SymbolId(*id)) == root).map(|(symbol, _)| symbol)
+    }
+
+    /// Whether a definition is another one, or extends it.
+    fn extends(&self, id: SymbolId, other: SymbolId) -> bool {
+        let line = std::iter::successors(Some(id), |id| self.index.symbol(*id).definition);
+        // as many steps as there are definitions: a circle is wrong, and ends here
+        line.take(self.index.symbols.len()).any(|id| id == other)
+    }
+}
