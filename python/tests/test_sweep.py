@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sweep_dask
 from conftest import PAIR, PINION, ROOT
 
 import flank
@@ -260,3 +261,19 @@ def test_workers_that_are_killed_lose_nothing(study, tmp_path, client):
 def test_dask_is_imported_only_by_who_has_a_client(tmp_path):
     code = "import sys, flank; flank.Study; sys.exit(any(name in sys.modules for name in ('dask', 'distributed', 'pandas')))"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_a_case_that_ends_its_workers_is_a_row(tmp_path):
+    distributed = pytest.importorskip("distributed", exc_type=ImportError)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            study = sweep_dask.disturbed(100, tmp_path / "a", client)
+    assert study.columns()["number"].tolist() == list(range(100))
+    assert [(one["number"], one["verdict"]) for one in study.failed()] == [(97, "crashed")]
+
+
+def test_a_job_of_a_text_keeps_its_text(tmp_path):
+    text = Path(PINION).read_text().replace("job pinion_19x62", "job mine")
+    job = flank.loads(text, name="specs/bevel/not_there.chain")
+    study = flank.sweep(job, {"m.radial_distance [mm]": [98]}, collect="points", out=tmp_path / "a")
+    assert study.columns()["verdict"].tolist() == ["done"] and study.progress()["job"] == "mine"
