@@ -65,7 +65,7 @@ def main():
 
     cases = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     with tempfile.TemporaryDirectory() as folder:
-        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
             study = disturbed(cases, Path(folder), client)
         print(study)
         numbers = study.columns()["number"].tolist()

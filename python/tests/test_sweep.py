@@ -223,7 +223,7 @@ def test_ctrl_c_ends_a_study_and_it_goes_on(study, tmp_path):
 @pytest.fixture(scope="module")
 def client():
     distributed = pytest.importorskip("distributed", exc_type=ImportError)
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0")
     with cluster, distributed.Client(cluster) as client:
         yield client
 
@@ -265,7 +265,7 @@ def test_dask_is_imported_only_by_who_has_a_client(tmp_path):
 
 def test_a_case_that_ends_its_workers_is_a_row(tmp_path):
     distributed = pytest.importorskip("distributed", exc_type=ImportError)
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
         with distributed.Client(cluster) as client:
             study = sweep_dask.disturbed(100, tmp_path / "a", client)
     assert study.columns()["number"].tolist() == list(range(100))
@@ -277,3 +277,9 @@ def test_a_job_of_a_text_keeps_its_text(tmp_path):
     job = flank.loads(text, name="specs/bevel/not_there.chain")
     study = flank.sweep(job, {"m.radial_distance [mm]": [98]}, collect="points", out=tmp_path / "a")
     assert study.columns()["verdict"].tolist() == ["done"] and study.progress()["job"] == "mine"
+
+
+def test_cases_that_come_again_keep_their_numbers(job, tmp_path):
+    study = flank.sweep(job, {"m.radial_distance [mm]": [98] * 8}, collect="at:concave[7,15]", out=tmp_path / "a")
+    again = emptied(study, tmp_path / "b", 2).run()
+    assert again.columns()["number"].tolist() == list(range(8)) and len(chunks(again)) == 4

@@ -36,7 +36,7 @@ class Study:
     >>> job = flank.load("specs/bevel/pinion_19x62.chain")
     >>> with tempfile.TemporaryDirectory() as out:
     ...     made = flank.sweep(job, cases={"m.radial_distance [mm]": [97.9, 98.1]}, collect="points", out=out)
-    ...     flank.Study(out).columns()["solved"]
+    ...     flank.Study(out).columns()["points.solved"]
     array([1395., 1395.])
     """
 

@@ -104,9 +104,10 @@ impl Plan {
         shortened(hash)
     }
 
-    /// Of its cases.
+    /// Of its cases and of where they begin: rows have numbers, and the same cases may come again further below.
     pub(super) fn hash_of_chunk(&self, chunk: usize) -> String {
         let mut hash = Sha256::new();
+        hash.update(self.numbers(chunk).start.to_le_bytes());
         for number in self.numbers(chunk) {
             hash.update(self.hash_of_case(&self.values(number)).as_bytes());
         }
