@@ -1,6 +1,6 @@
 //! Jobs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flank::{Buffers, Disk, Files, JobSelection, Project, ValueSource};
@@ -57,13 +57,22 @@ impl Job {
         let is_moved = self.job.file().is_relative() && std::env::current_dir().ok() != self.folder;
         match self.job.texts().first().filter(|_| is_moved) {
             // a relative path means another file since the working directory has changed
-            Some((real, _)) => {
-                let texts = self.job.texts().iter();
-                let files = texts.fold(Buffers::over(Arc::new(Disk)), |files, (path, text)| files.with(path, text));
-                JobSelection { project: Project::open(real, Arc::new(files)), ..selection }
-            }
+            Some((real, _)) => JobSelection { project: Project::open(real, Arc::new(self.buffers())), ..selection },
             None => selection,
         }
+    }
+
+    /// The same with one more text, taken for what stands in a file.
+    pub(crate) fn selection_with(&self, path: &Path, text: String) -> JobSelection {
+        let selection = self.selection();
+        let project = Project::open(selection.file(), Arc::new(self.buffers().with(path, text)));
+        JobSelection { project, ..selection }
+    }
+
+    /// Its texts over the files of the disk.
+    fn buffers(&self) -> Buffers {
+        let texts = self.job.texts().iter();
+        texts.fold(Buffers::over(Arc::new(Disk)), |files, (path, text)| files.with(path, text))
     }
 }
 

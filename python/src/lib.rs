@@ -8,6 +8,7 @@ mod language;
 mod operations;
 mod options;
 mod run;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -32,4 +33,6 @@ mod _flank {
     };
     #[pymodule_export]
     use crate::run::threads;
+    #[pymodule_export]
+    use crate::sweep::{sweep_columns, sweep_plan, sweep_run, sweep_status};
 }

@@ -18,7 +18,7 @@ use crate::failure;
 /// Signals wait for so long at the most.
 const LOOK: Duration = Duration::from_millis(50);
 /// As much as the main thread of a program has: operations are written for that.
-const STACK: usize = 8 << 20;
+pub(crate) const STACK: usize = 8 << 20;
 
 /// Threads of an operation; 0 for those that all operations share, one for each processor.
 static THREADS: AtomicUsize = AtomicUsize::new(0);

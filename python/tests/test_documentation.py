@@ -19,7 +19,7 @@ def _examples(page):
     return "\n".join(kept) + "\n"
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "docs/studies.md", "README.md"])
 def test_examples_do_what_they_say(page, tmp_path, monkeypatch):
     text = _examples(ROOT / page)
     globs = {"out": tmp_path}

@@ -43,6 +43,7 @@ from flank._results import (
     Synthesis,
     Tolerance,
 )
+from flank._study import Study, sweep
 
 __all__ = [
     "Bricks",
@@ -70,6 +71,7 @@ __all__ = [
     "Settings",
     "Solids",
     "SpecError",
+    "Study",
     "Surface",
     "SurfacePoints",
     "Synthesis",
@@ -83,6 +85,7 @@ __all__ = [
     "load_all",
     "loads",
     "schemas",
+    "sweep",
     "test",
     "threads",
 ]

@@ -22,12 +22,12 @@ impl SurfaceFamily {
     ///
     /// let graph = Graph::new();
     /// let [u, v, radius] = ["u", "v", "radius"].map(|name| graph.variable(name));
-    /// let direction = [u.cos() * v.cos(), u.sin() * v.cos(), v.sin()];
-    /// let sphere = Surface::new(vec![u, v], Vector3(direction.map(|part| radius * part)), Vector3(direction));
+    /// let position = Vector3([u.cos() * v.cos(), u.sin() * v.cos(), v.sin()].map(|part| radius * part));
+    /// let sphere = Surface::parametric([u, v], position, false);
     /// let ranges = vec![Range { low: -1.0, high: 1.0 }; 2];
     /// let family = SurfaceFamily::new(&BoundSurface::new(&sphere, ranges, &[]), [u, v], &[(radius, 5.0)], |problem| Ok(problem))?;
     /// let (points, _) = family.at(&[7.0]).solve(&[[0.0, 0.0]], [1, 1]);
-    /// assert_eq!(points[0].position, [7.0, 0.0, 0.0]);
+    /// assert!((points[0].position[0] - 7.0).abs() < 1e-14);
     /// # Ok::<(), flank_expr::TapeError>(())
     /// ```
     ///

@@ -80,7 +80,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         ((CHUNK * rayon::current_num_threads() as f64 / each) as u64).clamp(FEWEST, MOST)
     };
     flank_export::make_folder(&request.out)?;
-    let (main, hash) = plan::keep_texts(&compilation, which.file(), &request.out)?;
+    let (main, hash) = plan::keep_texts(&compilation, &which, &request.out)?;
     let plan = Plan {
         inputs,
         cases: values,

@@ -104,9 +104,10 @@ impl Plan {
         shortened(hash)
     }
 
-    /// Of its cases.
+    /// Of its cases and of where they begin: rows have numbers, and the same cases may come again further below.
     pub(super) fn hash_of_chunk(&self, chunk: usize) -> String {
         let mut hash = Sha256::new();
+        hash.update(self.numbers(chunk).start.to_le_bytes());
         for number in self.numbers(chunk) {
             hash.update(self.hash_of_case(&self.values(number)).as_bytes());
         }
@@ -159,7 +160,7 @@ pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
 /// all.
 pub(super) fn keep_texts(
     compilation: &Compilation<'_>,
-    spec: &Path,
+    which: &JobSelection,
     folder: &Path,
 ) -> Result<(String, String), Failure> {
     let texts: Vec<(PathBuf, String)> = compilation
@@ -176,7 +177,8 @@ pub(super) fn keep_texts(
         write_text(&place, text)?;
     }
     write_text(&root.join(MARK), "")?;
-    let real = std::fs::canonicalize(spec).unwrap_or_else(|_| spec.to_path_buf());
+    // the spec may be a text in memory
+    let real = which.project.files().real_path(which.file()).unwrap_or_else(|_| which.file().to_path_buf());
     let main = texts.iter().map(|(path, _)| path).find(|path| **path == real).or(texts.last().map(|(path, _)| path));
     let name = main.map_or(PathBuf::new(), |path| inner(path));
     Ok((crate::project::shown_path(&name), Origin::of_compilation(compilation).hash))

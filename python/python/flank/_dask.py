@@ -1,0 +1,49 @@
+"""Chunks of a study on the workers of Dask, which is imported by the call that names a client."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from flank import _flank
+from flank._errors import Error, InputError
+from flank._points import needed
+
+# A task whose worker has died so often that Dask gives it up is begun again up to so often. The program itself finds the case that kills:
+# three attempts at a chunk, then five at each such case. Dask gives up after four.
+_BEGUN_AGAIN = 40
+# of what a file system refuses for a moment
+_RETRIES = 2
+
+
+def run(client: Any, folder: str, chunks: Iterable[int], again: list[str]) -> None:
+    """Has chunks computed, each by a task of its own on one thread. When it is interrupted, no further task begins."""
+    distributed = needed("distributed", "on=")
+    if not isinstance(client, distributed.Client):
+        raise InputError(f"`on` is {client!r}: it is a client of Dask, for example distributed.Client()")
+    chunk_of = {_begin(client, folder, chunk, again): chunk for chunk in chunks}
+    killed = dict.fromkeys(chunk_of.values(), 0)
+    waiting = distributed.as_completed(list(chunk_of))
+    try:
+        for future in waiting:
+            chunk = chunk_of.pop(future)
+            if not isinstance(future.exception(), distributed.KilledWorker):
+                future.result()
+                continue
+            killed[chunk] += 1
+            if killed[chunk] > _BEGUN_AGAIN:
+                raise Error(f"workers die again and again while they begin chunk {chunk} of {folder}; other chunks are kept")
+            begun = _begin(client, folder, chunk, again)
+            chunk_of[begun] = chunk
+            waiting.add(begun)
+    finally:
+        client.cancel(list(chunk_of))
+
+
+def _begin(client: Any, folder: str, chunk: int, again: list[str]) -> Any:
+    return client.submit(_chunk, folder, chunk, again, pure=False, retries=_RETRIES)
+
+
+def _chunk(folder: str, chunk: int, again: list[str]) -> None:
+    """The task. Dask gives it one thread."""
+    _flank.sweep_run(folder, (chunk, chunk), again, 1)

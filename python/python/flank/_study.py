@@ -1,0 +1,168 @@
+"""Studies: many cases of a job, as a folder of chunks that any number of processes fill."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from flank import _flank
+from flank._cases import distributions, is_path, ranges, table, told
+from flank._errors import InputError
+from flank._points import needed
+from flank._quantities import Quantity, count as whole, names, number
+
+if TYPE_CHECKING:
+    from flank._job import Job
+
+Path_ = str | os.PathLike[str]
+
+_WORDS = ("case", "verdict", "why", "branch")
+
+
+class Study:
+    """The folder of a study: its plan, the texts of its spec, and chunks of rows. It may be moved and copied.
+
+    `flank.sweep` makes one, `flank.Study(folder)` opens one.
+
+    Raises `InputError` if there is no study, or a program of another version has made it.
+
+    >>> import flank, tempfile
+    >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     made = flank.sweep(job, cases={"m.radial_distance [mm]": [97.9, 98.1]}, collect="points", out=out)
+    ...     flank.Study(out).columns()["points.solved"]
+    array([1395., 1395.])
+    """
+
+    def __init__(self, folder: Path_) -> None:
+        self._folder = os.path.abspath(folder)
+        self.progress()
+
+    @property
+    def folder(self) -> str:
+        """Its absolute path."""
+        return self._folder
+
+    def progress(self) -> dict[str, Any]:
+        """How far it is: the document of `flank sweep status --json`, with `cases`, `chunks`, `done` and `verdicts`."""
+        document: dict[str, Any] = json.loads(_flank.sweep_status(self._folder).document())
+        return document
+
+    def run(
+        self,
+        chunks: tuple[int, int] | None = None,
+        *,
+        again: str | Iterable[str] = (),
+        on: Any = None,
+        threads: int | None = None,
+    ) -> Self:
+        """Computes what is missing, or the chunks from the first to the last of two numbers, counted from 0; gives itself.
+
+        Cases with a verdict in `again`, `"crashed"` or `"limit"`, are computed anew. `on` is a client of Dask: its workers compute, a chunk
+        for a task. They see the folder under the same path. `threads` is how many threads work here; all processors otherwise.
+        """
+        last = self.progress()["chunks"] - 1
+        first, last = _chunks(chunks, last) if chunks is not None else (0, last)
+        if on is not None:
+            from flank import _dask
+
+            _dask.run(on, self._folder, range(first, last + 1), names(again))
+        else:
+            _flank.sweep_run(self._folder, (first, last), names(again), whole(threads, "threads", 1, 1024))
+        return self
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """The rows that are there by their columns, in the order of the cases.
+
+        `case` (a hash), `number` from 0, the inputs with their units, `verdict`, `why`, `branch`, then what is collected. Numbers that are
+        not known are NaN. A warning says which chunks are missing.
+        """
+        answer, columns = _flank.sweep_columns(self._folder)
+        for missing in json.loads(answer.document())["not_done"]:
+            warnings.warn(missing["message"], stacklevel=2)
+        return {head: np.asarray(values, dtype=np.str_) if head in _WORDS else values for head, values in columns.items()}
+
+    def frame(self, engine: str = "pandas") -> Any:
+        """The columns as a frame of `"pandas"` or `"polars"`."""
+        if engine not in ("pandas", "polars"):
+            raise InputError(f"`engine` is {engine!r}: it is 'pandas' or 'polars'")
+        return needed(engine, "frame").DataFrame(self.columns())
+
+    def failed(self) -> list[dict[str, Any]]:
+        """Of each case that is there and whose verdict is not `done`: `number`, inputs, `verdict`, `why`."""
+        columns = self.columns()
+        heads = ["number", *self.progress()["inputs"], "verdict", "why"]
+        rows = np.flatnonzero(columns["verdict"] != "done")
+        return [{head: columns[head][row].item() for head in heads} for row in rows]
+
+    def __repr__(self) -> str:
+        return _flank.sweep_status(self._folder).text().rstrip()
+
+
+def _chunks(chunks: Any, last: int) -> tuple[int, int]:
+    if not isinstance(chunks, tuple | list) or len(chunks) != 2:
+        raise InputError(f"`chunks` is {chunks!r}: write the first and the last of them, for example (0, {last})")
+    # whole numbers; the program says which there are
+    first, end = (whole(of, "chunks", 0, 2**62) for of in chunks)
+    return first or 0, end or 0
+
+
+def sweep(
+    job: Job,
+    cases: Any = None,
+    *,
+    vary: Mapping[str, tuple[Quantity, Quantity, int]] | None = None,
+    scatter: Mapping[str, Any] | None = None,
+    count: int = 1000,
+    seed: int = 0,
+    sobol: bool = False,
+    collect: str | Iterable[str],
+    out: Path_ = "study",
+    limit: float | None = None,
+    on: Any = None,
+) -> Study:
+    """Solves many cases of a job and keeps a row of numbers for each, as `flank sweep` does, in the folder `out`.
+
+    One of three says what differs from case to case. `cases` is a table, with units in its heads (`m.radial_distance [mm]`): a dictionary
+    of columns, a frame of pandas or polars, or the path of a CSV file. `vary` has two ends and how many values of each, of which all
+    combinations are taken: `{"m.radial_distance": ("97.9 mm", "98.1 mm", 21)}`. `scatter` has standard deviations about the job's own values,
+    `"10 um"`, or `("uniform", "10 um")` for at most so far; `count`, `seed` and `sobol` belong to it. `collect` has words such as `points` or
+    `ease_off:SURFACE`. A case may take `limit` seconds.
+
+    It works on all processors, or on those of `on`, a client of Dask. A study that was killed goes on where it stopped.
+
+    Raises `InputError` with all that is wrong in the table, and `SpecError` for a value without its unit, before anything is computed.
+
+    >>> import flank, tempfile
+    >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     study = flank.sweep(job, scatter={"m.radial_distance": "10 um"}, count=4, seed=7, collect="ease_off:concave", out=out)
+    ...     list(study.columns()["verdict"]) == ["done"] * 4
+    True
+    """
+    given = [what for what, of in (("cases", cases), ("vary", vary), ("scatter", scatter)) if of is not None]
+    if len(given) != 1:
+        raise InputError("say by one of `cases`, `vary` and `scatter` what differs from case to case")
+    options: dict[str, Any] = {
+        "collect": names(collect),
+        "out": os.fspath(out),
+        "limit": number(limit, "limit", 0.0, 1e9),
+        "count": whole(count, "count", 1, 100_000_000),
+        "seed": whole(seed, "seed", 0, 2**64 - 1),
+        "sobol": bool(sobol),
+    }
+    if cases is not None:
+        options |= {"cases": os.fspath(cases)} if is_path(cases) else {"table": table(cases)}
+    elif vary is not None:
+        options["vary"] = ranges(vary)
+    else:
+        options |= distributions(scatter or {})
+    with told():
+        _flank.sweep_plan(job._native, options)
+    return Study(out).run(on=on)
