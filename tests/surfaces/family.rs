@@ -112,11 +112,9 @@ fn families_are_the_surfaces_derived_anew() {
                             assert_eq!(kind(one), kind(other), "{at}");
                             if one.outcome == Outcome::Solved {
                                 let off = difference(&one.position, &other.position);
-                                if off > 1e-11 {
-                                    let nn: f64 =
-                                        (0..3).map(|k| (one.position[k] - other.position[k]) * one.normal[k]).sum();
-                                    println!("FAR {off:e} {nn:e} {at} r {:e} {:e}", one.residual, other.residual);
-                                }
+                                let across: f64 =
+                                    (0..3).map(|k| (one.position[k] - other.position[k]) * one.normal[k]).sum();
+                                assert!(across.abs() < SAME, "{at}: {across:e} mm off the surface");
                                 if off > farthest.0 {
                                     farthest = (off, at);
                                 }

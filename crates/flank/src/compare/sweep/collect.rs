@@ -319,7 +319,7 @@ impl Cases {
 /// The kind of a failure as data.
 fn told(failure: &Failure) -> String {
     let kind = match failure {
-        Failure::NotDone(all) => all.first().map(|one| kind_of(one)),
+        Failure::NotDone(all) => all.first().map(kind_of),
         _ => None,
     };
     kind.unwrap_or_else(|| "not_solved".to_string())

@@ -30,7 +30,7 @@ pub(super) struct Compiled {
 
 enum CompiledNumbers {
     Points(Vec<Sampled>),
-    EaseOff { near: Sampled, compared: Box<Deviation> },
+    EaseOff(Box<(Sampled, Deviation)>),
 }
 
 /// A surface at the points of a grid.
@@ -107,11 +107,12 @@ impl Compiled {
         let (mut numbers, mut why) = (Vec::new(), None);
         for (of, nominal) in self.collected.iter().zip(nominal) {
             let (found, lost) = match (of, nominal) {
-                (CompiledNumbers::EaseOff { near, compared }, Some(nominal)) => {
+                (CompiledNumbers::EaseOff(of), Some(nominal)) => {
+                    let (near, compared) = &**of;
                     let near = near.at(&values, &mut is_followed);
                     ease_off_numbers(&compared.with_settings(&values), nominal, &near)
                 }
-                (CompiledNumbers::EaseOff { .. }, None) => (Vec::new(), None),
+                (CompiledNumbers::EaseOff(_), None) => (Vec::new(), None),
                 (CompiledNumbers::Points(surfaces), _) => {
                     let points = surfaces.iter().map(|surface| surface.at(&values, &mut is_followed));
                     point_counts(points.collect::<Vec<_>>().iter().flatten())
@@ -187,7 +188,7 @@ impl<'g> Opened<'_, 'g> {
             blank: None,
         };
         near.begin(&self.nominal());
-        Ok(CompiledNumbers::EaseOff { near, compared: Box::new(compared) })
+        Ok(CompiledNumbers::EaseOff(Box::new((near, compared))))
     }
 
     fn nominal(&self) -> Vec<f64> {

@@ -105,6 +105,7 @@ fn ratio(r: f64, [above, below]: &[[f64; 8]; 2]) -> f64 {
     value(above) / value(below)
 }
 
+#[expect(clippy::excessive_precision, reason = "as they are published")]
 const MIDDLE: [[f64; 8]; 2] = [
     [
         2.509_080_928_730_122_6e3,
@@ -127,6 +128,7 @@ const MIDDLE: [[f64; 8]; 2] = [
         1.0,
     ],
 ];
+#[expect(clippy::excessive_precision, reason = "as they are published")]
 const TAIL: [[f64; 8]; 2] = [
     [
         7.745_450_142_783_414_1e-4,
@@ -149,6 +151,7 @@ const TAIL: [[f64; 8]; 2] = [
         1.0,
     ],
 ];
+#[expect(clippy::excessive_precision, reason = "as they are published")]
 const FAR: [[f64; 8]; 2] = [
     [
         2.010_334_399_292_288_1e-7,
