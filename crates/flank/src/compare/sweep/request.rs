@@ -12,7 +12,7 @@ pub struct SweepRequest {
     pub jobs: JobSelection,
     /// What differs from case to case.
     pub cases: CaseSource,
-    /// What becomes of each case: `points`, `ease_off:SURFACE`, `width:SURFACE,SURFACE`, `curvature:SURFACE`, `at:SURFACE[row,column]`,
+    /// What becomes of each case: `points`, `limits`, `ease_off:SURFACE`, `width:SURFACE,SURFACE`, `curvature:SURFACE`, `at:SURFACE[row,column]`,
     /// `requirements`, `contact:CONTACT`.
     pub collect: Vec<String>,
     /// The folder of the study; made if it is not there.
