@@ -182,6 +182,22 @@ fn merging() {
     for (steps, expected) in cases {
         assert_eq!(Chain::new(&graph, steps.clone()).merged().steps(), expected, "{steps:?}");
     }
+    // links that keep a frame parallel only move it, also with steps of their own in between
+    let linked = vec![turn(u), shift(v), turn(motion - u), shift(u), turn(-motion)];
+    let merged = Chain::new(&graph, linked.clone()).merged();
+    assert!(matches!(merged.steps(), [Step::Translate(_)]), "{:?}", merged.steps());
+    let values = [0.3, -1.2, 0.7, 0.1, 2.0];
+    let entries = |chain: &Chain<'_>| {
+        let pose = chain.pose();
+        graph.evaluate(
+            &pose.rotation.entries().into_iter().chain(pose.translation.0).collect::<Vec<_>>(),
+            &values[..graph.variable_count()],
+        )
+    };
+    let (short, long) = (entries(&merged), entries(&Chain::new(&graph, linked.clone())));
+    assert!(short.iter().zip(&long).all(|(a, b)| (a - b).abs() < 1e-15), "{short:?} {long:?}");
+    let other_axis = [vec![Step::Rotate(Axis::X, u)], linked, vec![turn(v)]].concat();
+    assert_eq!(Chain::new(&graph, other_axis).merged().steps().len(), 3);
     // a palindrome of any steps vanishes altogether
     let mut random = Random(16);
     let setting = Setting::new(&graph);

@@ -115,6 +115,58 @@ fn two_unknowns_of_two_equations() {
     }
 }
 
+/// An arm of three joints whose hand stays level and goes along a line: two equations, and a sine that gives the wrist by the other two.
+/// Against the triangle of both arms.
+#[test]
+fn a_sine_gives_its_angle_where_one_multiple_is_left() {
+    let graph = Graph::new();
+    let [shoulder, elbow, wrist, way] = ["shoulder", "elbow", "wrist", "way"].map(|name| graph.variable(name));
+    let inner = shoulder + elbow;
+    let residuals = [
+        (inner + wrist).sin(),
+        4.0 * shoulder.cos() + 3.0 * inner.cos() - 5.0,
+        4.0 * shoulder.sin() + 3.0 * inner.sin() - way,
+    ];
+    let unknown = |variable, lo: f64, hi: f64| Unknown { variable, range: Interval::new(lo, hi) };
+    let unknowns = |wrist_range: (f64, f64)| {
+        [unknown(shoulder, -1.2, 0.0), unknown(elbow, 1.0, 2.0), unknown(wrist, wrist_range.0, wrist_range.1)]
+    };
+    let moves = (way, Interval::new(-1.0, 1.0));
+    let square = way * way + 25.0;
+    let bend = ((square - 25.0) / 24.0).acos();
+    let exact = (way / 5.0).atan() - ((square + 7.0) / (8.0 * square.sqrt())).acos();
+    let found = roots(&residuals, &unknowns((-2.0, 0.0)), &[moves]).expect("one root");
+    // half a turn more closes the sine, too
+    let half_turn = roots(&residuals, &unknowns((-2.0 - PI, -PI)), &[moves]).expect("one root");
+    let exprs = [
+        found[0],
+        found[1],
+        found[2],
+        half_turn[2],
+        found[2].derivative(way),
+        exact,
+        bend,
+        (exact + bend).derivative(way),
+    ];
+    for k in -20..=20 {
+        let place = f64::from(k) / 20.0;
+        let out = at(&exprs, &[way], &[place]);
+        let wrist = -out[5] - out[6];
+        let errors = [out[0] - out[5], out[1] - out[6], out[2] - wrist, out[3] - (wrist - PI), out[4] + out[7]];
+        assert!(errors.iter().all(|error| error.abs() < 2e-14), "{place}: {errors:?}");
+    }
+    // the wrist does not get there, gets there in part of the way, or gets there in two ways
+    let refused = |range| roots(&residuals, &unknowns(range), &[moves]).expect_err("no root");
+    assert!(matches!(refused((-0.5, 0.0)), NoRoot::None(_)));
+    assert!(matches!(refused((-1.0, 0.0)), NoRoot::None(_)));
+    assert!(matches!(refused((-2.0 - PI, 0.0)), NoRoot::Several(_)));
+    // a little beyond the way its place is known, and the wrist leaves its range
+    let narrow = roots(&residuals, &unknowns((-2.0, -0.703)), &[moves]).expect("one root");
+    let [wide, narrow] = [&found, &narrow].map(|found| at(found, &[way], &[-1.01]));
+    assert!(wide[2] > -0.702, "{wide:?}");
+    assert!(narrow.iter().all(|value| value.is_nan()), "{narrow:?}");
+}
+
 #[test]
 fn a_root_in_a_root_and_what_is_replaced() {
     let graph = Graph::new();

@@ -207,22 +207,45 @@ impl<'g> Chain<'g> {
         Chain { graph: self.graph, steps: self.steps.iter().rev().map(|step| step.inverse()).collect() }
     }
 
-    /// Neighbours of one kind merged (two rotations about one axis add their angles), steps that do nothing left out.
+    /// Neighbours of one kind merged (two rotations about one axis add their angles), steps that do nothing left out. Links that keep a
+    /// frame parallel are one translation: turns about one axis, with translations between them, whose angles add up to nothing.
     pub fn merged(&self) -> Chain<'g> {
         let mut steps: Vec<Step<'g>> = Vec::new();
         for &step in &self.steps {
-            let next = match steps.last().and_then(|last| last.merged(step, self.graph)) {
-                Some(both) => {
+            let mut next = step;
+            loop {
+                if let Some(both) = steps.last().and_then(|last| last.merged(next, self.graph)) {
                     steps.pop();
-                    both
+                    next = both;
+                } else if let Some((first, shift)) = self.parallel(&steps, next) {
+                    steps.truncate(first);
+                    next = Step::Translate(shift);
+                } else {
+                    break;
                 }
-                None => step,
-            };
+            }
             if !next.is_identity() {
                 steps.push(next);
             }
         }
         Chain { graph: self.graph, steps }
+    }
+
+    /// Where the run of links begins that the next turn closes so that nothing is turned, and how far they lead.
+    fn parallel(&self, steps: &[Step<'g>], next: Step<'g>) -> Option<(usize, Vector3<'g>)> {
+        let Step::Rotate(axis, mut angle) = next else { return None };
+        let mut run = steps.iter().enumerate().rev().map_while(|(place, step)| match *step {
+            Step::Translate(_) => Some((place, None)),
+            Step::Rotate(about, angle) if about == axis => Some((place, Some(angle))),
+            _ => None,
+        });
+        let (first, _) = run.find(|(_, turn)| {
+            angle = turn.map_or(angle, |turn| angle + turn);
+            turn.is_some() && angle.is_zero()
+        })?;
+        let moves = |step: &Step<'g>| matches!(step, Step::Rotate(_, angle) if angle.as_constant().is_none());
+        let links = &steps[first..];
+        links.iter().any(moves).then(|| (first, Chain::new(self.graph, links.to_vec()).origin_and_turn().0))
     }
 
     /// The chain with variables replaced by expressions.

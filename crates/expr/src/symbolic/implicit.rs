@@ -47,18 +47,21 @@ impl Implicit {
     }
 }
 
+/// What unknowns give, its bounds, and how far it may lie beyond these.
+type Bounded<'g> = (Expr<'g>, (f64, f64), f64);
+
 /// The unknowns of equations from good starts: two steps of Newton's method, each kept within the ranges and from the middle of where an
 /// interval puts the unknowns, which gives intervals the mean-value form. The value is NaN where the last step goes further than
 /// `reach`.
 ///
 /// Each residual is zero; `unknowns` are variables that stand nowhere else. They are said to lie in `ranges`, their values stay within
-/// `limits`.
+/// `limits`. Something that they give has bounds, too: the value is NaN where it lies further beyond them than its own reach.
 pub(crate) fn roots<'g>(
     residuals: &[Expr<'g>],
     unknowns: &[Expr<'g>],
     [ranges, limits]: [&[(f64, f64)]; 2],
     starts: Vec<Expr<'g>>,
-    reach: &[f64],
+    (reach, bounds): (&[f64], &[Bounded<'g>]),
 ) -> Vec<Expr<'g>> {
     let graph = residuals[0].graph();
     let slopes: Vec<Expr<'g>> =
@@ -81,7 +84,10 @@ pub(crate) fn roots<'g>(
     let by = step(&near, &middle);
     let values = moved(&middle, &by);
     let sizes = by.iter().zip(reach).map(|(by, reach)| by.abs() / *reach);
-    let last = sizes.reduce(|a, b| a.max(b)).expect("there are unknowns");
+    let laws: Vec<Expr<'g>> = bounds.iter().map(|bounded| bounded.0).collect();
+    let beyond = at(&laws, &values).into_iter().zip(bounds);
+    let beyond = beyond.map(|(law, (_, limits, reach))| (law - within(law, *limits)).abs() / *reach);
+    let last = sizes.chain(beyond).reduce(|a, b| a.max(b)).expect("there are unknowns");
     let ids = |exprs: &[Expr<'g>]| exprs.iter().map(|expr| expr.id).collect();
     let system = Implicit {
         unknowns: ids(unknowns),

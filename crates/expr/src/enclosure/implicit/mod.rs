@@ -1,5 +1,6 @@
 //! Unknowns that equations give, as functions of what else is in the equations.
 
+mod explicit;
 mod start;
 mod unique;
 
@@ -8,7 +9,7 @@ use crate::symbolic::graph::Expr;
 use crate::symbolic::implicit;
 use crate::tape::Tape;
 
-/// How far beyond its range an unknown may lie, over the width of the range: a root at an end is one, rounding or not.
+/// How far beyond its range an unknown may lie, over the width of the range.
 const MARGIN: f64 = 1e-6;
 /// How far the last step of Newton's method may go, over the width of the range. What is left then is some ten times its square.
 const REACH: f64 = 1e-8;
@@ -48,10 +49,30 @@ struct System {
     values: Tape,
     /// Their derivatives by the unknowns, row by row.
     slopes: Tape,
+    /// Unknowns that are given in closed form by those above.
+    given: Tape,
+    /// Where these lie.
+    given_ranges: Vec<Interval>,
+}
+
+/// A range with a margin: a root at an end is one, rounding or not.
+fn widened(range: Interval) -> Interval {
+    let margin = MARGIN * (range.hi - range.lo);
+    Interval::new(range.lo - margin, range.hi + margin)
 }
 
 impl System {
     fn new<'g>(residuals: &[Expr<'g>], unknowns: &[Unknown<'g>], others: &[(Expr<'g>, Interval)]) -> System {
+        System::with_given(residuals, unknowns, others, &[])
+    }
+
+    /// With unknowns that others give, which have to lie in their ranges, too.
+    fn with_given<'g>(
+        residuals: &[Expr<'g>],
+        unknowns: &[Unknown<'g>],
+        others: &[(Expr<'g>, Interval)],
+        given: &[(Expr<'g>, Interval)],
+    ) -> System {
         assert!(residuals.len() == unknowns.len() && !unknowns.is_empty(), "as many equations as unknowns");
         let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
         let inputs: Vec<Expr<'g>> = variables.iter().copied().chain(others.iter().map(|other| other.0)).collect();
@@ -61,15 +82,13 @@ impl System {
             .collect();
         let tape =
             |outputs: &[Expr<'g>]| Tape::new(outputs, &inputs).expect("every variable of the equations has a range");
-        let widened = |range: Interval| {
-            let margin = MARGIN * (range.hi - range.lo);
-            Interval::new(range.lo - margin, range.hi + margin)
-        };
         System {
             unknowns: unknowns.iter().map(|unknown| widened(unknown.range)).collect(),
             others: others.iter().map(|other| other.1).collect(),
             values: tape(residuals),
             slopes: tape(&slopes),
+            given: tape(&given.iter().map(|given| given.0).collect::<Vec<_>>()),
+            given_ranges: given.iter().map(|given| widened(given.1)).collect(),
         }
     }
 
@@ -82,7 +101,7 @@ impl System {
 /// The unknowns of as many equations, as functions of what else is in these.
 ///
 /// That there is one solution in the ranges, whatever the `others` are within theirs, is proven: by interval Newton (Krawczyk's operator)
-/// over parts of the ranges. A polynomial in what moves comes near it, two steps of Newton's method written out do the rest, and
+/// over parts of the ranges. An unknown in which an equation is linear, or the sine of something linear, is written by the others. A polynomial in what moves comes near it, two steps of Newton's method written out do the rest, and
 /// derivatives come from the equations. Where a value is asked for so far beyond the ranges, or with so different numbers for what stands
 /// still, that these two steps do not settle, it is NaN.
 ///
@@ -110,17 +129,49 @@ pub fn roots<'g>(
     unknowns: &[Unknown<'g>],
     others: &[(Expr<'g>, Interval)],
 ) -> Result<Vec<Expr<'g>>, NoRoot> {
-    let system = System::new(residuals, unknowns, others);
+    assert!(residuals.len() == unknowns.len() && !unknowns.is_empty(), "as many equations as unknowns");
+    let reduced = explicit::reduced(residuals, unknowns, others);
+    if !reduced.given.is_empty()
+        && let Ok(roots) = of_reduced(&reduced, unknowns, others)
+    {
+        return Ok(roots);
+    }
+    // all unknowns together tell what is wrong
+    let kept = (0..unknowns.len()).collect();
+    let whole = explicit::Reduced { residuals: residuals.to_vec(), kept, given: Vec::new() };
+    of_reduced(&whole, unknowns, others)
+}
+
+fn of_reduced<'g>(
+    reduced: &explicit::Reduced<'g>,
+    unknowns: &[Unknown<'g>],
+    others: &[(Expr<'g>, Interval)],
+) -> Result<Vec<Expr<'g>>, NoRoot> {
+    let explicit::Reduced { residuals, kept, given } = reduced;
+    let graph = residuals[0].graph();
+    let left: Vec<Unknown<'g>> = kept.iter().map(|place| unknowns[*place]).collect();
+    let given_in: Vec<(Expr<'g>, Interval)> = given.iter().map(|(place, law)| (*law, unknowns[*place].range)).collect();
+    let system = System::with_given(residuals, &left, others, &given_in);
     unique::prove(&system, unique::MOST_IN_ALL)?;
-    let variables: Vec<Expr<'g>> = unknowns.iter().map(|unknown| unknown.variable).collect();
+    let variables: Vec<Expr<'g>> = left.iter().map(|unknown| unknown.variable).collect();
     let moving: Vec<Expr<'g>> = system.moving().into_iter().map(|k| others[k].0).collect();
     let starts = start::polynomials(&system).ok_or(NoRoot::TooFast)?;
-    let starts = starts.into_iter().map(|polynomial| polynomial.written(residuals[0].graph(), &moving)).collect();
+    let starts = starts.into_iter().map(|polynomial| polynomial.written(graph, &moving)).collect();
     let ends = |range: &Interval| (range.lo, range.hi);
     let limits: Vec<(f64, f64)> = system.unknowns.iter().map(ends).collect();
-    let ranges: Vec<(f64, f64)> = unknowns.iter().map(|unknown| ends(&unknown.range)).collect();
-    let reach: Vec<f64> = limits.iter().map(|(low, high)| REACH * (high - low)).collect();
-    Ok(implicit::roots(residuals, &variables, [&ranges, &limits], starts, &reach))
+    let ranges: Vec<(f64, f64)> = left.iter().map(|unknown| ends(&unknown.range)).collect();
+    let reach = |limits: &(f64, f64)| REACH * (limits.1 - limits.0);
+    let reaches: Vec<f64> = limits.iter().map(reach).collect();
+    let laws: Vec<Expr<'g>> = given.iter().map(|given| given.1).collect();
+    let bounds = laws.iter().zip(system.given_ranges.iter().map(ends));
+    let bounds: Vec<(Expr<'g>, (f64, f64), f64)> = bounds.map(|(law, limits)| (*law, limits, reach(&limits))).collect();
+    let roots = implicit::roots(residuals, &variables, [&ranges, &limits], starts, (&reaches, &bounds));
+    let replacements: Vec<(Expr<'g>, Expr<'g>)> = variables.into_iter().zip(roots.iter().copied()).collect();
+    let laws = graph.substitute(&laws, &replacements);
+    let mut all: Vec<(usize, Expr<'g>)> =
+        kept.iter().copied().zip(roots).chain(given.iter().map(|given| given.0).zip(laws)).collect();
+    all.sort_unstable_by_key(|(place, _)| *place);
+    Ok(all.into_iter().map(|(_, root)| root).collect())
 }
 
 /// Whether [`roots`] is likely to find the unknowns: what it proves is tried with a tenth of its effort.

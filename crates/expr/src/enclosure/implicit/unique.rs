@@ -126,13 +126,15 @@ struct Search<'s> {
     system: &'s System,
     values: IntervalEvaluator<'s>,
     slopes: IntervalEvaluator<'s>,
+    given: IntervalEvaluator<'s>,
     looked_at: usize,
 }
 
 impl<'s> Search<'s> {
     fn new(system: &'s System) -> Search<'s> {
-        let (values, slopes) = (IntervalEvaluator::new(&system.values), IntervalEvaluator::new(&system.slopes));
-        Search { system, values, slopes, looked_at: 0 }
+        let [values, slopes, given] =
+            [&system.values, &system.slopes, &system.given].map(|tape| IntervalEvaluator::new(tape));
+        Search { system, values, slopes, given, looked_at: 0 }
     }
 
     /// What is wrong at some places in the ranges of what moves, where at one of them it is plain: that says more than where it becomes so.
@@ -249,13 +251,23 @@ impl<'s> Search<'s> {
             one.place = one.place.iter().zip(&image).map(|(a, b)| a.intersection(*b)).collect();
         }
         let mut ranges = one.place.iter().zip(&self.system.unknowns);
-        if ranges.any(|(place, range)| place.intersection(*range).is_empty()) {
+        let given = self.given(&one.place, others);
+        let lies_beside = |(place, range): (&Interval, &Interval)| place.intersection(*range).is_empty();
+        if ranges.any(lies_beside) || given.iter().zip(&self.system.given_ranges).any(lies_beside) {
             Known::None
-        } else if lies_in(&one.place, &self.system.unknowns) {
+        } else if lies_in(&one.place, &self.system.unknowns) && lies_in(&given, &self.system.given_ranges) {
             Known::One(one.place)
         } else {
             Known::Nothing
         }
+    }
+
+    /// Where the unknowns lie that those in a box give.
+    fn given(&mut self, place: &[Interval], others: &[Interval]) -> Vec<Interval> {
+        let inputs: Vec<Interval> = place.iter().chain(others).copied().collect();
+        let mut out = vec![Interval::WHOLE; self.system.given_ranges.len()];
+        self.given.run(&inputs, &mut out);
+        out
     }
 
     /// Krawczyk's operator: m − C F(m) + (1 − C J) (X − m), C being the inverse of J's middle.
@@ -270,6 +282,10 @@ impl<'s> Search<'s> {
         };
         let over = run(&mut self.values, place, size);
         if over.iter().any(|value| value.continuous && !value.contains(0.0)) {
+            return Held::None;
+        }
+        let mut given = self.given(place, others).into_iter().zip(&self.system.given_ranges);
+        if given.any(|(given, range)| given.intersection(*range).is_empty()) {
             return Held::None;
         }
         let slopes = run(&mut self.slopes, place, size * size);

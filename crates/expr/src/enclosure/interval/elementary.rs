@@ -1,9 +1,10 @@
-//! Elementary functions of intervals: monotone pieces between ends from correctly rounded values.
+//! Elementary functions of intervals: monotone pieces between ends from values whose error is known, most of them correctly rounded.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 use super::{Interval, down, up};
 use crate::symbolic::op::inverse_involute;
+use crate::tape::kernel;
 
 /// The next float above π.
 const PI_ABOVE: f64 = f64::from_bits(PI.to_bits() + 1);
@@ -41,21 +42,21 @@ fn crossed(x: Interval, offset: f64) -> Crossed {
     }
 }
 
-/// Values of a function between −1 and 1 that turns where `crossed` says: at an even number upward to `at_even`.
-fn wave(x: Interval, crossed: &Crossed, at_even: f64, f: fn(f64) -> f64) -> Interval {
-    if matches!(crossed, Crossed::Many) {
-        return Interval { lo: -1.0, hi: 1.0, continuous: x.continuous };
-    }
-    let low = f(x.lo);
-    let high = if x.lo == x.hi { low } else { f(x.hi) };
-    let bound = |value: f64| if value == 0.0 { (0.0, 0.0) } else { (down(value).max(-1.0), up(value).min(1.0)) };
+/// Values between −1 and 1 from those at both ends, with a turn where `crossed` says: at an even number upward to `at_even`.
+fn wave(x: Interval, crossed: &Crossed, at_even: f64, (low, high): (f64, f64)) -> Interval {
+    // the kernel errs by less than a unit in the last place
+    let bound = |value: f64| match value {
+        0.0 => (0.0, 0.0),
+        value => (down(down(value)).max(-1.0), up(up(value)).min(1.0)),
+    };
     let ends = Interval { lo: bound(low.min(high)).0, hi: bound(low.max(high)).1, continuous: x.continuous };
     match *crossed {
         Crossed::One(k) => {
             let top = if k % 2.0 == 0.0 { at_even } else { -at_even };
             Interval { lo: ends.lo.min(top), hi: ends.hi.max(top), continuous: x.continuous }
         }
-        _ => ends,
+        Crossed::None => ends,
+        Crossed::Many => Interval { lo: -1.0, hi: 1.0, continuous: x.continuous },
     }
 }
 
@@ -78,19 +79,27 @@ impl Interval {
 
     /// sin x.
     pub fn sin(self) -> Interval {
-        if self.is_empty() {
-            return self;
-        }
-        // sin((k − 1/2) π): 1 for odd k
-        wave(self, &crossed(self, 0.5), -1.0, core_math::sin)
+        self.sin_cos().0
     }
 
     /// cos x.
     pub fn cos(self) -> Interval {
+        self.sin_cos().1
+    }
+
+    /// sin x and cos x.
+    pub fn sin_cos(self) -> (Interval, Interval) {
         if self.is_empty() {
-            return self;
+            return (self, self);
         }
-        wave(self, &crossed(self, 0.0), 1.0, core_math::cos)
+        // sin((k − 1/2) π): 1 for odd k
+        let (of_sin, of_cos) = (crossed(self, 0.5), crossed(self, 0.0));
+        let (mut low, mut high) = ((0.0, 1.0), (0.0, 1.0));
+        if !matches!((&of_sin, &of_cos), (Crossed::Many, Crossed::Many)) {
+            low = kernel::sin_cos(self.lo);
+            high = if self.lo == self.hi { low } else { kernel::sin_cos(self.hi) };
+        }
+        (wave(self, &of_sin, -1.0, (low.0, high.0)), wave(self, &of_cos, 1.0, (low.1, high.1)))
     }
 
     /// tan x; nothing is known over a pole.

@@ -105,8 +105,9 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
             Operation::Settled => a.settled(registers[step.b as usize]),
             Operation::Widened => a.widened(registers[step.b as usize]),
             Operation::SinCos => {
-                registers[step.b as usize] = a.cos();
-                a.sin()
+                let (sin, cos) = a.sin_cos();
+                registers[step.b as usize] = cos;
+                sin
             }
         };
     }
