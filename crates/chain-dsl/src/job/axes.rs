@@ -1,6 +1,6 @@
 //! Every axis of a job gets exactly one law.
 
-use flank_expr::Expr;
+use flank_expr::{Expr, Interval};
 
 use crate::definitions::machine::LawKind;
 use crate::diagnostics::Diagnostic;
@@ -69,6 +69,16 @@ impl<'g> Builder<'_, 'g> {
     /// A law that gives no axis its motion: an axis without one was perhaps meant, and is no second mistake.
     fn lose_law(&mut self, machine: usize) {
         *self.lost_laws.entry(machine).or_default() += 1;
+    }
+
+    /// Says where axes stand.
+    pub(super) fn place_axes(&self, context: &mut Context<'g>, values: &[(&str, f64)]) {
+        let axes = self.machines.iter().flat_map(|(_, _, built)| &built.axes);
+        for axis in axes.filter(|axis| axis.law.is_none() && !axis.is_unknown) {
+            if let Some((_, value)) = values.iter().find(|(name, _)| *name == axis.name.node) {
+                context.set_range(axis.variable, Interval::point(*value));
+            }
+        }
     }
 
     /// Every axis has exactly one law; what follows other axes is written in motions.

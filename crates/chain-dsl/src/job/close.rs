@@ -83,7 +83,11 @@ impl<'g> Builder<'_, 'g> {
             Err(Unsolved::Unknown) => return None,
             Err(Unsolved::Endless(what)) => (
                 format!("it follows from all places of {what}, which has no range"),
-                "give it one: `axis crank : rotary in 0 deg .. 360 deg`".to_owned(),
+                if self.stands_alone {
+                    "say where it stands: `at (crank: 30 deg)`".to_owned()
+                } else {
+                    "give it one: `axis crank : rotary in 0 deg .. 360 deg`".to_owned()
+                },
             ),
             Err(Unsolved::Several(place, branches)) => {
                 let all = quoted(&names);

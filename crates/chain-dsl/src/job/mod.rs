@@ -133,6 +133,12 @@ impl<'a, 'g> Builder<'a, 'g> {
             sampled: SampledPoints::default(),
         }
     }
+
+    /// Takes a machine under its own name.
+    fn sole_machine(&mut self, context: &mut Context<'g>, machine: &ast::Machine) {
+        let (name, definition) = (machine.name.clone(), machine.name.clone());
+        self.machine(context, &ast::Instance { name, definition, settings: Vec::new() });
+    }
 }
 
 /// A machine by itself, under its own name, with free axes.
@@ -143,10 +149,26 @@ pub(crate) fn standing<'g>(
     file: &Path,
 ) -> Job<'g> {
     let mut builder = Builder::new(definitions, true);
-    let (name, definition) = (machine.name.clone(), machine.name.clone());
-    builder.machine(context, &ast::Instance { name, definition, settings: Vec::new() });
+    builder.sole_machine(context, machine);
     let machines = builder.settle_axes(context);
     builder.into_job(machine.name.node.clone(), machine.doc.clone(), machines, file)
+}
+
+/// A machine by itself whose axes stand at these values, in its loops too; these stay open without.
+fn posed<'g>(
+    context: &mut Context<'g>,
+    machine: &ast::Machine,
+    definitions: &Definitions<'_>,
+    values: Option<&[(&str, f64)]>,
+) -> Job<'g> {
+    let mut builder = Builder::new(definitions, true);
+    builder.sole_machine(context, machine);
+    match values {
+        Some(values) => builder.place_axes(context, values),
+        None => builder.unsettled.extend(0..builder.machines.len()),
+    }
+    let machines = builder.settle_axes(context);
+    builder.into_job(machine.name.node.clone(), Vec::new(), machines, Path::new(""))
 }
 
 /// A job with all its names resolved; what is wrong in it is reported and left out.

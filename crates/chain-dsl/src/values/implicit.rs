@@ -165,7 +165,7 @@ impl<'g> Context<'g> {
                 Value::Scalar(expr, dimension) if expr == variable => Some(*dimension),
                 _ => None,
             });
-            let value = dimension.map_or_else(|| format!("{value:.6}"), |dimension| shown(*value, dimension));
+            let value = dimension.map_or_else(|| format!("{value:.6}"), |dimension| shown_briefly(*value, dimension));
             format!("`{variable}` = {value}")
         };
         let values: Vec<String> = moving.iter().zip(at).map(value).collect();

@@ -234,7 +234,9 @@ impl<'g> Chain<'g> {
     /// Where the run of links begins that the next turn closes so that nothing is turned, and how far they lead.
     fn parallel(&self, steps: &[Step<'g>], next: Step<'g>) -> Option<(usize, Vector3<'g>)> {
         let Step::Rotate(axis, mut angle) = next else { return None };
-        let mut run = steps.iter().enumerate().rev().map_while(|(place, step)| match *step {
+        /// Steps that are looked back on: a chain of many frames costs no more for each of them.
+        const MOST: usize = 8;
+        let mut run = steps.iter().enumerate().rev().take(MOST).map_while(|(place, step)| match *step {
             Step::Translate(_) => Some((place, None)),
             Step::Rotate(about, angle) if about == axis => Some((place, Some(angle))),
             _ => None,

@@ -11,8 +11,8 @@ use crate::definitions::transforms;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
-use crate::job::{Builder, Definitions, standing};
-use crate::model::{Job, Machine};
+use crate::job::{Builder, Definitions, posed, standing};
+use crate::model::{Axis, Job, LawSource, Machine};
 use crate::syntax::ast::{self, Argument, MachineStatement};
 use crate::values::context::Context;
 use crate::values::dimension::{Dimension, shown};
@@ -34,7 +34,9 @@ impl<'g> Builder<'_, 'g> {
             context.unknown_item(definition, "machine", machines.keys().map(String::as_str));
             return None;
         };
-        Some(with_settings(context, machine, settings, self.definitions))
+        let own = overrides(machine, settings);
+        let definitions = Definitions { overrides: &own, ..*self.definitions };
+        Some(standing(context, machine, &definitions, Path::new("")))
     }
 
     /// What the machines of the job expect of all that use them.
@@ -59,16 +61,10 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-fn with_settings<'g>(
-    context: &mut Context<'g>,
-    machine: &ast::Machine,
-    settings: &[Argument],
-    definitions: &Definitions<'_>,
-) -> Job<'g> {
+/// What settings of a machine override, by their whole names.
+fn overrides(machine: &ast::Machine, settings: &[Argument]) -> Overrides {
     let given = settings.iter().filter_map(|setting| Some((setting.name.as_ref()?, setting.value.clone())));
-    let own: Overrides = given.map(|(name, value)| (format!("{}.{}", machine.name.node, name.node), value)).collect();
-    let definitions = Definitions { overrides: &own, ..*definitions };
-    standing(context, machine, &definitions, Path::new(""))
+    given.map(|(name, value)| (format!("{}.{}", machine.name.node, name.node), value)).collect()
 }
 
 /// The poses that a machine expects, by itself.
@@ -119,8 +115,8 @@ impl Pose<'_> {
         let within = constant(context, within, Dimension::LENGTH, "the tolerance")?;
         let is_axis = |job: &Job<'g>, name: &Name| job.machines[0].axes.iter().any(|axis| axis.name == name.node);
         // which of the values are axes is known of the machine as it stands
-        let plain = with_settings(context, self.machine, &[], definitions);
-        plain.machines.first()?;
+        let plain = posed(context, self.machine, definitions, None);
+        let plain_machine = plain.machines.first()?;
         let own = |argument: &&Argument| argument.name.as_ref().is_some_and(|name| is_axis(&plain, name));
         let (axes, settings): (Vec<&Argument>, Vec<&Argument>) = self.at.iter().partition(own);
         for setting in &settings {
@@ -132,8 +128,22 @@ impl Pose<'_> {
                 return None;
             }
         }
+        let mut values = Vec::new();
+        for argument in axes {
+            let name = argument.name.as_ref()?;
+            let axis = plain_machine.axes.iter().find(|axis| axis.name == name.node)?;
+            values.push((name, self.axis_value(context, axis, name, argument)?));
+        }
         let settings: Vec<Argument> = settings.into_iter().cloned().collect();
-        let job = with_settings(context, self.machine, &settings, definitions);
+        let own = overrides(self.machine, &settings);
+        let definitions = Definitions { overrides: &own, ..*definitions };
+        let places: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.node.as_str(), *value)).collect();
+        let findings = context.findings();
+        let job = posed(context, self.machine, &definitions, Some(&places));
+        // a loop that does not close has been reported
+        if context.findings() > findings {
+            return None;
+        }
         let machine = job.machines.first()?;
         let [frame, reference] = self.frames;
         let frames: Vec<&str> = machine.frames.iter().map(|frame| frame.name.as_str()).collect();
@@ -144,7 +154,7 @@ impl Pose<'_> {
             }
         }
         let chain = machine.chain(context.graph, &reference.node, &frame.node)?;
-        let values = self.axis_values(context, machine, &axes, &chain)?;
+        let values = self.replacements(context, machine, &places, &chain)?;
         let scope = names(&job, machine);
         let wanted = Chain::new(context.graph, transforms::steps(context, self.transforms, &scope)?);
         let [is, wanted] =
@@ -161,44 +171,56 @@ impl Pose<'_> {
         None
     }
 
-    /// Laws of the axes, then the values of those that are free.
-    fn axis_values<'g>(
+    /// Where a free axis stands.
+    fn axis_value<'g>(
         &self,
         context: &mut Context<'g>,
-        machine: &Machine<'g>,
-        given: &[&Argument],
-        chain: &Chain<'g>,
-    ) -> Option<[Vec<(Expr<'g>, Expr<'g>)>; 2]> {
-        let laws: Vec<(Expr<'g>, Expr<'g>)> = machine
-            .axes
-            .iter()
-            .filter(|axis| axis.law != axis.variable)
-            .map(|axis| (axis.variable, axis.law))
-            .collect();
-        for axis in machine.axes.iter().filter(|axis| axis.law != axis.variable) {
-            if let Some(of) = given.iter().find_map(|of| of.name.as_ref().filter(|name| name.node == axis.name)) {
+        axis: &Axis<'g>,
+        name: &Name,
+        argument: &Argument,
+    ) -> Option<f64> {
+        let help = "leave it out: a pose is that of the axes that are free";
+        match axis.source {
+            LawSource::Free => {}
+            LawSource::Closed => {
+                let message = format!("axis `{}` is unknown: a loop of its machine says where it stands", axis.name);
+                wrong(context, name.span, message, help);
+                return None;
+            }
+            LawSource::Fixed | LawSource::Coupled | LawSource::Driven => {
                 let message = format!("axis `{}` has a law of its machine: it stands where that says", axis.name);
-                wrong(context, of.span, message, "leave it out: a pose is that of the axes that are free");
+                wrong(context, name.span, message, help);
                 return None;
             }
         }
-        let driven = chain.substituted(&laws);
+        let what = format!("axis `{}`", axis.name);
+        let value = constant(context, &argument.value, axis.dimension, &what)?;
+        if let Some((low, high)) = axis.travel.filter(|(low, high)| value < *low || value > *high) {
+            let [value, low, high] = [value, low, high].map(|value| shown(value, axis.dimension));
+            let message = format!("{what} stands at {value}, its travel is {low} .. {high}");
+            context.report(Diagnostic::new(Code::OutOfRange, argument.value.span, message));
+            return None;
+        }
+        Some(value)
+    }
+
+    /// Laws of the axes, then the values of those that are free.
+    fn replacements<'g>(
+        &self,
+        context: &mut Context<'g>,
+        machine: &Machine<'g>,
+        places: &[(&str, f64)],
+        chain: &Chain<'g>,
+    ) -> Option<[Vec<(Expr<'g>, Expr<'g>)>; 2]> {
+        let (free, driven): (Vec<&Axis<'g>>, Vec<&Axis<'g>>) =
+            machine.axes.iter().partition(|axis| axis.law == axis.variable);
+        let laws: Vec<(Expr<'g>, Expr<'g>)> = driven.into_iter().map(|axis| (axis.variable, axis.law)).collect();
+        let by_laws = chain.substituted(&laws);
         let mut values = Vec::new();
-        for axis in machine.axes.iter().filter(|axis| axis.law == axis.variable) {
-            let argument = given.iter().find(|of| of.name.as_ref().is_some_and(|name| name.node == axis.name));
-            match argument {
-                Some(argument) => {
-                    let what = format!("axis `{}`", axis.name);
-                    let value = constant(context, &argument.value, axis.dimension, &what)?;
-                    if let Some((low, high)) = axis.travel.filter(|(low, high)| value < *low || value > *high) {
-                        let [value, low, high] = [value, low, high].map(|value| shown(value, axis.dimension));
-                        let message = format!("{what} stands at {value}, its travel is {low} .. {high}");
-                        context.report(Diagnostic::new(Code::OutOfRange, argument.value.span, message));
-                        return None;
-                    }
-                    values.push((axis.variable, context.graph.constant(value)));
-                }
-                None if driven.twist(axis.variable).is_zero() => {}
+        for axis in free {
+            match places.iter().find(|(name, _)| *name == axis.name) {
+                Some((_, value)) => values.push((axis.variable, context.graph.constant(*value))),
+                None if by_laws.twist(axis.variable).is_zero() => {}
                 None => {
                     let [frame, reference] = self.frames;
                     let message = format!("nothing says where axis `{}` stands", axis.name);
