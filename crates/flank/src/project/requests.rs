@@ -546,6 +546,9 @@ pub enum MountingError {
     Angle(f64),
 }
 
+/// The thickness of the marking compound unless another one is asked for, mm.
+pub(crate) const COMPOUND: f64 = 0.00635;
+
 /// Contact of flanks that roll on each other.
 #[derive(Clone, Debug)]
 pub struct ContactRequest {
@@ -583,7 +586,7 @@ impl ContactRequest {
             contact: None,
             errors: Vec::new(),
             positions: 60,
-            compound: 0.00635,
+            compound: COMPOUND,
             sensitivity: false,
             vhj: false,
             certify: false,
