@@ -143,7 +143,7 @@ pub(crate) struct SweepStatus {
 pub(crate) struct SweepGather {
     /// The folder of the study
     pub(crate) study: PathBuf,
-    /// Write the rows to a file instead of printing them
+    /// Write the rows to a file instead of printing them: a table of Parquet where its name ends with .parquet, else CSV
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what is known of the study as JSON; the rows go to --out

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use flank_export::{CellKind, WriteError};
 use rayon::prelude::*;
 
 use super::collect::{Cases, Found};
@@ -78,14 +79,39 @@ impl Plan {
 
     /// The first line of each chunk.
     pub(super) fn head(&self) -> String {
-        let inputs = self.inputs.iter().map(|input| input.head());
-        let heads = ["case".to_string(), "number".to_string()].into_iter().chain(inputs);
-        let all: Vec<String> = heads
-            .chain(["verdict", "why", "branch"].map(str::to_string))
-            .chain(self.heads.iter().cloned())
-            .map(|head| if head.contains(',') { format!("\"{head}\"") } else { head })
-            .collect();
+        let quoted = |head: String| if head.contains(',') { format!("\"{head}\"") } else { head };
+        let all: Vec<String> = self.columns().into_iter().map(|(head, _)| quoted(head)).collect();
         all.join(",")
+    }
+
+    /// The heads of the columns with what their cells are.
+    pub(super) fn columns(&self) -> Vec<(String, CellKind)> {
+        let text = |head: &str| (head.to_string(), CellKind::Text);
+        let number = |head: String| (head, CellKind::Number);
+        [text("case"), ("number".to_string(), CellKind::Count)]
+            .into_iter()
+            .chain(self.inputs.iter().map(|input| number(input.head())))
+            .chain(["verdict", "why", "branch"].map(text))
+            .chain(self.heads.iter().cloned().map(number))
+            .collect()
+    }
+
+    /// Hands over the texts of the chunks that are there, one by one in their order, and counts their rows.
+    ///
+    /// # Errors
+    /// What `each` gives.
+    pub(super) fn each_chunk(
+        &self,
+        folder: &Path,
+        tally: &mut Tally,
+        each: &mut dyn FnMut(&str) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
+        for chunk in 0..self.chunks() {
+            let Ok(rows) = std::fs::read_to_string(self.chunk_file(folder, chunk)) else { continue };
+            tally.add(self, chunk, rows.lines().skip(1));
+            each(&rows)?;
+        }
+        Ok(())
     }
 
     fn row(&self, number: u64, values: &[f64], found: &Found) -> String {

@@ -15,11 +15,12 @@ mod study;
 use std::path::Path;
 use std::time::Instant;
 
+use flank_export::{ParquetRows, write_atomically};
 use flank_expr::Graph;
 
 use self::chunks::Tally;
 use self::collect::{Cases, Collected};
-use self::plan::{Plan, write_text};
+use self::plan::{Plan, VERSION};
 use self::request::{CaseSource, RunRequest, SweepRequest};
 use self::result::SweepResult;
 pub use self::study::OpenStudy;
@@ -135,22 +136,37 @@ pub fn sweep_status(study: &Path) -> Result<SweepResult, Failure> {
     Ok(told(study, &Plan::read(study)?))
 }
 
-/// All rows of a study in the order of its cases, as CSV, with what is missing; also in a file, whole or not at all, if one is named.
+/// All rows of a study in the order of its cases, with what is missing: as CSV, or in a file, whole or not at all, if one is named; then the
+/// text is empty. A file whose name ends with `.parquet` is a table of Parquet, any other one CSV.
 ///
 /// # Errors
 /// If there is no study, or the file cannot be written.
 pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepResult), Failure> {
     let plan = Plan::read(study)?;
-    let (mut text, mut tally) = (plan.head() + "\n", Tally::default());
-    for chunk in 0..plan.chunks() {
-        let Ok(rows) = std::fs::read_to_string(plan.chunk_file(study, chunk)) else { continue };
-        tally.add(&plan, chunk, rows.lines().skip(1));
-        rows.lines().skip(1).for_each(|row| {
-            text += row;
-            text.push('\n');
-        });
+    let (mut text, mut tally) = (String::new(), Tally::default());
+    match out {
+        Some(file) if file.extension().is_some_and(|ending| ending == "parquet") => write_atomically(file, |out| {
+            let mut table = ParquetRows::new(&plan.columns(), &format!("flank {VERSION}"), out)?;
+            plan.each_chunk(study, &mut tally, &mut |rows| {
+                table.add(&rows.lines().skip(1).map(|row| row.split(',').collect()).collect::<Vec<_>>())
+            })?;
+            table.finish()
+        })?,
+        Some(file) => write_atomically(file, |out| {
+            writeln!(out, "{}", plan.head())?;
+            plan.each_chunk(study, &mut tally, &mut |rows| Ok(out.write_all(without_head(rows).as_bytes())?))
+        })?,
+        None => {
+            text = plan.head() + "\n";
+            plan.each_chunk(study, &mut tally, &mut |rows| {
+                text += without_head(rows);
+                Ok(())
+            })
+            .map_err(|reason| Failure::Input(reason.to_string()))?;
+        }
     }
     let mut result = SweepResult::of(study, &plan, tally);
+    result.files.extend(out.map(shown_path));
     let missing = plan.chunks() - result.done;
     if missing > 0 {
         let message = format!(
@@ -160,19 +176,15 @@ pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepRe
         );
         result.not_done.push(NotDone::new(NotDoneKind::NotSolved, &plan.job, message));
     }
-    if let Some(file) = out {
-        write_text(file, &text)?;
-        result.files.push(shown_path(file));
-    }
     Ok((text, result))
+}
+
+fn without_head(chunk: &str) -> &str {
+    chunk.split_once('\n').map_or("", |(_, rows)| rows)
 }
 
 fn told(study: &Path, plan: &Plan) -> SweepResult {
     let mut tally = Tally::default();
-    for chunk in 0..plan.chunks() {
-        if let Ok(rows) = std::fs::read_to_string(plan.chunk_file(study, chunk)) {
-            tally.add(plan, chunk, rows.lines().skip(1));
-        }
-    }
+    plan.each_chunk(study, &mut tally, &mut |_| Ok(())).expect("nothing is written");
     SweepResult::of(study, plan, tally)
 }
