@@ -12,8 +12,8 @@ use flank::{
 };
 use flank_benches::peak_memory;
 
-const COMMON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/spiral_bevel.chain");
-const PAIR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../specs/pairs/bevel_19x62.chain");
+const COMMON: [&str; 2] = [concat!(env!("CARGO_MANIFEST_DIR"), "/spiral_bevel.chain"), "flank"];
+const PAIR: [&str; 2] = [concat!(env!("CARGO_MANIFEST_DIR"), "/../specs/pairs/bevel_19x62.chain"), "bevel_19x62"];
 /// Each side of a comparison is the fastest of so many.
 const ROUNDS: usize = 3;
 
@@ -29,11 +29,12 @@ fn main() {
 }
 
 /// A study of random cases, made with all processors.
-fn planned(folder: &Path, (spec, scatter): (&str, &[(&str, f64)]), collect: &[&str], count: u64) {
+fn planned(folder: &Path, ([spec, job], scatter): ([&str; 2], &[(&str, f64)]), collect: &[&str], count: u64) {
     let settings =
         scatter.iter().map(|(name, mm)| (name.to_string(), Distribution::Normal(ToleratedAmount::Length(*mm))));
+    let project = Project::open(spec, std::sync::Arc::new(flank::Disk));
     let request = SweepRequest {
-        jobs: JobSelection::all(Project::open(spec.into(), std::sync::Arc::new(flank::Disk))),
+        jobs: JobSelection { job: Some(job.to_string()), ..JobSelection::all(project) },
         cases: CaseSource::Scatter { settings: settings.collect(), count, seed: 7, sobol: false },
         collect: collect.iter().map(|of| of.to_string()).collect(),
         out: folder.to_path_buf(),

@@ -3,11 +3,11 @@
 use flank_chain_dsl::{Contact, Dimension, Job, Parameter};
 use flank_solver::{ContactPoint, ContactProblem, ContactState, FlankCorners, Outcome};
 
-use crate::contact::pair::Members;
 use crate::contact::place::{corners, fine};
 use crate::contact::rolling::Rolling;
+use crate::contact::{Rolled, rolled};
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::requests::{ContactRequest, Session};
 use crate::project::units;
 
 /// A pair whose axes and settings stay open, with its contact as the job itself has it.
@@ -41,34 +41,34 @@ pub(crate) struct ContactNumbers {
 }
 
 impl ContactFamily {
-    /// With some axes of the pair's machine and some settings open; `steps` are positions of a pitch, `film` the marking compound, mm. `None`
-    /// where these change the pitch, or the flanks of the job itself do not touch.
+    /// With some axes of the pair's machine and some settings open. `None` where these change the pitch, and where something is not as it
+    /// should be in the contact of the job itself, which each case is then asked for by itself.
     ///
     /// # Errors
-    /// If a flank is not sampled, or the work is cancelled.
+    /// If the work is cancelled.
     pub(crate) fn new<'g>(
         job: &Job<'g>,
         contact: &Contact<'g>,
         (axes, settings): (&[usize], &[&Parameter<'g>]),
-        (steps, film): (usize, f64),
+        request: &ContactRequest,
         session: Session,
     ) -> Result<Option<ContactFamily>, Failure> {
-        let mut members = Members::solved(job, contact, session)?;
-        if members.check_range(job).is_err() {
-            return Ok(None);
-        }
-        let errors = vec![0.0; contact.errors.len()];
-        let Ok(rolling) = Rolling::of_members(job, &mut members, &errors, steps) else { return Ok(None) };
-        let Some(middle) = rolling.middle().filter(|_| rolling.outside() == 0) else { return Ok(None) };
+        let Rolled { result, members, found } = match rolled(job, contact, request, session) {
+            Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+            Err(_) => return Ok(None),
+            Ok(rolled) => rolled,
+        };
+        let Some((rolling, _)) = found.filter(|_| result.not_done.is_empty()) else { return Ok(None) };
+        let Some(middle) = rolling.middle() else { return Ok(None) };
         Ok(members.open_in(job, axes, settings).map(|problem| ContactFamily {
             problem,
             is_vertex: rolling.vertex.is_some(),
             state: middle.state,
             first: rolling.first.clone(),
-            steps,
+            steps: request.positions as usize,
             every: members.pitch(job),
             limits: [contact.roll.low, contact.roll.high],
-            film,
+            film: request.compound,
             lag: contact.lag.dimension,
             corners: corners(members.surfaces[1]),
         }))

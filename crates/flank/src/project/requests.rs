@@ -546,9 +546,6 @@ pub enum MountingError {
     Angle(f64),
 }
 
-/// The thickness of the marking compound unless another one is asked for, mm.
-pub(crate) const COMPOUND: f64 = 0.00635;
-
 /// Contact of flanks that roll on each other.
 #[derive(Clone, Debug)]
 pub struct ContactRequest {
@@ -586,7 +583,7 @@ impl ContactRequest {
             contact: None,
             errors: Vec::new(),
             positions: 60,
-            compound: COMPOUND,
+            compound: 0.00635,
             sensitivity: false,
             vhj: false,
             certify: false,

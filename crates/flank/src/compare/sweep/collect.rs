@@ -22,7 +22,7 @@ use crate::solve::starts::{self, Asked, Starts};
 use crate::solve::{self, SolveOptions, bound, geometry, solve_surface};
 
 /// Positions of a pitch at which contacts are looked at.
-pub(super) const POSITIONS: u32 = 24;
+const POSITIONS: u32 = 24;
 /// The words for points, in the order of their columns.
 const STATUSES: [&str; 8] =
     ["solved", "out_of_range", "undercut", "trimmed", "ambiguous", "undecided", "singular", "not_converged"];
@@ -272,7 +272,7 @@ impl Cases {
         let nominal: Vec<Option<NominalPoints>> = nominal.collect::<Result<_, _>>()?;
         collect.iter().try_for_each(|of| of.check(job))?;
         let widths = collect.iter().map(|of| of.heads(job).len()).collect();
-        let compiled = Compiled::new(job, &inputs, (&collect, &nominal), session)?;
+        let compiled = Compiled::new((&which, job), &inputs, (&collect, &nominal), session)?;
         Ok(Cases { which, inputs, collect, widths, nominal, compiled })
     }
 
@@ -438,6 +438,11 @@ pub(super) fn place_numbers(point: Option<&SurfacePoint>) -> Numbers {
     }
 }
 
+/// How contacts are looked at, mounted with errors.
+pub(super) fn contact_request(which: &JobSelection, errors: Vec<(String, MountingError)>) -> ContactRequest {
+    ContactRequest { positions: POSITIONS, errors, ..ContactRequest::new(which.clone()) }
+}
+
 /// Of a contact that is whole.
 pub(super) fn contact_numbers(of: &ContactNumbers) -> Numbers {
     let [lengthwise, profilewise] = [0, 1].map(|k| of.shares.map(|shares| shares[k]));
@@ -549,7 +554,7 @@ impl Case<'_, '_> {
         let contact = contact.ok_or_else(|| Failure::Input(format!("there is no contact `{name}`")))?;
         let is_own = |(axis, _): &&(String, MountingError)| contact.errors.iter().any(|known| known.name == *axis);
         let errors = self.errors.iter().filter(is_own).cloned().collect();
-        let request = ContactRequest { positions: POSITIONS, errors, ..ContactRequest::new(self.which.clone()) };
+        let request = contact_request(self.which, errors);
         let found = rolled(self.job, contact, &request, self.session)?.result;
         let middle = found.middle.as_ref();
         let on = middle.map(|middle| &middle.on[1]);

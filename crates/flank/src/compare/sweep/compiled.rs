@@ -12,7 +12,7 @@ use super::inputs::{StudyInput, size_of_unit};
 use super::opened::{Opened, Sampled};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::requests::{JobSelection, Session};
 use crate::solve::starts;
 
 /// The branch is looked for anew in each case whose number is a multiple of this, and in each whose points are not all as in the
@@ -57,7 +57,7 @@ impl Compiled {
     /// For a job; `None` where cases differ by more than numbers in its equations: the inputs decide ranges or samples or are counts, or
     /// something is collected that needs more.
     pub(super) fn new<'g>(
-        job: &Job<'g>,
+        (which, job): (&JobSelection, &Job<'g>),
         inputs: &[StudyInput],
         (collect, nominal): (&[Collected], &[Option<NominalPoints>]),
         session: Session<'_>,
@@ -77,7 +77,7 @@ impl Compiled {
             Some(first) => Tape::new(&first.graph().substitute(&all, &bindings), &variables),
             None => Tape::new(&[], &[]),
         };
-        let opened = Opened::new(job, (inputs, &open), &bindings, session);
+        let opened = Opened::new((which, job), (inputs, &open), &bindings, session);
         let mut collected = Vec::new();
         for (of, nominal) in collect.iter().zip(nominal) {
             let compiled = match (of, nominal) {

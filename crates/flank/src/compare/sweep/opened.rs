@@ -6,18 +6,19 @@ use flank_solver::{
     BoundSurface, Deviation, Outcome, Range, SecondaryCutting, SurfaceFamily, SurfaceGeometry, SurfacePoint,
 };
 
-use super::collect::{NominalPoints, POSITIONS, sample_of};
+use super::collect::{NominalPoints, contact_request, sample_of};
 use super::compiled::CompiledNumbers;
 use super::inputs::StudyInput;
 use crate::compare::map::{find, is_solved};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
-use crate::project::requests::{COMPOUND, Session};
+use crate::project::requests::{JobSelection, Session};
 use crate::solve::starts::{self, Asked, Starts};
 use crate::solve::{blank, followed, ranges, secondary};
 
 /// A job whose settings are open.
 pub(super) struct Opened<'o, 'g> {
+    which: &'o JobSelection,
     job: &'o Job<'g>,
     inputs: &'o [StudyInput],
     open: &'o [&'o Parameter<'g>],
@@ -41,13 +42,13 @@ pub(super) struct Sampled {
 impl<'o, 'g> Opened<'o, 'g> {
     /// With those of the inputs `open` that are settings; `bindings` are the values of all others.
     pub(super) fn new(
-        job: &'o Job<'g>,
+        (which, job): (&'o JobSelection, &'o Job<'g>),
         (inputs, open): (&'o [StudyInput], &'o [&'o Parameter<'g>]),
         bindings: &'o [(Expr<'g>, Expr<'g>)],
         session: Session<'o>,
     ) -> Opened<'o, 'g> {
         let settings = open.iter().map(|of| (of.variable, of.value)).collect();
-        Opened { job, inputs, open, settings, bindings, session }
+        Opened { which, job, inputs, open, settings, bindings, session }
     }
 
     fn bound(&self, surface: &GeneratedSurface<'g>) -> BoundSurface<'g> {
@@ -159,8 +160,8 @@ impl<'o, 'g> Opened<'o, 'g> {
         let (mut given, axes): (Vec<usize>, Vec<usize>) =
             inputs.filter_map(|(k, input)| Some((k, own(input)?))).unzip();
         given.extend((0..self.inputs.len()).filter(|k| !self.inputs[*k].is_axis));
-        let family =
-            ContactFamily::new(self.job, contact, (&axes, self.open), (POSITIONS as usize, COMPOUND), self.session)?;
+        let request = contact_request(self.which, Vec::new());
+        let family = ContactFamily::new(self.job, contact, (&axes, self.open), &request, self.session)?;
         Ok(family.map(|family| CompiledNumbers::Contact(Box::new((family, given)))))
     }
 
