@@ -79,10 +79,30 @@ fn in_turns<const N: usize>(rounds: usize, mut sides: [&mut dyn FnMut() -> f64; 
 fn points(folder: &Path, (count, rounds): (u64, usize)) {
     let folder = folder.join("points");
     planned(&folder, (COMMON, &[("m.radial_distance", 0.01)]), &["points"], count);
-    let [one, two] = in_turns(rounds, [&mut || run(&folder, 1), &mut || run(&folder, 2)]);
+    let mut processor = f64::INFINITY;
+    let mut alone = || {
+        let before = processor_time();
+        let seconds = run(&folder, 1);
+        processor = processor.min(processor_time() - before);
+        seconds
+    };
+    let [one, two] = in_turns(rounds, [&mut alone, &mut || run(&folder, 2)]);
     let each = |seconds: f64| 1e3 * seconds / count as f64;
-    println!("{count} cases of the common job, 1,891 points each: {:.3} ms a case on one thread", each(one));
+    println!(
+        "{count} cases of the common job, 1,891 points each: {:.3} ms a case on one thread, {:.3} ms of a processor",
+        each(one),
+        each(processor)
+    );
     println!("on two threads {:.3} ms a case, {:.2} times as fast", each(two), one / two);
+}
+
+/// What all threads together have used of processors, seconds; zero where the system does not tell.
+fn processor_time() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = status.rsplit_once(')').map_or("", |(_, rest)| rest);
+    // in user and in system mode, hundredths
+    let ticks = after_name.split_whitespace().skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok());
+    ticks.sum::<f64>() / 100.0
 }
 
 fn contact(folder: &Path, (count, rounds): (u64, usize)) {
@@ -99,9 +119,9 @@ fn contact(folder: &Path, (count, rounds): (u64, usize)) {
     );
 }
 
-fn opened(folder: &Path, (chunks, rounds): (usize, usize)) {
+fn opened(folder: &Path, (chunks, rounds): (u64, usize)) {
     let folder = folder.join("chunks");
-    planned(&folder, (COMMON, &[("m.radial_distance", 0.01)]), &["points"], 200 * chunks as u64);
+    planned(&folder, (COMMON, &[("m.radial_distance", 0.01)]), &["points"], 200 * chunks);
     let plan = folder.join("plan.json");
     let mut document: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&plan).expect("a plan")).expect("a plan");
@@ -115,8 +135,8 @@ fn opened(folder: &Path, (chunks, rounds): (usize, usize)) {
         pool.install(work);
         start.elapsed().as_secs_f64()
     };
-    let one = |study: &OpenStudy, chunk: usize| {
-        study.run(StudyChunks::Between(chunk, chunk), &[], &Unwatched).expect("a chunk");
+    let one = |study: &OpenStudy, chunk: u64| {
+        study.run(StudyChunks::Between(chunk as usize, chunk as usize), &[], &Unwatched).expect("a chunk");
     };
     let [whole, kept, anew] = in_turns(
         rounds,

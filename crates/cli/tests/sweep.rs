@@ -172,6 +172,24 @@ fn cases_that_are_compiled_once_are_those_of_their_texts() {
     }
 }
 
+/// A case is followed while its points are like those of the job itself: one that leaves a range is searched anew, with the numbers of its text.
+#[test]
+fn a_case_unlike_the_job_itself_is_searched() {
+    let folder = folder();
+    let table = written(folder.path(), "cases.csv", "m.radial_distance [mm]\n97.96\n94\n110\n");
+    let cases = ["--cases", &table];
+    let [once, each] = ["once", "each"].map(|name| study(&folder, name));
+    let (_, once) = swept(PINION, &cases, "points", &once);
+    let (_, each) = swept(PINION, &cases, "points,requirements", &each);
+    let branches: Vec<&str> = once.iter().map(|row| row[5].as_str()).collect();
+    assert_eq!(branches, ["searched", "followed", "searched"]);
+    for (one, other) in once.iter().zip(&each) {
+        // inputs, verdict, reason, then the points of each status
+        assert_eq!([&one[1..5], &one[6..14]], [&other[1..5], &other[6..14]]);
+    }
+    assert_eq!([&once[2][3], &once[2][4]], ["not all solved", "out_of_range"]);
+}
+
 /// What `flank deviation` and `flank solve` say of the job with the values of a case.
 #[test]
 fn widths_and_curvatures_are_those_of_other_commands() {
