@@ -1,8 +1,8 @@
 #!/bin/sh
-# The chunks of a study as an array of jobs, ten chunks for each:
+# The chunks of a study as an array of jobs, of any size: each takes its part of the chunks.
 #     sbatch --array=0-9 sweep_slurm.sh study
+# A task that is begun again alone takes all that is missing.
 #SBATCH --ntasks=1 --cpus-per-task=4
 study=${1:-study}
-each=${CHUNKS_OF_A_TASK:-10}
-first=$((SLURM_ARRAY_TASK_ID * each))
-exec flank sweep run "$study" --chunks "$first..$((first + each - 1))" --threads "${SLURM_CPUS_PER_TASK:-1}"
+part=$((SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN))
+exec flank sweep run "$study" --part "$part/$SLURM_ARRAY_TASK_COUNT" --threads "${SLURM_CPUS_PER_TASK:-1}"

@@ -34,5 +34,5 @@ mod _flank {
     #[pymodule_export]
     use crate::run::threads;
     #[pymodule_export]
-    use crate::sweep::{sweep_columns, sweep_plan, sweep_run, sweep_status};
+    use crate::sweep::{OpenStudy, sweep_chunks, sweep_columns, sweep_plan, sweep_status};
 }

@@ -1,9 +1,12 @@
 //! Studies: many cases of a job in a folder of chunks.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
-use flank::{CaseSource, Distribution, Failure, RunRequest, SweepRequest, SweepResult, VariedRange};
+use flank::{
+    CaseSource, Distribution, EvaluatorOptions, Failure, Monitor, StudyChunks, SweepRequest, SweepResult, VariedRange,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -54,26 +57,50 @@ pub(crate) fn sweep_plan(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>)
 /// What a table in memory is called.
 const TABLE: &str = "cases";
 
-/// Computes chunks of a study that are not there, on so many threads if they are named.
+/// A study whose job is compiled, for who computes its chunks one by one.
+#[pyclass(frozen, module = "flank._flank")]
+pub(crate) struct OpenStudy(Arc<flank::OpenStudy>);
+
+#[pymethods]
+impl OpenStudy {
+    #[new]
+    fn open(py: Python<'_>, study: PathBuf) -> PyResult<OpenStudy> {
+        let opened = move |monitor: &dyn Monitor| flank::OpenStudy::open(&study, EvaluatorOptions::default(), monitor);
+        Ok(OpenStudy(Arc::new(run(py, opened)?)))
+    }
+
+    /// Whether the plan and the texts in the folder are still those that it was opened with.
+    fn is_current(&self) -> bool {
+        self.0.is_current()
+    }
+
+    /// Computes chunks that are not there, from the first to the last of two or all, on so many threads if they are named.
+    #[pyo3(signature = (chunks=None, again=Vec::new(), threads=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        chunks: Option<(usize, usize)>,
+        again: Vec<String>,
+        threads: Option<usize>,
+    ) -> PyResult<Answer> {
+        let study = Arc::clone(&self.0);
+        let chunks = chunks.map_or(StudyChunks::All, |(first, last)| StudyChunks::Between(first, last));
+        let found = run(py, move |monitor| match threads {
+            Some(threads) => {
+                let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
+                let pool = pool.map_err(|error| Failure::Request(error.to_string()))?;
+                pool.install(|| study.run(chunks, &again, monitor))
+            }
+            None => study.run(chunks, &again, monitor),
+        })?;
+        answered(py, found)
+    }
+}
+
+/// How many chunks a study has.
 #[pyfunction]
-#[pyo3(signature = (study, chunks=None, again=Vec::new(), threads=None))]
-pub(crate) fn sweep_run(
-    py: Python<'_>,
-    study: PathBuf,
-    chunks: Option<(usize, usize)>,
-    again: Vec<String>,
-    threads: Option<usize>,
-) -> PyResult<Answer> {
-    let request = RunRequest { study, chunks, again, evaluator: flank::EvaluatorOptions::default() };
-    let found = run(py, move |monitor| match threads {
-        Some(threads) => {
-            let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
-            let pool = pool.map_err(|error| Failure::Request(error.to_string()))?;
-            pool.install(|| flank::run_sweep(&request, monitor))
-        }
-        None => flank::run_sweep(&request, monitor),
-    })?;
-    answered(py, found)
+pub(crate) fn sweep_chunks(py: Python<'_>, study: PathBuf) -> PyResult<usize> {
+    run(py, move |_| flank::sweep_chunks(&study))
 }
 
 /// How far a study is.

@@ -38,13 +38,14 @@ def has(package):
     return importlib.util.find_spec(package) is not None
 
 
-def test_an_array_of_slurm_as_its_tasks_see_it(whole, tmp_path):
-    """The script with the variables that Slurm sets; Slurm itself does not run."""
-    study = emptied(whole, tmp_path / "a", 12)
-    for task in "01":
-        ran(tmp_path, EXAMPLES / "sweep_slurm.sh", study.folder, SLURM_ARRAY_TASK_ID=task, CHUNKS_OF_A_TASK="1")
-        assert study.progress()["done"] == int(task) + 1
-    assert chunks(study) == chunks(whole)
+@pytest.mark.parametrize(("chunks_of", "tasks"), [(12, 2), (12, 1), (10, 2), (24, 3)])
+def test_an_array_of_slurm_as_its_tasks_see_it(whole, tmp_path, chunks_of, tasks):
+    """The script with the variables that Slurm sets, for arrays that divide the chunks and others; Slurm itself does not run."""
+    study, known = emptied(whole, tmp_path / "a", chunks_of), emptied(whole, tmp_path / "b", chunks_of).run()
+    for task in range(5, 5 + tasks):
+        variables = {"ID": task, "MIN": 5, "COUNT": tasks}
+        ran(tmp_path, EXAMPLES / "sweep_slurm.sh", study.folder, **{f"SLURM_ARRAY_TASK_{k}": str(v) for k, v in variables.items()})
+    assert chunks(study) == chunks(known) and study.progress()["done"] == len(chunks(known))
 
 
 @pytest.mark.skipif(not has("ray"), reason="Ray is not installed: it is 600 MB")

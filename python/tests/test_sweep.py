@@ -140,6 +140,29 @@ def test_the_whole_table_is_looked_at_before_anything_runs(job, tmp_path):
         assert not (tmp_path / "a").exists()
 
 
+@pytest.mark.skipif(not PROGRAM.is_file(), reason="the program is not built")
+def test_rows_in_parquet_are_the_columns(study, tmp_path):
+    polars = pytest.importorskip("polars")
+    command("gather", study.folder, "--out", tmp_path / "rows.parquet")
+    frame = polars.read_parquet(tmp_path / "rows.parquet")
+    columns = study.columns()
+    assert frame.columns == list(columns)
+    assert all((frame[head].to_numpy() == of).all() for head, of in columns.items())
+
+
+def test_a_run_does_not_look_at_other_chunks(study, tmp_path):
+    """A study that is open computes chunk by chunk, and sees that its plan or its texts have changed."""
+    begun = emptied(study, tmp_path / "a", 16)
+    opened = flank._flank.OpenStudy(begun.folder)
+    for chunk in (4, 1):
+        document = json.loads(opened.run((chunk, chunk), [], 1).document())
+        assert document["done"] == 1 and document["verdicts"] == {"done": 16}
+    assert opened.is_current() and begun.progress()["done"] == 2
+    text = Path(begun.folder) / "spec/bevel/pinion_19x62.chain"
+    text.write_text(text.read_text() + "\n// changed\n")
+    assert not opened.is_current()
+
+
 def test_what_does_not_go_together_is_refused(job, tmp_path):
     ends = ("97.9 mm", "98.1 mm", 2)
     refused = [

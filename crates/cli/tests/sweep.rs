@@ -128,6 +128,215 @@ fn contacts_are_collected_with_mounting_errors() {
     }
 }
 
+/// The rows of a study of a spec whose numbers are compared: from the first that is collected on.
+fn swept(spec: &str, cases: &[&str], collect: &str, out: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let run = flank(&[&["sweep", spec, "--collect", collect, "--out", out], cases].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let all = gathered(out);
+    // heads of widths have a comma and quotes
+    let parts = all.lines().next().expect("a head").split('"').enumerate();
+    let heads = parts.flat_map(|(k, part)| match k % 2 {
+        1 => vec![part.to_string()],
+        _ => part.trim_matches(',').split(',').filter(|head| !head.is_empty()).map(str::to_string).collect(),
+    });
+    (heads.collect(), rows(out))
+}
+
+/// With `requirements`, which needs the text of each case, nothing else is compiled once.
+#[test]
+fn cases_that_are_compiled_once_are_those_of_their_texts() {
+    let folder = folder();
+    let collected = [
+        (PINION, "m.radial_distance=normal(10um)", "points,width:concave,convex,curvature:concave,at:convex[7,15]"),
+        (PAIR, "p.radial_distance=normal(10um)", "contact:drive_side"),
+    ];
+    for (spec, setting, collect) in collected {
+        let mut cases = vec!["--scatter", setting, "--count", "6", "--seed", "7"];
+        if spec == PAIR {
+            cases.extend(["--scatter", "m.E=normal(10um)", "--scatter", "m.S=uniform(1arcmin)"]);
+        }
+        let [once, each] = ["once", "each"].map(|name| study(&folder, &format!("{name}{}", spec.len())));
+        let (_, once) = swept(spec, &cases, collect, &once);
+        let (_, each) = swept(spec, &cases, &format!("{collect},requirements"), &each);
+        let inputs = (cases.len() - 4) / 2;
+        for (k, (one, other)) in once.iter().zip(&each).enumerate() {
+            let branch = if k == 0 { "searched" } else { "followed" };
+            assert_eq!(one[1..4 + inputs], other[1..4 + inputs], "inputs, verdict, reason");
+            assert_eq!([&one[4 + inputs], &other[4 + inputs]], [branch, "searched"]);
+            for (one, other) in one[5 + inputs..].iter().zip(&other[5 + inputs..]) {
+                let [one, other] = [one, other].map(|cell| cell.parse::<f64>().expect("a number"));
+                // points to 1e-11 mm, of a transmission error of 1e-4 rad in urad the lag's last digits
+                assert!((one - other).abs() < 2e-9, "{spec}, case {k}: {one} and {other}");
+            }
+        }
+    }
+}
+
+/// A case is followed while its points are like those of the job itself: one that leaves a range is searched anew, with the numbers of its text.
+#[test]
+fn a_case_unlike_the_job_itself_is_searched() {
+    let folder = folder();
+    let table = written(folder.path(), "cases.csv", "m.radial_distance [mm]\n97.96\n94\n110\n");
+    let cases = ["--cases", &table];
+    let [once, each] = ["once", "each"].map(|name| study(&folder, name));
+    let (_, once) = swept(PINION, &cases, "points", &once);
+    let (_, each) = swept(PINION, &cases, "points,requirements", &each);
+    let branches: Vec<&str> = once.iter().map(|row| row[5].as_str()).collect();
+    assert_eq!(branches, ["searched", "followed", "searched"]);
+    for (one, other) in once.iter().zip(&each) {
+        // inputs, verdict, reason, then the points of each status
+        assert_eq!([&one[1..5], &one[6..14]], [&other[1..5], &other[6..14]]);
+    }
+    assert_eq!([&once[2][3], &once[2][4]], ["not all solved", "out_of_range"]);
+}
+
+/// What `flank deviation` and `flank solve` say of the job with the values of a case.
+#[test]
+fn widths_and_curvatures_are_those_of_other_commands() {
+    let folder = folder();
+    let out = folder.path().join("out").display().to_string();
+    let cases = ["--vary", "m.radial_distance=97.9mm..98.1mm by 2"];
+    let (heads, rows) = swept(PINION, &cases, "width:concave,convex,curvature:concave", &study(&folder, "a"));
+    let set = ["--set", "m.radial_distance=98.1 mm", "--no-picture", "--out", &out];
+    let found = |head: &str| {
+        let at = heads.iter().position(|known| known.ends_with(head)).expect("a column");
+        rows[1][at].parse::<f64>().expect("a number")
+    };
+    let run = flank(&[&["deviation", PINION, "concave", "--reference", "convex", "--json"], &set[..]].concat());
+    let document: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("a document");
+    for (head, key) in [("convex.turn [deg]", "turn_deg"), ("convex.width [mm]", "turn_mm")] {
+        let known = document[key].as_f64().expect("a turn");
+        // a turn brings the surface to a point to 1e-9 mm
+        assert!((found(head) - known).abs() < 1e-8, "{head}: {} and {known}", found(head));
+    }
+    let run = flank(&[&["solve", PINION, "--geometry"], &set[..]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = std::fs::read_to_string(Path::new(&out).join("pinion_19x62.csv")).expect("points");
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let columns: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let points: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    for k in ["k1", "k2"] {
+        let at = columns.iter().position(|column| *column == k).expect("a column");
+        let of_surface = points.iter().filter(|cells| cells[0] == "concave");
+        let all: Vec<f64> = of_surface.map(|cells| cells[at].parse().expect("a curvature")).collect();
+        let ends = [("lowest", f64::min as fn(f64, f64) -> f64), ("highest", f64::max)];
+        for (end, of) in ends {
+            let known = all.iter().copied().reduce(of).expect("points");
+            let found = found(&format!("{k}_{end} [1/mm]"));
+            assert!((found - known).abs() < 1e-12, "{k} {end}: {found} and {known}");
+        }
+    }
+}
+
+/// A linear propagation of tolerances and a study of normal scatter say the same, within three standard errors of the study.
+#[test]
+fn tolerances_and_studies_agree() {
+    let folder = folder();
+    let agree =
+        |spec: &str, surface: &str, settings: &[(&str, &str)], count: f64, (collect, known): (&str, &[[&str; 3]])| {
+            let linear: Vec<String> = settings.iter().map(|(name, amount)| format!("{name}={amount}")).collect();
+            let run = flank(&["tolerance", spec, surface, "--scatter", &linear.join(","), "--json"]);
+            assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+            let document: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("a document");
+            let scatter =
+                settings.iter().flat_map(|(name, amount)| ["--scatter".into(), format!("{name}=normal({amount})")]);
+            let number = count.to_string();
+            let scatter: Vec<String> =
+                scatter.chain(["--count".into(), number, "--seed".into(), "24".into()]).collect();
+            let cases: Vec<&str> = scatter.iter().map(String::as_str).collect();
+            let (heads, rows) = swept(spec, &cases, collect, &study(&folder, surface));
+            for [name, head, scale] in known {
+                let results = document["results"].as_array().expect("results").iter();
+                let linear =
+                    results.filter(|of| of["name"] == *name).filter_map(|of| of["standard_deviation"].as_f64()).next();
+                let linear = linear.unwrap_or_else(|| panic!("{name} is no result"));
+                let at = heads.iter().position(|known| known.ends_with(head)).unwrap_or_else(|| panic!("no {head}"));
+                let scale: f64 = scale.parse().expect("a number");
+                let values: Vec<f64> =
+                    rows.iter().map(|row| scale * row[at].parse::<f64>().expect("a number")).collect();
+                let mean = values.iter().sum::<f64>() / count;
+                let found = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
+                // the standard error of a standard deviation is 1/√(2 n) of it
+                let off = (found / linear - 1.0) * (2.0 * count).sqrt();
+                assert!(off.abs() < 3.0, "{name}: {found} and {linear}, {off} standard errors");
+            }
+        };
+    let settings = [("m.radial_distance", "5um"), ("m.machine_root_angle", "20arcsec"), ("m.ratio_of_roll", "0.01%")];
+    let ease_off = [
+        ["slope_profilewise", "slope_rows [um]", "1"],
+        ["slope_lengthwise", "slope_columns [um]", "1"],
+        ["crowning_profilewise", "crowning_rows [um]", "1"],
+        ["crowning_lengthwise", "crowning_columns [um]", "1"],
+        ["bias", "bias [um]", "1"],
+    ];
+    agree(PINION, "concave", &settings, 400.0, ("ease_off:concave", &ease_off));
+    let settings = [("m.E", "10um"), ("m.S", "20arcsec"), ("p.radial_distance", "5um")];
+    // degrees in urad
+    let contact = [["drive_side.error", "lag [deg]", "17453.292519943295"]];
+    agree(PAIR, "pinion_concave", &settings, 100.0, ("contact:drive_side", &contact));
+}
+
+/// The same case has the same hash however it is written, and the same study is gone on with.
+#[test]
+fn what_is_collected_has_one_spelling() {
+    let folder = folder();
+    let plan = |collect: &[&str], out: &str| {
+        let vary = ["sweep", "plan", PINION, "--vary", "m.radial_distance=97.9mm..98.1mm by 2", "--out", out];
+        let run = flank(&[&vary[..], collect].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        std::fs::read_to_string(Path::new(out).join("plan.json")).expect("a plan")
+    };
+    let out = study(&folder, "a");
+    let first = plan(&["--collect", "at:concave[0, 0], width:concave,convex"], &out);
+    assert_eq!(first, plan(&["--collect", "at:concave[0,0]", "--collect", "width:concave,convex"], &out));
+}
+
+/// Parts of any number hold each chunk once; the result of a part is that of its chunks.
+#[test]
+fn chunks_are_shared_out_in_parts() {
+    let folder = folder();
+    let [whole, parts] = ["whole", "parts"].map(|name| study(&folder, name));
+    let cases = ["--vary", "m.radial_distance=97.9mm..98.1mm by 70", "--collect", "at:concave[7,15]"];
+    for out in [&whole, &parts] {
+        let run = flank(&[&["sweep", "plan", PINION, "--out", out], &cases[..]].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let plan = Path::new(out).join("plan.json");
+        let mut document: serde_json::Value =
+            serde_json::from_str(&std::fs::read_to_string(&plan).expect("a plan")).expect("a plan");
+        document["chunk"] = 10.into();
+        std::fs::write(plan, document.to_string()).expect("a file");
+    }
+    assert_eq!(flank(&["sweep", "run", &whole]).status.code(), Some(0));
+    let done: Vec<u64> = (0..3)
+        .map(|part| {
+            let run = flank(&["sweep", "run", &parts, "--part", &format!("{part}/3"), "--json"]);
+            assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+            let document: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("a document");
+            let (done, rows) = (document["done"].as_u64(), document["verdicts"]["done"].as_u64());
+            assert_eq!(rows, done.map(|done| 10 * done));
+            done.expect("a number")
+        })
+        .collect();
+    assert_eq!(done, [2, 2, 3]);
+    assert_eq!(gathered(&whole), gathered(&parts));
+    // the same in files, of CSV and of Parquet
+    let [csv, parquet] = ["rows.csv", "rows.parquet"].map(|name| study(&folder, name));
+    for out in [&csv, &parquet] {
+        assert_eq!(flank(&["sweep", "gather", &parts, "--out", out]).status.code(), Some(0));
+    }
+    assert_eq!(std::fs::read_to_string(csv).expect("rows"), gathered(&whole));
+    let bytes = std::fs::read(parquet).expect("rows");
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+    // the times of all chunks, which rows do not have
+    let log = std::fs::read_to_string(Path::new(&parts).join("log")).expect("a log");
+    let chunks: Vec<serde_json::Value> = log.lines().map(|line| serde_json::from_str(line).expect("a line")).collect();
+    assert!(chunks.len() == 7 && chunks.iter().all(|of| of["cases"] == 10 && of["seconds"].as_f64() > Some(0.0)));
+    for wrong in ["3/3", "1", "a/2"] {
+        let run = flank(&["sweep", "run", &parts, "--part", wrong]);
+        assert_eq!(run.status.code(), Some(2), "{}", text(&run.stderr));
+    }
+}
+
 /// Killed twenty times at times that do not depend on the work, the study has each case once and the bytes of an undisturbed one.
 #[test]
 fn a_study_survives_being_killed() {

@@ -71,6 +71,8 @@ pub mod vector;
 pub use files::atomic_file::{FileSet, make_folder, write_atomically};
 pub use files::error::{FileError, FolderError, Malformed, WriteError};
 pub use files::regions::Target;
+#[cfg(feature = "parquet")]
+pub use files::rows::{CellKind, ParquetRows};
 pub use measuring::{
     FlankEnds, Hand, Measured, MeasuredFault, MeasuredGrid, MeasuredPoint, MeasuringGrid, NominalFlank, NominalPart,
     read_measured, write_grid_csv, write_grid_json,

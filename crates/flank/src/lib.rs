@@ -60,9 +60,9 @@ pub use compare::fit::result::{
 };
 pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
-pub use compare::sweep::request::{CaseSource, Distribution, RunRequest, SweepRequest, VariedRange};
+pub use compare::sweep::request::{CaseSource, Distribution, RunRequest, StudyChunks, SweepRequest, VariedRange};
 pub use compare::sweep::result::SweepResult;
-pub use compare::sweep::{gather_sweep, plan_sweep, run_sweep, sweep_status};
+pub use compare::sweep::{OpenStudy, gather_sweep, plan_sweep, run_sweep, sweep_chunks, sweep_status};
 pub use compare::synthesis::result::{CheckedContact, ReachedCondition, SynthesisResult, SynthesizedSetting};
 pub use compare::synthesis::synthesis;
 pub use compare::tolerance::result::{

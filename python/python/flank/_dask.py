@@ -44,6 +44,14 @@ def _begin(client: Any, folder: str, chunk: int, again: list[str]) -> Any:
     return client.submit(_chunk, folder, chunk, again, pure=False, retries=_RETRIES)
 
 
+# The study that this process works on, by its folder: its job is compiled once, not for each chunk.
+_open: dict[str, _flank.OpenStudy] = {}
+
+
 def _chunk(folder: str, chunk: int, again: list[str]) -> None:
     """The task. Dask gives it one thread."""
-    _flank.sweep_run(folder, (chunk, chunk), again, 1)
+    study = _open.get(folder)
+    if study is None or not study.is_current():
+        _open.clear()
+        study = _open[folder] = _flank.OpenStudy(folder)
+    study.run((chunk, chunk), again, 1)

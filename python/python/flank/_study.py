@@ -42,7 +42,7 @@ class Study:
 
     def __init__(self, folder: Path_) -> None:
         self._folder = os.path.abspath(folder)
-        self.progress()
+        _flank.sweep_chunks(self._folder)
 
     @property
     def folder(self) -> str:
@@ -67,14 +67,16 @@ class Study:
         Cases with a verdict in `again`, `"crashed"` or `"limit"`, are computed anew. `on` is a client of Dask: its workers compute, a chunk
         for a task. They see the folder under the same path. `threads` is how many threads work here; all processors otherwise.
         """
-        last = self.progress()["chunks"] - 1
-        first, last = _chunks(chunks, last) if chunks is not None else (0, last)
+        last = _flank.sweep_chunks(self._folder) - 1
+        wanted = _chunks(chunks, last) if chunks is not None else None
         if on is not None:
             from flank import _dask
 
+            first, last = wanted or (0, last)
             _dask.run(on, self._folder, range(first, last + 1), names(again))
         else:
-            _flank.sweep_run(self._folder, (first, last), names(again), whole(threads, "threads", 1, 1024))
+            study = _flank.OpenStudy(self._folder)
+            study.run(wanted, names(again), whole(threads, "threads", 1, 1024))
         return self
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:

@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches, Subcommand};
-use flank::{CaseSource, Distribution, RunRequest, SweepRequest, VariedRange};
+use flank::{CaseSource, Distribution, RunRequest, StudyChunks, SweepRequest, VariedRange};
 
 use super::tolerance::amount;
 use super::{EvaluatorArguments, JobArguments, count};
@@ -117,6 +117,9 @@ pub(crate) struct SweepRun {
     /// The chunks from the first to the last of these, counted from 0: 40..59
     #[arg(long, value_name = "FIRST..LAST", value_parser = chunks)]
     pub(crate) chunks: Option<(usize, usize)>,
+    /// One of several even parts of the chunks, counted from 0: 3/10
+    #[arg(long, value_name = "PART/PARTS", value_parser = part, conflicts_with = "chunks")]
+    pub(crate) part: Option<(usize, usize)>,
     /// Compute cases with these verdicts again: crashed, limit
     #[arg(long, value_name = "VERDICT", value_delimiter = ',')]
     pub(crate) again: Vec<String>,
@@ -140,7 +143,7 @@ pub(crate) struct SweepStatus {
 pub(crate) struct SweepGather {
     /// The folder of the study
     pub(crate) study: PathBuf,
-    /// Write the rows to a file instead of printing them
+    /// Write the rows to a file instead of printing them: a table of Parquet where its name ends with .parquet, else CSV
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what is known of the study as JSON; the rows go to --out
@@ -198,15 +201,25 @@ impl SweepPlan {
 
     /// All chunks of the study.
     pub(crate) fn run_request(&self) -> RunRequest {
-        RunRequest { study: self.out.clone(), chunks: None, again: Vec::new(), evaluator: self.evaluator.evaluator() }
+        RunRequest {
+            study: self.out.clone(),
+            chunks: StudyChunks::All,
+            again: Vec::new(),
+            evaluator: self.evaluator.evaluator(),
+        }
     }
 }
 
 impl SweepRun {
     pub(crate) fn request(&self) -> RunRequest {
+        let chunks = match (self.chunks, self.part) {
+            (Some((first, last)), _) => StudyChunks::Between(first, last),
+            (None, Some((part, parts))) => StudyChunks::Part(part, parts),
+            (None, None) => StudyChunks::All,
+        };
         RunRequest {
             study: self.study.clone(),
-            chunks: self.chunks,
+            chunks,
             again: self.again.clone(),
             evaluator: self.evaluator.evaluator(),
         }
@@ -253,6 +266,13 @@ fn chunks(text: &str) -> Result<(usize, usize), String> {
     let wanted = || "write FIRST..LAST, for example 40..59".to_string();
     let (first, last) = text.split_once("..").ok_or_else(wanted)?;
     Ok((first.trim().parse().map_err(|_| wanted())?, last.trim().parse().map_err(|_| wanted())?))
+}
+
+fn part(text: &str) -> Result<(usize, usize), String> {
+    let wanted = || "write PART/PARTS, the first part is 0: for example 3/10".to_string();
+    let (part, parts) = text.split_once('/').ok_or_else(wanted)?;
+    let found = (part.trim().parse().map_err(|_| wanted())?, parts.trim().parse().map_err(|_| wanted())?);
+    if found.0 < found.1 { Ok(found) } else { Err(wanted()) }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

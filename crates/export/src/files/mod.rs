@@ -4,4 +4,6 @@ pub(crate) mod atomic_file;
 pub(crate) mod error;
 pub(crate) mod lock;
 pub(crate) mod regions;
+#[cfg(feature = "parquet")]
+pub(crate) mod rows;
 pub(crate) mod temp_file;

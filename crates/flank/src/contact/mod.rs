@@ -1,6 +1,7 @@
 //! `flank contact`
 
 pub(crate) mod drawn;
+pub(crate) mod family;
 pub(crate) mod files;
 pub(crate) mod influence;
 pub(crate) mod interference;

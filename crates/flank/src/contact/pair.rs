@@ -154,6 +154,27 @@ impl<'j, 'g> Members<'j, 'g> {
         ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound")
     }
 
+    /// The equations of the pair in which some of its axes and then some settings are symbols; what is defined by these follows. `None` where
+    /// one of them changes how the members turn, and with that the pitch.
+    pub(crate) fn open_in(&self, job: &Job<'g>, axes: &[usize], settings: &[&Parameter<'g>]) -> Option<ContactProblem> {
+        let Contact { roll, lag, errors, .. } = self.contact;
+        let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
+        let values = job.bindings_beside(&open);
+        let bound = self.surfaces.map(|surface| BoundSurface::new(&surface.surface, ranges(surface), &values));
+        let mut pair = self.mounted(bound.each_ref(), &values, (&vec![0.0; errors.len()], axes));
+        pair.parameters.extend(settings.iter().map(|setting| (setting.variable, setting.value)));
+        let of_placement = |placement: &Chain<'g>| {
+            [roll.variable, lag.variable].map(|variable| placement.twist(variable).angular.0[2])
+        };
+        let turns: Vec<Expr<'g>> = pair.placements.iter().flat_map(of_placement).collect();
+        let known = roll.variable.graph().variables_of(&turns);
+        let is_known = |variable: &Expr<'g>| variable.as_variable().is_some_and(|variable| known.contains(&variable));
+        if pair.parameters.iter().any(|(variable, _)| is_known(variable)) {
+            return None;
+        }
+        Some(ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound"))
+    }
+
     /// Of settings, those that change the first flank alone: neither the second one nor how both are mounted.
     pub(crate) fn of_first<'p>(&self, job: &Job<'g>, settings: &[&'p Parameter<'g>]) -> Vec<&'p Parameter<'g>> {
         let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();

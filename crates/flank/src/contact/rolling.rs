@@ -23,6 +23,8 @@ const TEETH: [i32; 3] = [0, 1, -1];
 /// A pair of flanks over its roll.
 pub(crate) struct Rolling {
     pub(crate) problem: ContactProblem,
+    /// What it was followed from.
+    pub(crate) first: ContactPoint,
     /// One pair of teeth through the mesh; its step 0 is the middle.
     pub(crate) engagement: Engagement,
     /// Where the lag is extreme, if it is somewhere.
@@ -66,6 +68,16 @@ impl Rolling {
         let roll = &members.contact.roll;
         let limits = [roll.low, roll.high];
         let first = found(&problem, limits, members.points.each_ref().map(Vec::as_slice))?;
+        Ok(Rolling::from_first(problem, first, (steps, every), limits))
+    }
+
+    /// Followed from a contact.
+    pub(crate) fn from_first(
+        problem: ContactProblem,
+        first: ContactPoint,
+        (steps, every): (usize, Option<f64>),
+        limits: [f64; 2],
+    ) -> Rolling {
         let has_pitch = every.is_some();
         // of one pair alone all of the roll is looked at
         let pitch = every.unwrap_or(0.5 * (limits[1] - limits[0]));
@@ -75,11 +87,11 @@ impl Rolling {
             None => {
                 let coarse = problem.engagement(&first, pitch, steps.min(COARSE), limits);
                 let vertex = among(&problem, &coarse);
-                (vertex.clone(), vertex.or_else(|| middle(&coarse)).unwrap_or(first))
+                (vertex.clone(), vertex.or_else(|| middle(&coarse)).unwrap_or_else(|| first.clone()))
             }
         };
         let engagement = problem.engagement(&middle, pitch, steps, limits);
-        Ok(Rolling { problem, engagement, vertex, has_pitch })
+        Rolling { problem, first, engagement, vertex, has_pitch }
     }
 
     /// The point of the middle: where the error is extreme, or in the middle of contact of the flanks.
@@ -125,6 +137,43 @@ impl Rolling {
             self.problem.transfer(engagement, [before, after], between)
         });
         handed.collect()
+    }
+
+    /// Between which values the composite lag changes over a pitch; `transfers` are those of this.
+    pub(crate) fn span(&self, transfers: &[f64]) -> Option<[f64; 2]> {
+        let lag = |step: isize| match self.has_pitch {
+            true => self.engagement.carried(step).map(|carried| carried.lag),
+            false => self.engagement.point(0, step).map(|point| point.lag),
+        };
+        // between two positions the composite is extreme where a pair hands over; the vertex is one of them
+        let at_transfers = transfers.iter().filter_map(|roll| self.lag_at(*roll));
+        let lags = self.steps().filter_map(lag).chain(at_transfers);
+        lags.map(|lag| [lag, lag]).reduce(|[a, b], [c, _]| [a.min(c), b.max(c)])
+    }
+
+    /// Where contact of the flanks ends before the roll does: on which side, -1 or 1, and its last point there.
+    pub(crate) fn flank_ends(&self) -> Vec<(isize, ContactPoint)> {
+        let Engagement { points, is_whole, .. } = &self.engagement;
+        let outermost = [(-1, points.first(), is_whole[0]), (1, points.last(), is_whole[1])];
+        let ended = outermost.into_iter().filter(|(_, point, is_whole)| {
+            let goes_on = point.is_some_and(ContactPoint::is_of_flanks);
+            *is_whole || !goes_on
+        });
+        ended.filter_map(|(way, ..)| Some((way, self.problem.flank_end(&self.engagement, way)?))).collect()
+    }
+
+    /// How many pitches contact of the flanks lasts, between both of its ends.
+    pub(crate) fn ratio(&self, ends: &[(isize, ContactPoint)]) -> Option<f64> {
+        match ends {
+            [(_, begin), (_, end)] if self.has_pitch => Some((end.roll - begin.roll) / self.engagement.pitch),
+            _ => None,
+        }
+    }
+
+    /// Positions at which the flanks would have to touch beyond the ranges of their tools.
+    pub(crate) fn outside(&self) -> usize {
+        let points = self.engagement.points.iter();
+        points.filter(|point| point.is_of_flanks() && point.outcome != Outcome::Solved).count()
     }
 
     /// The composite lag at any roll position.

@@ -1,7 +1,7 @@
 //! The numbers of a contact, in the units that people read.
 
 use flank_chain_dsl::{Dimension, Job};
-use flank_solver::{ContactPoint, ContactState, FlankEdge, Outcome};
+use flank_solver::{ContactPoint, ContactState, FlankEdge};
 
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
@@ -103,12 +103,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
-        let ends = self.ends(rolling);
-        let pitch = rolling.has_pitch.then_some(rolling.engagement.pitch);
-        let ratio = match (pitch, &ends[..]) {
-            (Some(pitch), [(begin, _), (end, _)]) => Some((end - begin) / pitch),
-            _ => None,
-        };
+        let ends = rolling.flank_ends();
         let kind = rolling.state().map(|state| match state {
             ContactState::Touching => ContactKind::Point,
             ContactState::Line => ContactKind::Line,
@@ -118,8 +113,8 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             kind,
             middle: rolling.middle().map(|point| self.middle(rolling, point)),
             error: self.error(rolling),
-            ratio,
-            ends: ends.into_iter().map(|(_, end)| end).collect(),
+            ratio: rolling.ratio(&ends),
+            ends: ends.iter().map(|(way, point)| self.end(rolling, *way, point)).collect(),
             edges: if rolling.has_pitch { self.edges(rolling) } else { Vec::new() },
             pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
             not_done: self.not_done(rolling, patterns),
@@ -159,20 +154,12 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     fn error(&self, rolling: &Rolling) -> Option<TransmissionError> {
-        let engagement = &rolling.engagement;
-        let lag = |step: isize| match rolling.has_pitch {
-            true => engagement.carried(step).map(|carried| carried.lag),
-            false => engagement.point(0, step).map(|point| point.lag),
-        };
-        // between two positions the composite is extreme where a pair hands over; the vertex is one of them
         let handed = rolling.transfers();
-        let at_transfers = handed.iter().filter_map(|roll| rolling.lag_at(*roll));
-        let lags: Vec<f64> = rolling.steps().filter_map(lag).chain(at_transfers).collect();
-        let ends = lags.iter().map(|lag| (*lag, *lag)).reduce(|(a, b), (c, _)| (a.min(c), b.max(c)))?;
+        let [low, high] = rolling.span(&handed)?;
         let pairs = rolling.steps().map(|step| self.within_film(rolling, step)).max();
         Some(TransmissionError {
             unit: fine_unit(self.unknown()).to_string(),
-            peak_to_peak: self.fine(ends.1 - ends.0),
+            peak_to_peak: self.fine(high - low),
             transfers: handed.iter().map(|roll| self.turn(*roll)).collect(),
             pairs: pairs.filter(|_| rolling.has_pitch).unwrap_or(1),
         })
@@ -186,31 +173,16 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         points.filter(|point| ((point.lag - carried.lag) * point.opening).abs() <= self.request.compound).count()
     }
 
-    /// Where contact of the flanks begins and ends, with the roll positions.
-    fn ends(&self, rolling: &Rolling) -> Vec<(f64, FlankEnd)> {
-        let engagement = &rolling.engagement;
-        let is_flank = |point: &&ContactPoint| point.is_of_flanks();
-        let end = |way: isize| {
-            let is_open = match way {
-                -1 => engagement.points.first().filter(is_flank).is_some() && !engagement.is_whole[0],
-                _ => engagement.points.last().filter(is_flank).is_some() && !engagement.is_whole[1],
-            };
-            if is_open {
-                return None;
-            }
-            let point = rolling.problem.flank_end(engagement, way)?;
-            let edge = self.edge_at(rolling, &point);
-            let of = edge.map_or(self.outside(&point), |edge| edge.member);
-            let at = edge.map(|edge| self.edge_name(edge));
-            let end = FlankEnd {
-                turn: self.turn(point.roll),
-                of: self.members.surfaces[of].name.clone(),
-                at,
-                is_begin: way < 0,
-            };
-            Some((point.roll, end))
-        };
-        [-1, 1].into_iter().filter_map(end).collect()
+    /// Where contact of the flanks begins or ends.
+    fn end(&self, rolling: &Rolling, way: isize, point: &ContactPoint) -> FlankEnd {
+        let edge = self.edge_at(rolling, point);
+        let of = edge.map_or_else(|| self.outside(point), |edge| edge.member);
+        FlankEnd {
+            turn: self.turn(point.roll),
+            of: self.members.surfaces[of].name.clone(),
+            at: edge.map(|edge| self.edge_name(edge)),
+            is_begin: way < 0,
+        }
     }
 
     /// The edge on which a contact of the flanks lies, but for one that a line of contact goes on to all the way.
@@ -270,9 +242,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let [first, second] = self.members.surfaces.map(|surface| &surface.name);
         let name = &self.members.contact.name;
         let mut told = Vec::new();
-        let outside =
-            rolling.engagement.points.iter().filter(|point| point.is_of_flanks() && point.outcome != Outcome::Solved);
-        let outside = outside.count();
+        let outside = rolling.outside();
         if outside > 0 {
             let message = format!(
                 "contact {name}: at {} the flanks would have to touch beyond the ranges of their tools",

@@ -24,6 +24,11 @@ impl Asked {
         let names = sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone());
         Asked { names, targets: sample.targets(), counts: sample.counts }
     }
+
+    /// Whether both coordinates are functions of the place alone: the same places on any surface.
+    pub(crate) fn is_of_places(&self) -> bool {
+        self.names.iter().all(|name| OF_PLACES.contains(&name.as_str()))
+    }
 }
 
 /// Two coordinates of a surface with the values that points of another one have.
@@ -36,7 +41,7 @@ impl<'g> Starts<'g> {
     /// Of a surface beside the points of a sample of another one: by the sample's own coordinates where these are functions of the
     /// place, else by two that tell the points apart. Names of unknowns say nothing here: another tool's `u` is another place.
     pub(crate) fn beside(surface: &GeneratedSurface<'g>, (asked, points): (&Asked, &[SurfacePoint])) -> Starts<'g> {
-        let (names, targets) = if asked.names.iter().all(|name| OF_PLACES.contains(&name.as_str())) {
+        let (names, targets) = if asked.is_of_places() {
             (asked.names.each_ref().map(String::as_str), asked.targets.clone())
         } else {
             let names = telling(points);

@@ -1,13 +1,14 @@
 //! Work on the chunks of a study. A chunk is a file that is there whole or not at all: who is killed begins it again.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use flank_export::{CellKind, WriteError};
 use rayon::prelude::*;
 
 use super::collect::{Cases, Found};
@@ -23,6 +24,39 @@ const CAREFUL: u32 = 2;
 /// A case that was worked on so often when the program ended is not tried again. What ends programs at random hits one case so often only
 /// by a chance of one in thousands: each run goes on with the case at which the last one ended, and keeps what it has computed.
 const DEADLY: u32 = 5;
+/// The file of a study in which times stand: rows have none, so that equal chunks are equal bytes.
+const LOG: &str = "log";
+
+/// Numbers of failed cases that are listed.
+const LISTED: usize = 100;
+
+/// What is known of the chunks that were looked at.
+#[derive(Default)]
+pub(super) struct Tally {
+    /// Chunks that are there.
+    pub(super) done: usize,
+    /// Rows by their verdict.
+    pub(super) verdicts: BTreeMap<String, u64>,
+    /// Numbers of the first cases whose verdict is not `done`.
+    pub(super) failed: Vec<u64>,
+}
+
+impl Tally {
+    /// One more chunk with its rows, in the order of chunks.
+    pub(super) fn add<'r>(&mut self, plan: &Plan, chunk: usize, rows: impl Iterator<Item = &'r str>) {
+        self.done += 1;
+        for (number, row) in plan.numbers(chunk).zip(rows) {
+            let verdict = verdict_of(plan, row).unwrap_or("crashed");
+            match self.verdicts.get_mut(verdict) {
+                Some(count) => *count += 1,
+                None => _ = self.verdicts.insert(verdict.to_string(), 1),
+            }
+            if verdict != "done" && self.failed.len() < LISTED {
+                self.failed.push(number);
+            }
+        }
+    }
+}
 
 /// A study that is worked on.
 pub(super) struct Work<'w> {
@@ -36,19 +70,48 @@ pub(super) struct Work<'w> {
 impl Plan {
     /// Where the rows of a chunk stand.
     pub(super) fn chunk_file(&self, folder: &Path, chunk: usize) -> PathBuf {
-        folder.join("chunks").join(format!("{}.csv", self.hash_of_chunk(chunk)))
+        Plan::file_of_hash(folder, &self.hash_of_chunk(chunk))
+    }
+
+    fn file_of_hash(folder: &Path, hash: &str) -> PathBuf {
+        folder.join("chunks").join(format!("{hash}.csv"))
     }
 
     /// The first line of each chunk.
     pub(super) fn head(&self) -> String {
-        let inputs = self.inputs.iter().map(|input| input.head());
-        let heads = ["case".to_string(), "number".to_string()].into_iter().chain(inputs);
-        let all: Vec<String> = heads
-            .chain(["verdict", "why", "branch"].map(str::to_string))
-            .chain(self.heads.iter().cloned())
-            .map(|head| if head.contains(',') { format!("\"{head}\"") } else { head })
-            .collect();
+        let quoted = |head: String| if head.contains(',') { format!("\"{head}\"") } else { head };
+        let all: Vec<String> = self.columns().into_iter().map(|(head, _)| quoted(head)).collect();
         all.join(",")
+    }
+
+    /// The heads of the columns with what their cells are.
+    pub(super) fn columns(&self) -> Vec<(String, CellKind)> {
+        let text = |head: &str| (head.to_string(), CellKind::Text);
+        let number = |head: String| (head, CellKind::Number);
+        [text("case"), ("number".to_string(), CellKind::Count)]
+            .into_iter()
+            .chain(self.inputs.iter().map(|input| number(input.head())))
+            .chain(["verdict", "why", "branch"].map(text))
+            .chain(self.heads.iter().cloned().map(number))
+            .collect()
+    }
+
+    /// Hands over the texts of the chunks that are there, one by one in their order, and counts their rows.
+    ///
+    /// # Errors
+    /// What `each` gives.
+    pub(super) fn each_chunk(
+        &self,
+        folder: &Path,
+        tally: &mut Tally,
+        each: &mut dyn FnMut(&str) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
+        for chunk in 0..self.chunks() {
+            let Ok(rows) = std::fs::read_to_string(self.chunk_file(folder, chunk)) else { continue };
+            tally.add(self, chunk, rows.lines().skip(1));
+            each(&rows)?;
+        }
+        Ok(())
     }
 
     fn row(&self, number: u64, values: &[f64], found: &Found) -> String {
@@ -75,24 +138,27 @@ pub(super) fn shown(number: f64) -> String {
 }
 
 impl Work<'_> {
-    /// Computes a chunk unless it is there.
+    /// Computes a chunk unless it is there, and counts its rows.
     ///
     /// # Errors
     /// If the work is cancelled, or something cannot be written.
-    pub(super) fn chunk(&self, chunk: usize, again: &[String]) -> Result<(), Failure> {
-        let file = self.plan.chunk_file(self.folder, chunk);
+    pub(super) fn chunk(&self, chunk: usize, again: &[String], tally: &mut Tally) -> Result<(), Failure> {
+        let start = Instant::now();
+        let hash = self.plan.hash_of_chunk(chunk);
+        let file = Plan::file_of_hash(self.folder, &hash);
         let known = match std::fs::read_to_string(&file) {
             Ok(text) => {
                 let is_wanted = |row: &str| verdict_of(self.plan, row).is_some_and(|of| again.iter().any(|o| o == of));
                 let rows: Vec<String> = text.lines().skip(1).map(str::to_string).collect();
                 if !rows.iter().any(|row| is_wanted(row)) {
+                    tally.add(self.plan, chunk, rows.iter().map(String::as_str));
                     return Ok(());
                 }
                 rows.into_iter().map(|row| (!is_wanted(&row)).then_some(row)).collect()
             }
             Err(_) => vec![None; self.plan.numbers(chunk).count()],
         };
-        let journal = Journal::begin(&self.folder.join("open").join(self.plan.hash_of_chunk(chunk)))?;
+        let journal = Journal::begin(&self.folder.join("open").join(&hash))?;
         let rows = if journal.attempts > CAREFUL {
             self.one_by_one(chunk, known, &journal)?
         } else {
@@ -101,7 +167,23 @@ impl Work<'_> {
         let text = format!("{}\n{}\n", self.plan.head(), rows.join("\n"));
         write_text(&file, &text)?;
         journal.end();
+        tally.add(self.plan, chunk, rows.iter().map(String::as_str));
+        self.log(chunk, &hash, start.elapsed());
         Ok(())
+    }
+
+    /// Adds to the log of the study how long a chunk took. What cannot be written there is not missed.
+    fn log(&self, chunk: usize, hash: &str, elapsed: Duration) {
+        let line = serde_json::json!({
+            "chunk": chunk,
+            "file": hash,
+            "cases": self.plan.numbers(chunk).count(),
+            "seconds": (elapsed.as_secs_f64() * 1e6).round() / 1e6,
+            "threads": rayon::current_num_threads(),
+        });
+        let log = std::fs::OpenOptions::new().create(true).append(true).open(self.folder.join(LOG));
+        // one call, so that lines of several runs do not mix
+        _ = log.and_then(|mut log| log.write_all(format!("{line}\n").as_bytes()));
     }
 
     fn together(&self, chunk: usize, known: Vec<Option<String>>) -> Result<Vec<String>, Failure> {

@@ -1,16 +1,18 @@
 //! What of a case becomes a row.
 
+use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use flank_chain_dsl::{Job, Sample, compile_request};
 use flank_export::Values;
 use flank_expr::Graph;
-use flank_solver::{EaseOff, Outcome, SurfacePoint};
+use flank_solver::{EaseOff, SurfacePoint};
 
 use super::compiled::Compiled;
 use super::inputs::StudyInput;
 use crate::compare::deviation;
 use crate::compare::map::{Named, find, is_solved};
+use crate::contact::family::ContactNumbers;
 use crate::contact::rolled;
 use crate::project::failure::Failure;
 use crate::project::findings::{Findings, Severity};
@@ -175,6 +177,22 @@ impl Collected {
     }
 }
 
+/// As it is written.
+impl fmt::Display for Collected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Collected::Points => write!(f, "points"),
+            Collected::Requirements => write!(f, "requirements"),
+            Collected::Limits => write!(f, "limits"),
+            Collected::EaseOff(of) => write!(f, "ease_off:{of}"),
+            Collected::Width([a, b]) => write!(f, "width:{a},{b}"),
+            Collected::Curvature(of) => write!(f, "curvature:{of}"),
+            Collected::At(of, [row, column]) => write!(f, "at:{of}[{row},{column}]"),
+            Collected::Contact(of) => write!(f, "contact:{of}"),
+        }
+    }
+}
+
 /// `concave[7,15]`
 fn place(text: &str) -> Option<(String, [usize; 2])> {
     let (name, at) = text.strip_suffix(']')?.split_once('[')?;
@@ -182,7 +200,7 @@ fn place(text: &str) -> Option<(String, [usize; 2])> {
     Some((name.trim().to_string(), [row.trim().parse().ok()?, column.trim().parse().ok()?]))
 }
 
-fn sample_of<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Sample<'g>, Failure> {
+pub(super) fn sample_of<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Sample<'g>, Failure> {
     let of = find(std::slice::from_ref(job), name)?;
     of.surface.sample.as_ref().ok_or_else(|| {
         Failure::Input(format!("`{name}` is not sampled: its sample says at which points; add `sample {name} {{ … }}`"))
@@ -254,7 +272,7 @@ impl Cases {
         let nominal: Vec<Option<NominalPoints>> = nominal.collect::<Result<_, _>>()?;
         collect.iter().try_for_each(|of| of.check(job))?;
         let widths = collect.iter().map(|of| of.heads(job).len()).collect();
-        let compiled = Compiled::new(job, &inputs, (&collect, &nominal), session)?;
+        let compiled = Compiled::new((&which, job), &inputs, (&collect, &nominal), session)?;
         Ok(Cases { which, inputs, collect, widths, nominal, compiled })
     }
 
@@ -283,8 +301,10 @@ impl Cases {
 
     fn found(&self, case: (u64, &[f64]), session: Session<'_>) -> Result<Found, Failure> {
         session.check()?;
-        if let Some(compiled) = &self.compiled {
-            return Ok(compiled.found(case, &self.nominal, |verdict, why| self.nothing(verdict, why)));
+        let compiled = self.compiled.as_ref();
+        let nothing = |verdict, why: &str| self.nothing(verdict, why);
+        if let Some(found) = compiled.and_then(|compiled| compiled.found(case, &self.nominal, nothing)) {
+            return Ok(found);
         }
         let values = case.1;
         let given = || self.inputs.iter().zip(values);
@@ -388,6 +408,50 @@ pub(super) fn ease_off_numbers(
     (numbers, (!is_whole).then(|| "no_deviation".to_string()))
 }
 
+/// How far one surface is turned from another, of which `point` is the middle of the grid.
+pub(super) fn width_numbers(turn: f64, point: &SurfacePoint) -> Numbers {
+    let [x, y, _] = point.position;
+    (vec![Some(turn.to_degrees()), Some(x.hypot(y) * turn)], None)
+}
+
+/// The ends of both principal curvatures of points.
+pub(super) fn curvature_numbers(points: &[SurfacePoint], principal: impl Iterator<Item = [f64; 2]>) -> Numbers {
+    let mut ends = [[None; 2]; 2];
+    for both in principal {
+        for ([low, high], k) in ends.iter_mut().zip(both).filter(|(_, k)| k.is_finite()) {
+            *low = Some(low.map_or(k, |low: f64| low.min(k)));
+            *high = Some(high.map_or(k, |high: f64| high.max(k)));
+        }
+    }
+    let lost = points.iter().find(|point| !is_solved(point)).map(|point| point.outcome.word().to_string());
+    (ends.concat(), lost)
+}
+
+/// Of one point of a sample.
+pub(super) fn place_numbers(point: Option<&SurfacePoint>) -> Numbers {
+    match point {
+        Some(point) if is_solved(point) => (point.position.into_iter().chain(point.normal).map(Some).collect(), None),
+        other => {
+            let why = other.map_or("not_solved", |point| point.outcome.word());
+            (vec![None; PLACE.len()], Some(why.to_string()))
+        }
+    }
+}
+
+/// How contacts are looked at, mounted with errors.
+pub(super) fn contact_request(which: &JobSelection, errors: Vec<(String, MountingError)>) -> ContactRequest {
+    ContactRequest { positions: POSITIONS, errors, ..ContactRequest::new(which.clone()) }
+}
+
+/// Of a contact that is whole.
+pub(super) fn contact_numbers(of: &ContactNumbers) -> Numbers {
+    let [lengthwise, profilewise] = [0, 1].map(|k| of.shares.map(|shares| shares[k]));
+    let [half_length, half_width] = [0, 1].map(|k| of.ellipse.map(|ellipse| ellipse[k]));
+    let [z, rho] = of.place.map(Some);
+    let numbers = [of.peak_to_peak, Some(of.lag), of.ratio, lengthwise, profilewise, z, rho, half_length, half_width];
+    (numbers.to_vec(), None)
+}
+
 impl Case<'_, '_> {
     fn options(&self) -> SolveOptions<'_> {
         SolveOptions {
@@ -468,30 +532,21 @@ impl Case<'_, '_> {
         let sample = sample_of(self.job, name)?;
         let points = solve::points(self.job, of.surface, sample, self.options()).points;
         let fields = geometry::fields(self.job, of.surface, sample, &points);
-        let ends = ["k1", "k2"].map(|wanted| {
+        let values = ["k1", "k2"].map(|wanted| {
             let values = fields.iter().find(|field| field.name == wanted).map(|field| &field.values);
-            let Some(Values::Scalars(values)) = values else { return [None; 2] };
-            let known = || (0..points.len()).filter_map(|k| values.at(k)).filter(|value| value.is_finite());
-            [known().reduce(f64::min), known().reduce(f64::max)]
+            move |k: usize| match values {
+                Some(Values::Scalars(values)) => values.at(k).unwrap_or(f64::NAN),
+                _ => f64::NAN,
+            }
         });
-        let lost = points.iter().find(|point| !is_solved(point)).map(|point| point.outcome.word().to_string());
-        Ok((ends.concat(), lost))
+        Ok(curvature_numbers(&points, (0..points.len()).map(|k| values.each_ref().map(|of| of(k)))))
     }
 
     fn at(&self, name: &str, [row, column]: [usize; 2]) -> Result<Numbers, Failure> {
         let of = self.named(name)?;
         let sample = sample_of(self.job, name)?;
         let points = solve::points(self.job, of.surface, sample, self.options()).points;
-        let point = points.get(row * sample.counts[1] + column);
-        Ok(match point {
-            Some(point) if point.outcome == Outcome::Solved => {
-                (point.position.into_iter().chain(point.normal).map(Some).collect(), None)
-            }
-            other => {
-                let why = other.map_or("not_solved", |point| point.outcome.word());
-                (vec![None; PLACE.len()], Some(why.to_string()))
-            }
-        })
+        Ok(place_numbers(points.get(row * sample.counts[1] + column)))
     }
 
     fn contact(&self, name: &str) -> Result<Numbers, Failure> {
@@ -499,7 +554,7 @@ impl Case<'_, '_> {
         let contact = contact.ok_or_else(|| Failure::Input(format!("there is no contact `{name}`")))?;
         let is_own = |(axis, _): &&(String, MountingError)| contact.errors.iter().any(|known| known.name == *axis);
         let errors = self.errors.iter().filter(is_own).cloned().collect();
-        let request = ContactRequest { positions: POSITIONS, errors, ..ContactRequest::new(self.which.clone()) };
+        let request = contact_request(self.which, errors);
         let found = rolled(self.job, contact, &request, self.session)?.result;
         let middle = found.middle.as_ref();
         let on = middle.map(|middle| &middle.on[1]);

@@ -6,23 +6,24 @@ mod collect;
 mod compiled;
 mod drawn;
 mod inputs;
+mod opened;
 mod plan;
 pub(crate) mod request;
 pub(crate) mod result;
+mod study;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use flank_chain_dsl::compile_request;
+use flank_export::{ParquetRows, write_atomically};
 use flank_expr::Graph;
 
-use self::chunks::{Work, verdict_of};
+use self::chunks::Tally;
 use self::collect::{Cases, Collected};
-use self::plan::{Plan, write_text};
+use self::plan::{Plan, VERSION};
 use self::request::{CaseSource, RunRequest, SweepRequest};
 use self::result::SweepResult;
-use crate::project::answer::Timing;
+pub use self::study::OpenStudy;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -36,8 +37,6 @@ const FEWEST: u64 = 64;
 const MOST: u64 = 65_536;
 /// Cases that tell how long one takes.
 const TRIED: u64 = 16;
-/// Numbers of failed cases that are listed.
-const LISTED: usize = 100;
 
 /// Makes the plan of a study: a folder with the texts of the spec, what differs from case to case, and what is collected. Everything is
 /// looked at before a case is computed.
@@ -84,7 +83,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
     let plan = Plan {
         inputs,
         cases: values,
-        collect: request.collect.clone(),
+        collect: collect.iter().map(Collected::to_string).collect(),
         heads: collect.iter().flat_map(|of| of.heads(job)).collect(),
         limit: request.limit.map(|limit| limit.as_secs_f64()),
         chunk,
@@ -113,48 +112,20 @@ fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
     )))
 }
 
-/// Computes the chunks of a study that are not there.
+/// Computes the chunks of a study that are not there. The result is that of the chunks that are asked for.
 ///
 /// # Errors
 /// If there is no study, its texts are not those of its plan, something cannot be written, or the work is cancelled.
 pub fn run_sweep(request: &RunRequest, monitor: &dyn Monitor) -> Result<SweepResult, Failure> {
-    let start = Instant::now();
-    let plan = Plan::read(&request.study)?;
-    let session = Session::new(request.evaluator, monitor);
-    let which = plan.selection(&request.study);
-    check_texts(&plan, &which, &request.study)?;
-    let known = ["crashed", "limit"];
-    if let Some(other) = request.again.iter().find(|word| !known.contains(&word.as_str())) {
-        return Err(Failure::Request(format!("option `again {other}`: write {}", known.join(" or "))));
-    }
-    let all = plan.chunks();
-    let (first, last) = request.chunks.unwrap_or((0, all - 1));
-    if first > last || last >= all {
-        let message = format!("option `chunks {first}..{last}`: the study has chunks 0 to {}", all - 1);
-        return Err(Failure::Request(message));
-    }
-    let cases = Cases::new(which, plan.inputs.clone(), &plan.collect, session)?;
-    let work = Work { folder: &request.study, plan: &plan, cases: &cases, evaluator: request.evaluator, monitor };
-    let working = session.begin(format!("computing {}", units::counted(plan.cases.count() as usize, "case")))?;
-    for chunk in first..=last {
-        working.reached(&|| format!("{chunk} of {all} chunks"));
-        work.chunk(chunk, &request.again)?;
-    }
-    let computed = plan.numbers(first).start..plan.numbers(last).end;
-    let timing = Timing { points: (computed.end - computed.start) as usize, elapsed: start.elapsed() };
-    Ok(SweepResult { timing: Some(timing), ..told(&request.study, &plan) })
+    OpenStudy::open(&request.study, request.evaluator, monitor)?.run(request.chunks, &request.again, monitor)
 }
 
-fn check_texts(plan: &Plan, which: &JobSelection, study: &Path) -> Result<(), Failure> {
-    let graph = Graph::new();
-    let compilation = compile_request(&graph, which.file(), &which.request());
-    if Origin::of_compilation(&compilation).hash == plan.hash {
-        return Ok(());
-    }
-    Err(Failure::Input(format!(
-        "the texts in {} are not those that the study was planned with: bring them back, or plan another study",
-        study.join("spec").display()
-    )))
+/// How many chunks a study has, whether they are there or not.
+///
+/// # Errors
+/// If there is no study.
+pub fn sweep_chunks(study: &Path) -> Result<usize, Failure> {
+    Ok(Plan::read(study)?.chunks())
 }
 
 /// How far a study is.
@@ -165,21 +136,37 @@ pub fn sweep_status(study: &Path) -> Result<SweepResult, Failure> {
     Ok(told(study, &Plan::read(study)?))
 }
 
-/// All rows of a study in the order of its cases, as CSV, with what is missing; also in a file, whole or not at all, if one is named.
+/// All rows of a study in the order of its cases, with what is missing: as CSV, or in a file, whole or not at all, if one is named; then the
+/// text is empty. A file whose name ends with `.parquet` is a table of Parquet, any other one CSV.
 ///
 /// # Errors
 /// If there is no study, or the file cannot be written.
 pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepResult), Failure> {
     let plan = Plan::read(study)?;
-    let mut text = plan.head() + "\n";
-    for chunk in 0..plan.chunks() {
-        let rows = std::fs::read_to_string(plan.chunk_file(study, chunk)).unwrap_or_default();
-        rows.lines().skip(1).for_each(|row| {
-            text += row;
-            text.push('\n');
-        });
+    let (mut text, mut tally) = (String::new(), Tally::default());
+    match out {
+        Some(file) if file.extension().is_some_and(|ending| ending == "parquet") => write_atomically(file, |out| {
+            let mut table = ParquetRows::new(&plan.columns(), &format!("flank {VERSION}"), out)?;
+            plan.each_chunk(study, &mut tally, &mut |rows| {
+                table.add(&rows.lines().skip(1).map(|row| row.split(',').collect()).collect::<Vec<_>>())
+            })?;
+            table.finish()
+        })?,
+        Some(file) => write_atomically(file, |out| {
+            writeln!(out, "{}", plan.head())?;
+            plan.each_chunk(study, &mut tally, &mut |rows| Ok(out.write_all(without_head(rows).as_bytes())?))
+        })?,
+        None => {
+            text = plan.head() + "\n";
+            plan.each_chunk(study, &mut tally, &mut |rows| {
+                text += without_head(rows);
+                Ok(())
+            })
+            .map_err(|reason| Failure::Input(reason.to_string()))?;
+        }
     }
-    let mut result = told(study, &plan);
+    let mut result = SweepResult::of(study, &plan, tally);
+    result.files.extend(out.map(shown_path));
     let missing = plan.chunks() - result.done;
     if missing > 0 {
         let message = format!(
@@ -189,39 +176,15 @@ pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepRe
         );
         result.not_done.push(NotDone::new(NotDoneKind::NotSolved, &plan.job, message));
     }
-    if let Some(file) = out {
-        write_text(file, &text)?;
-        result.files.push(shown_path(file));
-    }
     Ok((text, result))
 }
 
+fn without_head(chunk: &str) -> &str {
+    chunk.split_once('\n').map_or("", |(_, rows)| rows)
+}
+
 fn told(study: &Path, plan: &Plan) -> SweepResult {
-    let mut verdicts: BTreeMap<String, u64> = BTreeMap::new();
-    let (mut done, mut failed) = (0, Vec::new());
-    for chunk in 0..plan.chunks() {
-        let Ok(rows) = std::fs::read_to_string(plan.chunk_file(study, chunk)) else { continue };
-        done += 1;
-        for (number, row) in plan.numbers(chunk).zip(rows.lines().skip(1)) {
-            let verdict = verdict_of(plan, row).unwrap_or("crashed");
-            *verdicts.entry(verdict.to_string()).or_default() += 1;
-            if verdict != "done" && failed.len() < LISTED {
-                failed.push(number);
-            }
-        }
-    }
-    SweepResult {
-        study: shown_path(study),
-        job: plan.job.clone(),
-        inputs: plan.inputs.iter().map(|input| input.head()).collect(),
-        collected: plan.heads.clone(),
-        cases: plan.cases.count(),
-        chunks: plan.chunks(),
-        done,
-        verdicts,
-        failed,
-        files: Vec::new(),
-        not_done: Vec::new(),
-        timing: None,
-    }
+    let mut tally = Tally::default();
+    plan.each_chunk(study, &mut tally, &mut |_| Ok(())).expect("nothing is written");
+    SweepResult::of(study, plan, tally)
 }

@@ -63,13 +63,24 @@ pub enum Distribution {
     Uniform(ToleratedAmount),
 }
 
+/// Chunks of a study, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyChunks {
+    /// All of them.
+    All,
+    /// From the first to the last of these.
+    Between(usize, usize),
+    /// One of so many parts that are as even as can be: which, counted from 0, and of how many. A part may be empty.
+    Part(usize, usize),
+}
+
 /// Work on a study.
 #[derive(Clone, Debug)]
 pub struct RunRequest {
     /// The folder of the study.
     pub study: PathBuf,
-    /// The chunks from the first to the last of these, counted from 0; all otherwise.
-    pub chunks: Option<(usize, usize)>,
+    /// Which chunks.
+    pub chunks: StudyChunks,
     /// Verdicts of cases that are computed anew: `crashed`, `limit`.
     pub again: Vec<String>,
     /// How the numbers are worked out.

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::chunks::Tally;
+use super::plan::Plan;
 use crate::project::answer::{Answer, Timing};
 use crate::project::remark::NotDone;
-use crate::project::units;
+use crate::project::{shown_path, units};
 
 /// How far a study is, of `flank sweep`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -26,7 +29,7 @@ pub struct SweepResult {
     pub cases: u64,
     /// Chunks of the study.
     pub chunks: usize,
-    /// Chunks that are there.
+    /// Chunks that are there; of a run over some chunks, those of them.
     pub done: usize,
     /// Rows that are there by their verdict: `done`, `not all solved`, `spec wrong`, `limit`, `crashed`.
     pub verdicts: BTreeMap<String, u64>,
@@ -38,6 +41,26 @@ pub struct SweepResult {
     pub not_done: Vec<NotDone>,
     #[serde(skip)]
     pub(super) timing: Option<Timing>,
+}
+
+impl SweepResult {
+    /// Of chunks that were looked at.
+    pub(super) fn of(study: &Path, plan: &Plan, tally: Tally) -> SweepResult {
+        SweepResult {
+            study: shown_path(study),
+            job: plan.job.clone(),
+            inputs: plan.inputs.iter().map(|input| input.head()).collect(),
+            collected: plan.heads.clone(),
+            cases: plan.cases.count(),
+            chunks: plan.chunks(),
+            done: tally.done,
+            verdicts: tally.verdicts,
+            failed: tally.failed,
+            files: Vec::new(),
+            not_done: Vec::new(),
+            timing: None,
+        }
+    }
 }
 
 impl Answer for SweepResult {

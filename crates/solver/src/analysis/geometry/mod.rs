@@ -137,6 +137,13 @@ impl SurfaceGeometry {
         })
     }
 
+    /// The same of a surface that was given while settings were open ([`Graph::with_settings`](flank_expr::Graph::with_settings)), with
+    /// these values of them.
+    #[must_use]
+    pub fn with_settings(&self, values: &[f64]) -> SurfaceGeometry {
+        SurfaceGeometry { tape: self.tape.with_settings(values), ..*self }
+    }
+
     /// The geometry at a point of the surface, given by its unknowns (mm or radians), which must solve the constraints.
     ///
     /// # Panics
