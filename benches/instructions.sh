@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Instructions that a point of a grid, a part of a contact and a whole process take, counted by valgrind, against `benches/instructions.txt`: a rise of more
+# Instructions that a point of a grid, of slow surfaces of the library, a part of a contact and a whole process take, counted by valgrind, against `benches/instructions.txt`: a rise of more
 # than 3 % fails. `benches/instructions.sh --accept` writes today's counts there; the commit that does so says why.
 # Counted are repetitions after the first one, and processes from their start to the written CSV file, in the dev profile: expressions
 # and solver are optimised there, reading and writing are not.
@@ -32,6 +32,11 @@ rolling() { # job repetitions
         sed -n 's/.*Collected : //p'
 }
 
+resampled() { # surface side repetitions
+    RAYON_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null target/debug/examples/resampled_once "$@" 2>&1 >/dev/null |
+        sed -n 's/.*Collected : //p'
+}
+
 process() { # name
     case $1 in
         surface) set -- solve benches/spiral_bevel.chain --job flank ;;
@@ -46,7 +51,7 @@ process() { # name
 fresh=$(mktemp)
 out=$(mktemp -d)
 trap 'rm -rf "$fresh" "$out"' EXIT
-printf '# %s\n# job rows columns instructions-a-point, part contact - thousands, process - - thousands\n' "$compiler" >"$fresh"
+printf '# %s\n# job rows columns instructions-a-point, surface resampled side instructions-a-point, part contact - thousands, process - - thousands\n' "$compiler" >"$fresh"
 failed=0
 while read -r job rows columns before; do
     if [ "$rows" = - ]; then
@@ -61,6 +66,9 @@ while read -r job rows columns before; do
         # a process differs from the next by some 60,000 instructions: short parts are repeated more often
         more=$([ "$job" = vertex ] && echo 30 || echo 3)
         now=$((($(rolling "$job" $((more + 1))) - $(rolling "$job" 1)) / more / 1000))
+    elif [ "$rows" = resampled ]; then
+        what="$job, $columns x $columns" unit="instructions a point"
+        now=$((($(resampled "$job" "$columns" 3) - $(resampled "$job" "$columns" 1)) / 2 / (columns * columns)))
     else
         what="$job $rows x $columns" unit="instructions a point"
         now=$((($(run "$job" "$rows" "$columns" 6) - $(run "$job" "$rows" "$columns" 1)) / 5 / (rows * columns)))

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::Outcome;
 use crate::continuation::field::{Along, Field, Lines, Strip};
+use crate::continuation::lattice::Ways;
 use crate::continuation::line::{Midpoint, denser, divided_difference, lattice, levels};
 use crate::continuation::path::Path;
 use crate::equations::solution::{Range, Solution};
@@ -172,7 +173,7 @@ impl<'s> Grid<'s> {
         self.settle(&mut field, newton, &[anchor]);
         let by_hand = match self.is_careful {
             true => VecDeque::from([anchor]),
-            false => self.spread_in_lanes(&mut field, newton, anchor, [rows.as_slice(), &columns]),
+            false => self.spread_in_lanes(&mut field, newton, vec![anchor], ([rows.as_slice(), &columns], Ways::All)),
         };
         if !by_hand.is_empty() {
             let solved = self.spread(&mut field, by_hand, &rows, &columns);
@@ -201,15 +202,21 @@ impl<'s> Grid<'s> {
         field
     }
 
-    /// What is left of some rows, by the careful path.
+    /// What is left of some rows: from solved points beside it in lanes, then by the careful path.
     pub(crate) fn finish(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, rows: std::ops::Range<usize>) {
         if !field.is_complete() {
             let columns: Vec<usize> = (0..self.columns).collect();
             let step = if self.are_rows_apart { 1 } else { rows.len().max(1) };
             for first in rows.step_by(step) {
                 let beside = first..first + step;
-                let unfinished = self.edge_of_roots(field, beside.clone());
-                self.spread(field, unfinished, &beside.collect::<Vec<usize>>(), &columns);
+                let rows: Vec<usize> = beside.clone().collect();
+                let mut edge = self.edge_of_roots(field, beside.clone());
+                if !self.is_careful && !edge.is_empty() {
+                    let lattice = ([rows.as_slice(), &columns], Ways::Straight);
+                    self.spread_in_lanes(field, solvers.newton(), edge.into(), lattice);
+                    edge = self.edge_of_roots(field, beside);
+                }
+                self.spread(field, edge, &rows, &columns);
             }
         }
         field.place_loose(&mut solvers.careful);

@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
 use std::array;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 
 use flank_expr::LANES;
 
@@ -11,6 +11,14 @@ use crate::continuation::field::{Field, SAME_DETERMINANT};
 use crate::continuation::grid::{ASTRAY, Grid};
 use crate::equations::solution::{NEAR, Range};
 use crate::newton::batch::{LaneNewton, Lanes};
+
+/// Which points beside each other are steps apart.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Ways {
+    Straight,
+    /// Also over corners.
+    All,
+}
 
 /// A step from a solved point to the next one.
 #[derive(Clone, Copy)]
@@ -20,20 +28,19 @@ struct Leap {
 }
 
 impl Grid<'_> {
-    /// From the anchor to the points of the lattice of some rows and columns, in waves: along the tangent, then by Newton. A
+    /// From solved points to those of the lattice of some rows and columns, in waves: along the tangent, then by Newton. A
     /// step counts only if it passes the test of the careful path in `stays_near` and the determinant hardly changes. Gives
     /// the solved points beside those that are left for that path.
     pub(crate) fn spread_in_lanes(
         &mut self,
         field: &mut Field,
         newton: &mut LaneNewton<'_>,
-        anchor: usize,
-        lattice: [&[usize]; 2],
+        mut wave: Vec<usize>,
+        (lattice, ways): ([&[usize]; 2], Ways),
     ) -> VecDeque<usize> {
         let mut unfinished = VecDeque::new();
-        let mut wave = vec![anchor];
         while !wave.is_empty() {
-            let leaps = self.leaps(field, &wave, lattice);
+            let leaps = self.leaps(field, &wave, lattice, ways);
             let mut next = Vec::new();
             for block in leaps.chunks(LANES) {
                 self.leap(field, newton, block);
@@ -46,8 +53,8 @@ impl Grid<'_> {
     }
 
     /// Where the points of a wave lead that is not solved yet; each point once.
-    fn leaps(&self, field: &Field, wave: &[usize], [rows, columns]: [&[usize]; 2]) -> Vec<Leap> {
-        let mut leaps: Vec<Leap> = Vec::new();
+    fn leaps(&self, field: &Field, wave: &[usize], [rows, columns]: [&[usize]; 2], ways: Ways) -> Vec<Leap> {
+        let (mut leaps, mut reached) = (Vec::new(), HashSet::new());
         for &from in wave {
             let (i, j) = (from / self.columns, from % self.columns);
             let beside = |places: &[usize], at: usize| {
@@ -57,8 +64,9 @@ impl Grid<'_> {
             let (across, along) = (beside(columns, j), beside(rows, i));
             let corners = along.iter().flat_map(|i| across.iter().map(move |j| (*i, *j)));
             let straight = across.iter().map(|j| (Some(i), *j)).chain(along.iter().map(|i| (*i, Some(j))));
+            let corners = corners.filter(|_| ways == Ways::All);
             for to in straight.chain(corners).filter_map(|(i, j)| Some(i? * self.columns + j?)) {
-                if !field.is_root(to) && leaps.iter().all(|leap| leap.to != to) {
+                if !field.is_root(to) && reached.insert(to) {
                     leaps.push(Leap { from, to });
                 }
             }

@@ -21,6 +21,12 @@ impl Midpoint {
     pub(crate) fn known(&self) -> &[(usize, f64)] {
         &self.stencil[..self.count]
     }
+
+    /// How much of the way between those beside it leads to it.
+    pub(crate) fn share(&self) -> f64 {
+        let [before, behind] = self.beside;
+        (self.at - before) as f64 / (behind - before) as f64
+    }
 }
 
 /// The places on a line of `length` points that are solved first: both ends, some between, and `anchor`.

@@ -25,6 +25,7 @@ const MOST_LOOKED_AT: usize = 4096;
 pub(crate) struct Keep<'c> {
     /// Functions of the unknowns.
     pub(crate) tape: &'c Tape,
+    pub(crate) in_lanes: &'c LaneTape,
     /// Between which values they lie.
     pub(crate) between: &'c [Range],
     /// Where its unknowns may be.
@@ -53,9 +54,30 @@ impl Keep<'_> {
         kept.next().ok_or(condition)
     }
 
+    /// Those of some points of a field at which a condition does not hold.
+    fn doubtful(&self, field: &Field, points: ops::Range<usize>) -> Vec<usize> {
+        let judged: Vec<usize> = points.filter(|point| is_judged(field, *point)).collect();
+        // few runs do not pay for machine code
+        let mut evaluator = LaneEvaluator::new(self.in_lanes, InstructionSet::widest());
+        let mut doubtful = Vec::new();
+        for points in judged.chunks(LANES) {
+            for (lane, point) in points.iter().enumerate() {
+                field.unknowns(*point).enumerate().for_each(|(k, value)| evaluator.input(k)[lane] = value);
+            }
+            evaluator.run_first(points.len());
+            let holds = |lane: usize| {
+                let within =
+                    |(k, range): (usize, &Range)| (range.low..=range.high).contains(&evaluator.output(k)[lane]);
+                self.between.iter().enumerate().all(within)
+            };
+            doubtful.extend(points.iter().enumerate().filter(|(lane, _)| !holds(*lane)).map(|(_, point)| *point));
+        }
+        doubtful
+    }
+
     /// The verdicts on some points of a field.
     pub(crate) fn judge(&self, field: &mut Field, points: ops::Range<usize>, ranges: &[Range], periodic: &[bool]) {
-        for point in points.filter(|point| field.is_root(*point) && !field.is_outside(*point)).collect::<Vec<_>>() {
+        for point in self.doubtful(field, points) {
             let unknowns: Vec<f64> = field.unknowns(point).collect();
             match self.turned(&unknowns, ranges, periodic) {
                 Ok(turned) if turned == unknowns => {}

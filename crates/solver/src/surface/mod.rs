@@ -50,7 +50,7 @@ pub struct SurfaceProblem {
     ranges: Vec<Range>,
     several: Several,
     /// Functions of the unknowns, and between which values they lie on the branch that is meant.
-    keep: (Tape, Vec<Range>),
+    keep: (Tape, LaneTape, Vec<Range>),
     /// Where the unknowns of that branch are.
     kept_ranges: Vec<Range>,
     /// Unknowns that mean the same after a turn.
@@ -153,7 +153,7 @@ impl SurfaceProblem {
             several,
             at_once: MOST_AT_ONCE,
             most_boxes: MOST_BOXES,
-            keep: (Tape::new(&[], &bound.unknowns)?, Vec::new()),
+            keep: kept_by(&[], &bound.unknowns, Vec::new())?,
         })
     }
 
@@ -181,7 +181,7 @@ impl SurfaceProblem {
             search: self.search.as_ref().map(|search| search.with_settings(values)),
             point: self.point.with_settings(values),
             slopes: self.slopes.with_settings(values),
-            keep: (self.keep.0.with_settings(values), self.keep.1.clone()),
+            keep: (self.keep.0.with_settings(values), self.keep.1.with_settings(values), self.keep.2.clone()),
             asked: self.asked,
             ranges: self.ranges.clone(),
             several: self.several,
@@ -236,7 +236,7 @@ impl SurfaceProblem {
         for (kept, unknown) in kept_ranges.iter_mut().zip(unknowns) {
             keep.iter().filter(|(value, _)| value == unknown).for_each(|(_, range)| *kept = kept.common(*range));
         }
-        Ok(SurfaceProblem { keep: (Tape::new(&values, unknowns)?, ranges), kept_ranges, ..self })
+        Ok(SurfaceProblem { keep: kept_by(&values, unknowns, ranges)?, kept_ranges, ..self })
     }
 
     /// The same problem, whose branch is followed through wider ranges than its own: where it has no point in its ranges at the
@@ -355,10 +355,10 @@ impl SurfaceProblem {
 
     /// Calls something with the choice among branches that this problem makes.
     fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
-        let (tape, between) = &self.keep;
+        let (tape, in_lanes, between) = &self.keep;
         let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
         let planes = TangentPlanes { slopes: &self.slopes, ranges: &self.ranges };
-        let keep = Keep { tape, between, ranges: &self.kept_ranges };
+        let keep = Keep { tape, in_lanes, between, ranges: &self.kept_ranges };
         solve(&Choice {
             roots: &roots,
             keep: Some(keep).filter(|_| !between.is_empty()),
@@ -423,4 +423,15 @@ impl SurfaceProblem {
         };
         solutions.iter().map(point).collect()
     }
+}
+
+/// Functions of the unknowns with the ranges that they are to lie in.
+fn kept_by<'g>(
+    values: &[Expr<'g>],
+    unknowns: &[Expr<'g>],
+    ranges: Vec<Range>,
+) -> Result<(Tape, LaneTape, Vec<Range>), TapeError> {
+    let tape = Tape::new(values, unknowns)?;
+    let in_lanes = LaneTape::new(&tape);
+    Ok((tape, in_lanes, ranges))
 }

@@ -6,7 +6,7 @@ use std::array;
 
 use flank_expr::LANES;
 
-use super::strip::{Strip, is_astray, keeps_sign};
+use super::strip::{Strip, determinant_between, is_astray};
 use super::{Field, block_of, take};
 use crate::continuation::line::{divided_difference, stencil};
 use crate::continuation::path::is_between;
@@ -28,8 +28,9 @@ struct Between {
     /// The first place of the polynomial, and the weights of it and those that follow.
     first: usize,
     weights: Vec<Lanes>,
-    /// The place before each lane; the lane is before the next one.
+    /// The place before each lane; the lane is before the next one, this share of the way from one to the other.
     before: [usize; LANES],
+    share: Lanes,
 }
 
 impl Field {
@@ -78,7 +79,12 @@ impl Along {
             (0..LANES).for_each(|lane| weights[lane] *= product[lane] * share);
             (0..LANES).for_each(|lane| product[lane] *= at[lane] - *place as f64);
         }
-        Between { first: around.start, weights, before: at.map(|at| before(at as usize)) }
+        let before = at.map(|at| before(at as usize));
+        let share = array::from_fn(|lane| {
+            let [start, end] = [0, 1].map(|k| places[before[lane] + k] as f64);
+            (at[lane] - start) / (end - start)
+        });
+        Between { first: around.start, weights, before, share }
     }
 
     /// On the polynomial through the places around the strip.
@@ -97,11 +103,7 @@ impl Along {
     /// Determinants; no numbers where they may vanish between the places.
     #[inline(always)]
     fn determinants(&self, between: &Between, line: usize) -> Lanes {
-        let sums = self.sums(between, line, self.size - 1);
-        array::from_fn(|lane| {
-            let [before, behind] = self.beside(between, lane, line, self.size - 1);
-            if keeps_sign(before, sums[lane], behind) { sums[lane] } else { f64::NAN }
-        })
+        array::from_fn(|lane| determinant_between(self.beside(between, lane, line, self.size - 1), between.share[lane]))
     }
 
     /// How far apart the places before and behind a lane are, as a share of the ranges.
@@ -152,14 +154,26 @@ impl Strip<'_> {
             rough = newton.were_rough();
             let is_checked = rough && !newton.has_all_given();
             let found = *newton.determinant();
-            let stays = |lane: usize| !is_checked || is_between([expected[lane]; 2], 0.0, found[lane]);
-            if (0..width).all(stays) && self.take_plain(line, newton) {
+            let mut stays = [true; LANES];
+            if is_checked {
+                for lane in 0..width {
+                    stays[lane] = is_between([expected[lane]; 2], 0.0, found[lane]);
+                }
+                if !stays[..width].iter().all(|stays| *stays) {
+                    let smooth = along.sums(&between, k, shape.size);
+                    for lane in 0..width {
+                        let keeps_sign = expected[lane] * smooth[lane] > 0.0;
+                        stays[lane] |= keeps_sign && is_between([smooth[lane]; 2], 0.0, found[lane]);
+                    }
+                }
+            }
+            if stays[..width].iter().all(|stays| *stays) && self.take_plain(line, newton) {
                 continue;
             }
             for lane in 0..width {
                 let apart = || along.apart(&between, (lane, k), self.ranges);
                 let is_open = !self.marks[line][lane].is_root();
-                if is_open && stays(lane) && newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
+                if is_open && stays[lane] && newton.is_root(lane) && !is_astray(newton.moved(lane), apart) {
                     let values = block_of(shape, self.values, line);
                     take(shape, values, &mut self.marks[line], lane, newton, lane);
                 }

@@ -162,22 +162,15 @@ impl Strip<'_> {
         newton.instructions().dispatch(
             #[inline(always)]
             || {
-                for plane in 0..=size {
-                    if newton.is_given(plane) && !rough {
-                        continue;
-                    }
-                    let sums = self.sums(midpoint.known(), plane);
-                    if plane < size {
-                        *newton.input(plane) = sums;
-                    } else {
-                        *newton.determinant() = sums;
+                for plane in 0..size {
+                    if rough || !newton.is_given(plane) {
+                        *newton.input(plane) = self.sums(midpoint.known(), plane);
                     }
                 }
                 let [before, behind] = midpoint.beside.map(|line| self.plane(line, size));
-                let determinant = newton.determinant();
+                let (determinant, share) = (newton.determinant(), midpoint.share());
                 for lane in 0..LANES {
-                    let is_known = keeps_sign(before[lane], determinant[lane], behind[lane]);
-                    determinant[lane] = if is_known { determinant[lane] } else { f64::NAN };
+                    determinant[lane] = determinant_between([before[lane], behind[lane]], share);
                 }
             },
         );
@@ -199,7 +192,7 @@ impl Strip<'_> {
             is_complete &= is_root(*line);
             *known = (first(*line), *weight);
         }
-        let share = (midpoint.at - before) as f64 / (behind - before) as f64;
+        let share = midpoint.share();
         let linear = [(first(before), 1.0 - share), (first(behind), share)];
         let known = if is_complete { &stencil[..midpoint.known().len()] } else { &linear };
         let sum =
@@ -207,9 +200,8 @@ impl Strip<'_> {
         for k in 0..shape.size {
             newton.input(k)[lane] = sum(k);
         }
-        let [before, behind] = linear.map(|(first, _)| values[first + shape.size * LANES]);
-        let between = sum(shape.size);
-        newton.determinant()[lane] = if keeps_sign(before, between, behind) { between } else { f64::NAN };
+        let beside = linear.map(|(first, _)| values[first + shape.size * LANES]);
+        newton.determinant()[lane] = determinant_between(beside, share);
         true
     }
 
@@ -227,23 +219,33 @@ impl Strip<'_> {
         are_plain
     }
 
-    /// Where the determinant is what it is along the branch of both neighbours. Of lanes that took no step that is known before, and
-    /// what is given in closed form has no other branch.
+    /// Where the determinant is what it is along the branch of both neighbours, or of all points that the start is from. Of lanes that took
+    /// no step that is known before, and what is given in closed form has no other branch.
     fn stay_on_branch(&self, midpoint: &Midpoint, newton: &mut LaneNewton<'_>) -> [bool; LANES] {
         let mut stays = [true; LANES];
-        if newton.were_rough() && !newton.has_all_given() {
-            let [before, behind] = midpoint.beside;
-            let share = (midpoint.at - before) as f64 / (behind - before) as f64;
-            let [before, behind] = [before, behind].map(|line| self.plane(line, self.shape.size));
-            let (instructions, determinant) = (newton.instructions(), newton.determinant());
-            instructions.dispatch(
-                #[inline(always)]
-                || {
-                    for lane in 0..LANES {
-                        stays[lane] = is_between([before[lane], behind[lane]], share, determinant[lane]);
-                    }
-                },
-            );
+        if !newton.were_rough() || newton.has_all_given() {
+            return stays;
+        }
+        let (share, size) = (midpoint.share(), self.shape.size);
+        let [before, behind] = midpoint.beside.map(|line| self.plane(line, size));
+        let (instructions, found) = (newton.instructions(), newton.determinant());
+        instructions.dispatch(
+            #[inline(always)]
+            || {
+                for lane in 0..LANES {
+                    stays[lane] = is_between([before[lane], behind[lane]], share, found[lane]);
+                }
+            },
+        );
+        if !stays[..self.width].iter().all(|stays| *stays) {
+            let expected: Lanes = self.sums(midpoint.known(), size);
+            for lane in 0..self.width {
+                let is_known = || midpoint.known().iter().all(|(line, _)| self.marks[*line][lane].is_root());
+                stays[lane] |= before[lane] * behind[lane] > 0.0
+                    && before[lane] * expected[lane] > 0.0
+                    && is_between([expected[lane]; 2], 0.0, found[lane])
+                    && is_known();
+            }
         }
         stays
     }
@@ -268,10 +270,11 @@ impl Strip<'_> {
     }
 }
 
-/// Whether a determinant between two others, and the way between them, cannot vanish. Not if one is no number.
+/// The determinant at a share of the way between two places; no number where it may vanish there. Not on a polynomial through many lines:
+/// of determinants only a few digits are known, and a polynomial makes much of what is wrong with them.
 #[inline(always)]
-pub(super) fn keeps_sign(before: f64, between: f64, behind: f64) -> bool {
-    is_same_side(before, behind) & is_same_side(before, between) & is_same_side(behind, between)
+pub(super) fn determinant_between([before, behind]: [f64; 2], share: f64) -> f64 {
+    if is_same_side(before, behind) { before + share * (behind - before) } else { f64::NAN }
 }
 
 /// Whether the determinant cannot vanish between two places beside each other where it has these values. Not if one is no number.
