@@ -137,7 +137,7 @@ mod tests {
         let heads = [("number".to_string(), CellKind::Count), ("z [mm]".to_string(), CellKind::Number)];
         for row in [vec!["1"], vec!["1.5", "2"], vec!["1", "x"]] {
             let mut table = ParquetRows::new(&heads, "flank", Vec::new()).expect("a table");
-            assert!(table.add(&[row.clone()]).is_err(), "{row:?}");
+            assert!(table.add(std::slice::from_ref(&row)).is_err(), "{row:?}");
         }
     }
 }
