@@ -243,7 +243,7 @@ fn with_points<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
-    let is_settled = context.expects && builder.sampled.are_known();
+    let is_settled = context.is_whole && builder.sampled.are_known();
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);

@@ -38,7 +38,7 @@ impl JobSelection {
 
     pub(crate) fn request(&self) -> Request<'_> {
         let files = self.project.shared_files();
-        Request { files, job: self.job.as_deref(), set: &self.set, expectations: false, ..Request::default() }
+        Request { files, job: self.job.as_deref(), set: &self.set, whole: false, ..Request::default() }
     }
 
     /// # Errors
