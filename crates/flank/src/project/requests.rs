@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Job, Request};
+use flank_chain_dsl::{GeneratedSurface, Job, Request, Sample};
 use flank_expr::InstructionSet;
 use flank_solver::MOST_BOXES;
 
@@ -13,6 +13,7 @@ use crate::project::choices::{
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
+use crate::solve::once::{Solved, SolvedOnce};
 
 /// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
@@ -86,11 +87,31 @@ impl Default for EvaluatorOptions {
 pub(crate) struct Session<'m> {
     options: EvaluatorOptions,
     monitor: &'m dyn Monitor,
+    known: Option<&'m SolvedOnce>,
 }
 
 impl<'m> Session<'m> {
     pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Session<'m> {
-        Session { options, monitor }
+        Session { options, monitor, known: None }
+    }
+
+    /// The same where samples are solved once, by whoever comes first: of one compilation, whose surfaces do not change.
+    pub(crate) fn with_known(self, known: &'m SolvedOnce) -> Session<'m> {
+        Session { known: Some(known), ..self }
+    }
+
+    /// The points of the sample of a surface, as they are solved or judged.
+    pub(crate) fn sample(
+        self,
+        of: (&Job<'_>, &GeneratedSurface<'_>),
+        sample: &Sample<'_>,
+        is_judged: bool,
+        solve: impl FnOnce() -> Solved,
+    ) -> Solved {
+        match self.known {
+            Some(known) => known.sample(of, sample, is_judged, solve),
+            None => solve(),
+        }
     }
 
     pub(crate) fn boxes(self) -> u64 {

@@ -12,6 +12,7 @@ use crate::solve::certify;
 use crate::solve::cut::{self, Cut};
 use crate::solve::geometry;
 use crate::solve::limits::Line;
+use crate::solve::once;
 use crate::solve::options::SolveOptions;
 use crate::solve::reach;
 use crate::solve::secondary::{self, Positions};
@@ -137,18 +138,41 @@ pub(crate) fn points<'j, 'g>(
     sample: &Sample<'g>,
     wanted: SolveOptions,
 ) -> Found<'j, 'g> {
+    let (of, session) = ((job, surface), wanted.session);
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, wanted.session);
-    let (mut points, effort) = problem.solve(&sample.targets(), sample.counts);
-    let trims = surface.trimmed_by.iter().enumerate();
-    let trims = trims.map(|(number, &by)| {
-        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.session))
-    });
-    let trims = trims.collect();
-    secondary::judge_trims(job, surface, &mut points, sample.counts);
-    let positions = secondary::judge(job, surface, &mut points, sample.counts);
-    blank::cut(job, surface, &mut points);
+    let problem = problem(job, surface, coordinates, session);
+    let solved = || as_solved(&problem, sample);
+    let mut trims = Vec::new();
+    let found = if surface.trimmed_by.is_empty() {
+        session.sample(of, sample, true, || judged(of, sample, session.sample(of, sample, false, solved)))
+    } else {
+        let mut found = session.sample(of, sample, false, solved);
+        trims.extend(surface.trimmed_by.iter().enumerate().map(|(number, &by)| {
+            trims::cut(job, [surface, &job.surfaces[by]], sample, &mut found.points, (number, session))
+        }));
+        judged(of, sample, found)
+    };
+    let once::Solved { points, effort, positions } = found;
+    let positions = positions.expect("what is judged has them");
     Found { problem, points, effort, trims, positions }
+}
+
+/// The points of a sample as its equations have them.
+pub(crate) fn as_solved(problem: &SurfaceProblem, sample: &Sample<'_>) -> once::Solved {
+    let (points, effort) = problem.solve(&sample.targets(), sample.counts);
+    once::Solved { points, effort, positions: None }
+}
+
+/// The same without what tools and the blank cut away.
+fn judged<'g>(
+    (job, surface): (&Job<'g>, &GeneratedSurface<'g>),
+    sample: &Sample<'_>,
+    mut found: once::Solved,
+) -> once::Solved {
+    secondary::judge_trims(job, surface, &mut found.points, sample.counts);
+    found.positions = Some(secondary::judge(job, surface, &mut found.points, sample.counts));
+    blank::cut(job, surface, &mut found.points);
+    found
 }
 
 /// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.

@@ -10,6 +10,7 @@ use crate::project::monitor::{Monitor, Unwatched};
 use crate::project::requests::{JobSelection, Session, check};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
+use crate::solve::once::SolvedOnce;
 use crate::testing::judge::{judged, of_pose};
 use crate::testing::points::{Tested, thinned};
 use crate::testing::quantities::Known;
@@ -53,7 +54,9 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
     if compilation.has_errors() {
         return Ok(nothing);
     }
-    let session = Session::new(request.evaluator, monitor);
+    // contacts, bodies and expectations ask for the same samples
+    let known = SolvedOnce::default();
+    let session = Session::new(request.evaluator, monitor).with_known(&known);
     let which = JobSelection::all(project.clone());
     match tested(&graph, &compilation, (request, &which, session)) {
         Ok((items, snapshot)) => Ok(TestedSpec { items, snapshot, ..nothing }),
