@@ -13,7 +13,7 @@ use crate::project::choices::{
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
-use crate::solve::once::{Solved, SolvedOnce};
+use crate::project::once::KnownSamples;
 
 /// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
@@ -87,7 +87,7 @@ impl Default for EvaluatorOptions {
 pub(crate) struct Session<'m> {
     options: EvaluatorOptions,
     monitor: &'m dyn Monitor,
-    known: Option<&'m SolvedOnce>,
+    known: Option<&'m KnownSamples>,
 }
 
 impl<'m> Session<'m> {
@@ -96,21 +96,21 @@ impl<'m> Session<'m> {
     }
 
     /// The same where samples are solved once, by whoever comes first: of one compilation, whose surfaces do not change.
-    pub(crate) fn with_known(self, known: &'m SolvedOnce) -> Session<'m> {
+    pub(crate) fn with_known(self, known: &'m KnownSamples) -> Session<'m> {
         Session { known: Some(known), ..self }
     }
 
-    /// The points of the sample of a surface, as they are solved or judged.
-    pub(crate) fn sample(
+    /// What is asked of the sample of a surface.
+    pub(crate) fn sample<Found: Clone + Send + Sync + 'static>(
         self,
         of: (&Job<'_>, &GeneratedSurface<'_>),
         sample: &Sample<'_>,
-        is_judged: bool,
-        solve: impl FnOnce() -> Solved,
-    ) -> Solved {
+        what: &'static str,
+        find: impl FnOnce() -> Found,
+    ) -> Found {
         match self.known {
-            Some(known) => known.sample(of, sample, is_judged, solve),
-            None => solve(),
+            Some(known) => known.find(of, sample, what, find),
+            None => find(),
         }
     }
 

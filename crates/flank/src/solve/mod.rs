@@ -11,7 +11,6 @@ pub(crate) mod fields;
 pub(crate) mod geometry;
 pub(crate) mod keep;
 pub(crate) mod limits;
-pub(crate) mod once;
 pub(crate) mod options;
 pub(crate) mod pictures;
 pub(crate) mod points;

@@ -12,7 +12,6 @@ use crate::solve::certify;
 use crate::solve::cut::{self, Cut};
 use crate::solve::geometry;
 use crate::solve::limits::Line;
-use crate::solve::once;
 use crate::solve::options::SolveOptions;
 use crate::solve::reach;
 use crate::solve::secondary::{self, Positions};
@@ -144,31 +143,44 @@ pub(crate) fn points<'j, 'g>(
     let solved = || as_solved(&problem, sample);
     let mut trims = Vec::new();
     let found = if surface.trimmed_by.is_empty() {
-        session.sample(of, sample, true, || judged(of, sample, session.sample(of, sample, false, solved)))
+        session.sample(of, sample, JUDGED, || judged(of, sample, session.sample(of, sample, SOLVED, solved)))
     } else {
-        let mut found = session.sample(of, sample, false, solved);
+        let mut found = session.sample(of, sample, SOLVED, solved);
         trims.extend(surface.trimmed_by.iter().enumerate().map(|(number, &by)| {
             trims::cut(job, [surface, &job.surfaces[by]], sample, &mut found.points, (number, session))
         }));
         judged(of, sample, found)
     };
-    let once::Solved { points, effort, positions } = found;
+    let FoundPoints { points, effort, positions } = found;
     let positions = positions.expect("what is judged has them");
     Found { problem, points, effort, trims, positions }
 }
 
+/// What is asked of samples: their points as the equations have them, and without those that are cut away.
+pub(crate) const SOLVED: &str = "solved";
+const JUDGED: &str = "judged";
+
+/// The points of a sample, and what it took to find them.
+#[derive(Clone)]
+pub(crate) struct FoundPoints {
+    pub(crate) points: Vec<SurfacePoint>,
+    effort: GridReport,
+    /// Of the tool, that points were checked against; none where they are as they were solved.
+    positions: Option<Positions>,
+}
+
 /// The points of a sample as its equations have them.
-pub(crate) fn as_solved(problem: &SurfaceProblem, sample: &Sample<'_>) -> once::Solved {
+pub(crate) fn as_solved(problem: &SurfaceProblem, sample: &Sample<'_>) -> FoundPoints {
     let (points, effort) = problem.solve(&sample.targets(), sample.counts);
-    once::Solved { points, effort, positions: None }
+    FoundPoints { points, effort, positions: None }
 }
 
 /// The same without what tools and the blank cut away.
 fn judged<'g>(
     (job, surface): (&Job<'g>, &GeneratedSurface<'g>),
     sample: &Sample<'_>,
-    mut found: once::Solved,
-) -> once::Solved {
+    mut found: FoundPoints,
+) -> FoundPoints {
     secondary::judge_trims(job, surface, &mut found.points, sample.counts);
     found.positions = Some(secondary::judge(job, surface, &mut found.points, sample.counts));
     blank::cut(job, surface, &mut found.points);

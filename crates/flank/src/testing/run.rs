@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use crate::project::failure::Failure;
 use crate::project::findings::{Findings, Place};
 use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::once::KnownSamples;
 use crate::project::requests::{JobSelection, Session, check};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
-use crate::solve::once::SolvedOnce;
 use crate::testing::judge::{judged, of_pose};
 use crate::testing::points::{Tested, thinned};
 use crate::testing::quantities::Known;
@@ -55,7 +55,7 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
         return Ok(nothing);
     }
     // contacts, bodies and expectations ask for the same samples
-    let known = SolvedOnce::default();
+    let known = KnownSamples::default();
     let session = Session::new(request.evaluator, monitor).with_known(&known);
     let which = JobSelection::all(project.clone());
     match tested(&graph, &compilation, (request, &which, session)) {

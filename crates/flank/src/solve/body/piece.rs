@@ -9,7 +9,7 @@ use flank_solver::{Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
-use crate::solve::sampled::as_solved;
+use crate::solve::sampled::{SOLVED, as_solved};
 use crate::solve::surface::{bound, problem};
 
 /// Rows and columns of a sample that are enough to know where a surface lies.
@@ -63,7 +63,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         let sample = thinned(sample);
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let solved = || as_solved(&problem(job, surface, coordinates, session), &sample);
-        let solved = session.sample((job, surface), &sample, false, solved);
+        let solved = session.sample((job, surface), &sample, SOLVED, solved);
         let known: Vec<SurfacePoint> =
             solved.points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect();
         if known.is_empty() {
