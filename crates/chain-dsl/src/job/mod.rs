@@ -497,7 +497,14 @@ impl<'g> Builder<'_, 'g> {
                 [own] => format!("write `{}.{}`", names.first().map_or("m", String::as_str), own.node),
                 [] => "write `m.name`".to_owned(),
             };
-            context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));
+            let diagnostic = Diagnostic::new(Code::WrongKind, path.span, message);
+            context.report(match path.segments.as_slice() {
+                [machine, member, _, ..] => diagnostic.writing(path.span, &format!("{}.{}", machine.node, member.node)),
+                [own] if !names.contains(&own.node) && !names.is_empty() => {
+                    diagnostic.writing(path.span, &format!("{}.{}", names[0], own.node))
+                }
+                _ => diagnostic.help(help),
+            });
             return None;
         };
         match self.machines.iter().position(|(name, ..)| name.node == machine.node) {
