@@ -118,42 +118,6 @@ fn a_flared_cup_grinds_the_formate_gear() {
     }
 }
 
-/// A blade that turns and advances leaves (R cos t, R sin t, z + lead t).
-#[test]
-fn helixform_blades_leave_helicoids() {
-    let text = library(&["machines/cradle.chain", "machines/formate.chain", "tools/face_hobbing_head.chain"])
-        + "machine plain extends helixform { frame swivel in eccentric = rotate_y(90 deg) }
-        job screwed {
-            machine m = plain(
-                radial_distance: 0 mm, cradle_angle: 0 deg, machine_root_angle: 0 deg, lead: 1.5 mm/rad,
-                spindle_start: 10 deg
-            )
-            tool c = face_hobbing_head(
-                head_radius: 60 mm, offset_angle: 0 deg, blade_angle: 20 deg, tip_distance: 1 mm, edge_radius: 0.5 mm
-            )
-            mount c on m.cutter
-            motion turn : angle in -90 deg .. 90 deg
-            drive m.spindle = turn
-            surface outer in m.swivel = sweep(c.outside.blade, over: turn)
-        }";
-    let graph = Graph::new();
-    let job = job_of_text(&graph, &text);
-    let (sine, cosine) = 20f64.to_radians().sin_cos();
-    let targets: Vec<[f64; 2]> =
-        (0..12).map(|k| [1.0 + 0.5 * f64::from(k % 4), -0.8 + 0.6 * f64::from(k / 4)]).collect();
-    for ([s, t], point) in targets.iter().zip(points(&job, "outer", ["s", "turn"], &targets)) {
-        // from where the rounding, 70 degrees of a circle of 0.5 mm, touches the blade
-        let along = s - 0.5 * 70f64.to_radians();
-        let (radius, height) =
-            (61.0 + 0.5 * (1.0 - sine) * sine / cosine + along * sine, -0.5 * (1.0 - sine) - along * cosine);
-        let lead_way = 1.5 * (t - 10f64.to_radians());
-        // the plain swivel frame has the cutter's x along -z, y along y and z along x: rotate_y(-90 deg)
-        let position = [-(height + lead_way), radius * t.sin(), radius * t.cos()];
-        assert!(difference(&point.position, &position) < 1e-10, "{:?} {position:?}", point.position);
-        assert_eq!(point.outcome, Outcome::Solved);
-    }
-}
-
 /// The universal generator as a product of 4 × 4 matrices, after `universal_generator.md`, for settings that do not move.
 struct Dense {
     radial: f64,

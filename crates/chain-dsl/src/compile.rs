@@ -37,7 +37,7 @@ pub struct Compilation<'g> {
     pub sources: Sources,
     /// Findings in the order of their places.
     pub diagnostics: Vec<Diagnostic>,
-    /// The jobs of the file itself (not those of the files it uses); none if there is an error.
+    /// The jobs of the file itself (not those of the files it uses), as far as they were asked for; none if there is an error.
     pub jobs: Vec<Job<'g>>,
     /// The machine of [`compile_with_machine`] as a job without surfaces, which its axes drive themselves; none if there is an
     /// error.
@@ -49,6 +49,8 @@ pub struct Compilation<'g> {
     /// All names of the texts, also of wrong ones.
     pub index: Index,
     main: Option<FileId>,
+    /// The names of all jobs of the file itself.
+    known_jobs: Vec<String>,
     /// The names of the values from outside.
     set: Vec<Name>,
 }
@@ -75,13 +77,14 @@ pub struct Request<'a> {
     /// Pairs of a name (`ratio`, `m.swivel`, in one job only `gear.m.swivel`) and a value as text (`2 mm`) that win over what the
     /// text says.
     pub set: &'a [(String, String)],
-    /// Whether what specs are tested by is looked at, too.
-    pub expectations: bool,
+    /// Whether all is looked at: jobs that are not asked for, those of files that are used, what specs are tested by, and what names
+    /// stand for. Otherwise what is wrong there may stay unsaid.
+    pub whole: bool,
 }
 
 impl Default for Request<'_> {
     fn default() -> Self {
-        Request { files: Arc::new(Disk), machine: None, job: None, set: &[], expectations: true }
+        Request { files: Arc::new(Disk), machine: None, job: None, set: &[], whole: true }
     }
 }
 
@@ -98,13 +101,12 @@ impl<'g> Compilation<'g> {
     /// asked for.
     pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Diagnostic> {
         let mut jobs = std::mem::take(&mut self.jobs);
-        let known: Vec<String> = jobs.iter().map(|job| job.name.clone()).collect();
         let mut others = Vec::new();
         if let Some(wanted) = wanted {
             (jobs, others) = jobs.into_iter().partition(|job| job.name == wanted);
         }
         match &jobs[..] {
-            [] => Err(self.no_job(wanted, &known)),
+            [] => Err(self.no_job(wanted)),
             [job, ..] => self.set_elsewhere(job, &others).map_or(Ok(()), Err).map(|()| jobs),
         }
     }
@@ -123,16 +125,16 @@ impl<'g> Compilation<'g> {
         Some(Diagnostic::new(Code::UnknownName, name.span, message).help(help))
     }
 
-    fn no_job(&mut self, wanted: Option<&str>, known: &[String]) -> Diagnostic {
+    fn no_job(&mut self, wanted: Option<&str>) -> Diagnostic {
         let main = self.main.unwrap_or(FileId(0));
         let file = self.sources.file(main).path.display().to_string().replace('\\', "/");
         match wanted {
-            Some(wanted) if !known.is_empty() => {
+            Some(wanted) if !self.known_jobs.is_empty() => {
                 let asked = self.sources.add("option `job`", wanted);
                 let span = Span { file: asked, start: 0, end: wanted.len() as u32 };
                 let message = format!("there is no job `{wanted}` in {file}");
                 let mut diagnostic = Diagnostic::new(Code::NoJob, span, message);
-                diagnostic.help = did_you_mean(wanted, known.iter().map(String::as_str));
+                diagnostic.help = did_you_mean(wanted, self.known_jobs.iter().map(String::as_str));
                 diagnostic
             }
             _ => {
@@ -176,35 +178,16 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(from, projects, &sources));
     context.lacks_files = lacks_files;
-    context.expects = request.expectations;
+    context.is_whole = request.whole;
     diagnostics.into_iter().for_each(|diagnostic| context.report(diagnostic));
     let overrides = read_overrides(&mut context, &mut sources, request.set);
     let items = Items::collect(&mut context, &files, beside.is_some());
     check_definitions(&mut context, &items);
     let main = files.last().map(|(id, _)| *id);
-    let (mut jobs, mut expected_errors) = (Vec::new(), Vec::new());
-    for JobItem { file, job: written, made_from } in &items.jobs {
-        context.begin_item();
-        let found = context.findings();
-        if written.statements.iter().map(ast::JobStatement::size).sum::<usize>() > limits::JOB_STATEMENTS.most {
-            context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
-            continue;
-        }
-        // jobs that are not asked for are as they are written
-        let name = &written.name.node;
-        let is_meant = Some(*file) == main && request.job.is_none_or(|wanted| wanted == name);
-        let own = if is_meant { overrides.of_job(name) } else { Overrides::new() };
-        let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
-        let job = job::build(&mut context, written, !made_from.is_empty(), &definitions, &sources.file(*file).path);
-        context.step(written.name.span);
-        let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
-        made_from.iter().for_each(|parent| context.note_since(found, *parent, &note));
-        if Some(*file) == main {
-            expected_errors.extend(expect::errors(&mut context, written));
-            jobs.push(job);
-        }
-    }
-    let machines = if request.expectations { items.expected(&mut context, files.last(), &jobs) } else { Vec::new() };
+    let jobs = build_jobs(&mut context, &items, (main, request, &overrides), &sources);
+    let expected_errors = items.jobs.iter().filter(|item| Some(item.file) == main);
+    let expected_errors: Vec<_> = expected_errors.flat_map(|item| expect::errors(&mut context, &item.job)).collect();
+    let machines = if request.whole { items.expected(&mut context, files.last(), &jobs) } else { Vec::new() };
     let beside = files.iter().find(|(id, _)| Some(*id) == beside);
     let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
@@ -220,15 +203,83 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
         }
     }
     graph.set_room(None);
-    let mut index = Index::of_files(&files, &used);
-    index.values = context.known_values();
+    let mut index = Index::default();
+    if request.whole {
+        index = Index::of_files(&files, &used);
+        index.values = context.known_values();
+    }
     context.tables.tell(&mut sources);
     let failed = context.has_errors();
     let mut diagnostics: Vec<Diagnostic> =
         context.finish().into_iter().map(|diagnostic| diagnostic.with_unit(&sources)).collect();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
     let (jobs, machine, machines) = if failed { Default::default() } else { (jobs, machine, machines) };
-    Compilation { sources, diagnostics, jobs, machine, machines, expected_errors, index, main, set: overrides.names }
+    let known_jobs = items.jobs.into_iter().filter(|item| Some(item.file) == main).map(|item| item.job.name.node);
+    Compilation {
+        sources,
+        diagnostics,
+        jobs,
+        machine,
+        machines,
+        expected_errors,
+        index,
+        main,
+        known_jobs: known_jobs.collect(),
+        set: overrides.names,
+    }
+}
+
+/// The jobs of the main file that are asked for; of a whole compilation all of them, and those of other files are looked at, too.
+fn build_jobs<'g>(
+    context: &mut Context<'g>,
+    items: &Items,
+    (main, request, overrides): (Option<FileId>, &Request<'_>, &OuterValues),
+    sources: &Sources,
+) -> Vec<Job<'g>> {
+    let is_asked =
+        |item: &JobItem| Some(item.file) == main && request.job.is_none_or(|wanted| wanted == item.job.name.node);
+    let mut built: Vec<Option<Job<'g>>> = items.jobs.iter().map(|_| None).collect();
+    for (place, item) in items.jobs.iter().enumerate() {
+        if request.whole || is_asked(item) {
+            built[place] = build_job(context, items, (item, is_asked(item)), overrides, sources);
+        } else {
+            item.job.each(&mut |part| context.read_table(part));
+        }
+    }
+    // a value from outside may be one of a job that is not asked for, which has to be said
+    let is_had = |name: &Name| built.iter().flatten().any(|job| job.has_parameter(&name.node));
+    if !overrides.names.iter().all(is_had) {
+        for (place, item) in items.jobs.iter().enumerate().filter(|(_, item)| Some(item.file) == main) {
+            if built[place].is_none() {
+                built[place] = build_job(context, items, (item, is_asked(item)), overrides, sources);
+            }
+        }
+    }
+    let of_main = items.jobs.iter().zip(built).filter(|(item, _)| Some(item.file) == main);
+    of_main.filter_map(|(_, job)| job).collect()
+}
+
+fn build_job<'g>(
+    context: &mut Context<'g>,
+    items: &Items,
+    (JobItem { file, job: written, made_from }, is_asked): (&JobItem, bool),
+    overrides: &OuterValues,
+    sources: &Sources,
+) -> Option<Job<'g>> {
+    context.begin_item();
+    let found = context.findings();
+    if written.statements.iter().map(ast::JobStatement::size).sum::<usize>() > limits::JOB_STATEMENTS.most {
+        context.report(limits::JOB_STATEMENTS.exceeded(written.name.span));
+        return None;
+    }
+    // jobs that are not asked for are as they are written
+    let own = if is_asked { overrides.of_job(&written.name.node) } else { Overrides::new() };
+    let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &own };
+    let job = job::build(context, written, !made_from.is_empty(), &definitions, &sources.file(*file).path);
+    context.step(written.name.span);
+    let note = Note { span: written.name.span, text: "with the changes of this job".to_string() };
+    made_from.iter().for_each(|parent| context.note_since(found, *parent, &note));
+    Some(job)
 }
 
 /// The last machine of a file by itself.
@@ -274,7 +325,7 @@ struct JobItem {
 }
 
 impl Items {
-    fn collect(context: &mut Context<'_>, files: &[(FileId, ast::File)], is_beside: bool) -> Items {
+    fn collect(context: &mut Context<'_>, files: &[(FileId, Arc<ast::File>)], is_beside: bool) -> Items {
         /// Of a machine that is an edited copy of one that the job uses.
         const APART: &str = "a job and the machine that it is carried over to are read together, and a name means one thing in both: give \
                              it another name in one of the files";
@@ -362,7 +413,7 @@ impl Items {
     fn expected<'g>(
         &self,
         context: &mut Context<'g>,
-        file: Option<&(FileId, ast::File)>,
+        file: Option<&(FileId, Arc<ast::File>)>,
         jobs: &[Job<'g>],
     ) -> Vec<MachineExpectations<'g>> {
         let all = jobs.iter().flat_map(|job| job.surfaces.iter().map(|of| format!("{}.{}", job.name, of.name)));

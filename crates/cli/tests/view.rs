@@ -2,7 +2,7 @@
 
 mod support;
 
-use std::io::{ErrorKind, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -411,4 +411,37 @@ fn the_page_works_in_a_browser() {
     let measured = node("browser.mjs", &arguments, &expected).expect("node drives the browser");
     eprintln!("in the browser: {measured}");
     assert!(measured["opened_ms"].as_u64().expect("a time") < 20_000, "{measured}");
+}
+
+/// Camera, sliders and colouring stay when the spec is saved; a wrong spec greys the last good picture: `tests/page/following.mjs`.
+#[test]
+fn the_page_that_follows_keeps_what_is_seen_in_a_browser() {
+    let folder = folder("view_following_browser");
+    if !browser_is_there() {
+        return;
+    }
+    let text = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    // a slider has ends
+    let text = text.replace("param module : length = 4 mm", "param module : length in 1 mm .. 9 mm = 4 mm");
+    let spec = folder.join("gear.chain");
+    std::fs::write(&spec, &text).expect("a file");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_flank"))
+        .args(["view", "--serve"])
+        .arg(&spec)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let mut address = String::new();
+    BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut address).expect("an address");
+    let expected = json!({
+        "other": text.replace("param teeth : count = 20", "param teeth : count = 21"),
+        "wrong": text.replace("drive m.C = roll", "drive m.C = rol"),
+        "code": "E0201",
+    });
+    assert!(expected["other"] != json!(text) && expected["wrong"] != json!(text));
+    let measured = node("following.mjs", &[address.trim(), spec.to_str().expect("a plain path")], &expected);
+    let _ = child.kill();
+    let _ = child.wait();
+    eprintln!("in the browser: {}", measured.expect("node drives the browser"));
 }

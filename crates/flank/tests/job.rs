@@ -152,6 +152,37 @@ fn there_is_no_other_job() {
     assert!(matches!(project.job("helical_gear", &twice), Err(Failure::Request(_))));
 }
 
+/// A job that is asked for alone is made of the same texts as among all jobs of its file, the tables of the others among them: what is
+/// written says the same hash.
+#[test]
+fn the_hash_of_a_job_does_not_depend_on_which_jobs_are_asked_for() {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/tutorial/first_gear.chain");
+    let text = std::fs::read_to_string(shipped).expect("it is shipped");
+    let mut number = 0;
+    let lines = text.lines().map(|line| {
+        let is_head = line.starts_with("job ") && line.ends_with('{');
+        number += u32::from(is_head);
+        let table = format!("\n    let bump = curve(\"{number}.csv\", x: length, y: length)");
+        format!("{line}{}\n", if is_head { table } else { String::new() })
+    });
+    let text: String = lines.collect();
+    assert!(number > 1, "several jobs");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("job_hash");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    (1..=number).for_each(|k| {
+        std::fs::write(folder.join(format!("{k}.csv")), format!("x,y\n0,0\n{k},1\n")).expect("a table");
+    });
+    std::fs::write(folder.join("gears.chain"), text).expect("a spec");
+    let project = Project::open(folder.join("gears.chain"), Arc::new(Disk));
+    let all = project.jobs(&[]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(all.len() > 1);
+    for job in &all {
+        let alone = project.job(job.name(), &[]).expect("it is right");
+        assert_eq!((alone.hash(), alone.texts()), (job.hash(), job.texts()), "{}", job.name());
+        assert_eq!(alone.texts().len(), 1 + number as usize);
+    }
+}
+
 /// Arrays hold the points of large surfaces too, if that is asked for, and nothing is written without a format.
 #[test]
 fn arrays_keep_the_points_of_large_surfaces() {

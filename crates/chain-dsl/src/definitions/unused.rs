@@ -6,8 +6,8 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Name;
 use crate::syntax::ast::{
-    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, SampleValues, Side,
-    SurfaceParameter, ToolStatement,
+    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, Side, SurfaceParameter,
+    ToolStatement,
 };
 use crate::values::context::Context;
 
@@ -251,62 +251,18 @@ impl Used {
     }
 
     fn job(&mut self, job: &ast::Job) {
+        job.each(&mut |part| self.part(part));
         for statement in &job.statements {
             match statement {
-                JobStatement::Param(param) => self.param(param),
-                JobStatement::Let(binding) => self.expression(&binding.value),
-                JobStatement::Require(required) => self.expression(&required.condition),
                 JobStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
                 JobStatement::Machine(instance) | JobStatement::Tool(instance) => {
                     self.words.insert(instance.definition.node.clone());
-                    instance.settings.iter().for_each(|setting| self.expression(&setting.value));
                 }
                 JobStatement::Mount { frame, .. } => self.path(frame),
-                JobStatement::Motion(motion) | JobStatement::Unknown(motion) => self.range(&motion.range),
-                JobStatement::Profile(profile) => {
-                    profile.segments.iter().for_each(|segment| self.expression(&segment.value));
-                }
-                JobStatement::Solid(solid) => {
-                    self.path(&solid.frame);
-                    self.expression(&solid.value);
-                }
-                JobStatement::Contact(contact) => {
-                    contact.arguments.iter().for_each(|argument| self.expression(&argument.value));
-                }
-                JobStatement::Want(want) => self.expression(&want.value),
-                JobStatement::Drive(drive) => drive.values.iter().for_each(|value| self.expression(value)),
-                JobStatement::Surface(surface) => {
-                    self.path(&surface.frame);
-                    self.expression(&surface.value);
-                }
-                JobStatement::Mill(mill) => {
-                    self.path(&mill.frame);
-                    for run in mill.passes.iter().chain(&mill.along) {
-                        run.definition.iter().for_each(|definition| self.expression(definition));
-                        self.range(&run.range);
-                        self.expression(&run.value);
-                    }
-                    mill.attitudes.iter().for_each(|(_, value)| self.expression(value));
-                    mill.clearances.iter().for_each(|clear| self.expression(&clear.distance));
-                }
-                JobStatement::Trim { .. } | JobStatement::Cut { .. } => {}
-                JobStatement::Sample(sample) => {
-                    sample.each.iter().flat_map(|each| &each.values).for_each(|value| self.expression(value));
-                    for entry in &sample.entries {
-                        entry.definition.iter().for_each(|definition| self.expression(definition));
-                        match &entry.values {
-                            SampleValues::Value(value) => self.expression(value),
-                            SampleValues::Range(range, by) => {
-                                self.range(range);
-                                self.expression(by);
-                            }
-                        }
-                    }
-                    for keep in sample.keeps.iter().chain(sample.limits.iter().map(|limit| &limit.within)) {
-                        keep.definition.iter().for_each(|definition| self.expression(definition));
-                        self.range(&keep.range);
-                    }
-                }
+                JobStatement::Solid(solid) => self.path(&solid.frame),
+                JobStatement::Surface(surface) => self.path(&surface.frame),
+                JobStatement::Mill(mill) => self.path(&mill.frame),
+                _ => {}
             }
         }
     }

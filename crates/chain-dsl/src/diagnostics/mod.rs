@@ -82,6 +82,11 @@ impl Diagnostic {
         self
     }
 
+    /// Says what to write, and writes it.
+    pub(crate) fn writing(self, span: Span, text: &str) -> Diagnostic {
+        self.help(format!("write `{text}`")).cure(format!("write `{text}`"), span, text)
+    }
+
     /// Turns a unit that lacks into a change of the text.
     pub(crate) fn with_unit(mut self, sources: &Sources) -> Diagnostic {
         let Some((span, unit)) = self.lacks_unit.take() else { return self };

@@ -265,7 +265,7 @@ fn with_points<'g>(
         let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
         context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
     }
-    let is_settled = context.expects && builder.sampled.are_known();
+    let is_settled = context.is_whole && builder.sampled.are_known();
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
@@ -519,7 +519,14 @@ impl<'g> Builder<'_, 'g> {
                 [own] => format!("write `{}.{}`", names.first().map_or("m", String::as_str), own.node),
                 [] => "write `m.name`".to_owned(),
             };
-            context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));
+            let diagnostic = Diagnostic::new(Code::WrongKind, path.span, message);
+            context.report(match path.segments.as_slice() {
+                [machine, member, _, ..] => diagnostic.writing(path.span, &format!("{}.{}", machine.node, member.node)),
+                [own] if !names.contains(&own.node) && !names.is_empty() => {
+                    diagnostic.writing(path.span, &format!("{}.{}", names[0], own.node))
+                }
+                _ => diagnostic.help(help),
+            });
             return None;
         };
         match self.machines.iter().position(|(name, ..)| name.node == machine.node) {

@@ -1,6 +1,7 @@
 //! Reading a file and the files that it uses.
 
 pub(crate) mod files;
+mod parsed;
 
 use std::collections::HashMap;
 use std::io::ErrorKind;
@@ -13,14 +14,13 @@ use crate::diagnostics::source::{FileId, Name, Sources, Span, Spanned};
 use crate::limits::{self, Limit};
 use crate::load::files::Files;
 use crate::syntax::ast::{File, Item};
-use crate::syntax::parse;
 
 /// All files of a compilation, each once, used ones before those that use them.
 pub(crate) struct Loaded {
     /// What they were read from; tables are read from it, too.
     pub(crate) from: Arc<dyn Files>,
     pub(crate) sources: Sources,
-    pub(crate) files: Vec<(FileId, File)>,
+    pub(crate) files: Vec<(FileId, Arc<File>)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether a file is used that was not read: what it declares is not known.
     pub(crate) lacks_files: bool,
@@ -116,7 +116,7 @@ fn read_as(
 pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
     let mut sources = Sources::default();
     let id = sources.add(name, text);
-    let (file, mut diagnostics) = parse(text, id);
+    let (file, mut diagnostics) = parsed::parsed(text, id);
     let mut lacks_files = false;
     for item in &file.items {
         if let Item::Use(path) = item {
@@ -175,7 +175,7 @@ impl Loader {
         let id = self.loaded.sources.add_file(shown, real, text);
         self.loaded.projects.insert(id, self.project.clone());
         self.known.insert(real.to_path_buf(), id);
-        let (file, diagnostics) = parse(&self.loaded.sources.file(id).text, id);
+        let (file, diagnostics) = parsed::parsed(&self.loaded.sources.file(id).text, id);
         self.loaded.diagnostics.extend(diagnostics);
         self.open.push(id);
         for item in &file.items {

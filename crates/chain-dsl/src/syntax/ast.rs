@@ -389,6 +389,13 @@ pub struct Range {
     pub span: Span,
 }
 
+impl Range {
+    /// Its ends, the lower one first.
+    pub(crate) fn ends(&self) -> [&Expression; 2] {
+        [&self.low, &self.high]
+    }
+}
+
 /// A dimension as written, `length * angle / number`, reduced to a product of named powers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimension {

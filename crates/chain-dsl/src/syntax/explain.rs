@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
 
 use super::expected::{self, Before};
@@ -88,8 +89,13 @@ impl<'s> Mistake<'s> {
         index > 0 && self.scan.place(index - 1).end == self.scan.place(index).start
     }
 
+    /// Where it is.
+    fn place(&self) -> Span {
+        self.scan.place(self.found)
+    }
+
     fn here(&self, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Code::Syntax, self.scan.place(self.found), message)
+        Diagnostic::new(Code::Syntax, self.place(), message)
     }
 
     fn text(&self) -> Option<Diagnostic> {

@@ -74,8 +74,8 @@ pub(crate) struct Context<'g> {
     pub(crate) tables: Tables,
     /// Whether a file is used that was not read.
     pub(crate) lacks_files: bool,
-    /// Whether what specs are tested by is looked at.
-    pub(crate) expects: bool,
+    /// Whether what specs are tested by is looked at, and what names amount to.
+    pub(crate) is_whole: bool,
     variables: Vec<Expr<'g>>,
     roles: Vec<Role>,
     values: Vec<f64>,
@@ -123,7 +123,7 @@ impl<'g> Context<'g> {
             functions: HashMap::new(),
             tables,
             lacks_files: false,
-            expects: false,
+            is_whole: false,
             variables: Vec::new(),
             roles: Vec::new(),
             values: Vec::new(),
@@ -148,6 +148,7 @@ impl<'g> Context<'g> {
     pub(crate) fn note_value(&mut self, name: Span, written: Span, value: &Value<'g>) {
         if let Value::Scalar(value, dimension) = value
             && !self.owner.is_empty()
+            && self.is_whole
         {
             let (of, value, dimension) = (Rc::clone(&self.owner), *value, *dimension);
             self.noted.push(NotedValue { name, written, of, value, dimension });

@@ -116,6 +116,11 @@ impl Tables {
         Ok(text)
     }
 
+    /// Whether the text of a table has been read.
+    pub(crate) fn is_read(&self, [_, real]: &[PathBuf; 2]) -> bool {
+        self.known.contains_key(real)
+    }
+
     fn count(&mut self, bytes: usize) -> Result<(), Reason> {
         self.bytes += bytes;
         if self.bytes > limits::TABLE_BYTES.most { Err(Reason::Exceeded(limits::TABLE_BYTES)) } else { Ok(()) }

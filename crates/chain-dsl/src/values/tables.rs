@@ -8,7 +8,7 @@ use flank_expr::{Curve, CurveError};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
-use crate::syntax::ast::{Argument, Call, ExpressionKind};
+use crate::syntax::ast::{Argument, Call, Expression, ExpressionKind};
 use crate::values::context::Context;
 use crate::values::dimension::{self, Dimension};
 use crate::values::table_files::{Key, Reason, Rows, reader, rows};
@@ -28,6 +28,25 @@ pub(crate) struct Columns<'a> {
 /// The value of a call of `curve`.
 pub(crate) fn curve<'g>(context: &mut Context<'g>, call: &Call) -> Value<'g> {
     columns(context, call).and_then(|table| table.curve(context)).unwrap_or(Value::Poison)
+}
+
+/// Functions that read a file.
+const READERS: [&str; 3] = ["curve", "grid", "table"];
+
+impl Context<'_> {
+    /// Reads the file that an expression names which is not evaluated: it belongs to the texts all the same.
+    pub(crate) fn read_table(&mut self, expression: &Expression) {
+        if let ExpressionKind::Call(call) = &expression.kind
+            && READERS.contains(&call.function.node.as_str())
+            && let Some(Argument { name: None, value: path }) = call.arguments.first()
+            && let ExpressionKind::Text(named) = &path.kind
+            && let Ok(found) = self.tables.locate(named, path.span.file)
+            && !self.tables.is_read(&found)
+        {
+            // what is wrong with it is no matter here
+            let _ = self.tables.text(&found);
+        }
+    }
 }
 
 /// What a call that takes a table names.

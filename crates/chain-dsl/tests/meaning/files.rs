@@ -391,6 +391,30 @@ fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
     }
 }
 
+/// Whoever asks for one job does not wait for the others; a text that cannot be read is refused all the same.
+#[test]
+fn a_job_is_compiled_without_those_that_nobody_asks_for() {
+    let wrong = JOB.replace("job j {", "job other {\n    param extra : length = 1 deg").replace("use", "//");
+    let folder = project("asked", &[("library.chain", LIBRARY), ("jobs/j.chain", &format!("{JOB}{wrong}"))]);
+    let file = folder.join("jobs/j.chain");
+    let found = |whole: bool, set: &[(String, String)]| {
+        let graph = Graph::new();
+        let request = Request { job: Some("j"), set, whole, ..Request::default() };
+        let compilation = compile_request(&graph, &file, &request);
+        let names: Vec<String> = compilation.jobs.iter().map(|job| job.name.clone()).collect();
+        let is_indexed = !compilation.index.entries.is_empty();
+        let errors = compilation.diagnostics.iter().filter(|finding| finding.severity() == Severity::Error);
+        (names, errors.map(|finding| finding.code).collect::<Vec<Code>>(), is_indexed)
+    };
+    assert_eq!(found(false, &[]), (vec!["j".to_string()], vec![], false));
+    assert_eq!(found(true, &[]), (vec![], vec![Code::WrongDimension], true));
+    // a value that `j` does not have may be one of `other`, which has to be looked at then
+    let set = [("extra".to_string(), "2 mm".to_string())];
+    assert_eq!(found(false, &set).1, [Code::WrongDimension]);
+    std::fs::write(&file, format!("{JOB}job broken {{")).expect("the file");
+    assert!(!found(false, &[]).1.is_empty(), "a text that does not parse");
+}
+
 /// A machine that a job is carried over to has a project of its own, as the job has.
 #[test]
 fn a_machine_beside_a_job_uses_files_of_its_own_project() {

@@ -1,5 +1,6 @@
 //! The text of the language: what parses to what, and what is said where it does not.
 
+mod cures;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
 mod limits;

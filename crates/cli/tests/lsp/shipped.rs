@@ -170,26 +170,53 @@ fn the_whole_library_is_open_without_a_finding() {
     assert_eq!(client.end(), Some(0));
 }
 
+/// Specs of a hobbed gear, a bevel pinion, a pair with contacts, a profile that is dressed, and a variant of another file's job.
+const RENAMED: [&str; 5] = [
+    "hobbing/crowned_gear",
+    "bevel/pinion_19x62",
+    "pairs/spur_pair",
+    "grinding/dressed_wheel",
+    "bodies/rack_and_pinion_body",
+];
+
 #[test]
-fn names_of_a_spec_lead_to_their_definitions_and_are_renamed_there_and_back() {
+fn names_of_specs_lead_to_their_definitions_and_are_renamed_there_and_back() {
     let folder = folder("lsp-rename");
+    // its own copies of what they use, which are renamed in, too
+    copy_all(&top().join("specs"), &folder);
+    std::fs::write(folder.join("flank.toml"), "").expect("a file");
     let mut client = Client::start();
-    let spec = top().join("specs/hobbing/crowned_gear.chain");
-    let body = std::fs::read_to_string(spec).expect("UTF-8");
-    let body: String = body.lines().map(|line| line.replace("\"../", "\"")).map(|line| line + "\n").collect();
-    // its own copies of what it uses, which are renamed in, too
-    for name in ["machines", "tools", "functions"] {
-        std::fs::create_dir_all(folder.join(name)).expect("a folder");
-        for entry in std::fs::read_dir(top().join("specs").join(name)).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            std::fs::copy(&path, folder.join(name).join(path.file_name().expect("a name"))).expect("a copy");
+    let mut names = 0;
+    for spec in RENAMED {
+        let path = folder.join(format!("{spec}.chain"));
+        let body = std::fs::read_to_string(&path).expect("UTF-8");
+        let uri = address(&path);
+        client.open(&uri, &body);
+        assert!(client.findings(&uri).diagnostics.is_empty(), "{spec}");
+        let found = renamed_there_and_back(&mut client, &uri, &body);
+        assert!(found >= 5, "{spec}: {found}");
+        names += found;
+    }
+    assert!(names > 80, "{names}");
+    assert_eq!(client.end(), Some(0));
+}
+
+/// Copies a folder with all that is in it.
+fn copy_all(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let own = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_all(&path, &own);
+        } else {
+            std::fs::copy(&path, own).expect("a copy");
         }
     }
-    std::fs::write(folder.join("flank.toml"), "").expect("a file");
-    let path = folder.join("gear.chain");
-    let uri = address(&path);
-    client.open(&uri, &body);
-    assert!(client.findings(&uri).diagnostics.is_empty());
+}
+
+/// Renames all that a text defines and back again, one after the other; their number.
+fn renamed_there_and_back(client: &mut Client, uri: &str, body: &str) -> usize {
     let symbols =
         client.ask("textDocument/documentSymbol", json!({ "textDocument": { "uri": uri } })).expect("symbols");
     let mut open = symbols.as_array().expect("a list").clone();
@@ -206,20 +233,23 @@ fn names_of_a_spec_lead_to_their_definitions_and_are_renamed_there_and_back() {
             client.ask("textDocument/rename", params).unwrap_or_else(|error| panic!("{symbol}: {error}"))
         };
         let name = symbol["name"].as_str().expect("a name").to_string();
-        let there = renamed(&mut client, &format!("{name}_other"));
-        let changed = applied(&body, &there["changes"][&uri]);
+        let there = renamed(client, &format!("{name}_other"));
+        // what another file defines and a variant states again has its name there
+        if there["changes"].as_object().expect("changes").len() > 1 {
+            continue;
+        }
+        let changed = applied(body, &there["changes"][uri]);
         assert_ne!(changed, body);
-        client.change(&uri, json!([{ "text": changed }]));
-        let told = client.findings(&uri);
+        client.change(uri, json!([{ "text": changed }]));
+        let told = client.findings(uri);
         assert!(told.diagnostics.is_empty(), "{name}: {:?}", told.diagnostics);
-        let back = renamed(&mut client, &name);
-        assert_eq!(applied(&changed, &back["changes"][&uri]), body, "{name}");
-        client.change(&uri, json!([{ "text": body }]));
-        client.findings(&uri);
+        let back = renamed(client, &name);
+        assert_eq!(applied(&changed, &back["changes"][uri]), body, "{name}");
+        client.change(uri, json!([{ "text": body }]));
+        client.findings(uri);
         names += 1;
     }
-    assert!(names > 15, "{names}");
-    assert_eq!(client.end(), Some(0));
+    names
 }
 
 /// A text after edits of ASCII lines.

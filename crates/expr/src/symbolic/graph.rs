@@ -87,6 +87,8 @@ struct Store {
     operations: usize,
     room: Option<usize>,
     derivatives: NodeMap<(VariableId, NodeId), NodeId>,
+    /// Of two squares what their sum is where it is shorter, as [`rules`] find out once.
+    square_sums: NodeMap<(NodeId, NodeId), Option<NodeId>>,
 }
 
 impl Store {
@@ -331,6 +333,14 @@ impl Graph {
 
     pub(crate) fn remember_derivative(&self, variable: VariableId, id: NodeId, derivative: NodeId) {
         self.store.borrow_mut().derivatives.insert((variable, id), derivative);
+    }
+
+    pub(crate) fn known_square_sum(&self, squares: (NodeId, NodeId)) -> Option<Option<NodeId>> {
+        self.store.borrow().square_sums.get(&squares).copied()
+    }
+
+    pub(crate) fn remember_square_sum(&self, squares: (NodeId, NodeId), sum: Option<NodeId>) {
+        self.store.borrow_mut().square_sums.insert(squares, sum);
     }
 
     /// Every node that the roots are made of, operands before what is made of them.

@@ -8,6 +8,7 @@ pub(crate) mod files;
 pub(crate) mod findings;
 pub(crate) mod job;
 pub(crate) mod monitor;
+pub(crate) mod once;
 pub(crate) mod quantity;
 pub(crate) mod remark;
 pub(crate) mod requests;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Job, Request};
+use flank_chain_dsl::{GeneratedSurface, Job, Request, Sample};
 use flank_expr::InstructionSet;
 use flank_solver::MOST_BOXES;
 
@@ -13,6 +13,7 @@ use crate::project::choices::{
 };
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Work};
+use crate::project::once::KnownSamples;
 
 /// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ impl JobSelection {
 
     pub(crate) fn request(&self) -> Request<'_> {
         let files = self.project.shared_files();
-        Request { files, job: self.job.as_deref(), set: &self.set, expectations: false, ..Request::default() }
+        Request { files, job: self.job.as_deref(), set: &self.set, whole: false, ..Request::default() }
     }
 
     /// # Errors
@@ -86,11 +87,31 @@ impl Default for EvaluatorOptions {
 pub(crate) struct Session<'m> {
     options: EvaluatorOptions,
     monitor: &'m dyn Monitor,
+    known: Option<&'m KnownSamples>,
 }
 
 impl<'m> Session<'m> {
     pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Session<'m> {
-        Session { options, monitor }
+        Session { options, monitor, known: None }
+    }
+
+    /// The same where samples are solved once, by whoever comes first: of one compilation, whose surfaces do not change.
+    pub(crate) fn with_known(self, known: &'m KnownSamples) -> Session<'m> {
+        Session { known: Some(known), ..self }
+    }
+
+    /// What is asked of the sample of a surface.
+    pub(crate) fn sample<Found: Clone + Send + Sync + 'static>(
+        self,
+        of: (&Job<'_>, &GeneratedSurface<'_>),
+        sample: &Sample<'_>,
+        what: &'static str,
+        find: impl FnOnce() -> Found,
+    ) -> Found {
+        match self.known {
+            Some(known) => known.find(of, sample, what, find),
+            None => find(),
+        }
     }
 
     pub(crate) fn boxes(self) -> u64 {

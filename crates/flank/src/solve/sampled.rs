@@ -137,18 +137,54 @@ pub(crate) fn points<'j, 'g>(
     sample: &Sample<'g>,
     wanted: SolveOptions,
 ) -> Found<'j, 'g> {
+    let (of, session) = ((job, surface), wanted.session);
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, wanted.session);
-    let (mut points, effort) = problem.solve(&sample.targets(), sample.counts);
-    let trims = surface.trimmed_by.iter().enumerate();
-    let trims = trims.map(|(number, &by)| {
-        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, wanted.session))
-    });
-    let trims = trims.collect();
-    secondary::judge_trims(job, surface, &mut points, sample.counts);
-    let positions = secondary::judge(job, surface, &mut points, sample.counts);
-    blank::cut(job, surface, &mut points);
+    let problem = problem(job, surface, coordinates, session);
+    let solved = || as_solved(&problem, sample);
+    let mut trims = Vec::new();
+    let found = if surface.trimmed_by.is_empty() {
+        session.sample(of, sample, JUDGED, || judged(of, sample, session.sample(of, sample, SOLVED, solved)))
+    } else {
+        let mut found = session.sample(of, sample, SOLVED, solved);
+        trims.extend(surface.trimmed_by.iter().enumerate().map(|(number, &by)| {
+            trims::cut(job, [surface, &job.surfaces[by]], sample, &mut found.points, (number, session))
+        }));
+        judged(of, sample, found)
+    };
+    let FoundPoints { points, effort, positions } = found;
+    let positions = positions.expect("what is judged has them");
     Found { problem, points, effort, trims, positions }
+}
+
+/// What is asked of samples: their points as the equations have them, and without those that are cut away.
+pub(crate) const SOLVED: &str = "solved";
+const JUDGED: &str = "judged";
+
+/// The points of a sample, and what it took to find them.
+#[derive(Clone)]
+pub(crate) struct FoundPoints {
+    pub(crate) points: Vec<SurfacePoint>,
+    effort: GridReport,
+    /// Of the tool, that points were checked against; none where they are as they were solved.
+    positions: Option<Positions>,
+}
+
+/// The points of a sample as its equations have them.
+pub(crate) fn as_solved(problem: &SurfaceProblem, sample: &Sample<'_>) -> FoundPoints {
+    let (points, effort) = problem.solve(&sample.targets(), sample.counts);
+    FoundPoints { points, effort, positions: None }
+}
+
+/// The same without what tools and the blank cut away.
+fn judged<'g>(
+    (job, surface): (&Job<'g>, &GeneratedSurface<'g>),
+    sample: &Sample<'_>,
+    mut found: FoundPoints,
+) -> FoundPoints {
+    secondary::judge_trims(job, surface, &mut found.points, sample.counts);
+    found.positions = Some(secondary::judge(job, surface, &mut found.points, sample.counts));
+    blank::cut(job, surface, &mut found.points);
+    found
 }
 
 /// Where nothing was found, the points of all branches in the ranges at the anchor that `keep` does not take.

@@ -118,15 +118,15 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let body = self.bodies.borrow()[&index].clone();
         let name = &self.tested.job.solids[index].name;
         Ok(body.and_then(|body| {
-            let [tip, root] = body.tip_and_root();
-            let form = body.form();
             Ok(match number {
                 SolidNumber::Volume => body.mass_properties().volume,
                 SolidNumber::Area => body.mass_properties().area,
-                SolidNumber::TipDiameter => 2.0 * tip,
-                SolidNumber::RootDiameter => 2.0 * root,
-                SolidNumber::FormDiameter if body.is_external() => 2.0 * form[0].max(form[1]),
-                SolidNumber::FormDiameter => 2.0 * form[0].min(form[1]),
+                SolidNumber::TipDiameter => 2.0 * body.tip_and_root()[0],
+                SolidNumber::RootDiameter => 2.0 * body.tip_and_root()[1],
+                SolidNumber::FormDiameter if body.is_external() => {
+                    2.0 * body.form().into_iter().fold(f64::MIN, f64::max)
+                }
+                SolidNumber::FormDiameter => 2.0 * body.form().into_iter().fold(f64::MAX, f64::min),
                 SolidNumber::Thickness(diameter) => {
                     let found = body.thickness(0.5 * diameter).map(|thickness| thickness.arc);
                     found.ok_or_else(|| format!("{name} has no tooth thickness at {diameter} mm"))?

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::project::failure::Failure;
 use crate::project::findings::{Findings, Place};
 use crate::project::monitor::{Monitor, Unwatched};
+use crate::project::once::KnownSamples;
 use crate::project::requests::{JobSelection, Session, check};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
@@ -53,7 +54,9 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
     if compilation.has_errors() {
         return Ok(nothing);
     }
-    let session = Session::new(request.evaluator, monitor);
+    // contacts, bodies and expectations ask for the same samples
+    let known = KnownSamples::default();
+    let session = Session::new(request.evaluator, monitor).with_known(&known);
     let which = JobSelection::all(project.clone());
     match tested(&graph, &compilation, (request, &which, session)) {
         Ok((items, snapshot)) => Ok(TestedSpec { items, snapshot, ..nothing }),

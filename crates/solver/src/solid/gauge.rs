@@ -91,7 +91,7 @@ impl Body {
     pub fn tip_and_root(&self) -> [f64; 2] {
         let shares: Vec<f64> = (0..=64).map(|k| f64::from(k) / 64.0).collect();
         let line = &self.lines(&vec![shares; self.charts.len()], &[0.5])[0];
-        let deeper = |a: f64, b: f64| if self.is_external() { a.min(b) } else { a.max(b) };
+        let deeper = if self.is_external() { f64::min } else { f64::max };
         let tip = self.depth(line[0]);
         [tip, line.iter().map(|place| self.depth(*place)).reduce(deeper).unwrap_or(tip)]
     }

@@ -1,5 +1,7 @@
 //! What the texts define.
 
+use std::sync::Arc;
+
 use super::members::{Members, Names, Wanted};
 use super::{NameKind, SymbolId};
 use crate::diagnostics::source::{FileId, Name, Span};
@@ -10,7 +12,7 @@ use crate::syntax::ast::{
 
 impl<'a> Names<'a> {
     /// Enters all definitions, so that names may be used before they are defined.
-    pub(super) fn declare(&mut self, files: &'a [(FileId, ast::File)]) {
+    pub(super) fn declare(&mut self, files: &'a [(FileId, Arc<ast::File>)]) {
         let items = || files.iter().flat_map(|(_, file)| &file.items);
         for item in items() {
             self.item(item);

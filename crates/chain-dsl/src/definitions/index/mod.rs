@@ -9,6 +9,8 @@ mod job;
 mod members;
 mod statements;
 
+use std::sync::Arc;
+
 use crate::diagnostics::source::{FileId, Span};
 use crate::syntax::ast;
 use crate::values::dimension::Dimension;
@@ -191,7 +193,7 @@ pub struct Index {
 
 impl Index {
     /// What the names of parsed files are.
-    pub(crate) fn of_files(files: &[(FileId, ast::File)], used: &[(Span, FileId)]) -> Index {
+    pub(crate) fn of_files(files: &[(FileId, Arc<ast::File>)], used: &[(Span, FileId)]) -> Index {
         let mut names = Names::default();
         names.declare(files);
         names.resolve(files);

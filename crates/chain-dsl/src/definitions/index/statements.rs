@@ -1,5 +1,7 @@
 //! The names in machines, tools and functions.
 
+use std::sync::Arc;
+
 use super::expression::Place;
 use super::members::{Names, Wanted};
 use super::{NameKind, SymbolId, WordKind};
@@ -11,7 +13,7 @@ use crate::syntax::ast::{
 
 impl<'a> Names<'a> {
     /// Looks all names up.
-    pub(super) fn resolve(&mut self, files: &'a [(FileId, ast::File)]) {
+    pub(super) fn resolve(&mut self, files: &'a [(FileId, Arc<ast::File>)]) {
         for item in files.iter().flat_map(|(_, file)| &file.items) {
             let Some(id) = item.name().and_then(|name| self.own(name)) else { continue };
             match item {

@@ -23,6 +23,24 @@ pub struct Job {
     pub span: Span,
 }
 
+impl Job {
+    /// Shows the parts of all expressions but of those that it is tested by, in the order in which they are evaluated.
+    pub(crate) fn each<'e>(&'e self, show: &mut impl FnMut(&'e Expression)) {
+        let turn = |statement: &JobStatement| match statement {
+            JobStatement::Drive(_) => 1,
+            JobStatement::Surface(_) => 2,
+            JobStatement::Solid(_) | JobStatement::Contact(_) | JobStatement::Want(_) | JobStatement::Sample(_) => 3,
+            JobStatement::Mill(_) => 4,
+            _ => 0,
+        };
+        for now in 0..=4 {
+            self.statements.iter().filter(|statement| turn(statement) == now).for_each(|statement| {
+                statement.expressions().into_iter().for_each(|expression| expression.each(show));
+            });
+        }
+    }
+}
+
 /// A job that is another one with values or parts changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
@@ -184,6 +202,61 @@ impl JobStatement {
             JobStatement::Sample(sample) => sample.surfaces.len(),
             _ => 1,
         }
+    }
+}
+
+impl JobStatement {
+    /// The expressions in it; of what the job is tested by none.
+    fn expressions(&self) -> Vec<&Expression> {
+        fn values(arguments: &[Argument]) -> Vec<&Expression> {
+            arguments.iter().map(|argument| &argument.value).collect()
+        }
+        match self {
+            JobStatement::Param(param) => {
+                let range = param.range.iter().flat_map(Range::ends);
+                range.chain(&param.step).chain(&param.default).collect()
+            }
+            JobStatement::Let(binding) => vec![&binding.value],
+            JobStatement::Require(required) => vec![&required.condition],
+            JobStatement::Machine(instance) | JobStatement::Tool(instance) => values(&instance.settings),
+            JobStatement::Motion(motion) | JobStatement::Unknown(motion) => motion.range.ends().to_vec(),
+            JobStatement::Profile(profile) => profile.segments.iter().map(|segment| &segment.value).collect(),
+            JobStatement::Solid(solid) => vec![&solid.value],
+            JobStatement::Contact(contact) => values(&contact.arguments),
+            JobStatement::Want(want) => vec![&want.value],
+            JobStatement::Drive(drive) => drive.values.iter().collect(),
+            JobStatement::Surface(surface) => vec![&surface.value],
+            JobStatement::Mill(mill) => mill.expressions(),
+            JobStatement::Sample(sample) => sample.expressions(),
+            JobStatement::Mount { .. }
+            | JobStatement::Trim { .. }
+            | JobStatement::Cut { .. }
+            | JobStatement::Expect(_) => Vec::new(),
+        }
+    }
+}
+
+impl Mill {
+    fn expressions(&self) -> Vec<&Expression> {
+        let runs = self.passes.iter().chain(&self.along);
+        let runs = runs.flat_map(|run| run.definition.iter().chain(run.range.ends()).chain([&run.value]));
+        let attitudes = self.attitudes.iter().map(|(_, value)| value);
+        runs.chain(attitudes).chain(self.clearances.iter().map(|clear| &clear.distance)).collect()
+    }
+}
+
+impl Sample {
+    fn expressions(&self) -> Vec<&Expression> {
+        let entries = self.entries.iter().flat_map(|entry| {
+            let values = match &entry.values {
+                SampleValues::Value(value) => vec![value],
+                SampleValues::Range(range, by) => [&range.ends()[..], &[by]].concat(),
+            };
+            entry.definition.iter().chain(values)
+        });
+        let keeps = self.keeps.iter().chain(self.limits.iter().map(|limit| &limit.within));
+        let keeps = keeps.flat_map(|keep| keep.definition.iter().chain(keep.range.ends()));
+        self.each.iter().flat_map(|each| &each.values).chain(entries).chain(keeps).collect()
     }
 }
 

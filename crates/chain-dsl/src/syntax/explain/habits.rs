@@ -2,6 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::source::Span;
 
 use super::super::grammar::Rule;
 use super::super::scan::{Kind, Scan};
@@ -32,7 +33,9 @@ impl Mistake<'_> {
             _ => return None,
         };
         let message = format!("no space may stand before the `{sign}` of a {what}").replace("a index", "an index");
-        Some(self.here(message).help(format!("write `{}{sign}`", self.scan.short(self.found - 1))))
+        let written = format!("write `{}{sign}`", self.scan.short(self.found - 1));
+        let gap = Span { start: self.scan.place(self.found - 1).end, end: self.place().start, ..self.place() };
+        Some(self.here(message).help(written.clone()).cure(written, gap, ""))
     }
 
     /// `.5`, `5.`, `1,5`
@@ -42,13 +45,19 @@ impl Mistake<'_> {
         let (before, after) = (self.scan.short(self.found.saturating_sub(1)), self.scan.short(self.found + 1));
         match self.say() {
             "." if digits_before => Some(
-                self.here("a digit must follow the decimal point").help(format!("write `{before}.0` or `{before}`")),
+                self.here("a digit must follow the decimal point")
+                    .help(format!("write `{before}.0` or `{before}`"))
+                    .cure(format!("write `{before}.0`"), self.place(), ".0"),
             ),
             "." if digits_after => {
-                Some(self.here("a digit must stand before the decimal point").help(format!("write `0.{after}`")))
+                let written = format!("write `0.{after}`");
+                let message = "a digit must stand before the decimal point";
+                Some(self.here(message).help(written.clone()).cure(written, self.place(), "0."))
             }
             "," if digits_before && digits_after => {
-                Some(self.here("decimals are written with a point").help(format!("write `{before}.{after}`")))
+                let written = format!("write `{before}.{after}`");
+                let message = "decimals are written with a point";
+                Some(self.here(message).help(written.clone()).cure(written, self.place(), "."))
             }
             _ => None,
         }
@@ -84,7 +93,19 @@ impl Mistake<'_> {
             (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
             _ => block_comment(self.scan, self.found)?,
         };
-        Some(self.unexpected().help(help))
+        let diagnostic = self.unexpected().help(help);
+        // of some the text to write is the same wherever they stand
+        let cure = match (self.before(), self.say(), help) {
+            ("*", "*", _) => ("write `^`", self.scan.extent(self.found - 1..self.found + 1), "^"),
+            (_, "=", "an argument gets its value with `:`") => ("write `:`", self.place(), ":"),
+            (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
+            (_, "==", _) => ("write `=`", self.place(), "="),
+            (")", "*", _) => ("leave `*` out", self.place(), ""),
+            (_, ",", _) => ("leave `,` out", self.place(), ""),
+            _ => return Some(diagnostic),
+        };
+        let (title, span, text) = cure;
+        Some(diagnostic.cure(title, span, text))
     }
 }
 
@@ -94,10 +115,22 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
         return None;
     }
     let message = format!("{} is not part of the language", scan.quote(index));
-    let diagnostic = Diagnostic::new(Code::Syntax, scan.place(index), message);
-    Some(match strange(scan.say(index)) {
-        Some(help) => diagnostic.help(help),
-        None => diagnostic,
+    let place = scan.place(index);
+    let diagnostic = Diagnostic::new(Code::Syntax, place, message);
+    let sign = scan.say(index);
+    if let Some(text) = written_here(sign) {
+        // a unit stands behind its number with a space
+        let is_word = text.starts_with(char::is_alphabetic);
+        let apart = if is_word && index > 0 && scan.place(index - 1).end == place.start { " " } else { "" };
+        let title = format!("write `{text}`");
+        return Some(diagnostic.help(title.clone()).cure(title, place, format!("{apart}{text}")));
+    }
+    Some(match (strange(sign), sign) {
+        (Some(help), ";") => diagnostic.help(help).cure("leave `;` out", place, ""),
+        (Some(help), "…") => diagnostic.help(help).cure("write `..`", place, " .. "),
+        (Some(help), "\u{a0}" | "\u{2009}" | "\u{202f}") => diagnostic.help(help).cure(help, place, " "),
+        (Some(help), _) => diagnostic.help(help),
+        (None, _) => diagnostic,
     })
 }
 
@@ -107,28 +140,35 @@ pub(in super::super) fn block_comment(scan: &Scan, index: usize) -> Option<&'sta
         .then_some("a comment begins with `//` and ends with the line")
 }
 
-/// How a sign from elsewhere is written here.
+/// How a sign from elsewhere is written here, wherever it stands.
+fn written_here(sign: &str) -> Option<&'static str> {
+    Some(match sign {
+        "°" | "º" => "deg",
+        "′" => "arcmin",
+        "″" => "arcsec",
+        "&" => "and",
+        "|" => "or",
+        "!" => "not",
+        "×" | "·" | "⋅" | "∙" => "*",
+        "÷" | "∕" => "/",
+        "−" | "–" | "—" => "-",
+        "²" => "^2",
+        "³" => "^3",
+        "≤" => "<=",
+        "≥" => ">=",
+        "≠" => "!=",
+        _ => return None,
+    })
+}
+
+/// What to say of other signs from elsewhere.
 fn strange(sign: &str) -> Option<&'static str> {
     Some(match sign {
         ";" => "a statement ends without a sign",
-        "°" | "º" => "write `deg`",
-        "′" => "write `arcmin`",
-        "″" => "write `arcsec`",
         "\u{a0}" | "\u{2009}" | "\u{202f}" => "write a plain space",
         "'" | "‘" | "’" | "“" | "”" | "„" => "text stands between `\"` and `\"`",
-        "&" => "write `and`",
-        "|" => "write `or`",
-        "!" => "write `not`",
         "#" | "%" => "a comment begins with `//`",
-        "×" | "·" | "⋅" | "∙" => "write `*`",
-        "÷" | "∕" => "write `/`",
-        "−" | "–" | "—" => "write `-`",
-        "²" => "write `^2`",
-        "³" => "write `^3`",
         "…" => "a range is written `a .. b`",
-        "≤" => "write `<=`",
-        "≥" => "write `>=`",
-        "≠" => "write `!=`",
         "√" => "write `sqrt(x)`",
         _ => return None,
     })

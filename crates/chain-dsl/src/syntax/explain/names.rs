@@ -27,7 +27,11 @@ impl Mistake<'_> {
             Some(meant) => format!("did you mean `{meant}`?"),
             None => format!("the units are {}", words::UNITS.join(", ")),
         };
-        Some(self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help))
+        let diagnostic = self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help);
+        Some(match like {
+            Some(meant) => diagnostic.cure(format!("write `{meant}`"), self.place(), meant),
+            None => diagnostic,
+        })
     }
 
     /// A word of the language where a name or a value belongs.
@@ -37,8 +41,7 @@ impl Mistake<'_> {
         let wants = |rules: &[Rule]| rules.iter().any(|rule| self.expected.contains(rule));
         if reserved == Reserved::Unit && wants(&[Rule::dimension, Rule::dimension_factor]) {
             let dimension = dimension_of(word);
-            let help = format!("write `{dimension}`");
-            return Some(self.here(format!("`{word}` is a unit, not a dimension")).help(help));
+            return Some(self.here(format!("`{word}` is a unit, not a dimension")).writing(self.place(), dimension));
         }
         let name = wants(&[Rule::name, Rule::path]);
         let value = wants(&[Rule::expression, Rule::value, Rule::argument]);

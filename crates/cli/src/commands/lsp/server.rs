@@ -31,8 +31,9 @@ const SILENCE: Duration = Duration::from_millis(80);
 const PICTURE_SILENCE: Duration = Duration::from_millis(300);
 /// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
 const STACK: usize = 16 << 20;
-/// Threads that answer.
+/// Threads that answer, and how many of them compile what was changed.
 const ANSWERING: usize = 2;
+const COMPILING: usize = 1;
 
 /// What the loop hears of.
 #[derive(Debug)]
@@ -47,11 +48,11 @@ pub(super) enum Event {
         response: Response,
         about: Option<(PathBuf, i32)>,
     },
-    /// What is found in a spec.
+    /// What is found in a spec; nothing where the server has a fault.
     Analysed {
         spec: PathBuf,
         version: i32,
-        analysis: Arc<Analysis>,
+        analysis: Option<Arc<Analysis>>,
     },
     /// A job is solved, or not.
     Solved(tasks::Outcome),
@@ -78,8 +79,12 @@ pub(super) struct Server<W> {
     /// Specs that are to be compiled, and when.
     due: BTreeSet<PathBuf>,
     due_at: Option<Instant>,
-    /// What was changed last: its own findings come first.
+    /// Those whose time has come; how many are being compiled.
+    ready: BTreeSet<PathBuf>,
+    compiling: usize,
+    /// What was changed last, and what the editor shows: their own findings come first.
     edited: Option<PathBuf>,
+    focused: Option<PathBuf>,
     picture_at: Option<(Instant, PathBuf)>,
     influences: Arc<BTreeMap<String, String>>,
     outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
@@ -106,7 +111,10 @@ impl<W: Write> Server<W> {
             findings: Findings::default(),
             due: BTreeSet::new(),
             due_at: None,
+            ready: BTreeSet::new(),
+            compiling: 0,
             edited: None,
+            focused: None,
             picture_at: None,
             influences: Arc::default(),
             outcomes: Arc::default(),
@@ -159,7 +167,12 @@ impl<W: Write> Server<W> {
                 }
                 self.send(&response.into())
             }
-            Event::Analysed { spec, version, analysis } => self.analysed(&spec, version, &analysis),
+            Event::Analysed { spec, version, analysis } => {
+                self.compiling -= 1;
+                let told = analysis.map_or(Ok(()), |analysis| self.analysed(&spec, version, &analysis));
+                self.compile();
+                told
+            }
             Event::Solved(outcome) => self.solved(outcome),
             Event::Tell(notification) => self.send(&notification.into()),
         }
@@ -364,6 +377,7 @@ impl<W: Write> Server<W> {
                 };
                 self.documents.close(&path);
                 self.due.remove(&path);
+                self.ready.remove(&path);
                 self.changed(Some(&path), SILENCE);
                 let snapshot = self.snapshot();
                 for told in self.findings.remove(&path, &snapshot) {
@@ -388,6 +402,7 @@ impl<W: Write> Server<W> {
                 let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
                 if let Some((path, _)) = uri.and_then(|uri| self.documents.find(uri)) {
                     self.tasks.focus(&path, &self.documents);
+                    self.focused = Some(path);
                 }
             }
             // others are for other servers
@@ -413,21 +428,28 @@ impl<W: Write> Server<W> {
     fn wake(&mut self, now: Instant) {
         if self.due_at.is_some_and(|at| at <= now) {
             self.due_at = None;
-            let mut due: Vec<PathBuf> = std::mem::take(&mut self.due).into_iter().collect();
-            due.sort_by_key(|spec| Some(spec) != self.edited.as_ref());
-            for spec in due {
-                let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
-                let (snapshot, events) = (self.snapshot(), self.events.clone());
-                self.spawn(move || {
-                    let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
-                    if let Ok(analysis) = analysed {
-                        let _ = events.send(Event::Analysed { spec, version, analysis });
-                    }
-                });
-            }
+            self.ready.append(&mut self.due);
+            self.compile();
         }
         if let Some((_, path)) = self.picture_at.take_if(|(at, _)| *at <= now) {
             self.show_picture(&path);
+        }
+    }
+
+    /// Compiles what is ready, one spec after the other: whoever types, or asks, does not wait for all that uses a text.
+    fn compile(&mut self) {
+        while self.compiling < COMPILING {
+            let is_ready = |spec: &Option<PathBuf>| spec.clone().filter(|spec| self.ready.contains(spec));
+            let next = is_ready(&self.edited).or_else(|| is_ready(&self.focused));
+            let Some(spec) = next.or_else(|| self.ready.first().cloned()) else { return };
+            self.ready.remove(&spec);
+            let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
+            let (snapshot, events) = (self.snapshot(), self.events.clone());
+            self.compiling += 1;
+            self.spawn(move || {
+                let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
+                let _ = events.send(Event::Analysed { spec, version, analysis: analysed.ok() });
+            });
         }
     }
 
@@ -439,7 +461,7 @@ impl<W: Write> Server<W> {
     fn analysed(&mut self, spec: &Path, version: i32, analysis: &Analysis) -> io::Result<()> {
         // of an older text, or of one that is being compiled again, nothing is told
         let is_now = self.documents.get(spec).is_some_and(|document| document.version == version);
-        if !is_now || self.due.contains(spec) {
+        if !is_now || self.due.contains(spec) || self.ready.contains(spec) {
             return Ok(());
         }
         let snapshot = self.snapshot();

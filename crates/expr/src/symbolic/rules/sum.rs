@@ -138,8 +138,15 @@ fn turned_squares<'g>(a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
     if !roots.iter().all(is_sum) {
         return None;
     }
-    let sum = Sum::of_squares(&roots, Products::Kept)?;
-    (sum.len() <= roots.len()).then(|| sum.expression())
+    // the distance of one point from an axis is asked for again and again
+    let squares = (a.id, b.id);
+    let sum = a.graph.known_square_sum(squares).unwrap_or_else(|| {
+        let sum = Sum::of_squares(&roots, Products::Kept).filter(|sum| sum.len() <= roots.len());
+        let sum = sum.map(|sum| sum.expression().id);
+        a.graph.remember_square_sum(squares, sum);
+        sum
+    });
+    sum.map(|id| a.graph.expr(id))
 }
 
 /// x of x².

@@ -9,6 +9,7 @@ use flank_solver::{Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
 use crate::project::requests::Session;
+use crate::solve::sampled::{SOLVED, as_solved};
 use crate::solve::surface::{bound, problem};
 
 /// Rows and columns of a sample that are enough to know where a surface lies.
@@ -61,8 +62,10 @@ impl<'j, 'g> Piece<'j, 'g> {
         ))?;
         let sample = thinned(sample);
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-        let (points, _) = problem(job, surface, coordinates, session).solve(&sample.targets(), sample.counts);
-        let known: Vec<SurfacePoint> = points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect();
+        let solved = || as_solved(&problem(job, surface, coordinates, session), &sample);
+        let solved = session.sample((job, surface), &sample, SOLVED, solved);
+        let known: Vec<SurfacePoint> =
+            solved.points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect();
         if known.is_empty() {
             return Err(format!("`{name}` bounds the spaces of a solid, and no point of its sample is solved").into());
         }
