@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use divan::{Bencher, black_box};
@@ -22,8 +23,11 @@ fn main() {
 
 /// Compiles a text with one job and lays out the tapes of all its surfaces; gives the number of their instructions.
 fn tape_of(text: &str) -> usize {
+    /// Trees of texts are kept: each text is a new one.
+    static TEXTS: AtomicUsize = AtomicUsize::new(0);
+    let text = format!("{text}// {}\n", TEXTS.fetch_add(1, Ordering::Relaxed));
     let graph = Graph::new();
-    let compilation = compile_text(&graph, "bench", text, &[]);
+    let compilation = compile_text(&graph, "bench", &text, &[]);
     assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
     let job = &compilation.jobs[0];
     let mut instructions = 0;
