@@ -132,8 +132,7 @@ struct Search<'s> {
 
 impl<'s> Search<'s> {
     fn new(system: &'s System) -> Search<'s> {
-        let [values, slopes, given] =
-            [&system.values, &system.slopes, &system.given].map(|tape| IntervalEvaluator::new(tape));
+        let [values, slopes, given] = [&system.values, &system.slopes, &system.given].map(IntervalEvaluator::new);
         Search { system, values, slopes, given, looked_at: 0 }
     }
 
