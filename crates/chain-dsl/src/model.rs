@@ -40,7 +40,7 @@ pub struct Job<'g> {
     pub wants: Vec<WantedContact>,
     /// Surfaces that are milled.
     pub millings: Vec<Milling<'g>>,
-    /// What it is tested by, if that was asked for ([`Request::expectations`](crate::Request::expectations)).
+    /// What it is tested by, if that was asked for ([`Request::whole`](crate::Request::whole)).
     pub expectations: Vec<Expectation<'g>>,
     /// Of its parameters those from whose values numbers of it follow that it does not hold as functions of them: ends of ranges, points
     /// that are asked for, which branch of an `if` counts. With other values of the others it is the same job.
