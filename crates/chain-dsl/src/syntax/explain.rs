@@ -16,7 +16,7 @@ mod brackets;
 mod habits;
 mod names;
 
-pub(super) use habits::{block_comment, foreign};
+pub(super) use habits::{belongs_to_value, block_comment, foreign};
 
 /// A piece of text that does not parse.
 pub(super) struct Mistake<'s> {

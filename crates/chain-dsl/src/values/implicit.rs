@@ -165,7 +165,7 @@ impl<'g> Context<'g> {
                 Value::Scalar(expr, dimension) if expr == variable => Some(*dimension),
                 _ => None,
             });
-            let value = dimension.map_or_else(|| format!("{value:.6}"), |dimension| shown_briefly(*value, dimension));
+            let value = dimension.map_or_else(|| format!("{value:.6}"), |dimension| rounded(*value, dimension, 1e6));
             format!("`{variable}` = {value}")
         };
         let values: Vec<String> = moving.iter().zip(at).map(value).collect();
@@ -214,8 +214,13 @@ fn between(one: f64, other: f64, dimension: Dimension) -> f64 {
 
 /// With three decimals.
 pub(crate) fn shown_briefly(value: f64, dimension: Dimension) -> String {
+    rounded(value, dimension, 1e3)
+}
+
+/// As a multiple of a part of its unit.
+fn rounded(value: f64, dimension: Dimension, parts: f64) -> String {
     let unit = if dimension == Dimension::ANGLE { 1.0_f64.to_radians() } else { 1.0 };
-    shown((value / unit * 1e3).round() / 1e3 * unit, dimension)
+    shown((value / unit * parts).round() / parts * unit, dimension)
 }
 
 /// The rest of a sentence that lists something, if there is something.

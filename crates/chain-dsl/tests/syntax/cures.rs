@@ -4,7 +4,7 @@ use flank_chain_dsl::{Diagnostic, compile_text};
 use flank_expr::Graph;
 
 /// A line of a function, wrong and mended.
-const MENDED: [(&str, &str); 19] = [
+const MENDED: [(&str, &str); 23] = [
     ("fn f(x: angle) = sin (x)", "fn f(x: angle) = sin(x)"),
     ("fn f(x: number) = 5. * x", "fn f(x: number) = 5.0 * x"),
     ("fn f(x: number) = .5 * x", "fn f(x: number) = 0.5 * x"),
@@ -24,6 +24,10 @@ const MENDED: [(&str, &str); 19] = [
     ("fn f(x: length) = x + 2 mmm", "fn f(x: length) = x + 2 mm"),
     ("fn f(x: angle) = sinn(x)", "fn f(x: angle) = sin(x)"),
     ("fn f(x: length) = x + 2", "fn f(x: length) = x + 2 mm"),
+    ("fn f(x: angle) = x + 20°", "fn f(x: angle) = x + 20 deg"),
+    ("fn f(x: angle) = x + 20 ″", "fn f(x: angle) = x + 20 arcsec"),
+    ("fn f(x: number) = x + 20−x", "fn f(x: number) = x + 20-x"),
+    ("fn f(x: number) = if x < 1 & x > 0 then 2 else 3", "fn f(x: number) = if x < 1 and x > 0 then 2 else 3"),
 ];
 
 fn found(text: &str) -> Vec<Diagnostic> {

@@ -134,6 +134,11 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
     })
 }
 
+/// Whether a character is a sign from elsewhere for a part of a value: what stands before it is no whole value.
+pub(in super::super) fn belongs_to_value(scan: &Scan, index: usize) -> bool {
+    scan.kind(index) == Some(Kind::Strange) && written_here(scan.say(index)).is_some()
+}
+
 /// What to say of `/*`.
 pub(in super::super) fn block_comment(scan: &Scan, index: usize) -> Option<&'static str> {
     (scan.say(index) == "/" && scan.say(index + 1) == "*")

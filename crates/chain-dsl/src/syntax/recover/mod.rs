@@ -144,7 +144,7 @@ impl<'s> Recover<'s> {
             Err(failure) => failure,
         };
         let mistake = Mistake::new(scan, range, start + failure.place, failure.expected);
-        let whole = mistake.whole_before();
+        let whole = mistake.whole_before().filter(|_| !explain::belongs_to_value(scan, mistake.found));
         if whole.is_some() && scan.kind(mistake.found) == Some(Kind::Word) {
             self.at = mistake.found;
         } else {
