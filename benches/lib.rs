@@ -1,7 +1,5 @@
 //! Benchmarks: `cargo bench -p flank-benches`.
 
-pub mod resampled;
-
 /// The largest resident memory so far, MiB; zero where the system does not tell.
 pub fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

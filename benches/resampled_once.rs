@@ -5,7 +5,7 @@ use std::env::args;
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use flank_benches::resampled::Resampled;
+use flank_tests::resampled::Resampled;
 
 fn main() -> ExitCode {
     let words: Vec<String> = args().skip(1).collect();

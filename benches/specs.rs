@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use flank_benches::resampled::Resampled;
 use flank_solver::{Outcome, SurfacePoints};
+use flank_tests::resampled::Resampled;
 
 const SIDE: usize = 201;
 /// How long a surface is solved again and again, and how often at the least.

@@ -8,6 +8,7 @@ mod dice;
 pub mod layout;
 pub mod machines;
 pub mod pairs;
+pub mod resampled;
 pub mod targets;
 pub mod variants;
 

@@ -3,7 +3,8 @@
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, SampleGrid, compile_text};
 use flank_expr::Graph;
 use flank_solver::{BoundSurface, GridReport, Range, SurfacePoints, SurfaceProblem};
-use flank_tests::{jobs, shipped};
+
+use crate::{jobs, shipped};
 
 /// A surface that points are asked for of.
 pub struct Resampled {
@@ -64,7 +65,7 @@ impl Resampled {
     /// If its text is wrong.
     pub fn common(side: usize) -> Resampled {
         let graph = Graph::new();
-        let compilation = compile_text(&graph, "spiral_bevel", include_str!("spiral_bevel.chain"), &[]);
+        let compilation = compile_text(&graph, "spiral_bevel", include_str!("../../benches/spiral_bevel.chain"), &[]);
         let job = &compilation.jobs[0];
         Resampled::new("benches/spiral_bevel.chain", job, &job.surfaces[0], side).expect("it asks for points")
     }
