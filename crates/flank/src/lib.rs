@@ -126,10 +126,11 @@ pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
-    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, EvaluatorOptions, FIT_STARTS, FitRequest,
-    JobSelection, KeptPlace, MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest,
-    SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
+    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FIT_STARTS, FitRequest, JobSelection, KeptPlace,
+    MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
+    SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
+pub use project::session::EvaluatorOptions;
 pub use project::{Project, shown_path};
 pub use report::report;
 pub use report::result::{

@@ -9,7 +9,7 @@ use flank_solver::{Outcome, SurfacePoint, beside};
 use crate::compare::map::Named;
 use crate::compare::measure::Placed;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 

@@ -5,7 +5,8 @@ use flank_solver::Inspection;
 use crate::compare::gauged::{Gauged, GaugedArea};
 use crate::compare::map::{ComparedWith, DeviationMap, Named};
 use crate::project::failure::Failure;
-use crate::project::requests::{DeviationRequest, Session};
+use crate::project::requests::DeviationRequest;
+use crate::project::session::Session;
 use crate::project::spec::Origin;
 use crate::solve;
 

@@ -5,7 +5,7 @@ use flank_solver::{InvoluteHelicoid, InvoluteReference, Outcome, SurfacePoint, T
 
 use crate::compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, TraceNumbers};
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::solved::Solved;
 use crate::solve::surface::problem;
 

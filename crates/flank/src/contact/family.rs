@@ -7,7 +7,8 @@ use crate::contact::place::{corners, fine};
 use crate::contact::rolling::Rolling;
 use crate::contact::{Rolled, rolled};
 use crate::project::failure::Failure;
-use crate::project::requests::{ContactRequest, Session};
+use crate::project::requests::ContactRequest;
+use crate::project::session::Session;
 use crate::project::units;
 
 /// A pair whose axes and settings stay open, with its contact as the job itself has it.

@@ -11,7 +11,7 @@ use crate::contact::result::Clearance;
 use crate::contact::rolling::Rolling;
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::{self, blank};
 

@@ -33,7 +33,8 @@ use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ContactRequest, Session};
+use crate::project::requests::ContactRequest;
+use crate::project::session::Session;
 use crate::project::spec;
 use crate::project::spec::Origin;
 

@@ -8,7 +8,7 @@ use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{BoundSurface, ContactProblem, Range, RollingPair, SurfacePoint};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::{self, SolveOptions, blank, bound, ranges};
 

@@ -14,7 +14,8 @@ use crate::contact::rolling::Rolling;
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
-use crate::project::requests::{ContactRequest, Session};
+use crate::project::requests::ContactRequest;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::blank;
 

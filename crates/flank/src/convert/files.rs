@@ -10,7 +10,8 @@ use super::table::{Named, Table};
 use crate::project::choices::EmitForm;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
-use crate::project::requests::{ConvertRequest, Session};
+use crate::project::requests::ConvertRequest;
+use crate::project::session::Session;
 use crate::project::spec::Origin;
 
 /// Decimals of positions in NC programs: 0.1 um, and 1e-5 deg.

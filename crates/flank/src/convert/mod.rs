@@ -24,7 +24,8 @@ use flank_solver::{
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ConvertRequest, JobSelection, Onto, Session};
+use crate::project::requests::{ConvertRequest, JobSelection, Onto};
+use crate::project::session::Session;
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;

@@ -13,7 +13,8 @@ use super::source::{Flank, Source};
 use crate::project::failure::Failure;
 use crate::project::quantity::{NamedUnit, UnitSymbol};
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ConvertRequest, Session};
+use crate::project::requests::ConvertRequest;
+use crate::project::session::Session;
 use crate::project::units;
 
 /// Positions that the settings are found from; all others follow.

@@ -7,7 +7,7 @@ use flank_solver::{Outcome, Range, Screw, SurfacePoint, symmetries};
 
 use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::stream;
 use crate::solve::table;

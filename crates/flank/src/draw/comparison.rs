@@ -10,7 +10,8 @@ use crate::compare::deviation;
 use crate::compare::map::{DeviationMap, find};
 use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
-use crate::project::requests::{PlotRequest, Session};
+use crate::project::requests::PlotRequest;
+use crate::project::session::Session;
 use crate::project::spec::Origin;
 
 /// What there is to draw of a comparison.

@@ -10,7 +10,8 @@ use crate::contact::picture::{about, drawing, names};
 use crate::project::choices::{Choice, PlotKind};
 use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
-use crate::project::requests::{ContactRequest, PlotRequest, Session};
+use crate::project::requests::{ContactRequest, PlotRequest};
+use crate::project::session::Session;
 
 /// The kinds that show contacts.
 pub(crate) const KINDS: [PlotKind; 4] = [PlotKind::Pattern, PlotKind::Error, PlotKind::Gap, PlotKind::Path];

@@ -261,7 +261,8 @@ mod tests {
     use crate::project::Project;
     use crate::project::choices::PlotKind;
     use crate::project::monitor::Unwatched;
-    use crate::project::requests::{EvaluatorOptions, JobSelection, Session};
+    use crate::project::requests::JobSelection;
+    use crate::project::session::{EvaluatorOptions, Session};
     use crate::project::spec;
     use crate::solve;
 

@@ -7,7 +7,7 @@ use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::solved::Solved;
 use crate::solve::stream;
 use crate::solve::{self, SolveOptions};

@@ -6,7 +6,7 @@ use flank_solver::{BodySheet, SheetFace};
 
 use super::surfaces::frame;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::body::shape::Shape;
 use crate::solve::solved::Solved;
 

@@ -16,7 +16,8 @@ use crate::contact::summary::Summary;
 use crate::contact::{self, Rolled};
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{ContactRequest, JobSelection, Session};
+use crate::project::requests::{ContactRequest, JobSelection};
+use crate::project::session::Session;
 use crate::solve::solved::Solved;
 
 /// A pair of teeth that is apart by less carries too: rounding, um.

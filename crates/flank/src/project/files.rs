@@ -14,7 +14,7 @@ use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFor
 use crate::project::failure::Failure;
 use crate::project::monitor::{Monitor, Unwatched};
 use crate::project::remark::{Remark, RemarkKind};
-use crate::project::requests::check;
+use crate::project::session::check;
 use crate::project::shown_path;
 use crate::project::spec::Origin;
 

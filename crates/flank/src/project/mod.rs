@@ -12,6 +12,7 @@ pub(crate) mod once;
 pub(crate) mod quantity;
 pub(crate) mod remark;
 pub(crate) mod requests;
+pub(crate) mod session;
 pub(crate) mod spec;
 pub(crate) mod units;
 

@@ -5,7 +5,7 @@ use flank_export::{Field, Values};
 use flank_solver::{CuttingEdges, ScallopHeight, SurfacePoint};
 
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::result::CutHeights;
 use crate::solve::surface::bound;
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::project::failure::Failure;
 use crate::project::remark::{Remark, RemarkKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::points::patch;
 use crate::solve::reasons;
 use crate::solve::summary::Summary;

@@ -1,6 +1,6 @@
 //! What is wanted of surfaces beside their points.
 
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// What is wanted of a surface beside its points.
 #[derive(Clone, Copy)]

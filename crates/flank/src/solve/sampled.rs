@@ -5,7 +5,7 @@ use flank_solver::{GridReport, Outcome, Solution, SurfacePoint, SurfaceProblem};
 
 use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::blank;
 use crate::solve::branches;
 use crate::solve::certify;

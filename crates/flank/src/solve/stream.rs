@@ -7,7 +7,7 @@ use flank_export::{Axis, Banded, Field, Patch, Point, Taker, WriteError};
 use flank_solver::{Band, GridReport, MOST_AT_ONCE, SurfacePoint, SurfaceProblem};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::arrays::PointGrid;
 use crate::solve::blank;
 use crate::solve::geometry::{self, Described, TOGETHER};

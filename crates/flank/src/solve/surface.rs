@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::Expr;
 use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 
 /// A surface with the values of the job's parameters.

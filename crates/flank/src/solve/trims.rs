@@ -3,7 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_solver::{SurfacePoint, Trim};
 
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::limits::Line;
 use crate::solve::summary::Summary;
 use crate::solve::surface::{bound, problem};

@@ -6,7 +6,7 @@ use flank_chain_dsl::{Coordinate, GeneratedSurface, Job, PointSet, Sample, Sampl
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::{self, SolveOptions, limits};
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use flank_chain_dsl::Disk;
 
-use crate::project::requests::EvaluatorOptions;
+use crate::project::session::EvaluatorOptions;
 use crate::project::{Project, shown_path};
 
 /// How specs are tested.

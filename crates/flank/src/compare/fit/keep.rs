@@ -8,7 +8,8 @@ use super::problem::adjustable;
 use super::result::KeptSurface;
 use crate::compare::map::Named;
 use crate::project::failure::Failure;
-use crate::project::requests::{FitRequest, KeptPlace, Session};
+use crate::project::requests::{FitRequest, KeptPlace};
+use crate::project::session::Session;
 use crate::solve::{self, SolveOptions};
 
 /// A surface with the points of it that stay.

@@ -24,7 +24,8 @@ use crate::compare::map::{Named, find};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{FitRequest, Session};
+use crate::project::requests::FitRequest;
+use crate::project::session::Session;
 use crate::project::spec;
 use crate::project::spec::Origin;
 

@@ -15,7 +15,7 @@ use super::collect::{Cases, Found};
 use super::plan::{Plan, write_text};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{EvaluatorOptions, Session};
+use crate::project::session::{EvaluatorOptions, Session};
 
 /// Cases between two looks at whether the work is cancelled.
 const TOGETHER: usize = 64;
@@ -190,7 +190,7 @@ impl Work<'_> {
         let numbers: Vec<(u64, Option<String>)> = self.plan.numbers(chunk).zip(known).collect();
         let mut rows = Vec::with_capacity(numbers.len());
         for cases in numbers.chunks(TOGETHER) {
-            crate::project::requests::check(self.monitor)?;
+            crate::project::session::check(self.monitor)?;
             let found = cases.par_iter().map(|(number, known)| match known {
                 Some(row) => Ok(row.clone()),
                 None => self.case(*number),
@@ -202,7 +202,7 @@ impl Work<'_> {
 
     fn one_by_one(&self, chunk: usize, known: Vec<Option<String>>, journal: &Journal) -> Result<Vec<String>, Failure> {
         let rows = self.plan.numbers(chunk).zip(known).map(|(number, known)| {
-            crate::project::requests::check(self.monitor)?;
+            crate::project::session::check(self.monitor)?;
             match known.or_else(|| journal.row(number)) {
                 Some(row) => Ok(row),
                 None if journal.deaths(number) >= DEADLY => {

@@ -12,7 +12,8 @@ use super::inputs::{StudyInput, size_of_unit};
 use super::opened::{Opened, Sampled};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
-use crate::project::requests::{JobSelection, Session};
+use crate::project::requests::JobSelection;
+use crate::project::session::Session;
 use crate::solve::starts;
 
 /// The branch is looked for anew in each case whose number is a multiple of this, and in each whose points are not all as in the

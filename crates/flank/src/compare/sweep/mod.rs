@@ -27,7 +27,8 @@ pub use self::study::OpenStudy;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{JobSelection, Session};
+use crate::project::requests::JobSelection;
+use crate::project::session::Session;
 use crate::project::spec::{self, Origin};
 use crate::project::{shown_path, units};
 

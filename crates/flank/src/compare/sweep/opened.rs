@@ -12,7 +12,8 @@ use super::inputs::StudyInput;
 use crate::compare::map::{find, is_solved};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
-use crate::project::requests::{JobSelection, Session};
+use crate::project::requests::JobSelection;
+use crate::project::session::Session;
 use crate::solve::starts::{self, Asked, Starts};
 use crate::solve::{blank, followed, ranges, secondary};
 

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::project::requests::{EvaluatorOptions, JobSelection, ToleratedAmount};
+use crate::project::requests::{JobSelection, ToleratedAmount};
+use crate::project::session::EvaluatorOptions;
 
 /// Many cases of a job.
 #[derive(Clone, Debug)]

@@ -15,7 +15,8 @@ use super::result::SweepResult;
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::requests::{EvaluatorOptions, JobSelection, Session};
+use crate::project::requests::JobSelection;
+use crate::project::session::{EvaluatorOptions, Session};
 use crate::project::spec::Origin;
 use crate::project::units;
 

@@ -7,7 +7,7 @@ use super::quantity::Quantity;
 use crate::compare::map::Named;
 use crate::compare::measure::Placed;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve;
 use crate::solve::starts;
 

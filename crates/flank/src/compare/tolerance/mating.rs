@@ -10,7 +10,7 @@ use crate::contact::pair::Members;
 use crate::contact::place::{dot, fine_unit, rows_at};
 use crate::contact::rolling::Rolling;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// Positions over a pitch among which the middle is looked for, as `flank contact` has it where nobody says how many.
 const POSITIONS: usize = 60;

@@ -25,7 +25,8 @@ use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
-use crate::project::requests::{Session, ToleranceRequest};
+use crate::project::requests::ToleranceRequest;
+use crate::project::session::Session;
 use crate::project::spec::{self, Origin};
 use crate::project::{shown_path, units};
 

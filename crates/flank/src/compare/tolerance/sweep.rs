@@ -10,7 +10,7 @@ use super::ease_off::Flank;
 use super::mating::Mating;
 use super::result::SweptResult;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// Cases between two looks at whether the work is cancelled.
 const TOGETHER: usize = 64;

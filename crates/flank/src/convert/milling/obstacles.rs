@@ -11,7 +11,7 @@ use super::result::ClearanceKept;
 use super::target::Target;
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// The least distance of each pair over all positions, with what is missed.
 ///

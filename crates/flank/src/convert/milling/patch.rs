@@ -4,7 +4,7 @@ use flank_chain_dsl::{GeneratedSurface, Job, MilledArea};
 use flank_solver::{Chart, Outcome, PoseField, SurfaceFrame, SurfaceFrames, SurfaceProblem};
 
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve;
 use crate::solve::reasons;

@@ -9,7 +9,7 @@ use flank_solver::{Chart, CutterPose, Lean, NoPose, PoseField, SurfaceFrame};
 use super::cutter::MillingCutter;
 use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field};
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// A surface that is milled.
 pub(super) struct Target<'j, 'g> {

@@ -17,7 +17,8 @@ use crate::language::derive::result::{
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::requests::{DeriveRequest, Session};
+use crate::project::requests::DeriveRequest;
+use crate::project::session::Session;
 use crate::project::spec;
 
 /// What the compiler built, stage by stage; or the axes of another machine in closed form; or how many operations a point takes.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::contact::pair::Members;
 use crate::contact::rolling::Rolling;
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 
 /// Steps over a pitch at which the contact is followed: its middle is all that is wanted.
 const STEPS: usize = 12;

@@ -8,7 +8,7 @@ use flank_expr::geometry::{Axis, Chain, Step};
 use flank_solver::{Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::sampled::{SOLVED, as_solved};
 use crate::solve::surface::{bound, problem};
 

@@ -6,7 +6,7 @@ use flank_chain_dsl::{Job, Solid};
 use flank_solver::{Body, BodySheet, Fineness, Outcome, SheetFace};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::solve::body::space;
 use crate::solve::solved::Solved;
 
@@ -174,7 +174,8 @@ mod tests {
     use super::*;
     use crate::project::Project;
     use crate::project::monitor::Unwatched;
-    use crate::project::requests::{EvaluatorOptions, JobSelection};
+    use crate::project::requests::JobSelection;
+    use crate::project::session::EvaluatorOptions;
     use crate::project::spec;
 
     /// What sheets enclose, mm³, and the least cosine between the normals of their points and those of their cells.

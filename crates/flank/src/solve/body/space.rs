@@ -4,7 +4,7 @@ use flank_chain_dsl::{Job, Solid};
 use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
-use crate::project::requests::Session;
+use crate::project::session::Session;
 use crate::project::units;
 use crate::solve::body::borders::Borders;
 use crate::solve::body::ends;
