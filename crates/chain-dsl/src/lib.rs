@@ -32,6 +32,9 @@
 //! assert_eq!(compilation.jobs[0].surfaces[0].surface.constraints.len(), 1);
 //! ```
 
+// what makes a parser of the grammar names it
+extern crate alloc;
+
 mod compile;
 mod definitions;
 mod derivation;

@@ -98,7 +98,7 @@ fn has_normal<'g>(
     unknowns: &[RangedVariable<'g>],
     gradient: Vector3<'g>,
 ) -> bool {
-    if !context.spend(context.graph.count(&gradient.0).shared, condition) {
+    if !context.spend(context.graph.size(&gradient.0), condition) {
         return false;
     }
     let Err(seen) = material_side::side(context, unknowns, gradient, gradient) else { return true };

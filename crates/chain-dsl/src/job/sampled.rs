@@ -262,7 +262,7 @@ impl<'g> System<'g> {
         if parameters.iter().any(|value| value.is_nan()) || unknowns.iter().any(|unknown| !unknown.range.continuous) {
             return None;
         }
-        let operations = context.graph.count(&residuals).shared;
+        let operations = context.graph.size(&residuals);
         let roots = OnlyRoots::new(&residuals, &unknowns, &others);
         Some(System { roots, unknowns: variables, parameters, given, operations })
     }

@@ -149,7 +149,7 @@ impl<'g> Context<'g> {
         match value {
             Value::Poison => Value::Poison,
             Value::Scalar(expr, dimension) => {
-                if !self.spend(self.graph.count(&[*expr]).shared, span) {
+                if !self.spend(self.graph.size(&[*expr]), span) {
                     return Value::Poison;
                 }
                 Value::Scalar(expr.derivative(by.0), dimension.over(by.1))
@@ -236,7 +236,7 @@ impl<'g> Context<'g> {
                     (None, _) | (_, Err(Unranged::Unknown)) => return Value::Scalar(*expr, product),
                     (Some(ends), Ok(ranges)) => (ends, ranges),
                 };
-                if !self.spend(STEPS_OF_AN_INTEGRAL * self.graph.count(&[*expr]).shared, bound.value.span) {
+                if !self.spend(STEPS_OF_AN_INTEGRAL * self.graph.size(&[*expr]), bound.value.span) {
                     return Value::Poison;
                 }
                 match flank_expr::integral(*expr, variable, ends, &ranges) {
@@ -282,7 +282,7 @@ impl<'g> Context<'g> {
         match value {
             value if own.is_empty() => value,
             Value::Scalar(expr, dimension) => {
-                if !self.spend(self.graph.count(&[expr]).shared, span) {
+                if !self.spend(self.graph.size(&[expr]), span) {
                     return Value::Poison;
                 }
                 Value::Scalar(self.graph.substitute(&[expr], own)[0], dimension)

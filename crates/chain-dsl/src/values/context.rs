@@ -337,8 +337,8 @@ impl<'g> Context<'g> {
         if self.steps.get() > limits::EVALUATION_STEPS.most {
             return Constant::Unknown;
         }
-        self.steps.set(self.steps.get() + self.graph.count(&[expr]).shared);
-        let variables = self.graph.variables_of(&[expr]);
+        let (size, variables) = self.graph.extent(expr);
+        self.steps.set(self.steps.get() + size);
         if let Some(moving) = variables.iter().find(|variable| !self.roles[variable.index()].stands_still()) {
             let role = self.roles[moving.index()].described();
             return Constant::Moves(format!("the {role} `{}`", self.graph.variable_name(*moving)));

@@ -88,8 +88,8 @@ impl<'g> Vector3<'g> {
 
 /// The shorter of two ways to write the same.
 fn cheaper<'g, const N: usize>(a: [Expr<'g>; N], b: [Expr<'g>; N]) -> [Expr<'g>; N] {
-    let shared = |exprs: &[Expr<'g>]| exprs[0].graph().count(exprs).shared;
-    if shared(&b) < shared(&a) { b } else { a }
+    let size = |exprs: &[Expr<'g>]| exprs[0].graph().size(exprs);
+    if size(&b) < size(&a) { b } else { a }
 }
 
 impl<'g> Add for Vector3<'g> {

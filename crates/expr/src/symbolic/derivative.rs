@@ -219,12 +219,7 @@ impl Graph {
 
     /// The variables that the expressions depend on, in order of creation.
     pub fn variables_of(&self, roots: &[Expr<'_>]) -> Vec<VariableId> {
-        let mut found: Vec<VariableId> = self
-            .reachable(roots.iter().map(|root| root.id))
-            .into_iter()
-            .filter_map(|id| self.expr(id).as_variable())
-            .collect();
-        found.sort_unstable();
-        found
+        let found = self.reachable(roots.iter().map(|root| root.id));
+        found.into_iter().filter_map(|id| self.expr(id).as_variable()).collect()
     }
 }

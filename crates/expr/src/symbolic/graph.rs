@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
+use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
@@ -11,6 +12,7 @@ use crate::symbolic::implicit::{Implicit, RootId};
 use crate::symbolic::integral::{Integral, IntegralId};
 use crate::symbolic::op::{Binary, Unary};
 use crate::symbolic::rules;
+use crate::symbolic::terms::{Products, Tried};
 
 /// Index of a node. Operands always have smaller indices than what is made of them.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -32,7 +34,7 @@ impl VariableId {
 pub struct CurveId(pub(crate) u32);
 
 /// One node of the graph.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Node {
     /// A number, kept as its bits so that it can be a key. There is one zero and one NaN.
     Constant(u64),
@@ -50,6 +52,26 @@ pub enum Node {
     Root(RootId, NodeId, NodeId),
     /// An integral: its value, and how far that is off at the most.
     Integral(IntegralId, NodeId, NodeId),
+}
+
+/// In one word, which is folded in once: most of what a table of nodes takes is hashing.
+impl Hash for Node {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let word = |kind: u64, which: u64, NodeId(a): NodeId, NodeId(b): NodeId| {
+            (u64::from(a) << 32 | u64::from(b)) ^ (which << 8 | kind).wrapping_mul(0xff51_afd7_ed55_8ccd)
+        };
+        let none = NodeId(0);
+        state.write_u64(match *self {
+            Node::Constant(bits) => bits,
+            Node::Variable(VariableId(id)) => word(1, 0, NodeId(id), none),
+            Node::Unary(op, a) => word(2, op as u64, a, none),
+            Node::Binary(op, a, b) => word(3, op as u64, a, b),
+            Node::Curve(CurveId(curve), order, a) => word(4, u64::from(order), a, NodeId(curve)),
+            Node::Middle(a) => word(5, 0, a, none),
+            Node::Root(root, a, b) => word(6, u64::from(root.system) << 8 | u64::from(root.component), a, b),
+            Node::Integral(IntegralId(integral), a, b) => word(7, u64::from(integral), a, b),
+        });
+    }
 }
 
 impl Node {
@@ -86,15 +108,23 @@ struct Store {
     /// Operations asked for so far, new or not.
     operations: usize,
     room: Option<usize>,
-    derivatives: NodeMap<(VariableId, NodeId), NodeId>,
+    /// By variable and node in one word.
+    derivatives: NodeMap<u64, NodeId>,
     /// Of two squares what their sum is where it is shorter, as [`rules`] find out once.
-    square_sums: NodeMap<(NodeId, NodeId), Option<NodeId>>,
+    square_sums: NodeMap<u64, Option<NodeId>>,
+    /// Expressions as sums of products, by node and by how far products are written out.
+    terms: NodeMap<u64, Tried>,
 }
 
 impl Store {
     fn is_full(&self) -> bool {
         self.room.is_some_and(|room| self.operations > room)
     }
+}
+
+/// Two numbers as one key.
+fn pair(a: u32, b: u32) -> u64 {
+    u64::from(a) << 32 | u64::from(b)
 }
 
 /// The arena of all symbolic scalars of one model.
@@ -112,47 +142,58 @@ impl Store {
 #[derive(Default)]
 pub struct Graph {
     store: RefCell<Store>,
-    visits: RefCell<Visits>,
+    pending: RefCell<Pending>,
+    /// Where nodes stand in the last order that was made of them.
+    places: RefCell<Vec<u32>>,
     /// What tapes take for settings, with their first numbers.
     pub(crate) settings: RefCell<Vec<(NodeId, f64)>>,
 }
 
-/// Where walks through the graph have been. The memory is kept, so that a walk costs only what it comes to.
+/// Nodes that a walk through the graph has yet to come to, the highest first: what a node is made of lies below it, so that each is met
+/// once, in its order, after all that it is part of. The memory is kept, so that a walk costs only what it comes to.
 #[derive(Default)]
-struct Visits {
-    walk: u32,
-    /// The last walk that came to each node, and where the node stands in its order.
-    last: Vec<(u32, u32)>,
+struct Pending {
+    /// A bit for each node.
+    nodes: Vec<u64>,
+    /// A bit for each word of these that is not zero.
+    words: Vec<u64>,
+    /// The last of those that may not be zero.
+    top: usize,
 }
 
-impl Visits {
+impl Pending {
+    const BITS: usize = u64::BITS as usize;
+
     fn begin(&mut self, nodes: usize) {
-        if self.walk == u32::MAX {
-            *self = Visits::default();
+        let words = nodes.div_ceil(Self::BITS);
+        if self.nodes.len() < words {
+            self.nodes.resize(2 * words, 0);
+            self.words.resize(self.nodes.len().div_ceil(Self::BITS), 0);
         }
-        self.walk += 1;
-        self.last.resize(nodes, (0, 0));
+        self.top = 0;
     }
 
-    /// Whether it is the first visit.
-    fn is_first(&mut self, id: NodeId) -> bool {
-        std::mem::replace(&mut self.last[id.0 as usize].0, self.walk) != self.walk
+    fn insert(&mut self, NodeId(id): NodeId) {
+        let word = id as usize / Self::BITS;
+        let group = word / Self::BITS;
+        self.nodes[word] |= 1 << (id as usize % Self::BITS);
+        self.words[group] |= 1 << (word % Self::BITS);
+        self.top = self.top.max(group);
     }
 
-    /// As if the walk had not been there.
-    fn forget(&mut self, id: NodeId) {
-        self.last[id.0 as usize].0 = 0;
-    }
-
-    /// Puts what the walk came to in order.
-    fn sort(&self, nodes: &mut Vec<NodeId>) {
-        let (Some(&first), Some(&last)) = (nodes.iter().min(), nodes.iter().max()) else { return };
-        let width = (last.0 - first.0) as usize;
-        if width > 16 * nodes.len() {
-            return nodes.sort_unstable();
+    /// Takes out the highest.
+    fn pop(&mut self) -> Option<NodeId> {
+        while *self.words.get(self.top)? == 0 {
+            self.top = self.top.checked_sub(1)?;
         }
-        nodes.clear();
-        nodes.extend((first.0..=last.0).map(NodeId).filter(|id| self.last[id.0 as usize].0 == self.walk));
+        let highest = |bits: u64| bits.ilog2() as usize;
+        let word = self.top * Self::BITS + highest(self.words[self.top]);
+        let bit = highest(self.nodes[word]);
+        self.nodes[word] ^= 1 << bit;
+        if self.nodes[word] == 0 {
+            self.words[self.top] ^= 1 << (word % Self::BITS);
+        }
+        Some(NodeId((word * Self::BITS + bit) as u32))
     }
 }
 
@@ -328,19 +369,33 @@ impl Graph {
     }
 
     pub(crate) fn known_derivative(&self, variable: VariableId, id: NodeId) -> Option<NodeId> {
-        self.store.borrow().derivatives.get(&(variable, id)).copied()
+        self.store.borrow().derivatives.get(&pair(variable.0, id.0)).copied()
     }
 
     pub(crate) fn remember_derivative(&self, variable: VariableId, id: NodeId, derivative: NodeId) {
-        self.store.borrow_mut().derivatives.insert((variable, id), derivative);
+        self.store.borrow_mut().derivatives.insert(pair(variable.0, id.0), derivative);
     }
 
-    pub(crate) fn known_square_sum(&self, squares: (NodeId, NodeId)) -> Option<Option<NodeId>> {
-        self.store.borrow().square_sums.get(&squares).copied()
+    pub(crate) fn known_square_sum(&self, (a, b): (NodeId, NodeId)) -> Option<Option<NodeId>> {
+        self.store.borrow().square_sums.get(&pair(a.0, b.0)).copied()
     }
 
-    pub(crate) fn remember_square_sum(&self, squares: (NodeId, NodeId), sum: Option<NodeId>) {
-        self.store.borrow_mut().square_sums.insert(squares, sum);
+    pub(crate) fn remember_square_sum(&self, (a, b): (NodeId, NodeId), sum: Option<NodeId>) {
+        self.store.borrow_mut().square_sums.insert(pair(a.0, b.0), sum);
+    }
+
+    pub(crate) fn known_terms(&self, id: NodeId, products: Products) -> Option<Tried> {
+        self.store.borrow().terms.get(&pair(products as u32, id.0)).cloned()
+    }
+
+    pub(crate) fn remember_terms(&self, id: NodeId, products: Products, tried: Tried) {
+        /// All are forgotten where there are more: each may hold some thousand bytes.
+        const MOST: usize = 4096;
+        let terms = &mut self.store.borrow_mut().terms;
+        if terms.len() >= MOST {
+            terms.clear();
+        }
+        terms.insert(pair(products as u32, id.0), tried);
     }
 
     /// Every node that the roots are made of, operands before what is made of them.
@@ -364,31 +419,29 @@ impl Graph {
         roots: impl IntoIterator<Item = NodeId>,
         is_wanted: impl Fn(NodeId) -> bool,
     ) -> Vec<NodeId> {
-        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
-        visits.begin(store.nodes.len());
-        let mut stack: Vec<NodeId> = roots.into_iter().collect();
+        let (store, mut pending) = (self.store.borrow(), self.pending.borrow_mut());
+        pending.begin(store.nodes.len());
+        roots.into_iter().for_each(|root| pending.insert(root));
         let mut found = Vec::new();
-        while let Some(id) = stack.pop() {
-            if !visits.is_first(id) {
+        while let Some(id) = pending.pop() {
+            if !is_wanted(id) {
                 continue;
             }
-            if is_wanted(id) {
-                found.push(id);
-                match (way, store.nodes[id.0 as usize]) {
-                    (Way::Slopes, Node::Root(..) | Node::Integral(..)) => {}
-                    (Way::Words, Node::Root(root, ..)) => {
-                        stack.extend(store.implicits[root.system as usize].written());
-                    }
-                    (Way::Words, Node::Integral(integral, ..)) => {
-                        stack.extend(store.integrals[integral.0 as usize].written());
-                    }
-                    (_, node) => stack.extend(node.operands()),
+            found.push(id);
+            match (way, store.nodes[id.0 as usize]) {
+                (Way::Slopes, Node::Root(..) | Node::Integral(..)) => {}
+                (Way::Words, Node::Root(root, ..)) => {
+                    let written = store.implicits[root.system as usize].written();
+                    written.into_iter().for_each(|part| pending.insert(part));
                 }
-            } else {
-                visits.forget(id);
+                (Way::Words, Node::Integral(integral, ..)) => {
+                    let written = store.integrals[integral.0 as usize].written();
+                    written.into_iter().for_each(|part| pending.insert(part));
+                }
+                (_, node) => node.operands().for_each(|operand| pending.insert(operand)),
             }
         }
-        visits.sort(&mut found);
+        found.reverse();
         found
     }
 
@@ -428,11 +481,12 @@ impl Graph {
         found: &[NodeId],
         wanted: impl Iterator<Item = NodeId>,
     ) -> (Vec<Placed>, Vec<Option<usize>>) {
-        let (store, mut visits) = (self.store.borrow(), self.visits.borrow_mut());
+        let (store, mut places) = (self.store.borrow(), self.places.borrow_mut());
+        places.resize(store.nodes.len(), 0);
         for (place, id) in found.iter().enumerate() {
-            visits.last[id.0 as usize].1 = place as u32;
+            places[id.0 as usize] = place as u32;
         }
-        let place = |id: NodeId| visits.last[id.0 as usize].1 as usize;
+        let place = |id: NodeId| places[id.0 as usize] as usize;
         let placed = |id: NodeId| {
             let node = store.nodes[id.0 as usize];
             let mut operands = node.operands().map(place);
@@ -459,6 +513,18 @@ impl Graph {
             changes.push(changed);
         }
         work
+    }
+
+    /// Nodes of an expression when equal ones are shared, and its variables, in order of creation.
+    pub fn extent(&self, root: Expr<'_>) -> (usize, Vec<VariableId>) {
+        let found = self.reachable([root.id]);
+        let variables = found.iter().filter_map(|id| self.expr(*id).as_variable()).collect();
+        (found.len(), variables)
+    }
+
+    /// Nodes of the expressions when equal ones are shared.
+    pub fn size(&self, roots: &[Expr<'_>]) -> usize {
+        self.reachable(roots.iter().map(|root| root.id)).len()
     }
 
     /// Sizes of the expressions: nodes when every use is written out, and nodes when equal ones are shared.

@@ -3,6 +3,7 @@
 
 use std::cell::LazyCell;
 use std::cmp::Ordering;
+use std::rc::Rc;
 
 use crate::symbolic::graph::{Expr, Graph, Node, NodeId};
 use crate::symbolic::op::{Binary, Unary};
@@ -17,7 +18,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Powers of the factors of one term, none of them zero, in the order of the nodes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Monomial(Vec<(NodeId, u32)>);
+pub(crate) struct Monomial(Rc<[(NodeId, u32)]>);
 
 /// A number with the size of what it was summed from.
 #[derive(Clone, Copy)]
@@ -29,8 +30,19 @@ struct Coefficient {
 /// Each monomial once, in their order.
 type Terms = Vec<(Monomial, Coefficient)>;
 
+/// The terms of an expression, which many others are made of.
+#[derive(Clone)]
+pub(crate) struct Written {
+    terms: Rc<Terms>,
+    /// Products and sums inside each other in it.
+    depth: usize,
+}
+
+/// What became of an expression: its terms, or that they were too many, or too deep for so many levels.
+pub(crate) type Tried = Result<Written, usize>;
+
 /// How far products are written out.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Products {
     /// A sum that is a factor stays one.
     Kept,
@@ -47,7 +59,7 @@ pub(crate) struct Sum<'g> {
 impl<'g> Sum<'g> {
     /// The terms of an expression; `None` if they are too many.
     pub(crate) fn of(expr: Expr<'g>, products: Products) -> Option<Sum<'g>> {
-        Sum { graph: expr.graph, terms: Sum::terms(expr, products, DEEPEST)? }.settled()
+        Sum { graph: expr.graph, terms: Sum::terms(expr, products, DEEPEST)?.terms.to_vec() }.settled()
     }
 
     /// Σ xᵢ².
@@ -56,37 +68,50 @@ impl<'g> Sum<'g> {
         let mut sum = Sum { graph, terms: Terms::new() };
         for &part in parts {
             let root = Sum::of(part, products)?;
-            sum.terms = added(std::mem::take(&mut sum.terms), multiplied(&root.terms, &root.terms)?);
+            sum.terms = added(&sum.terms, 1.0, &multiplied(&root.terms, &root.terms)?);
         }
         sum.settled()
     }
 
-    fn terms(expr: Expr<'g>, products: Products, depth: usize) -> Option<Terms> {
+    /// The terms of an expression in which at most so many products and sums are inside each other, worked out once.
+    fn terms(expr: Expr<'g>, products: Products, deepest: usize) -> Option<Written> {
+        match expr.graph.known_terms(expr.id, products) {
+            Some(Ok(written)) => return (written.depth <= deepest).then_some(written),
+            Some(Err(tried)) if deepest <= tried => return None,
+            _ => {}
+        }
+        let found = Sum::written_out(expr, products, deepest);
+        expr.graph.remember_terms(expr.id, products, found.clone().ok_or(deepest));
+        found
+    }
+
+    fn written_out(expr: Expr<'g>, products: Products, deepest: usize) -> Option<Written> {
         let graph = expr.graph;
-        let below = |id: NodeId| Sum::terms(graph.expr(id), products, depth.checked_sub(1)?);
-        let whole = |id: NodeId| vec![(Monomial(vec![(id, 1)]), Coefficient::from(1.0))];
-        let negated = |mut terms: Terms| {
-            terms.iter_mut().for_each(|(_, c)| *c = c.times(-1.0));
-            terms
-        };
-        Some(match expr.node() {
-            Node::Constant(bits) => vec![(Monomial::default(), Coefficient::from(f64::from_bits(bits)))],
-            Node::Unary(Unary::Neg, a) => negated(below(a)?),
+        let below = |id: NodeId| Sum::terms(graph.expr(id), products, deepest.checked_sub(1)?);
+        let whole = |id: NodeId| vec![(Monomial(Rc::new([(id, 1)])), Coefficient::from(1.0))];
+        let (terms, depth) = match expr.node() {
+            Node::Constant(bits) => (vec![(Monomial::default(), Coefficient::from(f64::from_bits(bits)))], 0),
+            Node::Unary(Unary::Neg, a) => {
+                let a = below(a)?;
+                (added(&[], -1.0, &a.terms), 1 + a.depth)
+            }
             Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
                 let (a, b) = (below(a)?, below(b)?);
-                let sum = added(a, if op == Binary::Add { b } else { negated(b) });
-                (sum.len() <= MOST_TERMS).then_some(sum)?
+                let sum = added(&a.terms, if op == Binary::Add { 1.0 } else { -1.0 }, &b.terms);
+                ((sum.len() <= MOST_TERMS).then_some(sum)?, 1 + a.depth.max(b.depth))
             }
             Node::Binary(Binary::Mul, a, b) => {
-                let factor = |id: NodeId| {
-                    let terms = below(id)?;
-                    let stays = products == Products::Kept && terms.len() > 1;
-                    Some(if stays { whole(id) } else { terms })
+                let factors = (below(a)?, below(b)?);
+                let factor = |id: NodeId, written: &Written| {
+                    let stays = products == Products::Kept && written.terms.len() > 1;
+                    if stays { Rc::new(whole(id)) } else { Rc::clone(&written.terms) }
                 };
-                multiplied(&factor(a)?, &factor(b)?)?
+                let product = multiplied(&factor(a, &factors.0), &factor(b, &factors.1))?;
+                (product, 1 + factors.0.depth.max(factors.1.depth))
             }
-            _ => whole(expr.id),
-        })
+            _ => (whole(expr.id), 0),
+        };
+        Some(Written { terms: Rc::new(terms), depth })
     }
 
     /// With sin² + cos² = 1 wherever it applies, and without terms that vanish.
@@ -134,12 +159,12 @@ impl<'g> Sum<'g> {
     /// What all terms of all sums have as a factor.
     pub(crate) fn common_factor(sums: &[Sum<'g>]) -> Monomial {
         let mut monomials = sums.iter().flat_map(|sum| &sum.terms).map(|(monomial, _)| monomial);
-        let mut common = monomials.next().cloned().unwrap_or_default();
+        let mut common = monomials.next().map_or_else(Vec::new, |first| first.0.to_vec());
         for monomial in monomials {
-            common.0.iter_mut().for_each(|(factor, power)| *power = monomial.power(*factor).min(*power));
-            common.0.retain(|(_, power)| *power > 0);
+            common.iter_mut().for_each(|(factor, power)| *power = monomial.power(*factor).min(*power));
+            common.retain(|(_, power)| *power > 0);
         }
-        common
+        Monomial(common.into())
     }
 
     /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v, written out,
@@ -212,18 +237,23 @@ impl Monomial {
     }
 
     fn set(&mut self, factor: NodeId, power: u32) {
-        match self.0.binary_search_by_key(&factor, |(own, _)| *own) {
+        let mut factors = self.0.to_vec();
+        match factors.binary_search_by_key(&factor, |(own, _)| *own) {
             Ok(at) if power == 0 => {
-                self.0.remove(at);
+                factors.remove(at);
             }
-            Ok(at) => self.0[at].1 = power,
-            Err(_) if power == 0 => {}
-            Err(at) => self.0.insert(at, (factor, power)),
+            Ok(at) => factors[at].1 = power,
+            Err(_) if power == 0 => return,
+            Err(at) => factors.insert(at, (factor, power)),
         }
+        self.0 = factors.into();
     }
 
     fn times(&self, other: &Monomial) -> Monomial {
-        let (mut a, mut b) = (self.0.as_slice(), other.0.as_slice());
+        if self.0.is_empty() || other.0.is_empty() {
+            return if self.0.is_empty() { other.clone() } else { self.clone() };
+        }
+        let (mut a, mut b) = (&self.0[..], &other.0[..]);
         let mut product = Vec::with_capacity(a.len() + b.len());
         while let ([(left, power), a_rest @ ..], [(right, other), b_rest @ ..]) = (a, b) {
             (a, b) = match left.cmp(right) {
@@ -239,7 +269,7 @@ impl Monomial {
         }
         product.extend_from_slice(a);
         product.extend_from_slice(b);
-        Monomial(product)
+        Monomial(product.into())
     }
 }
 
@@ -256,22 +286,25 @@ fn multiplied(a: &Terms, b: &Terms) -> Option<Terms> {
     Some(out)
 }
 
-/// a + b.
-fn added(a: Terms, b: Terms) -> Terms {
-    let (mut a, mut b) = (a.into_iter().peekable(), b.into_iter().peekable());
+/// a + factor · b.
+fn added(a: &[(Monomial, Coefficient)], factor: f64, b: &[(Monomial, Coefficient)]) -> Terms {
+    let (mut a, mut b) = (a, b);
     let mut sum = Terms::with_capacity(a.len() + b.len());
-    while let (Some((left, _)), Some((right, _))) = (a.peek(), b.peek()) {
-        match left.cmp(right) {
-            Ordering::Less => sum.extend(a.next()),
-            Ordering::Greater => sum.extend(b.next()),
-            Ordering::Equal => {
-                let both = a.next().zip(b.next());
-                sum.extend(both.map(|((monomial, c), (_, d))| (monomial, c.plus(d))));
-            }
-        }
+    while let ([(left, c), a_rest @ ..], [(right, d), b_rest @ ..]) = (a, b) {
+        let order = left.cmp(right);
+        sum.push(match order {
+            Ordering::Less => (left.clone(), *c),
+            Ordering::Greater => (right.clone(), d.times(factor)),
+            Ordering::Equal => (left.clone(), c.plus(d.times(factor))),
+        });
+        (a, b) = match order {
+            Ordering::Less => (a_rest, b),
+            Ordering::Greater => (a, b_rest),
+            Ordering::Equal => (a_rest, b_rest),
+        };
     }
-    sum.extend(a);
-    sum.extend(b);
+    sum.extend_from_slice(a);
+    sum.extend(b.iter().map(|(monomial, d)| (monomial.clone(), d.times(factor))));
     sum
 }
 

@@ -68,13 +68,10 @@ impl System {
         unknowns: &[Expr<'g>],
         parameters: &[Expr<'g>],
     ) -> Result<System, TapeError> {
-        let system = System::one_by_one(residuals, unknowns, parameters)?;
         if unknowns.len() > MOST_EQUATIONS || unknowns.is_empty() {
-            return Ok(system);
+            return System::one_by_one(residuals, unknowns, parameters);
         }
-        let linearized = written_out(residuals, unknowns, parameters)?;
-        let lanes = LaneTapes { linearized, is_written_out: true, ..system.lanes };
-        Ok(System { lanes, ..system })
+        System::laid_out(residuals, unknowns, parameters, true)
     }
 
     /// The same without what makes many points at once fast.
@@ -89,14 +86,26 @@ impl System {
         unknowns: &[Expr<'_>],
         parameters: &[Expr<'_>],
     ) -> Result<System, TapeError> {
+        System::laid_out(residuals, unknowns, parameters, false)
+    }
+
+    /// The same; the steps of many points at once are written out, or solved for from the Jacobian.
+    fn laid_out<'g>(
+        residuals: &[Expr<'g>],
+        unknowns: &[Expr<'g>],
+        parameters: &[Expr<'g>],
+        is_written_out: bool,
+    ) -> Result<System, TapeError> {
         assert_eq!(residuals.len(), unknowns.len(), "a system is square");
         let jacobian = residuals.iter().flat_map(|f| unknowns.iter().map(|x| f.derivative(*x)));
         let outputs: Vec<Expr<'_>> = residuals.iter().copied().chain(jacobian).collect();
         let inputs: Vec<Expr<'_>> = unknowns.iter().chain(parameters).copied().collect();
         let (tape, conditions) = (Tape::new(&outputs, &inputs)?, Tape::new(&[], &inputs)?);
+        let linearized =
+            if is_written_out { written_out(residuals, unknowns, parameters)? } else { LaneTape::new(&tape) };
         let residuals = Tape::new(residuals, &inputs)?;
-        let (checked, linearized) = (LaneTape::new(&residuals), LaneTape::new(&tape));
-        let lanes = LaneTapes { checked, linearized, is_written_out: false, expected: None, given: None };
+        let checked = LaneTape::new(&residuals);
+        let lanes = LaneTapes { checked, linearized, is_written_out, expected: None, given: None };
         let instructions = InstructionSet::fastest();
         let in_lanes = OnceLock::new();
         Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, in_lanes, extra_count: 0, instructions })

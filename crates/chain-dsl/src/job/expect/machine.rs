@@ -74,12 +74,14 @@ pub(crate) fn of_machine<'g>(
     definitions: &Definitions<'_>,
 ) -> Vec<Expectation<'g>> {
     let mut found = Vec::new();
+    let mut plain = None;
     for statement in &machine.statements {
         let MachineStatement::Expect(written) = statement else { continue };
         match &written.what {
             ast::Expected::Pose { frames, transforms, at, within } => {
                 let pose = Pose { machine, frames, transforms, at };
-                let what = pose.expected(context, within, definitions);
+                let plain = plain.get_or_insert_with(|| posed(context, machine, definitions, None));
+                let what = pose.expected(context, within, (definitions, plain));
                 found.extend(what.map(|what| Expectation { what, written: written.span }));
             }
             ast::Expected::Travel => {
@@ -106,24 +108,23 @@ struct Pose<'a> {
 }
 
 impl Pose<'_> {
+    /// `plain` is the machine as it stands, with open loops.
     fn expected<'g>(
         &self,
         context: &mut Context<'g>,
         within: &ast::Expression,
-        definitions: &Definitions<'_>,
+        (definitions, plain): (&Definitions<'_>, &Job<'g>),
     ) -> Option<Expected<'g>> {
         let within = constant(context, within, Dimension::LENGTH, "the tolerance")?;
-        let is_axis = |job: &Job<'g>, name: &Name| job.machines[0].axes.iter().any(|axis| axis.name == name.node);
-        // which of the values are axes is known of the machine as it stands
-        let plain = posed(context, self.machine, definitions, None);
         let plain_machine = plain.machines.first()?;
-        let own = |argument: &&Argument| argument.name.as_ref().is_some_and(|name| is_axis(&plain, name));
+        let is_axis = |name: &Name| plain_machine.axes.iter().any(|axis| axis.name == name.node);
+        let own = |argument: &&Argument| argument.name.as_ref().is_some_and(is_axis);
         let (axes, settings): (Vec<&Argument>, Vec<&Argument>) = self.at.iter().partition(own);
         for setting in &settings {
             let Some(name) = &setting.name else { continue };
             let whole = format!("{}.{}", self.machine.name.node, name.node);
             if !plain.settings.iter().any(|known| known.name == whole) {
-                let axes = plain.machines[0].axes.iter().map(|axis| axis.name.as_str());
+                let axes = plain_machine.axes.iter().map(|axis| axis.name.as_str());
                 context.unknown(name, "axis or setting", axes);
                 return None;
             }
@@ -138,12 +139,15 @@ impl Pose<'_> {
         let own = overrides(self.machine, &settings);
         let definitions = Definitions { overrides: &own, ..*definitions };
         let places: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.node.as_str(), *value)).collect();
+        // where neither settings nor loops ask for it, it is not built again
+        let is_plain = own.is_empty() && plain_machine.axes.iter().all(|axis| axis.source != LawSource::Closed);
         let findings = context.findings();
-        let job = posed(context, self.machine, &definitions, Some(&places));
+        let again = (!is_plain).then(|| posed(context, self.machine, &definitions, Some(&places)));
         // a loop that does not close has been reported
         if context.findings() > findings {
             return None;
         }
+        let job = again.as_ref().unwrap_or(plain);
         let machine = job.machines.first()?;
         let [frame, reference] = self.frames;
         let frames: Vec<&str> = machine.frames.iter().map(|frame| frame.name.as_str()).collect();
@@ -155,7 +159,7 @@ impl Pose<'_> {
         }
         let chain = machine.chain(context.graph, &reference.node, &frame.node)?;
         let values = self.replacements(context, machine, &places, &chain)?;
-        let scope = names(&job, machine);
+        let scope = names(job, machine);
         let wanted = Chain::new(context.graph, transforms::steps(context, self.transforms, &scope)?);
         let [is, wanted] =
             [chain, wanted].map(|chain| values.iter().fold(chain, |chain, with| chain.substituted(with)));

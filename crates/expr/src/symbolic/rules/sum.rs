@@ -159,9 +159,10 @@ fn squared<'g>(a: Expr<'g>) -> Option<Expr<'g>> {
 
 /// c·x ± d·x = (c ± d)·x, with c or d perhaps one.
 fn multiples<'g>(op: Binary, a: Expr<'g>, b: Expr<'g>) -> Option<Expr<'g>> {
-    let split = |x: Expr<'g>| constant_left(Binary::Mul, x).unwrap_or((x.graph.constant(1.0), x));
-    let ((c, x), (d, y)) = (split(a), split(b));
-    (x == y).then(|| c.binary(op, d) * x)
+    let (left, right) = (constant_left(Binary::Mul, a), constant_left(Binary::Mul, b));
+    let (x, y) = (left.map_or(a, |(_, x)| x), right.map_or(b, |(_, y)| y));
+    let factor = |of: Option<(Expr<'g>, Expr<'g>)>| of.map_or_else(|| a.graph.constant(1.0), |(c, _)| c);
+    (x == y).then(|| factor(left).binary(op, factor(right)) * x)
 }
 
 /// x·y ± x·z = x·(y ± z): one multiplication less.
