@@ -36,6 +36,7 @@ fn planned(folder: &Path, ([spec, job], scatter): ([&str; 2], &[(&str, f64)]), c
     let request = SweepRequest {
         jobs: JobSelection { job: Some(job.to_string()), ..JobSelection::all(project) },
         cases: CaseSource::Scatter { settings: settings.collect(), count, seed: 7, sobol: false },
+        keep_points: false,
         collect: collect.iter().map(|of| of.to_string()).collect(),
         out: folder.to_path_buf(),
         limit: None,

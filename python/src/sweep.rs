@@ -46,6 +46,7 @@ pub(crate) fn sweep_plan(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>)
     let request = SweepRequest {
         jobs,
         cases,
+        keep_points: given.or("keep_points", false)?,
         collect: given.or("collect", Vec::new())?,
         out: given.or("out", PathBuf::new())?,
         limit: given.given("limit")?.map(Duration::from_secs_f64),

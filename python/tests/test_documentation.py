@@ -2,6 +2,7 @@
 
 import doctest
 import re
+import shlex
 
 import pytest
 from conftest import ROOT
@@ -29,6 +30,30 @@ def test_examples_do_what_they_say(page, tmp_path, monkeypatch):
     runner.run(test, out=report.append)
     assert runner.failures == 0, "".join(report)
     assert test.examples or page == "README.md"
+
+
+def test_the_tolerance_study_of_the_page(tmp_path, monkeypatch, capsys):
+    """Table, command and histogram of docs/studies.md, with fewer cases than there."""
+    import flank
+
+    page = (ROOT / "docs/studies.md").read_text().split("## A tolerance study of a bevel pair")[1]
+    scripts = re.findall(r"```text\n((?:import|from) .*?)```", page, re.DOTALL)
+    assert len(scripts) == 2 and "10_000" in scripts[0]
+    (command,) = re.findall(r"^    flank sweep (.*)$", page, re.MULTILINE)
+    spec, *options = shlex.split(command)
+    options = dict(zip(options[::2], options[1::2]))
+    assert set(options) == {"--cases", "--collect", "--out"}
+    monkeypatch.chdir(tmp_path)
+    scope = {}
+    exec(scripts[0].replace("10_000", "60"), scope)
+    cases, collect, out = (options[name] for name in ("--cases", "--collect", "--out"))
+    study = flank.sweep(flank.load(ROOT / spec), cases, collect=collect, out=out)
+    assert study.progress()["verdicts"] == {"done": 60}
+    exec(scripts[1], scope)
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 10 and all(re.match(r" *[0-9.]+ \.\. +[0-9.]+ urad +[0-9]+", line) for line in lines), lines
+    # as many as there are, about the mean that the page states
+    assert scope["counts"].sum() == 60 and abs(scope["error"].mean() - 141.42) < 0.2
 
 
 def test_matlab_names_what_there_is():

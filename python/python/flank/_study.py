@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import warnings
@@ -103,8 +104,57 @@ class Study:
         rows = np.flatnonzero(columns["verdict"] != "done")
         return [{head: columns[head][row].item() for head in heads} for row in rows]
 
+    def points(self, number: int) -> dict[str, dict[str, npt.NDArray[Any]]]:
+        """The points of a case that were kept, by their surfaces: `xyz` and `normal` (rows, columns, 3), `status`, `residual` and the unknowns.
+
+        `number` is that of the case, from 0. Positions are mm, unknowns mm or degrees; what is not known is NaN.
+
+        Raises `InputError` where the study keeps no points or the case has none.
+
+        >>> import flank, tempfile
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+        >>> table = {"m.radial_distance [mm]": [97.9, 98.1]}
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     study = flank.sweep(job, table, collect="limits", keep="points", out=out)
+        ...     study.points(1)["concave"]["xyz"].shape
+        (15, 31, 3)
+        """
+        columns = self.columns()
+        row = np.flatnonzero(columns["number"] == whole(number, "number", 0, 2**62))
+        file = os.path.join(self._folder, "points", f"{columns['case'][row[0]]}.csv") if len(row) else ""
+        if not os.path.isfile(file):
+            raise InputError(f"there are no points of case {number} in {self._folder}: keep='points' keeps those of cases that are solved")
+        return _kept(file)
+
     def __repr__(self) -> str:
         return _flank.sweep_status(self._folder).text().rstrip()
+
+
+def _kept(file: str) -> dict[str, dict[str, npt.NDArray[Any]]]:
+    """The points in a file, by surface and column."""
+    with open(file, encoding="utf-8", newline="") as lines:
+        head, *rows = csv.reader(line for line in lines if not line.startswith("#"))
+    surfaces: dict[str, list[list[str]]] = {}
+    for row in rows:
+        surfaces.setdefault(row[0], []).append(row)
+    return {surface: _arrays(head, of) for surface, of in surfaces.items()}
+
+
+def _arrays(head: list[str], rows: list[list[str]]) -> dict[str, npt.NDArray[Any]]:
+    counts = tuple(int(last) + 1 for last in rows[-1][1:3])
+    cells = dict(zip(head, zip(*rows)))
+
+    def numbers(*names: str) -> npt.NDArray[Any]:
+        values = [[float(cell or "nan") for cell in cells[name]] for name in names]
+        return np.array(values).T.reshape(*counts, len(names))
+
+    # an unknown that the surface does not have has no number anywhere
+    other = [name for name in head[9:] if name != "status" and any(cells[name])]
+    return {
+        "xyz": numbers("x", "y", "z"),
+        "normal": numbers("nx", "ny", "nz"),
+        "status": np.array(cells["status"], dtype=np.str_).reshape(counts),
+    } | {name: numbers(name)[..., 0] for name in other}
 
 
 def _chunks(chunks: Any, last: int) -> tuple[int, int]:
@@ -125,6 +175,7 @@ def sweep(
     seed: int = 0,
     sobol: bool = False,
     collect: str | Iterable[str],
+    keep: str | None = None,
     out: Path_ = "study",
     limit: float | None = None,
     on: Any = None,
@@ -135,7 +186,7 @@ def sweep(
     of columns, a frame of pandas or polars, or the path of a CSV file. `vary` has two ends and how many values of each, of which all
     combinations are taken: `{"m.radial_distance": ("97.9 mm", "98.1 mm", 21)}`. `scatter` has standard deviations about the job's own values,
     `"10 um"`, or `("uniform", "10 um")` for at most so far; `count`, `seed` and `sobol` belong to it. `collect` has words such as `points` or
-    `ease_off:SURFACE`. A case may take `limit` seconds.
+    `ease_off:SURFACE`. With `keep="points"` the points of each case are kept, too, as files: see `Study.points`. A case may take `limit` seconds.
 
     It works on all processors, or on those of `on`, a client of Dask. A study that was killed goes on where it stopped.
 
@@ -151,8 +202,11 @@ def sweep(
     given = [what for what, of in (("cases", cases), ("vary", vary), ("scatter", scatter)) if of is not None]
     if len(given) != 1:
         raise InputError("say by one of `cases`, `vary` and `scatter` what differs from case to case")
+    if keep not in (None, "points"):
+        raise InputError(f"`keep` is {keep!r}: it is 'points' or None")
     options: dict[str, Any] = {
         "collect": names(collect),
+        "keep_points": keep == "points",
         "out": os.fspath(out),
         "limit": number(limit, "limit", 0.0, 1e9),
         "count": whole(count, "count", 1, 100_000_000),

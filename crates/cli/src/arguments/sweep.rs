@@ -3,7 +3,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, Command, Error, FromArgMatches, Subcommand};
+use clap::{ArgMatches, Args, Command, Error, FromArgMatches, Subcommand, ValueEnum};
 use flank::{CaseSource, Distribution, RunRequest, StudyChunks, SweepRequest, VariedRange};
 
 use super::tolerance::amount;
@@ -97,6 +97,9 @@ pub(crate) struct SweepPlan {
     /// What becomes of each case, several with commas
     #[arg(long, value_name = "WHAT", required = true)]
     pub(crate) collect: Vec<String>,
+    /// Keep what a row has no room for: the points of all samples, a CSV file for each case in the folder `points` of the study
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub(crate) keep: Option<Kept>,
     /// How long a case may take, seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) limit: Option<f64>,
@@ -108,6 +111,13 @@ pub(crate) struct SweepPlan {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
+}
+
+/// What of each case is kept as a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Kept {
+    /// The points of all samples
+    Points,
 }
 
 #[derive(Args, Debug)]
@@ -193,6 +203,7 @@ impl SweepPlan {
             jobs: self.which.jobs()?,
             cases,
             collect: self.collect.clone(),
+            keep_points: self.keep == Some(Kept::Points),
             out: self.out.clone(),
             limit: self.limit.map(std::time::Duration::from_secs_f64),
             evaluator: self.evaluator.evaluator(),

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Contact, GeneratedSurface, Job, Parameter, Solid};
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{BoundSurface, ContactProblem, Range, RollingPair, SurfacePoint};
+use flank_solver::{BoundSurface, ContactProblem, GapProblem, Range, RollingPair, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -154,9 +154,14 @@ impl<'j, 'g> Members<'j, 'g> {
         ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound")
     }
 
-    /// The equations of the pair in which some of its axes and then some settings are symbols; what is defined by these follows. `None` where
-    /// one of them changes how the members turn, and with that the pitch.
-    pub(crate) fn open_in(&self, job: &Job<'g>, axes: &[usize], settings: &[&Parameter<'g>]) -> Option<ContactProblem> {
+    /// The equations of the pair, and those of the gaps from each member to the other, in which some of its axes and then some settings are
+    /// symbols; what is defined by these follows. `None` where one of them changes how the members turn, and with that the pitch.
+    pub(crate) fn open_in(
+        &self,
+        job: &Job<'g>,
+        axes: &[usize],
+        settings: &[&Parameter<'g>],
+    ) -> Option<(ContactProblem, [GapProblem; 2])> {
         let Contact { roll, lag, errors, .. } = self.contact;
         let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
         let values = job.bindings_beside(&open);
@@ -172,7 +177,9 @@ impl<'j, 'g> Members<'j, 'g> {
         if pair.parameters.iter().any(|(variable, _)| is_known(variable)) {
             return None;
         }
-        Some(ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound"))
+        let unbound = "a job without errors leaves nothing unbound";
+        let gaps = [0, 1].map(|member| GapProblem::new(&pair, member).expect(unbound));
+        Some((ContactProblem::new(&pair).expect(unbound), gaps))
     }
 
     /// Of settings, those that change the first flank alone: neither the second one nor how both are mounted.

@@ -29,6 +29,18 @@ pub(crate) fn on_both(
     rolling: &Rolling,
     compound: f64,
 ) -> Vec<GapMap> {
+    let positions = positions(rolling, compound);
+    let of_member = |member: usize| {
+        let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
+        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member], reach_of(rolling));
+        let pattern = pattern(members, member, &gaps, compound);
+        GapMap { gaps, positions: positions.clone(), pattern }
+    };
+    vec![of_member(0), of_member(1)]
+}
+
+/// Roll positions and lags at which one pair of teeth is near.
+pub(crate) fn positions(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
     let engagement = &rolling.engagement;
     let steps = engagement.first..engagement.first + engagement.points.len() as isize;
     let lag = |step: isize| match rolling.has_pitch {
@@ -41,18 +53,11 @@ pub(crate) fn on_both(
         let apart = ((lag - point.lag) * point.opening).abs();
         (apart <= reach).then(|| [rolling.roll(step), lag])
     };
-    let positions: Vec<[f64; 2]> = steps.filter_map(position).collect();
-    let of_member = |member: usize| {
-        let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
-        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member], reach_of(rolling));
-        let pattern = pattern(members, member, &gaps, compound);
-        GapMap { gaps, positions: positions.clone(), pattern }
-    };
-    vec![of_member(0), of_member(1)]
+    steps.filter_map(position).collect()
 }
 
 /// How far away a mate is looked for, mm: a part of the way from one tooth to the next along the normal, where the pitch is known.
-fn reach_of(rolling: &Rolling) -> f64 {
+pub(crate) fn reach_of(rolling: &Rolling) -> f64 {
     let middle = rolling.middle().filter(|_| rolling.has_pitch);
     let way = middle.map(|middle| (middle.advance * rolling.engagement.pitch).abs()).filter(|way| *way > 0.0);
     way.map_or(FARTHEST, |way| FARTHEST.min(SHARE * way))

@@ -22,7 +22,7 @@ use crate::solve::blank;
 /// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
 const ON_EDGE: f64 = 1e-6;
 /// A gap below this is no rounding: the mate reaches in, mm.
-const REACHES_IN: f64 = -1e-7;
+pub(crate) const REACHES_IN: f64 = -1e-7;
 
 /// What numbers of a contact are told of.
 pub(crate) struct Summary<'s, 'j, 'g> {

@@ -3,7 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job, Sample, spaced};
 use flank_export::{Axis, Patch};
 use flank_expr::Expr;
-use flank_solver::{GridReport, SurfacePoint, SurfaceProblem};
+use flank_solver::{GridReport, Outcome, SurfacePoint, SurfaceProblem};
 use rayon::prelude::*;
 
 use crate::project::failure::Failure;
@@ -92,14 +92,15 @@ pub(crate) fn lines<'j, 'g: 'j>(
 
 /// A line that is looked for: where a quantity is zero.
 #[derive(Clone, Copy)]
-struct Sought<'j, 'g> {
-    surface: &'j GeneratedSurface<'g>,
-    sample: &'j Sample<'g>,
-    kind: &'static str,
-    quantity: Expr<'g>,
+pub(crate) struct Sought<'j, 'g> {
+    pub(crate) surface: &'j GeneratedSurface<'g>,
+    pub(crate) sample: &'j Sample<'g>,
+    pub(crate) kind: &'static str,
+    pub(crate) quantity: Expr<'g>,
 }
 
-fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
+/// The lines of a surface: that at which it turns back, and that at which the tool's contact ends.
+pub(crate) fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
     let Some(sample) = &surface.sample else { return Vec::new() };
     let singular = surface.surface.clearance_minors().pop();
     let kinds = [("singular line", singular), ("contact limit", surface.surface.contact_limit())];
@@ -107,6 +108,12 @@ fn sought<'j, 'g>(surface: &'j GeneratedSurface<'g>) -> Vec<Sought<'j, 'g>> {
         Some(Sought { surface, sample, kind, quantity: quantity? })
     };
     kinds.into_iter().filter_map(of).collect()
+}
+
+/// How many points of a line there are, and how many outside the ranges.
+pub(crate) fn reach(points: &[SurfacePoint]) -> [usize; 2] {
+    let count = |is: fn(Outcome) -> bool| points.iter().filter(|point| is(point.outcome)).count();
+    [count(|outcome| outcome == Outcome::Solved), count(|outcome| matches!(outcome, Outcome::Outside { .. }))]
 }
 
 /// Lines at values of one of the coordinates of their surfaces' samples, in the order in which they are sought.
@@ -119,7 +126,8 @@ fn look<'j, 'g>(job: &Job<'g>, sought: &[Sought<'j, 'g>], k: usize, session: Ses
 }
 
 impl<'j, 'g> Sought<'j, 'g> {
-    fn targets(&self, k: usize) -> Vec<[f64; 2]> {
+    /// Values of one of the sample's coordinates at which points of the line are looked for.
+    pub(crate) fn targets(&self, k: usize) -> Vec<[f64; 2]> {
         let ends = self.sample.each_target().map(|target| target[k]);
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         let count = self.sample.counts.into_iter().max().unwrap_or(1).max(2);
@@ -156,7 +164,7 @@ impl<'j, 'g> Sought<'j, 'g> {
 impl Line<'_, '_> {
     /// How many points there are, and how many outside the ranges.
     fn found(&self) -> [usize; 2] {
-        [self.summary.solved(), self.summary.outside.iter().map(|outside| outside.places.count).sum()]
+        reach(&self.points)
     }
 
     /// The line as a grid of one row, for files and pictures; `None` if no point of it was found, be it outside the ranges.

@@ -48,7 +48,7 @@ use self::result::SolveResult;
 pub(crate) use self::sampled::{points, solve_surface};
 use self::solved::Solved;
 use self::step::Smooth;
-pub(crate) use self::surface::{bound, followed, problem, ranges};
+pub(crate) use self::surface::{bound, family, followed, problem, ranges};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;

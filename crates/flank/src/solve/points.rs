@@ -35,7 +35,11 @@ pub(crate) fn unit(dimension: Dimension) -> Unit {
 }
 
 pub(crate) fn point(job: &Job<'_>, surface: &GeneratedSurface<'_>, solved: &SurfacePoint) -> Point {
-    let reason = reasons::of_point(job, surface, solved.outcome);
+    placed(solved, reasons::of_point(job, surface, solved.outcome))
+}
+
+/// With the reason why it is not solved, or an empty one.
+pub(crate) fn placed(solved: &SurfacePoint, reason: String) -> Point {
     // a point that is cut away may be one where the surface has no normal
     let has_numbers = || solved.position.iter().chain(&solved.normal).all(|number| number.is_finite());
     let outcome = match solved.outcome {

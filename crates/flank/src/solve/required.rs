@@ -1,8 +1,8 @@
 //! What samples require of their points.
 
-use flank_chain_dsl::PointRequirement;
-use flank_expr::{ScalarEvaluator, Tape};
-use flank_solver::Outcome;
+use flank_chain_dsl::{GeneratedSurface, PointRequirement};
+use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::quantity::UnitSymbol;
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -25,29 +25,58 @@ fn broken<'j, 'g>(solved: &Solved<'j, 'g>) -> Vec<Broken<'j, 'g>> {
     solved.sample.limits.iter().filter_map(|limit| broken_by(solved, limit)).collect()
 }
 
-fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j PointRequirement<'g>) -> Option<Broken<'j, 'g>> {
-    let value = limit.of.value;
-    let value = value.graph().substitute(&[value], &solved.bindings);
-    let tape =
-        Tape::new(&value, &solved.surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
-    let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
-    let (low, high) = limit.ends;
-    let mut found =
-        Broken { limit, places: Places::new(solved.sample.counts), ends: [f64::INFINITY, f64::NEG_INFINITY] };
-    for (at, point) in solved.points.iter().enumerate().filter(|(_, point)| point.outcome == Outcome::Solved) {
-        evaluator.run(&point.unknowns, &mut out);
-        // written so that what is no number does not hold either
-        if !(low <= out[0] && out[0] <= high) {
-            found.places.add(at);
-            found.ends = [found.ends[0].min(out[0]), found.ends[1].max(out[0])];
-        }
-    }
-    (found.places.count > 0).then_some(found)
+/// A number that a sample requires to lie between two ends.
+pub(crate) struct RequiredNumber {
+    of_unknowns: Tape,
+    ends: (f64, f64),
 }
 
-/// How many points do not hold all that their samples require.
-pub(crate) fn missed_points(all: &[Solved<'_, '_>]) -> usize {
-    all.iter().flat_map(broken).map(|broken| broken.places.count).sum()
+impl RequiredNumber {
+    /// All that the sample of a surface requires; `bindings` are the values of parameters.
+    pub(crate) fn all<'g>(surface: &GeneratedSurface<'g>, bindings: &[(Expr<'g>, Expr<'g>)]) -> Vec<RequiredNumber> {
+        let limits = surface.sample.iter().flat_map(|sample| &sample.limits);
+        limits.map(|limit| RequiredNumber::new(limit, surface, bindings)).collect()
+    }
+
+    fn new<'g>(
+        limit: &PointRequirement<'g>,
+        surface: &GeneratedSurface<'g>,
+        bindings: &[(Expr<'g>, Expr<'g>)],
+    ) -> RequiredNumber {
+        let value = limit.of.value;
+        let value = value.graph().substitute(&[value], bindings);
+        let of_unknowns =
+            Tape::new(&value, &surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
+        RequiredNumber { of_unknowns, ends: limit.ends }
+    }
+
+    /// The same that was made while settings were open, with values of them.
+    pub(crate) fn with_settings(&self, values: &[f64]) -> RequiredNumber {
+        RequiredNumber { of_unknowns: self.of_unknowns.with_settings(values), ends: self.ends }
+    }
+
+    /// The solved points at which it does not hold, by their places, with the number there.
+    pub(crate) fn missed<'p>(&'p self, points: &'p [SurfacePoint]) -> impl Iterator<Item = (usize, f64)> + 'p {
+        let mut evaluator = ScalarEvaluator::new(&self.of_unknowns);
+        let (low, high) = self.ends;
+        let solved = points.iter().enumerate().filter(|(_, point)| point.outcome == Outcome::Solved);
+        solved.filter_map(move |(at, point)| {
+            let mut out = [0.0];
+            evaluator.run(&point.unknowns, &mut out);
+            // written so that what is no number does not hold either
+            (!(low <= out[0] && out[0] <= high)).then_some((at, out[0]))
+        })
+    }
+}
+
+fn broken_by<'j, 'g>(solved: &Solved<'j, 'g>, limit: &'j PointRequirement<'g>) -> Option<Broken<'j, 'g>> {
+    let mut found =
+        Broken { limit, places: Places::new(solved.sample.counts), ends: [f64::INFINITY, f64::NEG_INFINITY] };
+    for (at, number) in RequiredNumber::new(limit, solved.surface, &solved.bindings).missed(&solved.points) {
+        found.places.add(at);
+        found.ends = [found.ends[0].min(number), found.ends[1].max(number)];
+    }
+    (found.places.count > 0).then_some(found)
 }
 
 /// All that does not hold.

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_expr::Expr;
-use flank_solver::{BoundSurface, Range, SurfaceProblem};
+use flank_solver::{BoundSurface, Range, SurfaceFamily, SurfaceProblem};
 
 use crate::project::session::Session;
 use crate::project::units;
@@ -40,7 +40,27 @@ pub(crate) fn problem<'g>(
         .expect("a job without errors leaves nothing unbound")
 }
 
-/// The same, whatever its sample keeps.
+/// Such points while settings are open; `bindings` are the values of all other parameters.
+pub(crate) fn family<'g>(
+    surface: &GeneratedSurface<'g>,
+    coordinates: [Expr<'g>; 2],
+    (settings, bindings): (&[(Expr<'g>, f64)], &[(Expr<'g>, Expr<'g>)]),
+    session: Session,
+) -> SurfaceFamily {
+    let bound = BoundSurface::new(&surface.surface, ranges(surface), bindings);
+    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
+    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
+    let made = SurfaceFamily::new(&bound, coordinates, settings, |problem| {
+        problem
+            .following_beyond(followed(surface))
+            .with_instruction_set(session.instructions())
+            .boxes(session.boxes())
+            .keeping(&bound, &keep)
+    });
+    made.expect("a job without errors leaves nothing unbound")
+}
+
+/// Points of a surface, whatever its sample keeps.
 pub(super) fn on_any_branch<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,

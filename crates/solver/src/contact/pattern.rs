@@ -77,6 +77,15 @@ impl GapProblem {
         })
     }
 
+    /// The same with other values of the pair's parameters.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn with_values(&self, values: &[f64]) -> GapProblem {
+        assert_eq!(values.len(), self.values.len(), "one value for each parameter");
+        GapProblem { values: values.to_vec(), ..self.clone() }
+    }
+
     /// At each point of the flank, in its own frame, the least distance to the mate over positions of roll and lag; `None` where its
     /// normal meets the mate at none of them, and beyond the ends of its tooth. `mate` are solved points of the mate, from which its nearest is looked for; what lies farther
     /// away than `reach`, mm, belongs to another tooth.

@@ -44,8 +44,31 @@ impl SurfaceFamily {
         settings: &[(Expr<'g>, f64)],
         made: impl FnOnce(SurfaceProblem) -> Result<SurfaceProblem, TapeError>,
     ) -> Result<SurfaceFamily, TapeError> {
-        let graph = coordinates[0].graph();
-        let problem = graph.with_settings(settings, || SurfaceProblem::new(surface, coordinates).and_then(made))?;
+        SurfaceFamily::open(settings, coordinates[0], || SurfaceProblem::new(surface, coordinates).and_then(made))
+    }
+
+    /// The same for the line on which a `quantity` is zero, at values of one more coordinate: see [`SurfaceProblem::line`].
+    ///
+    /// # Errors
+    /// As for [`SurfaceFamily::new`].
+    ///
+    /// # Panics
+    /// As for [`SurfaceProblem::line`].
+    pub fn line<'g>(
+        surface: &BoundSurface<'g>,
+        [quantity, along]: [Expr<'g>; 2],
+        settings: &[(Expr<'g>, f64)],
+        made: impl FnOnce(SurfaceProblem) -> SurfaceProblem,
+    ) -> Result<SurfaceFamily, TapeError> {
+        SurfaceFamily::open(settings, quantity, || SurfaceProblem::line(surface, quantity, along).map(made))
+    }
+
+    fn open<'g>(
+        settings: &[(Expr<'g>, f64)],
+        of: Expr<'g>,
+        make: impl FnOnce() -> Result<SurfaceProblem, TapeError>,
+    ) -> Result<SurfaceFamily, TapeError> {
+        let problem = of.graph().with_settings(settings, make)?;
         problem.system.translate();
         problem.slopes.translate(problem.system.instructions());
         Ok(SurfaceFamily { problem })

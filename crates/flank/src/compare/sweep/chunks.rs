@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use flank_export::{CellKind, WriteError};
 use rayon::prelude::*;
 
-use super::collect::{Cases, Found};
 use super::plan::{Plan, write_text};
+use super::row::{Cases, Found};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::session::{EvaluatorOptions, Session};
@@ -26,6 +26,8 @@ const CAREFUL: u32 = 2;
 const DEADLY: u32 = 5;
 /// The file of a study in which times stand: rows have none, so that equal chunks are equal bytes.
 const LOG: &str = "log";
+/// The folder of a study in which points of cases are kept.
+pub(super) const POINTS: &str = "points";
 
 /// Numbers of failed cases that are listed.
 const LISTED: usize = 100;
@@ -75,6 +77,11 @@ impl Plan {
 
     fn file_of_hash(folder: &Path, hash: &str) -> PathBuf {
         folder.join("chunks").join(format!("{hash}.csv"))
+    }
+
+    /// Where the points of a case stand, if they are kept.
+    fn points_file(&self, folder: &Path, values: &[f64]) -> PathBuf {
+        folder.join(POINTS).join(format!("{}.csv", self.hash_of_case(values)))
     }
 
     /// The first line of each chunk.
@@ -228,6 +235,7 @@ impl Work<'_> {
             Err(Failure::Cancelled) => self.cases.nothing("limit", "took too long"),
             other => other?,
         };
+        self.cases.keep(&self.plan.points_file(self.folder, &values), &values, &found)?;
         Ok(self.plan.row(number, &values, &found))
     }
 }

@@ -2,14 +2,12 @@
 
 mod cases;
 mod chunks;
-mod collect;
-mod compiled;
 mod drawn;
 mod inputs;
-mod opened;
 mod plan;
 pub(crate) mod request;
 pub(crate) mod result;
+mod row;
 mod study;
 
 use std::path::Path;
@@ -19,10 +17,10 @@ use flank_export::{ParquetRows, write_atomically};
 use flank_expr::Graph;
 
 use self::chunks::Tally;
-use self::collect::{Cases, Collected};
 use self::plan::{Plan, VERSION};
 use self::request::{CaseSource, RunRequest, SweepRequest};
 use self::result::SweepResult;
+use self::row::{Cases, Collected};
 pub use self::study::OpenStudy;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
@@ -70,7 +68,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
     collect.iter().try_for_each(|of| of.check(job))?;
     let session = Session::new(request.evaluator, monitor);
     let chunk = {
-        let tried = Cases::new(which.clone(), inputs.clone(), &request.collect, session)?;
+        let tried = Cases::new(which.clone(), inputs.clone(), (&request.collect, None), session)?;
         let start = Instant::now();
         let count = TRIED.min(values.count());
         for number in 0..count {
@@ -86,12 +84,13 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         cases: values,
         collect: collect.iter().map(Collected::to_string).collect(),
         heads: collect.iter().flat_map(|of| of.heads(job)).collect(),
+        keep_points: request.keep_points,
         limit: request.limit.map(|limit| limit.as_secs_f64()),
         chunk,
         ..Plan::new(&which, main, hash)
     };
     let plan = kept_plan(&request.out, plan)?;
-    for folder in ["chunks", "open"] {
+    for folder in ["chunks", "open"].into_iter().chain(plan.keep_points.then_some(chunks::POINTS)) {
         flank_export::make_folder(&request.out.join(folder))?;
     }
     plan.write(&request.out)?;

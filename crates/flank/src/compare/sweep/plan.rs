@@ -1,12 +1,13 @@
 //! The folder of a study: its plan, the texts of its spec, chunks of results.
 //!
-//! `plan.json`, `spec/` with all texts, `chunks/HASH.csv`, and `open/HASH` while a chunk is worked on.
+//! `plan.json`, `spec/` with all texts, `chunks/HASH.csv`, `points/HASH.csv` of each case where points are kept, and `open/HASH` while a
+//! chunk is worked on.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flank_chain_dsl::{Compilation, Disk};
-use flank_export::write_atomically;
+use flank_export::{Header, write_atomically};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -43,6 +44,8 @@ pub(super) struct Plan {
     pub(super) collect: Vec<String>,
     /// The heads of the columns that are collected.
     pub(super) heads: Vec<String>,
+    /// Whether the points of all samples are kept, a file for each case.
+    pub(super) keep_points: bool,
     /// Seconds that a case may take.
     pub(super) limit: Option<f64>,
     /// Cases in a chunk; the last one may have fewer.
@@ -62,6 +65,7 @@ impl Plan {
             cases: CaseValues::Table(Vec::new()),
             collect: Vec::new(),
             heads: Vec::new(),
+            keep_points: false,
             limit: None,
             chunk: 1,
         }
@@ -118,6 +122,17 @@ impl Plan {
     pub(super) fn selection(&self, folder: &Path) -> JobSelection {
         let project = Project::open(folder.join("spec").join(&self.spec), Arc::new(Disk));
         JobSelection { project, job: Some(self.job.clone()), set: self.set.clone() }
+    }
+
+    /// What files of points begin with, but for the inputs.
+    pub(super) fn header(&self) -> Header {
+        Header {
+            program: format!("flank {}", self.version),
+            spec: self.spec.clone(),
+            spec_hash: format!("sha256:{}", self.hash),
+            job: self.job.clone(),
+            conventions: self.set.iter().map(|(name, value)| format!("set by hand: {name} = {value}")).collect(),
+        }
     }
 
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {

@@ -16,6 +16,8 @@ pub struct SweepRequest {
     /// What becomes of each case: `points`, `limits`, `ease_off:SURFACE`, `width:SURFACE,SURFACE`, `curvature:SURFACE`, `at:SURFACE[row,column]`,
     /// `requirements`, `contact:CONTACT`.
     pub collect: Vec<String>,
+    /// Whether the points of all samples are kept, in a file for each case.
+    pub keep_points: bool,
     /// The folder of the study; made if it is not there.
     pub out: PathBuf,
     /// How long a case may take.

@@ -8,10 +8,10 @@ use flank_chain_dsl::compile_request;
 use flank_expr::Graph;
 
 use super::chunks::{Tally, Work};
-use super::collect::Cases;
 use super::plan::Plan;
 use super::request::StudyChunks;
 use super::result::SweepResult;
+use super::row::Cases;
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
@@ -49,7 +49,8 @@ impl OpenStudy {
         let plan = Plan::read(folder)?;
         let which = plan.selection(folder);
         let texts = checked_texts(&plan, &which, folder)?;
-        let cases = Cases::new(which, plan.inputs.clone(), &plan.collect, Session::new(evaluator, monitor))?;
+        let what = (&plan.collect[..], plan.keep_points.then(|| plan.header()));
+        let cases = Cases::new(which, plan.inputs.clone(), what, Session::new(evaluator, monitor))?;
         let stamps = [(of_plan, before)].into_iter().chain(texts).collect();
         Ok(OpenStudy { folder: folder.to_path_buf(), plan, cases, evaluator, stamps })
     }

@@ -2,20 +2,21 @@
 
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Job, Parameter, Solid};
 use flank_expr::{Expr, Graph};
-use flank_solver::{
-    BoundSurface, Deviation, Outcome, Range, SecondaryCutting, SurfaceFamily, SurfaceGeometry, SurfacePoint,
-};
+use flank_solver::{BoundSurface, Deviation, Outcome, SecondaryCutting, SurfaceFamily, SurfaceGeometry, SurfacePoint};
 
-use super::collect::{NominalPoints, contact_request, sample_of};
+use super::super::inputs::StudyInput;
+use super::collected::{Collected, sample_of};
 use super::compiled::CompiledNumbers;
-use super::inputs::StudyInput;
+use super::numbers::{NominalPoints, contact_request};
 use crate::compare::map::{find, is_solved};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
 use crate::project::requests::JobSelection;
 use crate::project::session::Session;
+use crate::solve::limits::{self, Sought};
+use crate::solve::required::RequiredNumber;
 use crate::solve::starts::{self, Asked, Starts};
-use crate::solve::{blank, followed, ranges, secondary};
+use crate::solve::{self, blank, followed, ranges, secondary};
 
 /// A job whose settings are open.
 pub(super) struct Opened<'o, 'g> {
@@ -26,6 +27,8 @@ pub(super) struct Opened<'o, 'g> {
     settings: Vec<(Expr<'g>, f64)>,
     bindings: &'o [(Expr<'g>, Expr<'g>)],
     session: Session<'o>,
+    /// Those that were asked for, with the names of their surfaces.
+    samples: Vec<(&'o str, Sampled)>,
 }
 
 /// A surface at the points of a grid.
@@ -49,35 +52,55 @@ impl<'o, 'g> Opened<'o, 'g> {
         session: Session<'o>,
     ) -> Opened<'o, 'g> {
         let settings = open.iter().map(|of| (of.variable, of.value)).collect();
-        Opened { which, job, inputs, open, settings, bindings, session }
+        Opened { which, job, inputs, open, settings, bindings, session, samples: Vec::new() }
     }
 
     fn bound(&self, surface: &GeneratedSurface<'g>) -> BoundSurface<'g> {
         BoundSurface::new(&surface.surface, ranges(surface), self.bindings)
     }
 
-    fn family(&self, surface: &GeneratedSurface<'g>, coordinates: [Expr<'g>; 2]) -> SurfaceFamily {
-        let bound = self.bound(surface);
-        let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
-        let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
-        let made = SurfaceFamily::new(&bound, coordinates, &self.settings, |problem| {
-            problem
-                .following_beyond(followed(surface))
-                .with_instruction_set(self.session.instructions())
-                .boxes(self.session.boxes())
-                .keeping(&bound, &keep)
-        });
-        made.expect("a job without errors leaves nothing unbound")
+    /// The samples that were asked for.
+    pub(super) fn into_samples(self) -> Vec<Sampled> {
+        self.samples.into_iter().map(|(_, sampled)| sampled).collect()
     }
 
-    /// All samples. `None` where other surfaces cut points away.
-    pub(super) fn points(&self) -> Option<CompiledNumbers> {
+    /// What gives the numbers of something that is collected. `None` where each case needs its text: where the numbers need more than what
+    /// settings change in equations.
+    pub(super) fn collected(
+        &mut self,
+        of: &Collected,
+        nominal: Option<&NominalPoints>,
+    ) -> Result<Option<CompiledNumbers>, Failure> {
+        match (of, nominal) {
+            (Collected::Points, _) => Ok(self.all_samples().map(CompiledNumbers::Points)),
+            (Collected::Requirements, _) => Ok(self.requirements()),
+            (Collected::Limits, _) => Ok(Some(self.limits())),
+            (Collected::EaseOff(name), Some(nominal)) => self.ease_off(name, nominal).map(Some),
+            (Collected::EaseOff(_), None) => Ok(None),
+            (Collected::At(name, at), _) => self.at(name, *at),
+            (Collected::Curvature(name), _) => self.curvature(name),
+            (Collected::Width([a, b]), _) => self.width([a, b]),
+            (Collected::Contact(name), _) => self.contact(name),
+        }
+    }
+
+    /// The numbers of all samples. `None` where other surfaces cut points away.
+    pub(super) fn all_samples(&mut self) -> Option<Vec<usize>> {
         let sampled = self.job.surfaces.iter().filter(|surface| surface.sample.is_some());
-        let all = sampled.map(|surface| self.sampled(surface));
-        all.collect::<Option<Vec<Sampled>>>().map(CompiledNumbers::Points)
+        sampled.map(|surface| self.sample(surface)).collect()
     }
 
-    /// The points that the sample of a surface asks for. `None` where other surfaces cut some of them away.
+    /// The number of a surface's sample. `None` where other surfaces cut some of its points away.
+    fn sample(&mut self, surface: &'o GeneratedSurface<'g>) -> Option<usize> {
+        if let Some(known) = self.samples.iter().position(|(name, _)| *name == surface.name) {
+            return Some(known);
+        }
+        let sampled = self.sampled(surface)?;
+        self.samples.push((&surface.name, sampled));
+        Some(self.samples.len() - 1)
+    }
+
+    /// The points that the sample of a surface asks for.
     fn sampled(&self, surface: &GeneratedSurface<'g>) -> Option<Sampled> {
         let sample = surface.sample.as_ref().filter(|_| surface.trimmed_by.is_empty() && surface.cut_by.is_none())?;
         let graph = surface.surface.position.0[0].graph();
@@ -88,6 +111,34 @@ impl<'o, 'g> Opened<'o, 'g> {
         Some(Sampled { tool, blank, ..alone }.begun(&self.nominal()))
     }
 
+    fn requirements(&mut self) -> Option<CompiledNumbers> {
+        let sampled = self.job.surfaces.iter().filter(|surface| surface.sample.is_some());
+        let required = sampled.map(|surface| {
+            let graph = surface.surface.position.0[0].graph();
+            let required = graph.with_settings(&self.settings, || RequiredNumber::all(surface, self.bindings));
+            Some((self.sample(surface)?, required))
+        });
+        required.collect::<Option<Vec<_>>>().map(CompiledNumbers::Requirements)
+    }
+
+    fn limits(&self) -> CompiledNumbers {
+        let sought = self.job.surfaces.iter().flat_map(limits::sought);
+        CompiledNumbers::Limits(sought.map(|sought| (sought.kind, [0, 1].map(|k| self.line(&sought, k)))).collect())
+    }
+
+    /// The points of a line at values of one of the coordinates of its sample.
+    fn line(&self, sought: &Sought<'_, 'g>, k: usize) -> Sampled {
+        let (surface, targets) = (sought.surface, sought.targets(k));
+        let of = [sought.quantity, sought.sample.coordinates[k].value];
+        let family = SurfaceFamily::line(&self.bound(surface), of, &self.settings, |problem| {
+            problem.following_beyond(followed(surface)).with_instruction_set(self.session.instructions())
+        });
+        let family = family.expect("a job without errors leaves nothing unbound");
+        let counts = [1, targets.len()];
+        Sampled { family, targets, counts, start: None, nominal: Vec::new(), tool: None, blank: None }
+            .begun(&self.nominal())
+    }
+
     /// Points at values of two coordinates, whatever else cuts some of them away.
     fn alone(
         &self,
@@ -95,7 +146,8 @@ impl<'o, 'g> Opened<'o, 'g> {
         coordinates: &[Coordinate<'g>; 2],
         (targets, counts): (Vec<[f64; 2]>, [usize; 2]),
     ) -> Sampled {
-        let family = self.family(surface, coordinates.each_ref().map(|coordinate| coordinate.value));
+        let coordinates = coordinates.each_ref().map(|coordinate| coordinate.value);
+        let family = solve::family(surface, coordinates, (&self.settings, self.bindings), self.session);
         Sampled { family, targets, counts, start: None, nominal: Vec::new(), tool: None, blank: None }
     }
 
@@ -117,32 +169,32 @@ impl<'o, 'g> Opened<'o, 'g> {
         Ok(find(std::slice::from_ref(self.job), name)?.surface)
     }
 
-    pub(super) fn ease_off(&self, name: &str, nominal: &NominalPoints) -> Result<CompiledNumbers, Failure> {
+    fn ease_off(&self, name: &str, nominal: &NominalPoints) -> Result<CompiledNumbers, Failure> {
         let surface = self.surface(name)?;
         let near = self.beside(surface, (&nominal.asked, &nominal.points));
         Ok(CompiledNumbers::EaseOff(Box::new((near, self.deviation(surface)))))
     }
 
-    pub(super) fn at(&self, name: &str, [row, column]: [usize; 2]) -> Result<Option<CompiledNumbers>, Failure> {
+    fn at(&mut self, name: &str, [row, column]: [usize; 2]) -> Result<Option<CompiledNumbers>, Failure> {
         let columns = sample_of(self.job, name)?.counts[1];
-        let sampled = self.sampled(self.surface(name)?);
-        Ok(sampled.map(|sampled| CompiledNumbers::At(Box::new(sampled), row * columns + column)))
+        let sample = self.sample(self.surface(name)?);
+        Ok(sample.map(|sample| CompiledNumbers::At(sample, row * columns + column)))
     }
 
-    pub(super) fn curvature(&self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
+    fn curvature(&mut self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
         let (surface, sample) = (self.surface(name)?, sample_of(self.job, name)?);
-        let Some(sampled) = self.sampled(surface) else { return Ok(None) };
+        let Some(number) = self.sample(surface) else { return Ok(None) };
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let graph = surface.surface.position.0[0].graph();
         let geometry = graph.with_settings(&self.settings, || {
             SurfaceGeometry::new(&self.bound(surface), &surface.generation.motions, coordinates)
         });
         let geometry = geometry.expect("a job without errors leaves nothing unbound");
-        Ok(Some(CompiledNumbers::Curvature(Box::new((sampled, geometry)))))
+        Ok(Some(CompiledNumbers::Curvature(number, Box::new(geometry))))
     }
 
     /// `None` where the places that the sample of the second surface asks for depend on the case.
-    pub(super) fn width(&self, [a, b]: [&str; 2]) -> Result<Option<CompiledNumbers>, Failure> {
+    fn width(&self, [a, b]: [&str; 2]) -> Result<Option<CompiledNumbers>, Failure> {
         let (near, from, sample) = (self.surface(a)?, self.surface(b)?, sample_of(self.job, b)?);
         let asked = Asked::of_sample(sample);
         if !asked.is_of_places() {
@@ -154,7 +206,7 @@ impl<'o, 'g> Opened<'o, 'g> {
     }
 
     /// `None` where the inputs change how the members turn, or the flanks of the job itself do not touch.
-    pub(super) fn contact(&self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
+    fn contact(&self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
         let Some(contact) = self.job.contacts.iter().find(|known| known.name == name) else { return Ok(None) };
         let own = |input: &StudyInput| contact.errors.iter().position(|axis| axis.name == input.name);
         let inputs = self.inputs.iter().enumerate().filter(|(_, input)| input.is_axis);
