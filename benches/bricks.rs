@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use divan::{Bencher, black_box};
-use flank_solver::{Blank, Body, BrickCounts, BrickOrder, Chart, Outline, OutlineSegment};
+use flank_solver::{Arrangement, Blank, Body, BrickCounts, BrickOrder, Chart, Outline, OutlineSegment};
 
 const TEETH: u32 = 24;
 /// Rows and columns of the polynomials.
@@ -50,7 +50,7 @@ fn body() -> Body {
             .collect();
         Chart::through(points, POINTS)
     };
-    Body::new(blank, TEETH, (0..3).map(chart).collect(), false).expect("a body")
+    Body::new(blank, (Arrangement::Round, TEETH), vec![(0..3).map(chart).collect()], false).expect("a body")
 }
 
 /// Three teeth of 34,000 bricks each.

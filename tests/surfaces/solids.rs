@@ -170,21 +170,22 @@ fn gauges_find_what_an_involute_has() {
         let near = |found: f64, exact: f64, what: &str| {
             assert!((found - exact).abs() < 2e-8, "{what} of {teeth} teeth at {helix} degrees: {found}, not {exact}");
         };
-        near(gauges.tip_diameter_mm, 2.0 * (radius + (1.0 + shift) * 3.0), "tip");
-        near(gauges.root_diameter_mm, 2.0 * (radius - (1.25 - shift) * 3.0), "root");
+        near(gauges.tip_diameter_mm.expect("round"), 2.0 * (radius + (1.0 + shift) * 3.0), "tip");
+        near(gauges.root_diameter_mm.expect("round"), 2.0 * (radius - (1.25 - shift) * 3.0), "root");
         // where the rounding of the rack's tip begins
         let depth = 3.0 * (1.25 - 0.38 * (1.0 - ALPHA.sin()) - shift);
         let form = base.hypot(radius * transverse.sin() - depth / transverse.sin());
-        gauges.form_diameters_mm.iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
+        gauges.form_diameters_mm.expect("round").iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
         // half the tooth's angle on the reference circle
         let half = (FRAC_PI_2 + 2.0 * shift * ALPHA.tan()) / teeth;
         assert_eq!(gauges.thickness.len(), 5);
         for found in &gauges.thickness {
-            let at = (2.0 * base / found.diameter_mm).acos();
+            let diameter = found.diameter_mm.expect("round");
+            let at = (2.0 * base / diameter).acos();
             let angle = 2.0 * (half + inv(transverse) - inv(at));
-            near(found.arc_mm, 0.5 * found.diameter_mm * angle, "thickness");
-            near(found.chord_mm, found.diameter_mm * (0.5 * angle).sin(), "chord");
-            let height = 0.5 * (gauges.tip_diameter_mm - found.diameter_mm * (0.5 * angle).cos());
+            near(found.arc_mm, 0.5 * diameter * angle, "thickness");
+            near(found.chord_mm, diameter * (0.5 * angle).sin(), "chord");
+            let height = 0.5 * (gauges.tip_diameter_mm.expect("round") - diameter * (0.5 * angle).cos());
             near(found.chord_height_mm, height, "height");
         }
         assert!(gauges.spans.len() > 1, "{:?}", gauges.spans);
@@ -309,7 +310,8 @@ fn pointed_teeth_end_in_an_edge() {
         if spur.involute(middle) < PI / 9.0 { low = middle } else { high = middle }
     }
     let below = body.gauges.edge_below_tip_mm.expect("pointed");
-    assert!((0.5 * body.gauges.tip_diameter_mm - low).abs() < 1e-8, "{} {low}", body.gauges.tip_diameter_mm);
+    let tip = body.gauges.tip_diameter_mm.expect("round");
+    assert!((0.5 * tip - low).abs() < 1e-8, "{tip} {low}");
     assert!((spur.radius() + 1.9 * 3.0 - below - low).abs() < 1e-8, "{below}");
     let section = PI * (low * low - 25.0) - 9.0 * spur.space(low);
     assert!((body.volume_mm3 / (20.0 * section) - 1.0).abs() < 2e-8, "{}", body.volume_mm3);

@@ -69,6 +69,6 @@ pub use model::{
     Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface,
     Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MountingAxis, NcWord, OutlineCurve,
     OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
-    SampleGrid, Solid, ToolShape, ValueSource, WantedContact,
+    SampleGrid, Solid, SolidForm, ToolShape, ValueSource, WantedContact,
 };
 pub use values::dimension::{Dimension, unit_size};

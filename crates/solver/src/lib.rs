@@ -72,6 +72,7 @@ pub use newton::least_squares::{
 };
 pub use newton::scalar::solve;
 pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
+pub use solid::arrangement::Arrangement;
 pub use solid::blank::Blank;
 pub use solid::body::{Body, BodyFault};
 pub use solid::bricks::counts::BrickCounts;

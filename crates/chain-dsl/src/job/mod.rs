@@ -270,7 +270,8 @@ fn with_points<'g>(
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
     let decisive = built.parameters.iter().map(|parameter| parameter.variable);
-    let decisive = decisive.filter(|variable| context.is_decisive(*variable)).collect();
+    let decisive: Vec<Expr<'g>> = decisive.filter(|variable| context.is_decisive(*variable)).collect();
+    solid::check_each(context, &built, &decisive);
     (Job { expectations, decisive, ..built }, sampled)
 }
 

@@ -1,4 +1,4 @@
-//! Bodies: a blank turned about the z axis of its frame, and the surfaces that bound its tooth spaces.
+//! Bodies: a blank turned about the z axis of its frame, or drawn along y, and the surfaces that bound its tooth spaces.
 
 use std::rc::Rc;
 
@@ -7,7 +7,7 @@ use flank_expr::Expr;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
-use crate::model::{OutlineCurve, OutlineSegment, Solid};
+use crate::model::{Job, OutlineCurve, OutlineSegment, Solid, SolidForm};
 use crate::syntax::ast::{self, Expression, ExpressionKind};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::{Dimension, shown};
@@ -24,6 +24,18 @@ const CHORDS: usize = 32;
 const MOST_SPACES: f64 = 1e6;
 
 const EXAMPLE: &str = "for example `solid pinion in m.work = turned(blank, spaces: 19, of: [left, fillet, right])`";
+const EXAMPLE_OF_RACK: &str =
+    "for example `solid rack in m.table = extruded(bar, spaces: 10, pitch: pi * module, of: [left, root, right])`";
+
+/// What may stand in the brackets of a solid.
+#[derive(Default)]
+struct Arguments<'a> {
+    profile: Option<&'a Expression>,
+    spaces: Option<&'a Expression>,
+    of: Option<&'a Expression>,
+    each: Option<&'a Expression>,
+    pitch: Option<&'a Expression>,
+}
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn solid(&mut self, context: &mut Context<'g>, written: &ast::Solid, job: &ast::Job) {
@@ -34,54 +46,86 @@ impl<'g> Builder<'_, 'g> {
     fn built_solid(&mut self, context: &mut Context<'g>, written: &ast::Solid, job: &ast::Job) -> Option<Solid> {
         let frame = self.frame(context, &written.frame);
         let call = match &written.value.kind {
-            ExpressionKind::Call(call) if call.function.node == "turned" => call,
+            ExpressionKind::Call(call) if ["turned", "extruded"].contains(&call.function.node.as_str()) => call,
             ExpressionKind::Call(call) => {
-                context.unknown(&call.function, "way to make a solid", ["turned"].into_iter());
+                context.unknown(&call.function, "way to make a solid", ["turned", "extruded"].into_iter());
                 return None;
             }
             ExpressionKind::Error => return None,
             _ => {
-                let message = "a solid is a turned blank with tooth spaces";
+                let message = "a solid is a turned or an extruded blank with tooth spaces";
                 context.report(Diagnostic::new(Code::WrongKind, written.value.span, message).help(EXAMPLE));
                 return None;
             }
         };
-        let (mut blank, mut spaces, mut of) = (None, None, None);
-        for argument in &call.arguments {
-            let slot = match argument.name.as_ref().map(|name| name.node.as_str()) {
-                None => &mut blank,
-                Some("spaces") => &mut spaces,
-                Some("of") => &mut of,
-                Some(_) => {
-                    let name = argument.name.as_ref()?;
-                    context.unknown(name, "argument of `turned`", ["spaces", "of"].into_iter());
-                    return None;
-                }
-            };
-            if let Some(first) = slot.replace(&argument.value) {
-                let message = "this is said twice";
-                let twice = Diagnostic::new(Code::WrongArguments, argument.value.span, message);
-                context.report(twice.note(first.span, "first here"));
-                return None;
-            }
-        }
-        let (Some(blank), Some(spaces), Some(of)) = (blank, spaces, of) else {
-            let message = "`turned` takes a profile, `spaces:` their number and `of:` the surfaces of one space";
-            context.report(Diagnostic::new(Code::WrongArguments, call.span, message).help(EXAMPLE));
-            return None;
+        let is_turned = call.function.node == "turned";
+        let given = arguments(context, call)?;
+        let (Some(blank), Some(spaces), Some(of)) = (given.profile, given.spaces, given.of) else {
+            return missing(context, call, is_turned);
         };
-        let outline = self.outline(context, blank);
+        if is_turned != given.pitch.is_none() {
+            return missing(context, call, is_turned);
+        }
+        let outline = self.outline(context, blank, is_turned);
         let teeth = self.teeth(context, spaces);
         let surfaces = self.space(context, of, frame, job);
+        let form = match given.pitch {
+            None => Some(SolidForm::Turned),
+            Some(pitch) => self.spacing(context, pitch).map(|pitch| SolidForm::Extruded { pitch }),
+        };
+        let each = match given.each {
+            None => Some(None),
+            Some(each) => self.each(context, each, teeth).map(Some),
+        };
         Some(Solid {
             name: written.name.node.clone(),
             doc: written.doc.clone(),
             frame: self.frame_name(frame?),
+            form: form?,
             outline: outline?,
             teeth: teeth?,
             space: surfaces?,
+            each: each?,
             written: written.name.span,
         })
+    }
+
+    /// From one space to the next along a line, mm.
+    fn spacing(&self, context: &mut Context<'g>, written: &Expression) -> Option<f64> {
+        let value = context.scalar(written, &self.scope, Dimension::LENGTH, "the pitch")?;
+        let pitch = context.require_constant(value, written.span, "the pitch")?;
+        if pitch > 0.0 {
+            return Some(pitch);
+        }
+        let message = format!("the pitch is {}: spaces follow each other along +y", shown(pitch, Dimension::LENGTH));
+        context.report(Diagnostic::new(Code::Solid, written.span, message).help(EXAMPLE_OF_RACK));
+        None
+    }
+
+    /// The parameter that says of which space the surfaces are.
+    fn each(&self, context: &mut Context<'g>, written: &Expression, teeth: Option<u32>) -> Option<String> {
+        let wrong = |message: String, help: &str| Diagnostic::new(Code::Solid, written.span, message).help(help);
+        let help = "for example `param space : count in 0 .. 100 = 0`, and `each: space`";
+        let ExpressionKind::Path(path) = &written.kind else {
+            let message = "`each:` takes the parameter that says of which space the surfaces are".to_string();
+            context.report(wrong(message, help));
+            return None;
+        };
+        let name = path.joined();
+        let found = self.parameters.iter().find(|parameter| parameter.name == name && parameter.is_count);
+        let Some(parameter) = found else {
+            if !matches!(self.scope.get(&name), Some(Value::Poison)) {
+                context.report(wrong(format!("`{name}` is no count among the parameters of the job"), help));
+            }
+            return None;
+        };
+        let (last, range) = (f64::from(teeth?) - 1.0, parameter.range);
+        if let Some((low, high)) = range.filter(|(low, high)| *low > 0.0 || *high < last) {
+            let message = format!("`{name}` counts the spaces from 0 to {last}, and its range is {low} .. {high}");
+            context.report(wrong(message, "let its range hold all of them"));
+            return None;
+        }
+        Some(name)
     }
 
     fn teeth(&self, context: &mut Context<'g>, written: &Expression) -> Option<u32> {
@@ -162,9 +206,14 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// The outline of a blank: a closed profile of the axial section, the material on its left.
-    fn outline(&self, context: &mut Context<'g>, written: &Expression) -> Option<Vec<OutlineSegment>> {
+    fn outline(
+        &self,
+        context: &mut Context<'g>,
+        written: &Expression,
+        is_turned: bool,
+    ) -> Option<Vec<OutlineSegment>> {
         let ExpressionKind::Path(path) = &written.kind else {
-            let message = "a blank is a profile of the job: points `[z, rho]` of its axial section";
+            let message = "a blank is a profile of the job: points `[z, rho]` of its section, or `[z, x]` of that of a bar";
             context.report(Diagnostic::new(Code::WrongKind, written.span, message).help(EXAMPLE));
             return None;
         };
@@ -184,13 +233,79 @@ impl<'g> Builder<'_, 'g> {
             }
         };
         let segments: Option<Vec<OutlineSegment>> =
-            profile.segments.iter().map(|segment| outline_segment(context, segment)).collect();
+            profile.segments.iter().map(|segment| outline_segment(context, segment, is_turned)).collect();
         closed(context, segments?, &profile, path.span)
     }
 }
 
+/// Reports solids whose spaces differ by a parameter from which numbers of the job follow that are the same for all spaces.
+pub(super) fn check_each(context: &mut Context<'_>, job: &Job<'_>, decisive: &[Expr<'_>]) {
+    for solid in &job.solids {
+        let Some(each) = &solid.each else { continue };
+        let parameter = job.parameters.iter().find(|parameter| parameter.name == *each);
+        if parameter.is_some_and(|parameter| decisive.contains(&parameter.variable)) {
+            let message = format!(
+                "`{each}` counts the spaces of `{}`, and ranges or points of the job follow from its value",
+                solid.name
+            );
+            context.report(
+                Diagnostic::new(Code::Solid, solid.written, message)
+                    .help("let laws alone depend on it, and give motions a range that holds all spaces"),
+            );
+        }
+    }
+}
+
+/// What stands in the brackets.
+fn arguments<'a>(context: &mut Context<'_>, call: &'a ast::Call) -> Option<Arguments<'a>> {
+    let mut given = Arguments::default();
+    let is_turned = call.function.node == "turned";
+    for argument in &call.arguments {
+        let slot = match argument.name.as_ref().map(|name| name.node.as_str()) {
+            None => &mut given.profile,
+            Some("spaces") => &mut given.spaces,
+            Some("of") => &mut given.of,
+            Some("each") => &mut given.each,
+            Some("pitch") if !is_turned => &mut given.pitch,
+            Some(_) => {
+                let name = argument.name.as_ref()?;
+                let (what, known): (_, &[&str]) = match is_turned {
+                    true => ("argument of `turned`", &["spaces", "of", "each"]),
+                    false => ("argument of `extruded`", &["spaces", "pitch", "of", "each"]),
+                };
+                context.unknown(name, what, known.iter().copied());
+                return None;
+            }
+        };
+        if let Some(first) = slot.replace(&argument.value) {
+            let message = "this is said twice";
+            let twice = Diagnostic::new(Code::WrongArguments, argument.value.span, message);
+            context.report(twice.note(first.span, "first here"));
+            return None;
+        }
+    }
+    Some(given)
+}
+
+fn missing<T>(context: &mut Context<'_>, call: &ast::Call, is_turned: bool) -> Option<T> {
+    let (message, help) = if is_turned {
+        ("`turned` takes a profile, `spaces:` their number and `of:` the surfaces of one space", EXAMPLE)
+    } else {
+        (
+            "`extruded` takes a profile, `spaces:` their number, `pitch:` from one to the next, and `of:` the surfaces of one space",
+            EXAMPLE_OF_RACK,
+        )
+    };
+    context.report(Diagnostic::new(Code::WrongArguments, call.span, message).help(help));
+    None
+}
+
 /// A segment with numbers; nothing where one has no value yet, or what cannot be an edge of a blank has been reported.
-fn outline_segment<'g>(context: &mut Context<'g>, segment: &Segment<'g>) -> Option<OutlineSegment> {
+fn outline_segment<'g>(
+    context: &mut Context<'g>,
+    segment: &Segment<'g>,
+    is_turned: bool,
+) -> Option<OutlineSegment> {
     let half = (segment.from + segment.to) * 0.5;
     let points = [segment.from, half, segment.to].map(|run| numbers(context, segment.point(run)));
     let [from, middle, to] = [points[0]?, points[1]?, points[2]?];
@@ -215,7 +330,7 @@ fn outline_segment<'g>(context: &mut Context<'g>, segment: &Segment<'g>) -> Opti
             return None;
         }
     };
-    if let Some(inside) = [from, middle, to].into_iter().find(|[_, rho]| *rho < 0.0) {
+    if let Some(inside) = [from, middle, to].into_iter().find(|[_, rho]| is_turned && *rho < 0.0) {
         let message = format!("`{}` lies {} beyond the axis", segment.name, shown(-inside[1], Dimension::LENGTH));
         context.report(wrong(message, "the second coordinate is the distance from the axis"));
         return None;

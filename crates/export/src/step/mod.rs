@@ -1,13 +1,16 @@
 //! Surfaces as smooth faces in a STEP file (ISO 10303-21, AP242).
 
+mod blank;
+mod cut;
 mod face;
+mod shell;
 mod solid;
 mod spline;
 
 use std::io::Write;
 
 pub use face::{Deviation, Face};
-pub use solid::{GearBody, PlacedBody, TurnedSegment, spline_deviation, write_step_assembly, write_step_body};
+pub use solid::{GearBody, GearRun, GearSide, GearStrip, PlacedBody, TurnedSegment, spline_deviation, write_step_assembly, write_step_body};
 
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;

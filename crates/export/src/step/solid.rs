@@ -1,16 +1,16 @@
 //! The body of a gear as one closed shell whose faces share their edges and vertices.
 
-use std::f64::consts::TAU;
 use std::io::Write;
 
+use super::shell::Shell;
 use super::spline::SplineSurface;
-use super::{DataSection, knots, numbers, real, text};
+use super::{DataSection, numbers, real, text};
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
 use crate::solid::PlacedFrame;
 use crate::vector::Vector;
 
-/// A line or an arc `[z, rho]` of the outline of a turned blank, the material on its left.
+/// A line or an arc `[z, rho]` of the outline of a turned blank, or `[z, x]` of that of a bar, the material on its left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurnedSegment {
     /// What it is called.
@@ -23,18 +23,67 @@ pub struct TurnedSegment {
     pub center: Option<[f64; 2]>,
 }
 
-/// A gear: a turned blank with equal tooth spaces.
+/// How the spaces of a gear follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GearRun {
+    /// All around the z axis, by this angle.
+    Round {
+        /// From one space to the next.
+        pitch: f64,
+    },
+    /// Along y.
+    Straight {
+        /// From one space to the next, mm.
+        pitch: f64,
+    },
+}
+
+/// A strip of the toothed side of a gear, from where spaces begin to where they end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GearStrip {
+    /// A surface.
+    Surface {
+        /// Which.
+        surface: usize,
+        /// How many spaces farther on.
+        spaces: i32,
+    },
+    /// The land of a tooth on the tip of the blank.
+    Land,
+}
+
+/// Where a part of a gear is cut off.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GearSide {
+    /// By the plane through the outermost row and the axis, or the direction of x.
+    Flat,
+    /// By a surface through a grid of points, row by row, mm: rows from the outermost row inwards, columns along the spaces.
+    Bent {
+        /// The grid.
+        points: Vec<Vector>,
+        /// Rows and columns.
+        counts: [usize; 2],
+        /// Points along each segment of the rest of the outline.
+        rest: Vec<Vec<Vector>>,
+    },
+}
+
+/// A gear, or some teeth or spaces of it: a turned blank, or a bar, with tooth spaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GearBody {
     /// What it is called.
     pub name: String,
-    /// How many spaces it has.
-    pub teeth: usize,
-    /// The surfaces of one space in the order of the angle about z, each with its name and a grid of points, row by row, mm: rows across the
-    /// space, columns from where it begins to where it ends. Neighbours have a row in common, and all have as many columns.
-    pub space: Vec<(String, Vec<Vector>, [usize; 2])>,
-    /// Whether the last surface of a space ends in the line where the first one of the next begins: then no tooth has a land of the blank.
-    pub has_edge: bool,
+    /// What it consists of, in a few words.
+    pub about: String,
+    /// How its spaces follow each other.
+    pub run: GearRun,
+    /// Surfaces of spaces, each with its name and a grid of points, row by row, mm: rows across the space, columns from where it begins to
+    /// where it ends. All have as many columns.
+    pub surfaces: Vec<(String, Vec<Vector>, [usize; 2])>,
+    /// What follows each other on the toothed side. Surfaces that do have a row in common.
+    pub strips: Vec<GearStrip>,
+    /// Where it is cut off before its first strip and behind its last one; nothing where these are neighbours.
+    pub sides: Option<[GearSide; 2]>,
     /// The segments of the outline that spaces begin at, leave the blank by, and end at.
     pub ends: [TurnedSegment; 3],
     /// The others, from the end of the spaces round to their beginning.
@@ -43,10 +92,10 @@ pub struct GearBody {
     pub deviation: f64,
     /// mm³
     pub volume: f64,
-    /// mm²
-    pub area: f64,
-    /// mm
-    pub centre: Vector,
+    /// mm², where it is known.
+    pub area: Option<f64>,
+    /// mm, where it is known.
+    pub centre: Option<Vector>,
 }
 
 /// How far the cubic spline through a grid of points, row by row, is off a lattice of the same surface with one more row and column between any
@@ -117,10 +166,9 @@ pub fn write_step_assembly(header: &Header, bodies: &[PlacedBody<'_>], out: &mut
 /// What a body is and how far its faces are off, in one line.
 fn told(body: &GearBody) -> String {
     format!(
-        "`{}`: {} spaces of {} faces, off by at most {:.2e} um; volume {:.4} mm3",
+        "`{}`: {}, off by at most {:.2e} um; volume {:.4} mm3",
         body.name,
-        body.teeth,
-        body.space.len(),
+        body.about,
         1e3 * body.deviation,
         body.volume
     )
@@ -152,11 +200,11 @@ impl DataSection<'_> {
         Ok(BodyProduct { definition, place, representation })
     }
 
-    fn direction(&mut self, [x, y, z]: Vector) -> Result<usize, WriteError> {
+    pub(super) fn direction(&mut self, [x, y, z]: Vector) -> Result<usize, WriteError> {
         self.add(&format!("DIRECTION('',({},{},{}))", real(x), real(y), real(z)))
     }
 
-    fn placement(&mut self, origin: Vector, axis: Vector, reference: Vector) -> Result<usize, WriteError> {
+    pub(super) fn placement(&mut self, origin: Vector, axis: Vector, reference: Vector) -> Result<usize, WriteError> {
         let origin = self.point(origin)?;
         let [axis, reference] = [self.direction(axis)?, self.direction(reference)?];
         self.add(&format!("AXIS2_PLACEMENT_3D('',#{origin},#{axis},#{reference})"))
@@ -173,13 +221,17 @@ impl DataSection<'_> {
             part.add(&format!("DERIVED_UNIT((#{element}))"))
         };
         let [square, cube] = [unit(self, "2.")?, unit(self, "3.")?];
-        let volume =
-            format!("MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE({}),#{cube})", real(body.volume));
-        let area =
-            format!("MEASURE_REPRESENTATION_ITEM('surface area measure',AREA_MEASURE({}),#{square})", real(body.area));
-        let [x, y, z] = body.centre.map(real);
-        let centre = format!("CARTESIAN_POINT('centre point',({x},{y},{z}))");
+        let measure = |name: &str, kind: &str, value: f64, unit: usize| {
+            format!("MEASURE_REPRESENTATION_ITEM('{name} measure',{kind}_MEASURE({}),#{unit})", real(value))
+        };
+        let volume = Some(measure("volume", "VOLUME", body.volume, cube));
+        let area = body.area.map(|area| measure("surface area", "AREA", area, square));
+        let centre = body.centre.map(|centre| {
+            let [x, y, z] = centre.map(real);
+            format!("CARTESIAN_POINT('centre point',({x},{y},{z}))")
+        });
         for (what, item) in [("volume", volume), ("surface area", area), ("centroid", centre)] {
+            let Some(item) = item else { continue };
             let property =
                 self.add(&format!("PROPERTY_DEFINITION('geometric validation property','{what}',#{product})"))?;
             let item = self.add(&item)?;
@@ -190,392 +242,37 @@ impl DataSection<'_> {
     }
 }
 
-/// An edge with its vertices.
-#[derive(Clone, Copy)]
-struct Edge(usize);
-
-/// A circle of the blank: its vertices by angle, and the edges that follow them.
-struct Ring {
-    vertices: Vec<(f64, usize)>,
-    edges: Vec<Edge>,
-}
-
-/// The edges and vertices of a gear, each once.
-struct Shell<'p, 'w, 'b> {
-    part: &'p mut DataSection<'w>,
-    body: &'b GearBody,
-    splines: Vec<SplineSurface>,
-    /// Of each space the lines between its surfaces, the first and the last at the tip.
-    rows: Vec<Vec<Edge>>,
-    /// Of each space and surface the edges at its beginning and at its end.
-    columns: Vec<Vec<[Edge; 2]>>,
-    /// From each space to the next, at the beginning and at the end.
-    tips: Vec<[Edge; 2]>,
-    /// The vertices of the first space's first line.
-    first: [(f64, usize); 2],
-    /// At the corners of the rest of the outline, from the end of the spaces on.
-    rings: Vec<Ring>,
-    poles: Vec<Vec<Vec<usize>>>,
-}
-
-fn turned([x, y, z]: Vector, by: f64) -> Vector {
-    let (sin, cos) = by.sin_cos();
-    [cos * x - sin * y, sin * x + cos * y, z]
-}
-
-fn at([z, rho]: [f64; 2], angle: f64) -> Vector {
-    [rho * angle.cos(), rho * angle.sin(), z]
-}
-
-impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
-    fn new(part: &'p mut DataSection<'w>, body: &'b GearBody) -> Result<Shell<'p, 'w, 'b>, WriteError> {
-        let splines =
-            body.space.iter().map(|(_, points, counts)| SplineSurface::through(points.clone(), *counts)).collect();
-        let mut shell = Shell {
-            part,
-            body,
-            splines,
-            rows: Vec::new(),
-            columns: Vec::new(),
-            tips: Vec::new(),
-            first: [(0.0, 0); 2],
-            rings: Vec::new(),
-            poles: Vec::new(),
-        };
-        shell.spaces()?;
-        shell.rings()?;
-        Ok(shell)
-    }
-
-    fn vertex(&mut self, point: usize) -> Result<usize, WriteError> {
-        self.part.add(&format!("VERTEX_POINT('',#{point})"))
-    }
-
-    fn edge(&mut self, [from, to]: [usize; 2], curve: usize) -> Result<Edge, WriteError> {
-        Ok(Edge(self.part.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)"))?))
-    }
-
-    fn spline_edge(&mut self, vertices: [usize; 2], poles: &[usize], of: (usize, usize)) -> Result<Edge, WriteError> {
-        let direction = &self.splines[of.0].directions[of.1];
-        let (counts, values) = knots(direction);
-        let curve = format!(
-            "B_SPLINE_CURVE_WITH_KNOTS('',{},{},.UNSPECIFIED.,.F.,.F.,{counts},{values},.UNSPECIFIED.)",
-            direction.degree,
-            numbers(poles)
-        );
-        let curve = self.part.add(&curve)?;
-        self.edge(vertices, curve)
-    }
-
-    /// Part of a circle about the axis.
-    fn arc(&mut self, vertices: [usize; 2], [z, rho]: [f64; 2]) -> Result<Edge, WriteError> {
-        let place = self.part.placement([0.0, 0.0, z], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])?;
-        let circle = self.part.add(&format!("CIRCLE('',#{place},{})", real(rho)))?;
-        self.edge(vertices, circle)
-    }
-
-    /// Points, vertices and edges of all spaces.
-    fn spaces(&mut self) -> Result<(), WriteError> {
-        let count = self.splines.len();
-        let mut corners: Vec<[[usize; 2]; 2]> = Vec::new();
-        for tooth in 0..self.body.teeth {
-            let poles = self.poles_of(tooth)?;
-            // where teeth end in an edge, it is one line of both spaces
-            let before =
-                corners.last().filter(|_| self.body.has_edge).map(|[_, last]| (self.rows[tooth - 1][count], *last));
-            let is_last = self.body.has_edge && tooth + 1 == self.body.teeth;
-            let behind = corners.first().filter(|_| is_last).map(|[first, _]| (self.rows[0][0], *first));
-            let (mut rows, mut vertices) = (Vec::new(), Vec::new());
-            for k in 0..=count {
-                let there = if k == 0 { before } else { behind.filter(|_| k == count) };
-                let (row, ends) = match there {
-                    Some(there) => there,
-                    None => self.row(&poles, k)?,
-                };
-                rows.push(row);
-                vertices.push(ends);
+impl GearRun {
+    pub(super) fn moved(self, [x, y, z]: Vector, spaces: i32) -> Vector {
+        match self {
+            GearRun::Round { pitch } => {
+                let (sin, cos) = (pitch * f64::from(spaces)).sin_cos();
+                [cos * x - sin * y, sin * x + cos * y, z]
             }
-            let columns = self.splines[0].directions[1].count;
-            let mut sides = Vec::new();
-            for k in 0..count {
-                let mut both = [Edge(0); 2];
-                for (end, column) in [0, columns - 1].into_iter().enumerate() {
-                    let line: Vec<usize> = poles[k].iter().skip(column).step_by(columns).copied().collect();
-                    both[end] = self.spline_edge([vertices[k][end], vertices[k + 1][end]], &line, (k, 0))?;
-                }
-                sides.push(both);
-            }
-            if tooth == 0 {
-                let points = &self.body.space[0].1;
-                let angle = |[x, y, _]: Vector| y.atan2(x);
-                self.first = [(angle(points[0]), vertices[0][0]), (angle(points[columns - 1]), vertices[0][1])];
-            }
-            corners.push([vertices[0], vertices[count]]);
-            self.rows.push(rows);
-            self.columns.push(sides);
-            self.poles.push(poles);
+            GearRun::Straight { pitch } => [x, y + pitch * f64::from(spaces), z],
         }
-        if self.body.has_edge {
-            return Ok(());
-        }
-        let tip = &self.body.ends[1];
-        for tooth in 0..self.body.teeth {
-            let next = corners[(tooth + 1) % self.body.teeth][0];
-            let own = corners[tooth][1];
-            let both = [self.arc([own[0], next[0]], tip.from)?, self.arc([own[1], next[1]], tip.to)?];
-            self.tips.push(both);
-        }
-        Ok(())
     }
 
-    /// The poles of a space's surfaces as points: a row that two have in common is there once.
-    fn poles_of(&mut self, tooth: usize) -> Result<Vec<Vec<usize>>, WriteError> {
-        let angle = TAU / self.body.teeth as f64 * tooth as f64;
-        let columns = self.splines[0].directions[1].count;
-        let is_last = self.body.has_edge && tooth > 0 && tooth + 1 == self.body.teeth;
-        let mut all: Vec<Vec<usize>> = Vec::new();
-        for k in 0..self.splines.len() {
-            let before = match all.last() {
-                Some(before) => Some(before),
-                None => self.poles.last().filter(|_| self.body.has_edge).and_then(|space| space.last()),
-            };
-            let mut points: Vec<usize> = before.map_or(Vec::new(), |before| before[before.len() - columns..].to_vec());
-            let behind = is_last && k + 1 == self.splines.len();
-            let own = self.splines[k].poles.len() - if behind { columns } else { 0 };
-            for at in points.len()..own {
-                let pole = turned(self.splines[k].poles[at], angle);
-                points.push(self.part.point(pole)?);
-            }
-            if behind {
-                points.extend_from_slice(&self.poles[0][0][..columns]);
-            }
-            all.push(points);
+    pub(super) fn way(self, [x, y, _]: Vector) -> f64 {
+        match self {
+            GearRun::Round { .. } => y.atan2(x),
+            GearRun::Straight { .. } => y,
         }
-        Ok(all)
     }
 
-    /// The line between a surface of a space and the one before, with its vertices.
-    fn row(&mut self, poles: &[Vec<usize>], k: usize) -> Result<(Edge, [usize; 2]), WriteError> {
-        let columns = self.splines[0].directions[1].count;
-        let line = match k.checked_sub(1) {
-            None => poles[0][..columns].to_vec(),
-            Some(before) => poles[before][poles[before].len() - columns..].to_vec(),
-        };
-        let ends = [self.vertex(line[0])?, self.vertex(line[columns - 1])?];
-        Ok((self.spline_edge(ends, &line, (k.min(self.splines.len() - 1), 1))?, ends))
+    /// A place of the outline, so far on.
+    pub(super) fn at(self, [z, rho]: [f64; 2], way: f64) -> Vector {
+        match self {
+            GearRun::Round { .. } => [rho * way.cos(), rho * way.sin(), z],
+            GearRun::Straight { .. } => [rho, way, z],
+        }
     }
 
-    /// The circles of the rest of the outline. Seams of the rest lie at the angle of the end's first vertex, that of a beginning which is
-    /// no plane at its own.
-    fn rings(&mut self) -> Result<(), WriteError> {
-        let begin = &self.body.ends[0];
-        let places: Vec<[f64; 2]> = self.body.rest.iter().map(|segment| segment.from).chain([begin.from]).collect();
-        let [(own, _), (seam, _)] = self.first;
-        for (k, place) in places.iter().enumerate() {
-            let mut angles = vec![seam];
-            if k + 1 == places.len() && !is_plane(begin) && own != seam {
-                angles.push(own);
-                angles.sort_by(f64::total_cmp);
-            }
-            let mut vertices = Vec::new();
-            for angle in &angles {
-                let point = self.part.point(at(*place, *angle))?;
-                vertices.push((*angle, self.vertex(point)?));
-            }
-            let mut edges = Vec::new();
-            for i in 0..vertices.len() {
-                edges.push(self.arc([vertices[i].1, vertices[(i + 1) % vertices.len()].1], *place)?);
-            }
-            self.rings.push(Ring { vertices, edges });
+    /// Unit vectors so far on: away from the axis, and on along the spaces.
+    pub(super) fn directions(self, way: f64) -> [Vector; 2] {
+        match self {
+            GearRun::Round { .. } => [[way.cos(), way.sin(), 0.0], [-way.sin(), way.cos(), 0.0]],
+            GearRun::Straight { .. } => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         }
-        Ok(())
     }
-
-    fn faces(mut self) -> Result<Vec<usize>, WriteError> {
-        let mut faces = Vec::new();
-        for tooth in 0..self.body.teeth {
-            for k in 0..self.splines.len() {
-                faces.push(self.chart_face(tooth, k)?);
-            }
-        }
-        let [begin, tip, end] = self.body.ends.clone();
-        let mut land = None;
-        for tooth in 0..self.tips.len() {
-            // all lands lie on one surface of revolution
-            let surface = match land {
-                Some(surface) => surface,
-                None => self.surface(&tip, self.first[0].0)?,
-            };
-            land = Some(surface);
-            let next = (tooth + 1) % self.body.teeth;
-            let own = *self.rows[tooth].last().expect("a line at the tip");
-            let [at_begin, at_end] = self.tips[tooth];
-            let sides = [(own, true), (at_end, true), (self.rows[next][0], false), (at_begin, false)];
-            faces.push(self.face(&tip.name, &[sides.to_vec()], surface)?);
-        }
-        faces.push(self.end_face(&begin, 0)?);
-        faces.push(self.end_face(&end, 1)?);
-        for (k, segment) in self.body.rest.iter().enumerate() {
-            faces.push(self.rest_face(segment, k)?);
-        }
-        Ok(faces)
-    }
-
-    /// A face within loops that run anticlockwise about its outward normal.
-    fn face(
-        &mut self,
-        name: &str,
-        loops: &[Vec<(Edge, bool)>],
-        (surface, sense): (usize, bool),
-    ) -> Result<usize, WriteError> {
-        let letter = |is: bool| if is { ".T." } else { ".F." };
-        let mut bounds = Vec::new();
-        for (k, edges) in loops.iter().enumerate() {
-            let mut oriented = Vec::new();
-            for (Edge(edge), is_forward) in edges {
-                oriented.push(self.part.add(&format!("ORIENTED_EDGE('',*,*,#{edge},{})", letter(*is_forward)))?);
-            }
-            let border = self.part.add(&format!("EDGE_LOOP('',{})", numbers(&oriented)))?;
-            let kind = if k == 0 { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };
-            bounds.push(self.part.add(&format!("{kind}('',#{border},.T.)"))?);
-        }
-        self.part.add(&format!("ADVANCED_FACE({},{},#{surface},{})", text(name), numbers(&bounds), letter(sense)))
-    }
-
-    fn chart_face(&mut self, tooth: usize, k: usize) -> Result<usize, WriteError> {
-        let name = &self.body.space[k].0;
-        let surface = self.part.spline_surface(name, &self.splines[k], &self.poles[tooth][k])?;
-        let [at_begin, at_end] = self.columns[tooth][k];
-        let sides = [(self.rows[tooth][k], true), (at_end, true), (self.rows[tooth][k + 1], false), (at_begin, false)];
-        // across by along points into the body, as the angle by the outline does that has the material on its left
-        self.face(name, &[sides.to_vec()], (surface, false))
-    }
-
-    /// Where all spaces begin (0) or end (1).
-    fn end_face(&mut self, segment: &TurnedSegment, end: usize) -> Result<usize, WriteError> {
-        let is_begin = end == 0;
-        let mut profile = Vec::new();
-        for tooth in 0..self.body.teeth {
-            profile.extend(self.columns[tooth].iter().map(|ends| (ends[end], is_begin)));
-            profile.extend(self.tips.get(tooth).map(|ends| (ends[end], is_begin)));
-        }
-        let (angle, vertex) = self.first[end];
-        let ring = if is_begin { self.rings.len() - 1 } else { 0 };
-        let mut around = self.around(ring, angle);
-        if is_begin {
-            around = around.into_iter().rev().map(|(edge, _)| (edge, false)).collect();
-        } else {
-            profile.reverse();
-        }
-        let surface = self.surface(segment, angle)?;
-        if is_plane(segment) {
-            let loops = if segment.from[1].max(segment.to[1]) == if is_begin { segment.to[1] } else { segment.from[1] }
-            {
-                [profile, around]
-            } else {
-                [around, profile]
-            };
-            return self.face(&segment.name, &loops, surface);
-        }
-        let on_ring = self.vertex_of(ring, angle);
-        let ends = if is_begin { [on_ring, vertex] } else { [vertex, on_ring] };
-        let seam = self.seam(segment, ends, angle)?;
-        let (far, near) = if is_begin { (profile, around) } else { (around, profile) };
-        let all = [vec![(seam, true)], far, vec![(seam, false)], near].concat();
-        self.face(&segment.name, &[all], surface)
-    }
-
-    fn rest_face(&mut self, segment: &TurnedSegment, k: usize) -> Result<usize, WriteError> {
-        let angle = self.first[1].0;
-        let surface = self.surface(segment, angle)?;
-        let near: Vec<(Edge, bool)> = self.around(k, angle).into_iter().rev().map(|(edge, _)| (edge, false)).collect();
-        let far = self.around(k + 1, angle);
-        if is_plane(segment) {
-            let loops = if segment.to[1] > segment.from[1] { [far, near] } else { [near, far] };
-            return self.face(&segment.name, &loops, surface);
-        }
-        let ends = [self.vertex_of(k, angle), self.vertex_of(k + 1, angle)];
-        let seam = self.seam(segment, ends, angle)?;
-        let all = [vec![(seam, true)], far, vec![(seam, false)], near].concat();
-        self.face(&segment.name, &[all], surface)
-    }
-
-    fn vertex_of(&self, ring: usize, angle: f64) -> usize {
-        let vertices = &self.rings[ring].vertices;
-        vertices.iter().find(|(at, _)| *at == angle).map_or(vertices[0].1, |(_, vertex)| *vertex)
-    }
-
-    /// Once around a ring from a vertex, the angle growing.
-    fn around(&self, ring: usize, angle: f64) -> Vec<(Edge, bool)> {
-        let Ring { vertices, edges } = &self.rings[ring];
-        let start = vertices.iter().position(|(at, _)| *at == angle).unwrap_or(0);
-        (0..edges.len()).map(|k| (edges[(start + k) % edges.len()], true)).collect()
-    }
-
-    /// The segment itself, in the half plane at an angle.
-    fn seam(&mut self, segment: &TurnedSegment, vertices: [usize; 2], angle: f64) -> Result<Edge, WriteError> {
-        let [from, to] = [segment.from, segment.to];
-        let curve = match segment.center {
-            None => {
-                let [a, b] = [at(from, angle), at(to, angle)];
-                let along = crate::vector::sub(b, a);
-                let length = crate::vector::length(along);
-                let (point, direction) = (self.part.point(a)?, self.part.direction(along.map(|x| x / length))?);
-                let vector = self.part.add(&format!("VECTOR('',#{direction},1.)"))?;
-                self.part.add(&format!("LINE('',#{point},#{vector})"))?
-            }
-            Some(center) => {
-                let [out, to] = [from, to].map(|end| [end[0] - center[0], end[1] - center[1]]);
-                let radius = out[0].hypot(out[1]);
-                let turn = (out[0] * to[1] - out[1] * to[0]).signum();
-                // z by rho is minus the direction of the angle
-                let axis = [turn * angle.sin(), -turn * angle.cos(), 0.0];
-                let reference = at([out[0] / radius, out[1] / radius], angle);
-                let place = self.part.placement(at(center, angle), axis, reference)?;
-                self.part.add(&format!("CIRCLE('',#{place},{})", real(radius)))?
-            }
-        };
-        self.edge(vertices, curve)
-    }
-
-    /// The surface that a segment turns out, its seam at an angle, and whether its own normal points out of the body.
-    fn surface(&mut self, segment: &TurnedSegment, seam: f64) -> Result<(usize, bool), WriteError> {
-        let [from, to] = [segment.from, segment.to];
-        let (dz, drho) = (to[0] - from[0], to[1] - from[1]);
-        let up = [0.0, 0.0, 1.0];
-        let reference = [seam.cos(), seam.sin(), 0.0];
-        let on_axis = |z: f64| [0.0, 0.0, z];
-        if let Some(center) = segment.center {
-            let out = [from[0] - center[0], from[1] - center[1]];
-            let radius = real(out[0].hypot(out[1]));
-            let place = self.part.placement(on_axis(center[0]), up, reference)?;
-            // an arc that turns left bulges out of the material
-            let is_outward = out[0] * (to[1] - center[1]) - out[1] * (to[0] - center[0]) > 0.0;
-            let surface = if center[1] == 0.0 {
-                format!("SPHERICAL_SURFACE('',#{place},{radius})")
-            } else {
-                format!("TOROIDAL_SURFACE('',#{place},{},{radius})", real(center[1]))
-            };
-            return Ok((self.part.add(&surface)?, is_outward));
-        }
-        // outside is on the right
-        if is_plane(segment) {
-            let place = self.part.placement(on_axis(from[0]), up, reference)?;
-            return Ok((self.part.add(&format!("PLANE('',#{place})"))?, drho > 0.0));
-        }
-        if drho == 0.0 {
-            let place = self.part.placement(on_axis(from[0]), up, reference)?;
-            return Ok((self.part.add(&format!("CYLINDRICAL_SURFACE('',#{place},{})", real(from[1])))?, dz < 0.0));
-        }
-        // the radius of a cone grows along its axis
-        let axis = [0.0, 0.0, (drho / dz).signum()];
-        let place = self.part.placement(on_axis(from[0]), axis, reference)?;
-        let half = (drho / dz).abs().atan();
-        let cone = format!("CONICAL_SURFACE('',#{place},{},{})", real(from[1]), real(half));
-        Ok((self.part.add(&cone)?, dz < 0.0))
-    }
-}
-
-fn is_plane(segment: &TurnedSegment) -> bool {
-    segment.center.is_none() && segment.from[0] == segment.to[0]
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use flank_chain_dsl::{Contact, GeneratedSurface, Job, Parameter, Solid};
+use flank_chain_dsl::{Contact, GeneratedSurface, Job, Parameter, Solid, SolidForm};
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{BoundSurface, ContactProblem, GapProblem, Range, RollingPair, SurfacePoint};
@@ -49,7 +49,9 @@ impl<'j, 'g> Members<'j, 'g> {
         surfaces: [usize; 2],
         points: [Vec<SurfacePoint>; 2],
     ) -> Members<'j, 'g> {
-        let solid_of = |at: usize| job.solids.iter().find(|solid| solid.space.contains(&at));
+        // a bar has no axis to turn about, and one tooth says nothing of others that differ
+        let is_even = |solid: &&Solid| solid.form == SolidForm::Turned && solid.each.is_none();
+        let solid_of = |at: usize| job.solids.iter().filter(is_even).find(|solid| solid.space.contains(&at));
         let of_job = surfaces.map(|at| &job.surfaces[at]);
         Members {
             contact,

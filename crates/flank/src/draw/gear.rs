@@ -24,7 +24,7 @@ pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Resul
         facts: facts(&shape),
         surfaces: shape.surfaces.clone(),
         whole: faces(&shape.whole()),
-        directions: Shape::directions(&teeth),
+        directions: shape.directions(&teeth),
         teeth: faces(&teeth),
         shown: format!("{} of {} teeth", shape.shown(), shape.teeth),
         is_closed: shape.body.is_ok(),
@@ -66,6 +66,13 @@ fn facts(shape: &Shape) -> Vec<(String, String)> {
     let fact = |name: &str, value: String| (name.to_string(), value);
     let mut facts = vec![fact("teeth", shape.teeth.to_string())];
     let Ok(body) = &shape.body else { return facts };
+    if !body.arrangement().is_closed() {
+        let [tip, root] = body.tip_and_root();
+        let (depth, pitch) = ((tip - root).abs(), body.pitch());
+        let lengths = [("pitch", pitch), ("depth of the teeth", depth), ("length of the tip", body.blank().bounds()[1].length())];
+        facts.extend(lengths.map(|(name, value)| fact(name, format!("{} mm", fixed(value, 3)))));
+        return facts;
+    }
     facts.extend(diameters(body).into_iter().map(|(name, value)| fact(name, format!("{} mm", fixed(value, 3)))));
     facts
 }
@@ -73,6 +80,13 @@ fn facts(shape: &Shape) -> Vec<(String, String)> {
 /// Half-way along the teeth, mm.
 fn diameters(body: &Body) -> Vec<(&'static str, f64)> {
     let [tip, root] = body.tip_and_root();
+    if body.distinct() > 1 {
+        return vec![
+            ("largest tip diameter", 2.0 * tip),
+            ("smallest root diameter", 2.0 * root),
+            ("length of the tip", body.blank().bounds()[1].length()),
+        ];
+    }
     let [first, last] = body.form();
     let deepest = if body.is_external() { first.max(last) } else { first.min(last) };
     let middle = 0.5 * (deepest + tip);

@@ -33,7 +33,7 @@ pub(super) fn page_bodies<'j, 'g>(
 fn page_body(job: &Job<'_>, (solid, shape): (&Solid, &Shape), solved: &[Solved<'_, '_>]) -> PageBody {
     let place = |name: &str| solved.iter().position(|solved| solved.surface.name == name);
     let (machine, frame_index) = frame(job, &solid.frame);
-    let tooth = shape.tooth();
+    let (tooth, teeth) = shape.repeated();
     let face = |sheet: &BodySheet| PageFace {
         surface: match sheet.face {
             SheetFace::Surface(number) => place(&shape.surfaces[number]),
@@ -48,9 +48,9 @@ fn page_body(job: &Job<'_>, (solid, shape): (&Solid, &Shape), solved: &[Solved<'
         name: shape.name.clone(),
         machine,
         frame_index,
-        teeth: shape.teeth,
+        teeth,
         surfaces: shape.surfaces.iter().filter_map(|name| place(name)).collect(),
-        directions: Shape::directions(&shape.some()),
+        directions: shape.directions(&shape.some()),
         faces: tooth.iter().map(face).collect(),
     }
 }

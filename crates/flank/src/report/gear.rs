@@ -56,26 +56,29 @@ fn of_gear(gear: &Gear<'_>) -> Vec<Block> {
         Err(reason) => return vec![heading, Block::Facts(vec![teeth, ("no closed body".to_string(), reason.clone())])],
     };
     let mm = |value: f64| format!("{} mm", fixed(value, 4));
-    let [first, last] = gauges.form_diameters_mm;
-    let mut facts = vec![
-        teeth,
-        ("tip diameter".to_string(), mm(gauges.tip_diameter_mm)),
-        ("root diameter".to_string(), mm(gauges.root_diameter_mm)),
-        ("form diameters".to_string(), format!("{} and {}", mm(first), mm(last))),
-        ("volume".to_string(), format!("{} mm³", fixed(*volume, 3))),
-    ];
+    let mut facts = vec![teeth];
+    let known = [("tip diameter", gauges.tip_diameter_mm), ("root diameter", gauges.root_diameter_mm)];
+    facts.extend(known.into_iter().filter_map(|(name, value)| Some((name.to_string(), mm(value?)))));
+    let form = gauges.form_diameters_mm.map(|[first, last]| format!("{} and {}", mm(first), mm(last)));
+    facts.extend(form.map(|form| ("form diameters".to_string(), form)));
+    if let Some(bar) = &gauges.bar {
+        let places = [("pitch", bar.pitch_mm), ("tip at x", bar.tip_x_mm), ("root at x", bar.root_x_mm)];
+        facts.extend(places.map(|(name, value)| (name.to_string(), mm(value))));
+    }
+    facts.push(("volume".to_string(), format!("{} mm³", fixed(*volume, 3))));
     facts.extend(spans(gauges));
     facts.extend(gauges.balls.iter().map(|balls| {
         let name = format!("over balls of {} mm", fixed(balls.ball_mm, 3));
         (name, mm(balls.over_balls_mm))
     }));
-    vec![heading, Block::Facts(facts), thickness(&solid.name, gauges)]
+    let thickness = (!gauges.thickness.is_empty()).then(|| thickness(&solid.name, gauges));
+    [heading, Block::Facts(facts)].into_iter().chain(thickness).collect()
 }
 
 /// The span that touches nearest to the middle of the flanks, and those beside it.
 fn spans(gauges: &GaugeNumbers) -> Vec<(String, String)> {
-    let [first, last] = gauges.form_diameters_mm;
-    let middle = 0.5 * (0.5 * (first + last) + gauges.tip_diameter_mm);
+    let Some(([first, last], tip)) = gauges.form_diameters_mm.zip(gauges.tip_diameter_mm) else { return Vec::new() };
+    let middle = 0.5 * (0.5 * (first + last) + tip);
     let off = |k: &usize| (gauges.spans[*k].diameters_mm[0] - middle).abs();
     let Some(best) = (0..gauges.spans.len()).min_by(|a, b| off(a).total_cmp(&off(b))) else { return Vec::new() };
     let from = best.saturating_sub(SPANS / 2);
@@ -84,9 +87,10 @@ fn spans(gauges: &GaugeNumbers) -> Vec<(String, String)> {
 }
 
 fn thickness(name: &str, gauges: &GaugeNumbers) -> Block {
-    let columns = ["diameter, mm", "along the circle, mm", "chord, mm", "below the tip, mm"].map(Column::numbers);
+    let place = if gauges.bar.is_some() { "x, mm" } else { "diameter, mm" };
+    let columns = [place, "along the circle, mm", "chord, mm", "below the tip, mm"].map(Column::numbers);
     let rows = gauges.thickness.iter().map(|of| {
-        let numbers = [of.diameter_mm, of.arc_mm, of.chord_mm, of.chord_height_mm];
+        let numbers = [of.diameter_mm.or(of.x_mm).unwrap_or_default(), of.arc_mm, of.chord_mm, of.chord_height_mm];
         numbers.iter().map(|x| fixed(*x, 4)).collect()
     });
     Block::Table(format!("Tooth thickness of {name}, half-way along the teeth"), columns.to_vec(), rows.collect())

@@ -118,6 +118,12 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let body = self.bodies.borrow()[&index].clone();
         let name = &self.tested.job.solids[index].name;
         Ok(body.and_then(|body| {
+            let is_even = body.arrangement().is_closed() && body.distinct() == 1;
+            let is_of_all = matches!(number, SolidNumber::Volume | SolidNumber::Area | SolidNumber::Thickness(_));
+            let is_extreme = matches!(number, SolidNumber::TipDiameter | SolidNumber::RootDiameter);
+            if !is_even && !is_of_all && !(is_extreme && body.arrangement().is_closed()) {
+                return Err(format!("{name} has no such number: it is no gear with equal teeth about an axis"));
+            }
             Ok(match number {
                 SolidNumber::Volume => body.mass_properties().volume,
                 SolidNumber::Area => body.mass_properties().area,
@@ -127,9 +133,11 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
                     2.0 * body.form().into_iter().fold(f64::MIN, f64::max)
                 }
                 SolidNumber::FormDiameter => 2.0 * body.form().into_iter().fold(f64::MAX, f64::min),
-                SolidNumber::Thickness(diameter) => {
-                    let found = body.thickness(0.5 * diameter).map(|thickness| thickness.arc);
-                    found.ok_or_else(|| format!("{name} has no tooth thickness at {diameter} mm"))?
+                // of a bar at an x
+                SolidNumber::Thickness(at) => {
+                    let depth = if body.arrangement().is_closed() { 0.5 * at } else { at };
+                    let found = body.thickness(depth).map(|thickness| thickness.arc);
+                    found.ok_or_else(|| format!("{name} has no tooth thickness at {at} mm"))?
                 }
                 SolidNumber::Span(teeth) => {
                     let found = body.span(teeth).map(|span| span.width);

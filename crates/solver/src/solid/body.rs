@@ -1,7 +1,6 @@
-//! A blank with equal tooth spaces, each bounded by charts that share their borders.
+//! A blank with tooth spaces, each bounded by charts that share their borders.
 
-use std::f64::consts::TAU;
-
+use crate::solid::arrangement::{Arrangement, Polar};
 use crate::solid::blank::Blank;
 use crate::solid::chart::Chart;
 
@@ -12,12 +11,14 @@ const LAND_ROWS: usize = 17;
 /// How far a space may reach beyond its blank, mm: rounding of solved points.
 const ON_BLANK: f64 = 1e-6;
 
-/// A body of revolution with tooth spaces about its z axis.
+/// A body of revolution with tooth spaces about its z axis, or a bar with tooth spaces along y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     pub(crate) blank: Blank,
+    pub(crate) arrangement: Arrangement,
     pub(crate) teeth: u32,
-    pub(crate) charts: Vec<Chart>,
+    /// The charts of the first space, where all are alike; else of each space, which all have as many.
+    pub(crate) spaces: Vec<Vec<Chart>>,
     /// Whether the charts run against the order that they were given in.
     pub(crate) is_reversed: bool,
     /// Whether the last chart of a space ends in the line where the first one of the next space begins: an edge, and no land.
@@ -52,39 +53,40 @@ pub enum BodyFault {
     },
 }
 
-/// A point about the axis: along it, from it, and the angle, which does not jump.
-pub(crate) type Polar = [f64; 3];
-
-pub(crate) fn position([z, rho, angle]: Polar) -> [f64; 3] {
-    [rho * angle.cos(), rho * angle.sin(), z]
-}
-
 impl Body {
-    /// Of the charts of one space, from one flank to the other: across from the tip to the tip, along from the beginning of the
-    /// spaces to their end. Neighbours have the same points in the rows that they share, but for rounding. With `has_edge` the last row of the
-    /// last chart is the first one of the first chart in the next space.
+    /// Of the charts of one space, from one flank to the other, or of those of every space: across from the tip to the tip, along from the
+    /// beginning of the spaces to their end. Neighbours have the same points in the rows that they share, but for rounding. With `has_edge` the
+    /// last row of the last chart is the first one of the first chart in the next space.
+    ///
+    /// # Panics
+    /// If there are neither the charts of one space nor those of all.
     ///
     /// # Errors
     /// If teeth are pointed below the tip, spaces overlap, or a space goes through the blank.
-    pub fn new(blank: Blank, teeth: u32, mut charts: Vec<Chart>, has_edge: bool) -> Result<Body, BodyFault> {
-        for k in 1..charts.len() {
-            let border = charts[k - 1].row(charts[k - 1].counts()[0] - 1).to_vec();
-            charts[k] = charts[k].clone().with_row(0, &border);
+    pub fn new(
+        blank: Blank,
+        (arrangement, teeth): (Arrangement, u32),
+        mut spaces: Vec<Vec<Chart>>,
+        has_edge: bool,
+    ) -> Result<Body, BodyFault> {
+        assert!(spaces.len() == 1 || spaces.len() == teeth as usize, "one space, or all");
+        for charts in &mut spaces {
+            for k in 1..charts.len() {
+                let border = charts[k - 1].row(charts[k - 1].counts()[0] - 1).to_vec();
+                charts[k] = charts[k].clone().with_row(0, &border);
+            }
         }
-        let mut body = Body { blank, teeth, charts, is_reversed: false, has_edge };
-        let shares = Body::looks();
-        let middle = body.lines(&vec![shares.clone(); body.charts.len()], &[0.5]).remove(0);
-        let turned = middle.last().map_or(0.0, |end| end[2]) - middle[0][2];
-        if turned < 0.0 {
-            let charts = body.charts.iter().rev().map(Chart::reversed).collect();
-            body = Body { charts, is_reversed: true, ..body };
+        let mut body = Body { blank, arrangement, teeth, spaces, is_reversed: false, has_edge };
+        let middle = body.lines(&vec![Body::looks(); body.charts().len()], &[0.5]).remove(0);
+        if middle.last().map_or(0.0, |end| end[2]) < middle[0][2] {
+            let turned = |charts: &Vec<Chart>| charts.iter().rev().map(Chart::reversed).collect();
+            body = Body { spaces: body.spaces.iter().map(turned).collect(), is_reversed: true, ..body };
+        }
+        if body.spaces.len() > 2 && arrangement.near(body.middle(1), body.middle(0)) < body.middle(0) {
+            body.spaces[1..].reverse();
         }
         if has_edge {
-            let (sin, cos) = body.pitch().sin_cos();
-            let next = body.charts[0].row(0).iter().map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, *z]);
-            let (next, last) = (next.collect::<Vec<_>>(), body.charts.len() - 1);
-            let row = body.charts[last].counts()[0] - 1;
-            body.charts[last] = body.charts[last].clone().with_row(row, &next);
+            body.share_edges();
         }
         body.checked()
     }
@@ -93,33 +95,63 @@ impl Body {
         (0..LOOKS).map(|k| k as f64 / (LOOKS - 1) as f64).collect()
     }
 
+    /// The last row of each space becomes the first one of the next.
+    fn share_edges(&mut self) {
+        for space in 0..self.spaces.len() {
+            let next: Vec<[f64; 3]> =
+                self.charts_behind(space)[0].row(0).iter().map(|point| self.in_next(*point)).collect();
+            let charts = &mut self.spaces[space];
+            let last = charts.len() - 1;
+            let row = charts[last].counts()[0] - 1;
+            charts[last] = charts[last].clone().with_row(row, &next);
+        }
+    }
+
+    /// The charts of the space behind one, which [`Body::in_next`] brings there.
+    fn charts_behind(&self, space: usize) -> &[Chart] {
+        &self.spaces[(space + 1) % self.spaces.len()]
+    }
+
+    /// A point of the space behind one, as that has it, where it is.
+    pub(crate) fn in_next(&self, point: [f64; 3]) -> [f64; 3] {
+        if self.spaces.len() == 1 { self.arrangement.moved(point, self.pitch()) } else { point }
+    }
+
+    /// The angle in the middle of a space, half-way along, as it is found.
+    fn middle(&self, space: usize) -> f64 {
+        let line = self.lines_of(space, &vec![Body::looks(); self.charts().len()], &[0.5]).remove(0);
+        line[line.len() / 2][2]
+    }
+
     fn checked(self) -> Result<Body, BodyFault> {
         let shares = Body::looks();
-        let lines = self.lines(&vec![shares.clone(); self.charts.len()], &shares);
-        self.check_tips(&lines, &shares)?;
-        for line in &lines {
-            let last = line.len() - 1;
-            for i in 1..line.len() / 2 {
-                if let Some(overlap) =
-                    Some(-self.tooth_width(line[i], line[last - i])).filter(|overlap| *overlap >= 0.0)
-                {
-                    return Err(BodyFault::Overlap { overlap, rho: line[i][1].max(line[last - i][1]) });
+        let across = vec![shares.clone(); self.charts().len()];
+        for tooth in 0..self.spaces.len() {
+            let [own, next] = self.tooth_lines(tooth, &across, &shares);
+            self.check_tips([&own, &next], &shares)?;
+            for (line, next) in own.iter().zip(&next) {
+                let last = line.len() - 1;
+                for i in 1..line.len() / 2 {
+                    let overlap = -self.tooth_width(next[i], line[last - i]);
+                    if overlap >= 0.0 {
+                        return Err(BodyFault::Overlap { overlap, rho: next[i][1].max(line[last - i][1]) });
+                    }
                 }
-            }
-            for place in line.iter().map(|[z, rho, _]| [*z, *rho]) {
-                if let Some((segment, by)) = self.blank.outline.beyond(place).filter(|(_, by)| *by > ON_BLANK) {
-                    return Err(BodyFault::Through { segment, by });
+                for place in line.iter().map(|[z, rho, _]| [*z, *rho]) {
+                    if let Some((segment, by)) = self.blank.outline.beyond(place).filter(|(_, by)| *by > ON_BLANK) {
+                        return Err(BodyFault::Through { segment, by });
+                    }
                 }
             }
         }
         Ok(self)
     }
 
-    fn check_tips(&self, lines: &[Vec<Polar>], shares: &[f64]) -> Result<(), BodyFault> {
+    fn check_tips(&self, [own, next]: [&[Vec<Polar>]; 2], shares: &[f64]) -> Result<(), BodyFault> {
         if self.has_edge {
             return Ok(());
         }
-        let overlaps = lines.iter().map(|line| -self.tooth_width(line[0], line[line.len() - 1]));
+        let overlaps = own.iter().zip(next).map(|(line, next)| -self.tooth_width(next[0], line[line.len() - 1]));
         let overlaps: Vec<(f64, f64)> = overlaps.zip(shares.iter().copied()).collect();
         let is_whole = overlaps.iter().all(|(overlap, _)| *overlap >= 0.0);
         match overlaps.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -128,9 +160,9 @@ impl Body {
         }
     }
 
-    /// How wide the tooth is between a place on the lower side of a space and one on its upper side.
-    fn tooth_width(&self, low: Polar, high: Polar) -> f64 {
-        (low[2] + self.pitch() - high[2]) * 0.5 * (low[1] + high[1])
+    /// How wide the tooth is between a place on the lower side of the space behind it and one on the upper side of the space before it.
+    fn tooth_width(&self, behind: Polar, before: Polar) -> f64 {
+        (behind[2] - before[2]) * self.arrangement.arc(0.5 * (behind[1] + before[1]))
     }
 
     /// Whether teeth end in an edge, and not in a land of the blank.
@@ -138,9 +170,14 @@ impl Body {
         self.has_edge
     }
 
-    /// The angle from a tooth to the next.
+    /// How the spaces follow each other.
+    pub fn arrangement(&self) -> Arrangement {
+        self.arrangement
+    }
+
+    /// From a tooth to the next, on average where they differ: an angle, or a length.
     pub fn pitch(&self) -> f64 {
-        TAU / f64::from(self.teeth)
+        self.arrangement.pitch(self.teeth)
     }
 
     /// How many teeth.
@@ -148,42 +185,85 @@ impl Body {
         self.teeth
     }
 
+    /// How many teeth differ from each other: all, or one.
+    pub fn distinct(&self) -> usize {
+        self.spaces.len()
+    }
+
+    /// How far the way to a tooth is from that of its kind: nothing where all differ.
+    pub(crate) fn way_of(&self, tooth: usize) -> f64 {
+        if self.spaces.len() == 1 { tooth as f64 * self.pitch() } else { 0.0 }
+    }
+
     /// The blank.
     pub fn blank(&self) -> &Blank {
         &self.blank
     }
 
-    /// The charts of one space, in the order of the angle, and whether that is against the order that they were given in.
-    pub fn charts(&self) -> (&[Chart], bool) {
-        (&self.charts, self.is_reversed)
+    /// The charts of the first space, in the order of the angle.
+    pub fn charts(&self) -> &[Chart] {
+        &self.spaces[0]
     }
 
-    /// The land of the tooth between a space and the next as a chart: across from the last row of one to the first row of the other, along as
+    /// The charts of every space that differs from the first one, and of that.
+    pub fn spaces(&self) -> &[Vec<Chart>] {
+        &self.spaces
+    }
+
+    /// Whether the charts run against the order that they were given in.
+    pub fn is_reversed(&self) -> bool {
+        self.is_reversed
+    }
+
+    /// The land of the tooth behind a space as a chart: across from the last row of the space to the first row of the next, along as
     /// they are. Nothing where teeth end in an edge.
-    pub fn land(&self) -> Option<Chart> {
-        let columns = self.charts[0].counts()[1];
+    pub fn land(&self, space: usize) -> Option<Chart> {
+        if self.has_edge {
+            return None;
+        }
+        let columns = self.charts()[0].counts()[1];
         let along = Chart::shares(columns);
-        let lines = self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &along);
+        let [lines, next] = self.tooth_lines(space, &vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &along);
         let place = |across: f64, j: usize| {
             let [z, rho] = self.blank.tip(along[j]);
-            let (from, to) = (lines[j][lines[j].len() - 1][2], lines[j][0][2] + self.pitch());
-            position([z, rho, (1.0 - across) * from + across * to])
+            let (from, to) = (lines[j][lines[j].len() - 1][2], next[j][0][2]);
+            self.arrangement.position([z, rho, (1.0 - across) * from + across * to])
         };
         let points = Chart::shares(LAND_ROWS).into_iter().flat_map(|across| (0..columns).map(move |j| (across, j)));
         let chart = Chart::through(points.map(|(across, j)| place(across, j)).collect(), [LAND_ROWS, columns]);
-        let (sin, cos) = self.pitch().sin_cos();
-        let next = |[x, y, z]: &[f64; 3]| [cos * x - sin * y, sin * x + cos * y, *z];
-        let last = &self.charts[self.charts.len() - 1];
+        let own = &self.spaces[space];
+        let last = &own[own.len() - 1];
         let chart = chart.with_row(0, last.row(last.counts()[0] - 1));
-        let next: Vec<[f64; 3]> = self.charts[0].row(0).iter().map(next).collect();
-        (!self.has_edge).then(|| chart.with_row(LAND_ROWS - 1, &next))
+        let next = self.charts_behind(space)[0].row(0).iter().map(|point| self.in_next(*point));
+        Some(chart.with_row(LAND_ROWS - 1, &next.collect::<Vec<[f64; 3]>>()))
+    }
+
+    /// Lines across the first space.
+    pub(crate) fn lines(&self, across: &[Vec<f64>], along: &[f64]) -> Vec<Vec<Polar>> {
+        self.lines_of(0, across, along)
+    }
+
+    /// Lines across the spaces before a tooth and behind it, one of those that [`Body::distinct`] counts: the angle grows from tooth to tooth.
+    pub(crate) fn tooth_lines(&self, tooth: usize, across: &[Vec<f64>], along: &[f64]) -> [Vec<Vec<Polar>>; 2] {
+        let count = self.spaces.len();
+        let own = self.lines_of(tooth, across, along);
+        if count == 1 {
+            let next = own.iter().map(|line| line.iter().map(|place| shifted(*place, self.pitch())).collect());
+            let next = next.collect();
+            return [own, next];
+        }
+        let middle = |lines: &[Vec<Polar>]| lines[lines.len() / 2][lines[0].len() / 2][2];
+        let mut next = self.lines_of((tooth + 1) % count, across, along);
+        let (from, to) = (middle(&own), middle(&next));
+        let by = self.arrangement.near(to, from + self.pitch()) - to;
+        next.iter_mut().flatten().for_each(|place| *place = shifted(*place, by));
+        [own, next]
     }
 
     /// Lines across a space, from tip to tip, at shares of the way along: of each chart the points at shares across, the border of two
     /// once. The angle grows from the first point to the last, and does not jump from line to line.
-    pub(crate) fn lines(&self, across: &[Vec<f64>], along: &[f64]) -> Vec<Vec<Polar>> {
-        let lattices: Vec<(usize, Vec<[f64; 3]>)> = self
-            .charts
+    fn lines_of(&self, space: usize, across: &[Vec<f64>], along: &[f64]) -> Vec<Vec<Polar>> {
+        let lattices: Vec<(usize, Vec<[f64; 3]>)> = self.spaces[space]
             .iter()
             .zip(across)
             .enumerate()
@@ -196,28 +276,24 @@ impl Body {
         let rows: usize = lattices.iter().map(|(rows, _)| rows).sum();
         let mut before: Option<f64> = None;
         let mut line = |j: usize| {
-            let points: Vec<[f64; 3]> =
-                lattices.iter().flat_map(|(rows, lattice)| (0..*rows).map(move |i| lattice[i * columns + j])).collect();
+            let points = lattices.iter().flat_map(|(rows, lattice)| (0..*rows).map(move |i| lattice[i * columns + j]));
+            let mut line: Vec<Polar> = points.map(|point| self.arrangement.place(point)).collect();
             let middle = rows / 2;
-            let near =
-                |angle: f64, reference: f64| reference + (angle - reference + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
-            let angle = |point: [f64; 3]| point[1].atan2(point[0]);
-            let start = angle(points[middle]);
-            let start = before.map_or(start, |before| near(start, before));
-            before = Some(start);
-            let mut angles = vec![start; rows];
+            line[middle][2] = before.map_or(line[middle][2], |before| self.arrangement.near(line[middle][2], before));
+            before = Some(line[middle][2]);
             for i in middle + 1..rows {
-                angles[i] = near(angle(points[i]), angles[i - 1]);
+                line[i][2] = self.arrangement.near(line[i][2], line[i - 1][2]);
             }
             for i in (0..middle).rev() {
-                angles[i] = near(angle(points[i]), angles[i + 1]);
+                line[i][2] = self.arrangement.near(line[i][2], line[i + 1][2]);
             }
-            points
-                .iter()
-                .zip(angles)
-                .map(|(point, angle)| [point[2], point[0].hypot(point[1]), angle])
-                .collect::<Vec<Polar>>()
+            line
         };
         (0..columns).map(&mut line).collect()
     }
+}
+
+/// A place farther on along the spaces.
+pub(crate) fn shifted([z, rho, way]: Polar, by: f64) -> Polar {
+    [z, rho, way + by]
 }

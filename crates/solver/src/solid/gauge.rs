@@ -1,10 +1,9 @@
 //! What gauges and calipers find on a body, by its exact surfaces.
 
-use std::f64::consts::TAU;
-
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::solid::body::{Body, Polar};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::Body;
 use crate::solid::chart::Chart;
 
 /// Halvings of a search along a flank: as many as a number has binary digits.
@@ -66,12 +65,12 @@ impl Body {
     /// axis.
     pub fn is_face_gear(&self) -> bool {
         let [_, tip, _] = self.blank().bounds();
-        (tip.to[0] - tip.from[0]).abs() < FLAT * (tip.to[1] - tip.from[1]).abs()
+        self.arrangement.is_closed() && (tip.to[0] - tip.from[0]).abs() < FLAT * (tip.to[1] - tip.from[1]).abs()
     }
 
     /// How far the edges in which teeth end lie below the tip of the blank, half-way along, mm; nothing where teeth have lands.
     pub fn edge_below_tip(&self) -> Option<f64> {
-        let [z, rho, _] = polar(self.charts[0].at([0.0, 0.5]));
+        let [z, rho, _] = self.arrangement.place(self.charts()[0].at([0.0, 0.5]));
         let tip = self.blank().tip(0.5);
         self.has_edge().then(|| (z - tip[0]).hypot(rho - tip[1]))
     }
@@ -83,52 +82,60 @@ impl Body {
 
     /// Whether the depth grows from the root to the tip: of external gears.
     pub fn is_external(&self) -> bool {
-        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
+        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &[0.5])[0];
         self.depth(line[0]) > self.depth(line[line.len() / 2])
     }
 
-    /// The distance from the axis (of a face gear the z) of the tip and of the deepest point of the space, half-way along, mm.
+    /// The distance from the axis (of a face gear the z, of a rack the x) of the tip and of the deepest point of the space, half-way along, mm;
+    /// the extremes of all spaces where these differ.
     pub fn tip_and_root(&self) -> [f64; 2] {
         let shares: Vec<f64> = (0..=64).map(|k| f64::from(k) / 64.0).collect();
-        let line = &self.lines(&vec![shares; self.charts.len()], &[0.5])[0];
-        let deeper = if self.is_external() { f64::min } else { f64::max };
-        let tip = self.depth(line[0]);
-        [tip, line.iter().map(|place| self.depth(*place)).reduce(deeper).unwrap_or(tip)]
+        let (least, most): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) = (f64::min, f64::max);
+        let (deeper, higher) = if self.is_external() { (least, most) } else { (most, least) };
+        let points = self.spaces.iter().map(|charts| charts.iter().flat_map(|chart| chart.lattice(&shares, &[0.5])));
+        let depths = points.map(|points| points.map(|point| self.depth(self.arrangement.place(point))).collect::<Vec<f64>>());
+        let ends = depths.map(|depths| [depths[0], depths.into_iter().reduce(deeper).unwrap_or_default()]);
+        ends.reduce(|a, b| [higher(a[0], b[0]), deeper(a[1], b[1])]).unwrap_or_default()
     }
 
     /// The distance from the axis (of a face gear the z) at which both flanks end towards the root, half-way along, mm.
     pub fn form(&self) -> [f64; 2] {
         let [low, high] = self.flanks();
-        [(low, 1.0), (high, 0.0)].map(|(k, share)| self.depth(polar(self.charts[k].at([share, 0.5]))))
+        [(low, 1.0), (high, 0.0)].map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
     }
 
     /// The charts that are the flanks: on each side the deepest one.
     fn flanks(&self) -> [usize; 2] {
         let depth = |k: &usize| {
-            let [from, to] = [0.0, 1.0].map(|share| self.depth(polar(self.charts[*k].at([share, 0.5]))));
+            let [from, to] = [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[*k].at([share, 0.5]))));
             (to - from).abs()
         };
-        let count = self.charts.len();
+        let count = self.charts().len();
         let deepest = |side: std::ops::Range<usize>| side.max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
         [deepest(0..count.div_ceil(2)), deepest(count / 2..count)]
     }
 
     /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
     pub fn thickness(&self, depth: f64) -> Option<Thickness> {
-        let place = |k: usize| Some(polar(self.charts[k].at([self.on_flank(k, depth)?, 0.5])));
+        let place = |k: usize| Some(self.arrangement.place(self.charts()[k].at([self.on_flank(k, depth)?, 0.5])));
         // flank, or chamfer beside it
         let ([z, rho, low], [_, _, high]) =
-            ((0..self.charts.len()).find_map(place)?, (0..self.charts.len()).rev().find_map(place)?);
-        let angle = self.pitch() - (high - low).rem_euclid(TAU);
+            ((0..self.charts().len()).find_map(place)?, (0..self.charts().len()).rev().find_map(place)?);
+        let way = self.pitch() - (self.arrangement.near(high, low + 0.5 * self.pitch()) - low);
+        let arc = self.arrangement.arc(rho) * way;
+        let (chord, rise) = match self.arrangement {
+            Arrangement::Round => (2.0 * rho * (0.5 * way).sin(), rho * (1.0 - (0.5 * way).cos())),
+            Arrangement::Straight { .. } => (arc, 0.0),
+        };
         let tip = self.tip_and_root()[0];
-        let middle = if self.is_face_gear() { z } else { rho * (0.5 * angle).cos() };
+        let middle = if self.is_face_gear() { z } else { rho - rise };
         let chord_height = if self.is_external() { tip - middle } else { middle - tip };
-        Some(Thickness { rho, z, arc: rho * angle, chord: 2.0 * rho * (0.5 * angle).sin(), chord_height })
+        Some(Thickness { rho, z, arc, chord, chord_height })
     }
 
     /// The share across a chart at which it has a depth, half-way along.
     fn on_flank(&self, k: usize, wanted: f64) -> Option<f64> {
-        let at = |share: f64| self.depth(polar(self.charts[k].at([share, 0.5]))) - wanted;
+        let at = |share: f64| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))) - wanted;
         let (mut low, mut high) = (0.0, 1.0);
         if at(low) == 0.0 {
             return Some(low);
@@ -145,11 +152,12 @@ impl Body {
 
     /// The width over so many teeth; `None` where no planes touch the flanks within their ends, and of an internal gear.
     pub fn span(&self, teeth: u32) -> Option<Span> {
-        if !self.is_external() || teeth == 0 || teeth >= self.teeth() {
+        let is_round = self.arrangement.is_closed() && self.distinct() == 1;
+        if !is_round || !self.is_external() || teeth == 0 || teeth >= self.teeth() {
             return None;
         }
         let [low, high] = self.flanks();
-        let (near, far) = (&self.charts[high], &self.charts[low]);
+        let (near, far) = (&self.charts()[high], &self.charts()[low]);
         let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(teeth) * self.pitch());
         let residual = |x: &[f64]| {
             let (p, n) = touched(near, [x[0], x[1]]);
@@ -171,7 +179,7 @@ impl Body {
 
     /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends.
     pub fn ball(&self, diameter: f64) -> Option<BallGauge> {
-        let [low, high] = self.flanks().map(|k| &self.charts[k]);
+        let [low, high] = self.flanks().map(|k| &self.charts()[k]);
         let z = low.at([0.5; 2])[2];
         let starts = [touched(low, [0.5; 2]), touched(high, [0.5; 2])];
         let start = 0.5 * (starts[0].0 + starts[1].0 + 0.5 * diameter * (starts[0].1 + starts[1].1));
@@ -200,10 +208,6 @@ impl Body {
 
 fn rho([x, y, _]: [f64; 3]) -> f64 {
     x.hypot(y)
-}
-
-fn polar([x, y, z]: [f64; 3]) -> Polar {
-    [z, x.hypot(y), y.atan2(x)]
 }
 
 /// A point of a chart, and the normal there out of the body.

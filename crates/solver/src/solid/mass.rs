@@ -1,13 +1,15 @@
 //! Volume, area, centre and moments of a body by its exact surfaces.
 //!
-//! The field `ρ ∫ g dθ` about the axis has the divergence g and does not pass through surfaces of revolution. So an integral of g over a
-//! tooth space is one over its charts alone (Gauss), and what is left of the blank is the blank's less that of its spaces.
+//! The field `ρ ∫ g dθ` about the axis has the divergence g and does not pass through surfaces of revolution; `∫ g dy` does not pass through the
+//! sides of a bar along y. So an integral of g over a tooth space is one over its charts alone (Gauss), and what is left of the blank is the
+//! blank's less that of its spaces.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
 use crate::contact::OutlineSegment;
+use crate::solid::arrangement::Arrangement;
 use crate::solid::blank::Blank;
 use crate::solid::body::Body;
 use crate::solid::chart::Chart;
@@ -34,11 +36,16 @@ type Moments = [f64; 10];
 impl Body {
     /// Volume, area, centre and inertia.
     pub fn mass_properties(&self) -> MassProperties {
-        let (space, flanks) = self.of_space();
         let mut sums = self.of_blank();
-        for tooth in 0..self.teeth() {
-            let turned = turned(&space, f64::from(tooth) * self.pitch());
-            sums.iter_mut().zip(turned).for_each(|(sum, part)| *sum -= part);
+        let mut area = self.turned_area();
+        for kind in 0..self.distinct() {
+            let (space, charts) = self.of_space(kind);
+            let copies = if self.distinct() == 1 { self.teeth() } else { 1 };
+            area += f64::from(copies) * charts;
+            for copy in 0..copies {
+                let moved = moved(&space, self.arrangement, f64::from(copy) * self.pitch());
+                sums.iter_mut().zip(moved).for_each(|(sum, part)| *sum -= part);
+            }
         }
         let [volume, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
         let centre = [x, y, z].map(|moment| moment / volume);
@@ -48,25 +55,25 @@ impl Body {
         let (xx, yy, zz) = (about(xx, a, a), about(yy, b, b), about(zz, c, c));
         let (xy, xz, yz) = (about(xy, a, b), about(xz, a, c), about(yz, b, c));
         let inertia = [[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]];
-        MassProperties { volume, area: self.turned_area() + f64::from(self.teeth()) * flanks, centre, inertia }
+        MassProperties { volume, area, centre, inertia }
     }
 
     /// The moments of one space within the blank, and the area of its charts.
-    fn of_space(&self) -> (Moments, f64) {
+    fn of_space(&self, space: usize) -> (Moments, f64) {
         let nodes = gauss_legendre(NODES);
         let shares: Vec<f64> = nodes.iter().map(|(share, _)| *share).collect();
-        let lines = self.lines(&vec![shares.clone(); self.charts.len()], &shares);
+        let [lines, next] = self.tooth_lines(space, &vec![shares.clone(); self.charts().len()], &shares);
         let (mut sums, mut area) = ([0.0; 10], 0.0);
-        let mut add = |[x, y, z]: [f64; 3], normal: Vector3<f64>, angle: f64| {
-            let rho = x.hypot(y);
-            let around = (normal.y * x - normal.x * y) / rho;
-            let (sin, cos) = angle.sin_cos();
-            for (sum, part) in sums.iter_mut().zip(around_integrals(rho, z, [angle, sin, cos])) {
+        let mut add = |at: [f64; 3], normal: Vector3<f64>, way: f64| {
+            let around = self.arrangement.along(at, normal);
+            let [z, rho, _] = self.arrangement.place(at);
+            for (sum, part) in sums.iter_mut().zip(integrals_along(self.arrangement, [z, rho, way])) {
                 *sum += around * part;
             }
         };
+        let walls = self.walls(space);
         for (j, (along, by_along)) in nodes.iter().enumerate() {
-            for (k, chart) in self.charts.iter().enumerate() {
+            for (k, chart) in self.spaces[space].iter().enumerate() {
                 for (i, (across, by_across)) in nodes.iter().enumerate() {
                     let [at, by_u, by_w] = chart.frame([*across, *along]);
                     let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
@@ -74,20 +81,12 @@ impl Body {
                     add(at, normal, lines[j][k * NODES + i][2]);
                 }
             }
-            if let Some(wall) = self.wall() {
-                // of the space before the edge and of the one behind it, which lies a pitch farther on
-                let first = lines[j][0][2];
+            // of the edge before the space and of the one behind it
+            for (wall, near, sense) in walls.iter().flatten().zip([lines[j][0][2], next[j][0][2]]).map(|((wall, sense), near)| (wall, near, sense)) {
                 for (across, by_across) in &nodes {
                     let [at, by_u, by_w] = wall.frame([*across, *along]);
                     let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
-                    let near = at[1].atan2(at[0]);
-                    let angle = first + (near - first + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
-                    add(at, normal, angle);
-                    add(
-                        turned_by(at, self.pitch()),
-                        -Vector3::from(turned_by(normal.into(), self.pitch())),
-                        angle + self.pitch(),
-                    );
+                    add(at, *sense * normal, self.arrangement.near(self.arrangement.place(at)[2], near));
                 }
             }
         }
@@ -96,16 +95,19 @@ impl Body {
         (sums.map(|sum| sign * sum), area)
     }
 
-    /// Where teeth end in an edge: what parts a space from the next between the edge and the tip of the blank.
-    fn wall(&self) -> Option<Chart> {
-        let [_, columns] = self.charts[0].counts();
-        let edge = self.charts[0].row(0);
-        let above = edge.iter().zip(Chart::shares(columns)).map(|([x, y, _], share)| {
-            let [z, rho] = self.blank().tip(share);
-            let scale = rho / x.hypot(*y);
-            [scale * x, scale * y, z]
-        });
-        self.has_edge.then(|| Chart::through(above.chain(edge.iter().copied()).collect(), [2, columns]))
+    /// Where teeth end in an edge: what parts a space from those beside it between the edges and the tip of the blank, and in which sense.
+    fn walls(&self, space: usize) -> Option<[(Chart, f64); 2]> {
+        let charts = &self.spaces[space];
+        let last = &charts[charts.len() - 1];
+        let wall = |edge: &[[f64; 3]]| {
+            let above = edge.iter().zip(Chart::shares(edge.len())).map(|(point, share)| {
+                let [z, rho] = self.blank().tip(share);
+                let [.., way] = self.arrangement.place(*point);
+                self.arrangement.position([z, rho, way])
+            });
+            Chart::through(above.chain(edge.iter().copied()).collect(), [2, edge.len()])
+        };
+        self.has_edge.then(|| [(wall(charts[0].row(0)), 1.0), (wall(last.row(last.counts()[0] - 1)), -1.0)])
     }
 
     fn of_blank(&self) -> Moments {
@@ -122,37 +124,72 @@ impl Body {
                 })
                 .sum()
         };
-        let across = 0.5 * TAU * of(0, 3);
-        [TAU * of(0, 1), 0.0, 0.0, TAU * of(1, 1), across, across, TAU * of(2, 1), 0.0, 0.0, 0.0]
+        let Arrangement::Straight { pitch } = self.arrangement else {
+            let across = 0.5 * TAU * of(0, 3);
+            return [TAU * of(0, 1), 0.0, 0.0, TAU * of(1, 1), across, across, TAU * of(2, 1), 0.0, 0.0, 0.0];
+        };
+        // from y = a + b z on, over the length of all teeth
+        let length = pitch * f64::from(self.teeth());
+        let [a, b] = self.side();
+        let middle = a + 0.5 * length;
+        let y = |z_power: i32, rho_power: i32| middle * of(z_power, rho_power) + b * of(z_power + 1, rho_power);
+        let square = |z_power: i32, rho_power: i32| {
+            let constant = middle * middle + length * length / 12.0;
+            constant * of(z_power, rho_power)
+                + 2.0 * middle * b * of(z_power + 1, rho_power)
+                + b * b * of(z_power + 2, rho_power)
+        };
+        [of(0, 0), of(0, 1), y(0, 0), of(1, 0), of(0, 2), square(0, 0), of(2, 0), y(0, 1), of(1, 1), y(1, 0)]
+            .map(|moment| length * moment)
+    }
+
+    /// Where a bar is cut off through the middle of its first space: y at z = 0, and how much of it comes with each mm of z.
+    pub(crate) fn side(&self) -> [f64; 2] {
+        let charts = vec![vec![0.0, 0.5, 1.0]; self.charts().len()];
+        let lines = self.lines(&charts, &[0.0, 1.0]);
+        let [from, to] = [0, 1].map(|k: usize| lines[k][lines[k].len() / 2]);
+        let slope = (to[2] - from[2]) / (to[0] - from[0]);
+        [from[2] - slope * from[0], slope]
     }
 
     /// The area of what is left of the blank's own surface.
     fn turned_area(&self) -> f64 {
-        let whole: f64 = self.blank().outline.segments().iter().map(ring_area).sum();
+        let whole = match self.arrangement {
+            Arrangement::Round => TAU,
+            Arrangement::Straight { pitch } => pitch * f64::from(self.teeth()),
+        };
+        let outline: f64 = self.blank().outline.segments().iter().map(|segment| self.strip_area(segment)).sum();
+        let copies = f64::from(self.teeth()) / self.distinct() as f64;
+        let open: f64 = (0..self.distinct()).map(|space| self.open_area(space)).sum();
+        whole * outline - copies * open + self.sides_area()
+    }
+
+    /// What a space leaves out of the blank's own surface.
+    fn open_area(&self, space: usize) -> f64 {
         let nodes = gauss_legendre(NODES);
-        let ends = vec![vec![0.0, 0.5, 1.0]; self.charts.len()];
+        let ends = vec![vec![0.0, 0.5, 1.0]; self.charts().len()];
         let [begin, tip, end] = self.blank().bounds();
-        // the tip, open over the space's angle
+        // with edges, no land is left, and the ways from one to the next add up to all of it
         let open: f64 = along(tip)
             .map(|([z, rho], [by_z, by_rho], weight)| {
                 let share = Blank::share([begin, tip, end], [z, rho]);
-                let line = &self.lines(&ends, &[share])[0];
-                weight * rho * by_z.hypot(by_rho) * (line[line.len() - 1][2] - line[0][2])
+                let line = &self.tooth_lines(space, &ends, &[share])[0][0];
+                weight * self.arrangement.arc(rho) * by_z.hypot(by_rho) * (line[line.len() - 1][2] - line[0][2])
             })
             .sum();
         let at_ends: f64 = [(begin, 0.0, begin.to), (end, 1.0, end.from)]
             .into_iter()
             .map(|(segment, share, corner)| {
-                self.charts
+                self.spaces[space]
                     .iter()
                     .map(|chart| {
                         nodes
                             .iter()
                             .map(|(across, weight)| {
-                                let [[x, y, z], by_u, _] = chart.frame([*across, share]);
-                                let rho_squared = x * x + y * y;
-                                let angle_by_u = (x * by_u[1] - y * by_u[0]) / rho_squared;
-                                weight * angle_by_u * self.area_below(segment, corner, [z, rho_squared.sqrt()])
+                                let [at, by_u, _] = chart.frame([*across, share]);
+                                let [z, rho, _] = self.arrangement.place(at);
+                                let way_by_u = self.arrangement.along(at, by_u.into()) / self.arrangement.arc(rho);
+                                weight * way_by_u * self.area_below(segment, corner, [z, rho])
                             })
                             .sum::<f64>()
                     })
@@ -160,40 +197,76 @@ impl Body {
                     .abs()
             })
             .sum();
-        whole - f64::from(self.teeth()) * (open + at_ends)
+        open + at_ends
+    }
+
+    /// Where a bar is cut off at both its ends, through the middles of spaces.
+    fn sides_area(&self) -> f64 {
+        if self.arrangement.is_closed() {
+            return 0.0;
+        }
+        let section = |segment: &OutlineSegment| -> f64 {
+            along(segment).map(|([_, rho], [by_z, _], weight)| -weight * by_z * rho).sum()
+        };
+        let [begin, tip, end] = self.blank().bounds();
+        let nodes = gauss_legendre(NODES);
+        let shares: Vec<f64> = [0.0].into_iter().chain(nodes.iter().map(|(share, _)| *share)).chain([1.0]).collect();
+        let lines = self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &shares);
+        let root: Vec<[f64; 2]> = lines.iter().map(|line| line[line.len() / 2]).map(|[z, rho, _]| [z, rho]).collect();
+        let chord = |from: [f64; 2], to: [f64; 2]| 0.5 * (to[0] - from[0]) * (from[1] + to[1]);
+        let part = |of: &OutlineSegment, from, to| OutlineSegment { name: String::new(), from, to, center: of.center };
+        // what lies between the tip and the middle of the space, around which the section runs
+        let ground: f64 = root.windows(2).map(|pair| chord(pair[0], pair[1])).sum();
+        let space = section(tip)
+            + section(&part(end, tip.to, root[root.len() - 1]))
+            + ground
+            + section(&part(begin, root[0], tip.from));
+        let whole: f64 = self.blank().outline.segments().iter().map(section).sum();
+        let [_, slope] = self.side();
+        2.0 * (whole - space) * (1.0 + slope * slope).sqrt()
     }
 
     /// The area a radian of what of a segment lies between its corner at the tip and a place.
     fn area_below(&self, segment: &OutlineSegment, corner: [f64; 2], place: [f64; 2]) -> f64 {
         let part = OutlineSegment { name: String::new(), from: corner, to: place, center: segment.center };
-        if part.length() == 0.0 { 0.0 } else { ring_area(&part) / TAU }
+        if part.length() == 0.0 { 0.0 } else { self.strip_area(&part) }
+    }
+
+    /// The area of what a segment passes over, for a unit of the way along the spaces.
+    fn strip_area(&self, segment: &OutlineSegment) -> f64 {
+        along(segment).map(|([_, rho], [by_z, by_rho], weight)| weight * self.arrangement.arc(rho) * by_z.hypot(by_rho)).sum()
     }
 }
 
-/// `ρ ∫ g dθ` for the g of each moment.
-fn around_integrals(rho: f64, z: f64, [angle, sin, cos]: [f64; 3]) -> Moments {
+/// `ρ ∫ g dθ`, or `∫ g dy`, for the g of each moment.
+fn integrals_along(arrangement: Arrangement, [z, rho, way]: [f64; 3]) -> Moments {
+    if !arrangement.is_closed() {
+        let (x, y) = (rho, way);
+        let (half, third) = (0.5 * y * y, y * y * y / 3.0);
+        return [y, x * y, half, z * y, x * x * y, third, z * z * y, x * half, x * z * y, z * half];
+    }
     let (r2, r3) = (rho * rho, rho * rho * rho);
+    let (sin, cos) = way.sin_cos();
     [
-        rho * angle,
+        rho * way,
         r2 * sin,
         -r2 * cos,
-        rho * z * angle,
-        r3 * 0.5 * (angle + sin * cos),
-        r3 * 0.5 * (angle - sin * cos),
-        rho * z * z * angle,
+        rho * z * way,
+        r3 * 0.5 * (way + sin * cos),
+        r3 * 0.5 * (way - sin * cos),
+        rho * z * z * way,
         r3 * 0.5 * sin * sin,
         r2 * z * sin,
         -r2 * z * cos,
     ]
 }
 
-fn turned_by([x, y, z]: [f64; 3], by: f64) -> [f64; 3] {
-    let (sin, cos) = by.sin_cos();
-    [cos * x - sin * y, sin * x + cos * y, z]
-}
-
-/// The moments of the same turned about the axis.
-fn turned([one, x, y, z, xx, yy, zz, xy, xz, yz]: &Moments, by: f64) -> Moments {
+/// The moments of the same farther on along the spaces.
+fn moved([one, x, y, z, xx, yy, zz, xy, xz, yz]: &Moments, arrangement: Arrangement, by: f64) -> Moments {
+    if !arrangement.is_closed() {
+        let square = yy + 2.0 * by * y + by * by * one;
+        return [*one, *x, y + by * one, *z, *xx, square, *zz, xy + by * x, *xz, yz + by * z];
+    }
     let (s, c) = by.sin_cos();
     [
         *one,
@@ -226,10 +299,6 @@ fn along(segment: &OutlineSegment) -> impl Iterator<Item = ([f64; 2], [f64; 2], 
         };
         (place, by_share, weight)
     })
-}
-
-fn ring_area(segment: &OutlineSegment) -> f64 {
-    along(segment).map(|([_, rho], [by_z, by_rho], weight)| TAU * weight * rho * by_z.hypot(by_rho)).sum()
 }
 
 /// Nodes and weights from 0 to 1, by Newton's method on Legendre's polynomial.

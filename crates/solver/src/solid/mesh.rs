@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use crate::solid::body::{Body, Polar, position};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::{Body, shifted};
 use crate::solid::section::{Fineness, Layout};
 
 /// Cells along an arc of the rest of the outline.
@@ -48,6 +49,7 @@ impl Cells {
         let own = layout.cells();
         let nodes = layout.nodes();
         let all = body.teeth() as usize;
+        let is_closed = body.arrangement().is_closed();
         let teeth = match part {
             BodyPart::Gear => all,
             BodyPart::Tooth => 1,
@@ -58,7 +60,7 @@ impl Cells {
         let next: Vec<(usize, usize)> =
             (0..=layout.rim).map(|row| (layout.in_rim(row, last), layout.in_rim(row, 0))).collect();
         let number = |tooth: usize, node: usize| match next.iter().find(|(far, _)| *far == node) {
-            Some((_, near)) if part == BodyPart::Gear || (part == BodyPart::Space && tooth == 0) => {
+            Some((_, near)) if (part == BodyPart::Gear && is_closed) || (part != BodyPart::Tooth && tooth + 1 < teeth) => {
                 (tooth + 1) % teeth * nodes + near
             }
             _ => tooth * nodes + node,
@@ -114,24 +116,23 @@ fn around_rest(body: &Body, twist: f64, along: usize) -> Vec<([f64; 2], f64)> {
 impl Body {
     /// The closed surface of a part, its corners on the exact surfaces.
     pub fn mesh(&self, part: BodyPart, fineness: &Fineness) -> ClosedMesh {
-        let (across, along) = Body::shares_of(fineness);
         let layout = Layout::new(fineness);
-        let lines = self.lines(&across, &along);
-        let shares = layout.shares(&layout.top(&lines[lines.len() / 2], self.pitch()));
         let cells = Cells::new(self, part, &layout);
-        let mut surface = Surface::new(self, (&layout, &cells), (&lines, &shares));
+        let teeth: Vec<Tooth> = (0..self.distinct()).map(|tooth| Tooth::new(self, tooth, (&layout, fineness))).collect();
+        let mut surface = Surface::new(self, (&layout, &cells), teeth);
         for cell in &cells.cells {
-            surface.quad(cell.map(|node| (node, lines.len() - 1)));
+            surface.quad(cell.map(|node| (node, fineness.along)));
             let [a, b, c, d] = cell.map(|node| (node, 0));
             surface.quad([a, d, c, b]);
         }
+        let has_rings = part == BodyPart::Gear && self.arrangement().is_closed();
         for [a, b] in cells.border() {
             // whole rings have cells of their own; a part has sides, which go on below
             let is_below = [a, b].iter().all(|node| layout.is_below(cells.of(*node).1));
-            if is_below && part == BodyPart::Gear {
+            if is_below && has_rings {
                 surface.around_rest([a, b]);
             } else {
-                (1..lines.len()).for_each(|j| surface.quad([(a, j - 1), (b, j - 1), (b, j), (a, j)]));
+                (1..=fineness.along).for_each(|j| surface.quad([(a, j - 1), (b, j - 1), (b, j), (a, j)]));
             }
         }
         surface.mesh.turned_outwards()
@@ -139,11 +140,12 @@ impl Body {
 
     /// So finely that the middles of cells' sides are no farther than `tolerance` (mm) from the exact surfaces.
     pub fn fineness(&self, tolerance: f64) -> Fineness {
-        let mut charts = vec![2; self.charts.len()];
+        let mut charts = vec![2; self.charts().len()];
         let rest = self.blank().rest();
         let has_arc = rest.iter().any(|segment| segment.center.is_some());
         let mut along = if has_arc { ALONG_ARC * rest.len() } else { 2 * rest.len() }.next_power_of_two();
-        for (count, chart) in charts.iter_mut().zip(&self.charts) {
+        for (k, chart) in self.spaces.iter().flat_map(|charts| charts.iter().enumerate()) {
+            let count = &mut charts[k];
             let doubled = |cells: usize| (0..=2 * cells).map(|k| k as f64 / (2 * cells) as f64).collect::<Vec<f64>>();
             while *count < MOST_CELLS
                 && sag(&chart.lattice(&doubled(*count), &[0.0, 0.5, 1.0]), [2 * *count + 1, 3], 0) > tolerance
@@ -162,9 +164,12 @@ impl Body {
             let both = charts[k].max(charts[last - k]);
             (charts[k], charts[last - k]) = (both, both);
         }
-        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
-        let (tip, land) = (line[0][1], line[0][2] + self.pitch() - line[line.len() - 1][2]);
-        let steps = |rho: f64, angle: f64| (angle * (rho / (8.0 * tolerance)).sqrt()).ceil() as usize;
+        let [line, next] = self.tooth_lines(0, &vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &[0.5]);
+        let (tip, land) = (line[0][0][1], next[0][0][2] - line[0][line[0].len() - 1][2]);
+        let steps = |rho: f64, angle: f64| match self.arrangement {
+            Arrangement::Round => (angle * (rho / (8.0 * tolerance)).sqrt()).ceil() as usize,
+            Arrangement::Straight { .. } => 1,
+        };
         let widest = rest.iter().flat_map(|segment| [segment.from[1], segment.to[1]]).fold(0.0, f64::max);
         let of_charts = Layout::new(&Fineness { charts: charts.clone(), tooth: 0, rim: 1, along }).width();
         // twice as many, since they are not even
@@ -187,19 +192,20 @@ impl Body {
     fn sag_of_ends(&self, fineness: &Fineness) -> [f64; 2] {
         let (across, _) = Body::shares_of(fineness);
         let layout = Layout::new(fineness);
-        let lines = self.lines(&across, &[0.0, 0.5, 1.0]);
-        let shares = layout.shares(&layout.top(&lines[1], self.pitch()));
+        let [lines, next] = self.tooth_lines(0, &across, &[0.0, 0.5, 1.0]);
+        let arrangement = self.arrangement;
+        let shares = layout.shares(&layout.top([&lines[1], &next[1]]), arrangement);
         let [begin, _, end] = self.blank().bounds();
         let mut most = [0.0_f64; 2];
-        for (line, segment, below) in [(&lines[0], begin, begin.from), (&lines[2], end, end.to)] {
+        for (j, segment, below) in [(0, begin, begin.from), (2, end, end.to)] {
             if segment.center.is_none() && segment.from[0] == segment.to[0] {
                 continue;
             }
-            let places = layout.places(line, self.pitch(), below, &shares);
+            let places = layout.places([&lines[j], &next[j]], below, &shares);
             let sag = |a: usize, b: usize| {
                 let [p, q] = [places[a], places[b]];
                 let middle = [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
-                let [p, q, middle] = [p, q, middle].map(|place| Vector3::from(position(place)));
+                let [p, q, middle] = [p, q, middle].map(|place| Vector3::from(arrangement.position(place)));
                 (0.5 * (p + q) - middle).norm()
             };
             for [a, b, c, d] in layout.cells() {
@@ -227,14 +233,48 @@ fn sag(points: &[[f64; 3]], [rows, columns]: [usize; 2], direction: usize) -> f6
     most
 }
 
+/// Where the nodes of a tooth lie.
+struct Tooth {
+    /// At each place along.
+    places: Vec<Vec<Polar>>,
+    /// Those on the rest of the outline, at the places of which it consists.
+    rest: Vec<Vec<Polar>>,
+}
+
+impl Tooth {
+    fn new(body: &Body, tooth: usize, (layout, fineness): (&Layout, &Fineness)) -> Tooth {
+        let (across, along) = Body::shares_of(fineness);
+        let [lines, next] = body.tooth_lines(tooth, &across, &along);
+        let (half, last) = (lines.len() / 2, lines.len() - 1);
+        let shares = layout.shares(&layout.top([&lines[half], &next[half]]), body.arrangement());
+        let below = body.blank().below(last);
+        let mut places: Vec<Vec<Polar>> =
+            (0..=last).map(|j| layout.places([&lines[j], &next[j]], below[j], &shares)).collect();
+        let [begin, _, end] = body.blank().bounds();
+        for (nodes, segment) in [(0, begin), (last, end)] {
+            if segment.center.is_some() {
+                places[nodes].iter_mut().for_each(|place| {
+                    let [z, rho] = segment.nearest([place[0], place[1]]);
+                    *place = [z, rho, place[2]];
+                });
+            }
+        }
+        let middles = |j: usize| [lines[j][layout.middle][2], next[j][layout.middle][2]];
+        let (from, to) = (middles(last), middles(0));
+        let rest = around_rest(body, to[0] - from[0], last).into_iter().map(|([z, rho], share)| {
+            let [start, end] = [0, 1].map(|k| (1.0 - share) * from[k] + share * to[k]);
+            shares.iter().map(|along| [z, rho, start + along * (end - start)]).collect()
+        });
+        Tooth { rest: rest.collect(), places }
+    }
+}
+
 /// Triangles as they are added; a node gets its vertex when it is first asked for.
 struct Surface<'b> {
+    body: &'b Body,
     cells: &'b Cells,
-    pitch: f64,
-    /// The nodes of a tooth at each place along.
-    places: Vec<Vec<Polar>>,
-    /// The places of the rest of the outline, below the nodes of one tooth.
-    rest: Vec<Vec<Polar>>,
+    /// One, or all.
+    teeth: Vec<Tooth>,
     first_below: usize,
     /// Columns of the tooth's block at the tip that are one line, where teeth end in an edge.
     one_at_tip: usize,
@@ -246,63 +286,45 @@ struct Surface<'b> {
 const NONE: u32 = u32::MAX;
 
 impl<'b> Surface<'b> {
-    fn new(
-        body: &Body,
-        (layout, cells): (&Layout, &'b Cells),
-        (lines, shares): (&[Vec<Polar>], &[f64]),
-    ) -> Surface<'b> {
-        let (pitch, last) = (body.pitch(), lines.len() - 1);
-        let places = lines.iter().zip(body.blank().below(last));
-        let places: Vec<Vec<Polar>> = places.map(|(line, below)| layout.places(line, pitch, below, shares)).collect();
-        let [begin, _, end] = body.blank().bounds();
-        let mut places = places;
-        for (nodes, segment) in [(0, begin), (last, end)] {
-            if segment.center.is_some() {
-                places[nodes].iter_mut().for_each(|place| {
-                    let [z, rho] = segment.nearest([place[0], place[1]]);
-                    *place = [z, rho, place[2]];
-                });
-            }
-        }
-        let middle = |line: &[Polar]| line[layout.middle][2];
-        let (from, to) = (middle(&lines[last]), middle(&lines[0]));
-        let rest = around_rest(body, to - from, last).into_iter().map(|([z, rho], share)| {
-            let start = (1.0 - share) * from + share * to;
-            shares.iter().map(|along| [z, rho, start + along * pitch]).collect()
-        });
-        let rest: Vec<Vec<Polar>> = rest.collect();
-        let vertices = [vec![NONE; cells.count() * lines.len()], vec![NONE; cells.count() * rest.len()]];
+    fn new(body: &'b Body, (layout, cells): (&Layout, &'b Cells), teeth: Vec<Tooth>) -> Surface<'b> {
+        let [along, rest] = [teeth[0].places.len(), teeth[0].rest.len()];
+        let vertices = [vec![NONE; cells.count() * along], vec![NONE; cells.count() * rest]];
         let mesh = ClosedMesh { vertices: Vec::new(), triangles: Vec::new() };
         let one_at_tip = if body.has_edge { layout.tooth + 1 } else { 0 };
         let first_below = layout.in_rim(layout.rim, 0);
-        Surface { cells, pitch, places, rest, first_below, one_at_tip, vertices, mesh }
+        Surface { body, cells, teeth, first_below, one_at_tip, vertices, mesh }
+    }
+
+    fn tooth(&self, number: usize) -> &Tooth {
+        &self.teeth[number % self.teeth.len()]
     }
 
     fn vertex(&mut self, (node, j): (usize, usize)) -> u32 {
         let (tooth, own) = self.cells.of(node);
         let (node, own) = if own < self.one_at_tip { (node - own, 0) } else { (node, own) };
-        let place = self.places[j][own];
-        let slot = node * self.places.len() + j;
+        let place = self.tooth(tooth).places[j][own];
+        let slot = node * self.teeth[0].places.len() + j;
         self.numbered(0, slot, tooth, place)
     }
 
     /// The vertex of a node below at a place of the rest of the outline; the first and what follows the last are those of the ends.
     fn vertex_of_rest(&mut self, node: usize, k: usize) -> u32 {
         if k == 0 {
-            return self.vertex((node, self.places.len() - 1));
+            return self.vertex((node, self.teeth[0].places.len() - 1));
         }
-        if k == self.rest.len() {
+        let count = self.teeth[0].rest.len();
+        if k == count {
             return self.vertex((node, 0));
         }
         let (tooth, own) = self.cells.of(node);
-        let place = self.rest[k][own - self.first_below];
-        self.numbered(1, node * self.rest.len() + k, tooth, place)
+        let place = self.tooth(tooth).rest[k][own - self.first_below];
+        self.numbered(1, node * count + k, tooth, place)
     }
 
-    fn numbered(&mut self, kind: usize, slot: usize, tooth: usize, [z, rho, angle]: Polar) -> u32 {
+    fn numbered(&mut self, kind: usize, slot: usize, tooth: usize, place: Polar) -> u32 {
         if self.vertices[kind][slot] == NONE {
             self.vertices[kind][slot] = self.mesh.vertices.len() as u32;
-            self.mesh.vertices.push(position([z, rho, angle + tooth as f64 * self.pitch]));
+            self.mesh.vertices.push(self.body.arrangement.position(shifted(place, self.body.way_of(tooth))));
         }
         self.vertices[kind][slot]
     }
@@ -313,7 +335,7 @@ impl<'b> Surface<'b> {
     }
 
     fn around_rest(&mut self, [a, b]: [usize; 2]) {
-        for k in 0..self.rest.len() {
+        for k in 0..self.teeth[0].rest.len() {
             let corners = [(a, k + 1), (b, k + 1), (b, k), (a, k)].map(|(node, k)| self.vertex_of_rest(node, k));
             self.split(corners);
         }

@@ -1,5 +1,6 @@
-//! Bodies: blanks turned about an axis, less their tooth spaces.
+//! Bodies: blanks turned about an axis, or drawn along a line, less their tooth spaces.
 
+pub(crate) mod arrangement;
 pub(crate) mod blank;
 pub(crate) mod body;
 pub(crate) mod bricks;

@@ -3,7 +3,8 @@
 //! The tooth itself is one block, from flank to flank; what lies below it and the two half spaces, down to the rest of the outline, is
 //! another one. Both share the row below the flanks.
 
-use crate::solid::body::{Body, Polar};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::Body;
 
 /// How finely a tooth is laid out.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,46 +96,39 @@ impl Layout {
 
     /// Of the points along the top of the lower block the share of the way from its one side to the other, half by length and half
     /// evenly.
-    pub(crate) fn shares(&self, top: &[Polar]) -> Vec<f64> {
-        let step = |pair: &[Polar]| {
-            let [a, b] = [pair[0], pair[1]];
-            (a[0] - b[0]).hypot(a[1] - b[1]).hypot(0.5 * (a[1] + b[1]) * (a[2] - b[2]))
-        };
+    pub(crate) fn shares(&self, top: &[Polar], arrangement: Arrangement) -> Vec<f64> {
         let mut sums = vec![0.0];
         for pair in top.windows(2) {
-            sums.push(sums[sums.len() - 1] + step(pair));
+            sums.push(sums[sums.len() - 1] + arrangement.distance(pair[0], pair[1]));
         }
         let (whole, count) = (sums[sums.len() - 1], self.width() as f64);
         sums.iter().enumerate().map(|(k, sum)| 0.5 * sum / whole + 0.5 * k as f64 / count).collect()
     }
 
-    /// The top of the lower block, from one middle of the root to the next, on a line across a space.
-    pub(crate) fn top(&self, line: &[Polar], pitch: f64) -> Vec<Polar> {
-        let turned = |[z, rho, angle]: Polar| [z, rho, angle + pitch];
+    /// The top of the lower block, from one middle of the root to the next, by lines across the spaces before the tooth and behind it.
+    pub(crate) fn top(&self, [line, next]: [&[Polar]; 2]) -> Vec<Polar> {
         let own = line[self.middle..=self.last - self.depth].iter().copied();
-        let (from, to) = (line[self.last - self.depth], turned(line[self.depth]));
+        let (from, to) = (line[self.last - self.depth], next[self.depth]);
         let under = (1..self.tooth).map(|k| between(from, to, k as f64 / self.tooth as f64));
-        let next = line[self.depth..=self.middle].iter().map(|place| turned(*place));
-        own.chain(under).chain(next).collect()
+        own.chain(under).chain(next[self.depth..=self.middle].iter().copied()).collect()
     }
 
-    /// Where the nodes of a section lie, by a line across a space, where the rest of the outline is below it, `[z, rho]`, and the shares
-    /// of [`Layout::shares`].
-    pub(crate) fn places(&self, line: &[Polar], pitch: f64, below: [f64; 2], shares: &[f64]) -> Vec<Polar> {
-        let turned = |[z, rho, angle]: Polar| [z, rho, angle + pitch];
-        let top = self.top(line, pitch);
+    /// Where the nodes of a section lie, by lines across the spaces before the tooth and behind it, where the rest of the outline is below
+    /// them, `[z, rho]`, and the shares of [`Layout::shares`].
+    pub(crate) fn places(&self, [line, next]: [&[Polar]; 2], below: [f64; 2], shares: &[f64]) -> Vec<Polar> {
+        let top = self.top([line, next]);
         let mut places = Vec::with_capacity(self.nodes());
         for i in 0..self.depth {
-            let (from, to) = (line[self.last - i], turned(line[i]));
+            let (from, to) = (line[self.last - i], next[i]);
             places.extend((0..=self.tooth).map(|k| between(from, to, k as f64 / self.tooth as f64)));
         }
-        let start = line[self.middle][2];
+        let (start, width) = (line[self.middle][2], next[self.middle][2] - line[self.middle][2]);
         for row in 0..=self.rim {
             let share = row as f64 / self.rim as f64;
             places.extend(
                 top.iter()
                     .zip(shares)
-                    .map(|(place, along)| between(*place, [below[0], below[1], start + along * pitch], share)),
+                    .map(|(place, along)| between(*place, [below[0], below[1], start + along * width], share)),
             );
         }
         places

@@ -1,6 +1,7 @@
 //! The surface of a body, or of some of its teeth, as sheets of points: for who draws it, face by face.
 
-use crate::solid::body::{Body, Polar, position};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::{Body, shifted};
 use crate::solid::section::{Fineness, Layout};
 
 /// Cells of a turned face from the middle of a space to the middle of the next.
@@ -47,23 +48,31 @@ impl Body {
     /// The sheets of so many teeth next to each other, about the first space in its given place; of all teeth, if there are not as many
     /// more. Their points lie on the exact surfaces, those of blanks between them on circles.
     pub fn sheets(&self, teeth: u32, fineness: &Fineness) -> Vec<BodySheet> {
-        let (across, along) = Body::shares_of(fineness);
-        let lines = self.lines(&across, &along);
-        let section = Section::new(self, fineness, &lines);
-        let mut pieces: Vec<Piece> = section.surfaces();
-        pieces.push(section.tip());
-        pieces.extend(section.ends());
-        pieces.extend(section.rest());
         let teeth = teeth.min(self.teeth());
-        let first = -i64::from((teeth - 1) / 2);
-        let turned = |piece: &Piece, tooth: i64| piece.turned(tooth as f64 * self.pitch());
-        let mut sheets: Vec<BodySheet> = (0..i64::from(teeth))
-            .flat_map(|tooth| pieces.iter().map(move |piece| turned(piece, first + tooth)))
+        let is_closed = self.arrangement().is_closed();
+        let first = if is_closed { -i64::from((teeth - 1) / 2) } else { i64::from((self.teeth() - teeth) / 2) };
+        let numbers: Vec<i64> = (first..first + i64::from(teeth)).collect();
+        let kind = |tooth: i64| tooth.rem_euclid(self.distinct() as i64) as usize;
+        let by = |tooth: i64| if self.distinct() == 1 { tooth as f64 * self.pitch() } else { 0.0 };
+        let lines = |kind: usize| {
+            let (across, along) = Body::shares_of(fineness);
+            self.tooth_lines(kind, &across, &along)
+        };
+        let kinds: Vec<usize> = (0..self.distinct()).filter(|of| numbers.iter().any(|tooth| kind(*tooth) == *of)).collect();
+        let lines: Vec<[Vec<Vec<Polar>>; 2]> = kinds.iter().map(|of| lines(*of)).collect();
+        let sections: Vec<Section<'_>> = lines.iter().map(|lines| Section::new(self, fineness, lines)).collect();
+        let pieces: Vec<Vec<Piece>> = sections.iter().map(Section::pieces).collect();
+        let of = |tooth: i64| kinds.iter().position(|of| *of == kind(tooth)).expect("one of those that are shown");
+        let turned = |piece: &Piece, tooth: i64| piece.turned(self.arrangement(), by(tooth));
+        let mut sheets: Vec<BodySheet> = numbers
+            .iter()
+            .flat_map(|tooth| pieces[of(*tooth)].iter().map(move |piece| turned(piece, *tooth)))
             .collect();
-        if teeth < self.teeth() {
-            let [before, behind] = section.cuts();
+        if teeth < self.teeth() || !is_closed {
+            let last = first + i64::from(teeth) - 1;
+            let ([before, _], [_, behind]) = (sections[of(first)].cuts(), sections[of(last)].cuts());
             sheets.push(turned(&before, first));
-            sheets.push(turned(&behind, first + i64::from(teeth) - 1));
+            sheets.push(turned(&behind, last));
         }
         sheets
     }
@@ -74,26 +83,38 @@ struct Section<'b> {
     body: &'b Body,
     fineness: &'b Fineness,
     layout: Layout,
-    lines: &'b [Vec<Polar>],
+    /// Across the space before it and the one behind it.
+    lines: [&'b [Vec<Polar>]; 2],
     /// The layout's nodes at each place along.
     places: Vec<Vec<Polar>>,
 }
 
 impl<'b> Section<'b> {
-    fn new(body: &'b Body, fineness: &'b Fineness, lines: &'b [Vec<Polar>]) -> Section<'b> {
+    fn new(body: &'b Body, fineness: &'b Fineness, lines: &'b [Vec<Vec<Polar>>; 2]) -> Section<'b> {
         let layout = Layout::new(fineness);
-        let shares = layout.shares(&layout.top(&lines[lines.len() / 2], body.pitch()));
-        let below = body.blank().below(lines.len() - 1);
-        let places = lines.iter().zip(below).map(|(line, below)| layout.places(line, body.pitch(), below, &shares));
-        Section { body, fineness, places: places.collect(), layout, lines }
+        let [own, next] = lines;
+        let count = own.len();
+        let shares = layout.shares(&layout.top([&own[count / 2], &next[count / 2]]), body.arrangement());
+        let below = body.blank().below(count - 1);
+        let places = (0..count).map(|j| layout.places([&own[j], &next[j]], below[j], &shares)).collect();
+        Section { body, fineness, places, layout, lines: [own, next] }
+    }
+
+    /// All but where the tooth is cut off from its neighbours.
+    fn pieces(&self) -> Vec<Piece> {
+        let mut pieces = self.surfaces();
+        pieces.push(self.tip());
+        pieces.extend(self.ends());
+        pieces.extend(self.rest());
+        pieces
     }
 
     /// The far half of the space before the tooth, and the near half of the one behind it.
     fn surfaces(&self) -> Vec<Piece> {
         let Layout { last, middle, .. } = self.layout;
-        let (charts, is_reversed) = self.body.charts();
+        let (charts, is_reversed) = (self.body.charts(), self.body.is_reversed());
         let mut pieces = Vec::new();
-        for (from, to, turn) in [(middle, last, 0.0), (0, middle, self.body.pitch())] {
+        for (from, to, lines) in [(middle, last, self.lines[0]), (0, middle, self.lines[1])] {
             let mut start = 0;
             for (k, count) in self.fineness.charts.iter().enumerate() {
                 let (low, high) = (start.max(from), (start + count).min(to));
@@ -102,10 +123,10 @@ impl<'b> Section<'b> {
                 if low >= high {
                     continue;
                 }
-                let place = |i: usize| self.lines.iter().map(move |line| turned(line[i], turn));
+                let place = |i: usize| lines.iter().map(move |line| line[i]);
                 pieces.push(Piece {
                     face: SheetFace::Surface(if is_reversed { charts.len() - 1 - k } else { k }),
-                    counts: [high - low + 1, self.lines.len()],
+                    counts: [high - low + 1, lines.len()],
                     ends,
                     places: (low..=high).flat_map(place).collect(),
                 });
@@ -119,7 +140,7 @@ impl<'b> Section<'b> {
         let place = |k: usize| self.places.iter().map(move |nodes| nodes[k]);
         Piece {
             face: SheetFace::Blank,
-            counts: [tooth + 1, self.lines.len()],
+            counts: [tooth + 1, self.places.len()],
             ends: [false, false, true, true],
             places: (0..=tooth).flat_map(place).collect(),
         }
@@ -154,17 +175,18 @@ impl<'b> Section<'b> {
     fn rest(&self) -> Vec<Piece> {
         let rest = self.body.blank().rest();
         let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
-        let middle = |line: &[Polar]| line[self.layout.middle][2];
-        let (from, to) = (middle(&self.lines[self.lines.len() - 1]), middle(&self.lines[0]));
+        let middles = |j: usize| self.lines.map(|lines| lines[j][self.layout.middle][2]);
+        let (from, to) = (middles(self.places.len() - 1), middles(0));
         let mut before = 0.0;
         rest.iter()
             .map(|segment| {
-                let cells = if segment.center.is_some() { ALONG_ARC } else { self.lines.len() - 1 };
+                let cells = if segment.center.is_some() { ALONG_ARC } else { self.places.len() - 1 };
                 let step = |k: usize, turn: f64| {
                     let share = k as f64 / cells as f64;
                     let [z, rho] = segment.at(share);
                     let way = (before + share * segment.length()) / whole;
-                    [z, rho, from + (to - from) * way + turn * self.body.pitch()]
+                    let [start, end] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * way);
+                    [z, rho, start + turn * (end - start)]
                 };
                 let row = |turn: usize| (0..=cells).map(move |k| step(k, turn as f64 / AROUND as f64));
                 let places = (0..=AROUND).flat_map(row).collect();
@@ -197,18 +219,14 @@ impl<'b> Section<'b> {
     }
 }
 
-fn turned([z, rho, angle]: Polar, by: f64) -> Polar {
-    [z, rho, angle + by]
-}
-
 fn transposed(rows: &[Vec<Polar>]) -> Vec<Vec<Polar>> {
     (0..rows[0].len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
 }
 
 impl Piece {
-    fn turned(&self, by: f64) -> BodySheet {
+    fn turned(&self, arrangement: Arrangement, by: f64) -> BodySheet {
         let [rows, columns] = self.counts;
-        let points: Vec<[f64; 3]> = self.places.iter().map(|place| position(turned(*place, by))).collect();
+        let points: Vec<[f64; 3]> = self.places.iter().map(|place| arrangement.position(shifted(*place, by))).collect();
         let way = |from: usize, to: usize| nalgebra::Vector3::from(points[to]) - nalgebra::Vector3::from(points[from]);
         let normal = |at: usize| {
             let (i, j) = (at / columns, at % columns);

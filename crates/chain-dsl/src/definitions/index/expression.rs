@@ -220,7 +220,7 @@ pub(crate) fn functions() -> Vec<&'static str> {
 }
 
 /// Functions that mean something only where they stand.
-const WORDS: [&str; 23] = [
+const WORDS: [&str; 24] = [
     "table",
     "curve",
     "grid",
@@ -228,6 +228,7 @@ const WORDS: [&str; 23] = [
     "sweep",
     "move",
     "turned",
+    "extruded",
     "vertex",
     "about",
     "line",

@@ -129,8 +129,9 @@ impl<'a> Names<'a> {
         self.word(call.function.span, WordKind::Function);
         for argument in &call.arguments {
             argument.name.iter().for_each(|name| self.word(name.span, WordKind::Argument));
+            let is_parameter = argument.name.as_ref().is_some_and(|name| name.node == "each");
             match &argument.value.kind {
-                ExpressionKind::Path(path) => {
+                ExpressionKind::Path(path) if !is_parameter => {
                     self.surface(path, place);
                 }
                 _ => self.expression(&argument.value, place),

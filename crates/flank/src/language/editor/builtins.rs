@@ -1,7 +1,7 @@
 //! What the functions of the language take and give.
 
 /// Signature and meaning of each function.
-const FUNCTIONS: [(&str, &str, &str); 66] = [
+const FUNCTIONS: [(&str, &str, &str); 67] = [
     ("sin", "sin(angle) -> number", "sine"),
     ("cos", "cos(angle) -> number", "cosine"),
     ("tan", "tan(angle) -> number", "tangent"),
@@ -53,7 +53,8 @@ const FUNCTIONS: [(&str, &str, &str); 66] = [
     ("envelope", "envelope(tool.surface, …, over: motion)", "surface that the tool's surface envelopes over a motion"),
     ("sweep", "sweep(tool.edge, …, over: motion)", "surface that an edge passes over"),
     ("move", "move(tool.surface, …)", "the surface itself in another frame"),
-    ("turned", "turned(profile, spaces: count, of: [surface, …])", "blank turned about z, with equal tooth spaces"),
+    ("turned", "turned(profile, spaces: count, of: [surface, …])", "blank turned about z, with tooth spaces"),
+    ("extruded", "extruded(profile, spaces: count, pitch: length, of: [surface, …])", "bar along y, with tooth spaces"),
     ("vertex", "vertex(z: length, rho: length, …)", "what a contact is like where its error is extreme"),
     ("about", "about(value, within)", "a value that need not hold exactly"),
     ("line", "line(from: [x, y], to: [x, y])", "straight segment of a profile"),

@@ -1,13 +1,11 @@
 //! The lines that neighbours in a tooth space share: ends of their tools' surfaces, or where one cuts off the other.
 
-use std::f64::consts::TAU;
-
 use flank_chain_dsl::Solid;
 use flank_solver::{Blank, Intersection, Line, Meeting, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::units;
-use crate::solve::body::piece::{EndLine, EndsOf, Piece, SAME_LINE, along_of, apart, positions};
+use crate::solve::body::piece::{EndLine, EndsOf, Piece, SAME_LINE, apart, positions};
 
 /// Shares along at which the ends of neighbours are held against each other.
 const ALONG: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -24,12 +22,17 @@ const NEAR: f64 = 0.1;
 pub(crate) struct Borders<'j, 'g> {
     /// Between each surface and the one behind it.
     joints: Vec<Joint<'j, 'g>>,
-    /// Between the last surface and the first one of the next space, where teeth end in an edge.
-    edge: Option<Joint<'j, 'g>>,
+    /// Where teeth end in an edge: between the last surface of the space before and the first one, and between the last one and the first one
+    /// of the space behind.
+    edges: Option<[Joint<'j, 'g>; 2]>,
     pub(crate) unknowns: Vec<usize>,
 }
 
+/// The last surface of a space and the first one of the next, for this space as the next and for it as the one before.
+pub(crate) type Beside<'j, 'g> = [[Piece<'j, 'g>; 2]; 2];
+
 /// Two neighbours and their common line.
+#[derive(Clone)]
 struct Joint<'j, 'g> {
     pieces: [Piece<'j, 'g>; 2],
     shared: Shared,
@@ -49,37 +52,36 @@ enum Shared {
 impl<'j, 'g> Borders<'j, 'g> {
     /// # Errors
     /// If neighbours share no line.
-    pub(crate) fn new(solid: &Solid, pieces: &[Piece<'j, 'g>], blank: &Blank) -> Result<Borders<'j, 'g>, Failure> {
+    pub(crate) fn new(
+        solid: &Solid,
+        (pieces, beside): (&[Piece<'j, 'g>], &[Beside<'j, 'g>]),
+        blank: &Blank,
+    ) -> Result<Borders<'j, 'g>, Failure> {
         let joint = |k: usize| {
             let both = [pieces[k - 1].clone(), pieces[k].clone()];
             let shared = shared(solid, [&both[0], &both[1]], blank)?;
             Ok(Joint { pieces: both, shared })
         };
         let joints = (1..pieces.len()).map(joint).collect::<Result<Vec<_>, Failure>>()?;
-        let edge = edge(solid, pieces, blank);
-        let mut borders = Borders { joints, edge, unknowns: Vec::new() };
+        let edges = edges(beside, |pieces| edge(solid, pieces, blank));
+        let mut borders = Borders { joints, edges, unknowns: Vec::new() };
         borders.unknowns =
             (0..pieces.len()).map(|k| borders.unknown(solid, &pieces[k], k, blank)).collect::<Result<_, Failure>>()?;
         Ok(borders)
     }
 
     /// The same with teeth that end where the flanks of neighbouring spaces meet.
-    pub(crate) fn meeting_in_an_edge(
-        self,
-        solid: &Solid,
-        pieces: &[Piece<'j, 'g>],
-        blank: &Blank,
-    ) -> Option<Borders<'j, 'g>> {
-        let edge = neighbours(solid, pieces).into_iter().find_map(|pieces| {
+    pub(crate) fn meeting_in_an_edge(self, beside: &[Beside<'j, 'g>], blank: &Blank) -> Option<Borders<'j, 'g>> {
+        let edges = edges(beside, |pieces| {
             let found = meeting([&pieces[0], &pieces[1]], blank, &ALONG);
-            found.map(|_| Joint { pieces, shared: Shared::Meeting })
+            found.map(|_| Joint { pieces: pieces.clone(), shared: Shared::Meeting })
         })?;
-        Some(Borders { edge: Some(edge), ..self })
+        Some(Borders { edges: Some(edges), ..self })
     }
 
     /// Whether teeth end in an edge.
     pub(crate) fn has_edge(&self) -> bool {
-        self.edge.is_some()
+        self.edges.is_some()
     }
 
     fn unknown(&self, solid: &Solid, piece: &Piece<'_, '_>, k: usize, blank: &Blank) -> Result<usize, Failure> {
@@ -101,9 +103,9 @@ impl<'j, 'g> Borders<'j, 'g> {
     fn joint(&self, k: usize, side: usize) -> Option<(&Joint<'j, 'g>, usize)> {
         let own = 1 - side;
         match side {
-            0 if k == 0 => self.edge.as_ref().map(|joint| (joint, own)),
+            0 if k == 0 => self.edges.as_ref().map(|edges| (&edges[0], own)),
             0 => Some((&self.joints[k - 1], own)),
-            _ if k == self.joints.len() => self.edge.as_ref().map(|joint| (joint, own)),
+            _ if k == self.joints.len() => self.edges.as_ref().map(|edges| (&edges[1], own)),
             _ => Some((&self.joints[k], own)),
         }
     }
@@ -203,25 +205,25 @@ fn onto(pieces: [&Piece<'_, '_>; 2], lines: &[Vec<EndLine>; 2], blank: &Blank) -
     })
 }
 
-/// The line in which the last surface of a space and the first one of the next end, so that there is no land between them.
-fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>], blank: &Blank) -> Option<Joint<'j, 'g>> {
-    neighbours(solid, pieces).into_iter().find_map(|pieces| {
-        let [last, first] = &pieces;
-        let near =
-            |a: &SurfacePoint| first.known.iter().map(|b| apart(a.position, b.position)).fold(f64::INFINITY, f64::min);
-        let rho = last.known.iter().map(|point| point.position[0].hypot(point.position[1])).fold(0.0, f64::max);
-        let gap = last.known.iter().map(near).fold(f64::INFINITY, f64::min);
-        let may = gap < NEAR * rho * TAU / f64::from(solid.teeth);
-        let shared = may.then(|| ends_in_one_line([last, first], blank)).flatten()?;
-        Some(Joint { pieces, shared })
-    })
+/// The edges before and behind a space, if there are both with the spaces that may lie beside it.
+fn edges<'j, 'g>(
+    beside: &[Beside<'j, 'g>],
+    edge: impl Fn(&[Piece<'j, 'g>; 2]) -> Option<Joint<'j, 'g>>,
+) -> Option<[Joint<'j, 'g>; 2]> {
+    beside.iter().find_map(|[before, behind]| Some([edge(before)?, edge(behind)?]))
 }
 
-/// The last surface of a space with the first one of each space beside it.
-fn neighbours<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>]) -> Vec<[Piece<'j, 'g>; 2]> {
-    let pitch = TAU / f64::from(solid.teeth);
-    let last = &pieces[pieces.len() - 1];
-    [pitch, -pitch].into_iter().map(|by| [last.clone(), pieces[0].turned(by)]).collect()
+/// The line in which the last surface of a space and the first one of the next space end, so that there is no land between them.
+fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Option<Joint<'j, 'g>> {
+    let [last, first] = pieces;
+    let near =
+        |a: &SurfacePoint| first.known.iter().map(|b| apart(a.position, b.position)).fold(f64::INFINITY, f64::min);
+    let arc = |point: &SurfacePoint| last.arrangement.arc(last.arrangement.section(point.position)[1]);
+    let pitch = last.known.iter().map(arc).fold(0.0, f64::max) * last.arrangement.pitch(solid.teeth);
+    let gap = last.known.iter().map(near).fold(f64::INFINITY, f64::min);
+    let may = gap < NEAR * pitch;
+    let shared = may.then(|| ends_in_one_line([last, first], blank)).flatten()?;
+    Some(Joint { pieces: pieces.clone(), shared })
 }
 
 /// Neighbours whose common line is not found.
@@ -254,7 +256,7 @@ fn meeting_across(pieces: [&Piece<'_, '_>; 2], blank: &Blank, along: &[f64]) -> 
         let near: Vec<&SurfacePoint> = first.known.iter().collect();
         let nearest = near
             .iter()
-            .min_by(|a, b| (along_of(blank, a) - share).abs().total_cmp(&(along_of(blank, b) - share).abs()))?;
+            .min_by(|a, b| (first.along_of(blank, a) - share).abs().total_cmp(&(first.along_of(blank, b) - share).abs()))?;
         let line = Line { from: [value(nearest), share], direction: [1.0, 0.0] };
         let known = if starts.is_empty() { known_pairs(pieces, blank, share) } else { starts.to_vec() };
         let found = intersection.on_line(line, &known, &near);
@@ -285,7 +287,7 @@ fn meeting_across(pieces: [&Piece<'_, '_>; 2], blank: &Blank, along: &[f64]) -> 
 
 /// Unknowns of known points of both surfaces that lie near each other, those of the first about as far along the space as is asked for.
 fn known_pairs([first, second]: [&Piece<'_, '_>; 2], blank: &Blank, share: f64) -> Vec<Vec<f64>> {
-    let off = |point: &SurfacePoint| (along_of(blank, point) - share).abs();
+    let off = |point: &SurfacePoint| (first.along_of(blank, point) - share).abs();
     let least = first.known.iter().map(off).fold(f64::INFINITY, f64::min);
     let beside = first.known.iter().filter(|point| off(point) <= least + STRIDE);
     let pairs = beside.flat_map(|a| second.known.iter().map(move |b| (apart(a.position, b.position), a, b)));

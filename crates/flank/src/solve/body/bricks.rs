@@ -147,7 +147,7 @@ fn check_size(name: &str, [bricks, nodes]: [usize; 2], order: BrickOrder) -> Res
 
 /// What the sets on charts are called, in the order of the body.
 fn names(space: &Space, body: &Body) -> Vec<String> {
-    let (charts, is_reversed) = body.charts();
+    let (charts, is_reversed) = (body.charts(), body.is_reversed());
     let count = charts.len();
     let name = |k: usize| {
         let own = &space.names[if is_reversed { count - 1 - k } else { k }];

@@ -16,8 +16,8 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let segments = outline.segments();
     let count = segments.len();
     // flank and root both reach the ends of a space; the tip is far from the root, a bore from the flank
-    let both = [&pieces[pieces.len() / 2].known, &pieces[0].known];
-    let off = |k: usize| both.map(|known| nearest(&segments[k], known)).into_iter().fold(0.0, f64::max);
+    let both = [&pieces[pieces.len() / 2], &pieces[0]];
+    let off = |k: usize| both.map(|piece| nearest(&segments[k], piece)).into_iter().fold(0.0, f64::max);
     let off: Vec<f64> = (0..count).map(off).collect();
     // of two ends that have the tip between them on one side, and the rest on the other
     let apart = |a: usize, b: usize| (b - a) % count > 1 && (a + count - b) % count > 1;
@@ -34,7 +34,7 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
     };
     let off =
-        |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0].known)).fold(f64::INFINITY, f64::min);
+        |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0])).fold(f64::INFINITY, f64::min);
     let (there, back) = (between(a, b), between(b, a));
     let (begin, tip, end) = if off(&there) <= off(&back) { (a, there, b) } else { (b, back, a) };
     let [tip] = tip[..] else {
@@ -51,13 +51,12 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     Ok(Blank { outline, ends: [begin, tip, end] })
 }
 
-/// How near points come to a segment, mm.
-fn nearest(segment: &OutlineSegment, points: &[SurfacePoint]) -> f64 {
+/// How near the known points of a surface come to a segment, mm.
+fn nearest(segment: &OutlineSegment, piece: &Piece<'_, '_>) -> f64 {
     let off = |point: &SurfacePoint| {
-        let [x, y, z] = point.position;
-        let rho = x.hypot(y);
+        let [z, rho] = piece.arrangement.section(point.position);
         let [near_z, near_rho] = segment.nearest([z, rho]);
         (z - near_z).hypot(rho - near_rho)
     };
-    points.iter().map(off).fold(f64::INFINITY, f64::min)
+    piece.known.iter().map(off).fold(f64::INFINITY, f64::min)
 }

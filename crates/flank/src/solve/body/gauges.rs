@@ -1,8 +1,8 @@
 //! What gauges and calipers find on a body.
 
-use flank_solver::{BallGauge, Body, Span, Thickness};
+use flank_solver::{Arrangement, BallGauge, Body, Span, Thickness};
 
-use crate::solve::body::result::{BallNumbers, FaceNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
+use crate::solve::body::result::{BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
 
 /// Circles from the form diameter to the tip on which the thickness is told.
 const CIRCLES: usize = 5;
@@ -13,29 +13,39 @@ const BALL_STEP: f64 = 0.25;
 /// cylindrical gears: those whose tip is a cylinder.
 pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
     let [tip, root] = body.tip_and_root();
+    let edge_below_tip_mm = body.edge_below_tip();
+    if body.distinct() > 1 {
+        let [tip, root] = [tip, root].map(|rho| Some(2.0 * rho));
+        return GaugeNumbers { tip_diameter_mm: tip, root_diameter_mm: root, ..GaugeNumbers::default() };
+    }
     let form = body.form();
     let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
     let circle = |k: usize| deepest + (tip - deepest) * k as f64 / (CIRCLES - 1) as f64;
     let thickness = (0..CIRCLES).filter_map(|k| body.thickness(circle(k)));
+    let thickness: Vec<ThicknessNumbers> = thickness.map(|of| thickness_numbers(body, of)).collect();
+    if let Arrangement::Straight { pitch } = body.arrangement() {
+        let bar = BarNumbers { pitch_mm: pitch, tip_x_mm: tip, root_x_mm: root, form_x_mm: form };
+        return GaugeNumbers { thickness, edge_below_tip_mm, bar: Some(bar), ..GaugeNumbers::default() };
+    }
     let [_, outline, _] = body.blank().bounds();
     let is_cylindrical = outline.center.is_none() && outline.from[1] == outline.to[1];
     let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
     let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
-    let thickness: Vec<ThicknessNumbers> = thickness.map(thickness_numbers).collect();
     let face = body.is_face_gear().then_some(FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
     let diameters = |of: f64| match &face {
-        Some(_) => thickness.first().map_or(0.0, |tooth| tooth.diameter_mm),
+        Some(_) => thickness.first().and_then(|tooth| tooth.diameter_mm).unwrap_or_default(),
         None => 2.0 * of,
     };
     GaugeNumbers {
-        tip_diameter_mm: diameters(tip),
-        root_diameter_mm: diameters(root),
-        form_diameters_mm: form.map(diameters),
+        tip_diameter_mm: Some(diameters(tip)),
+        root_diameter_mm: Some(diameters(root)),
+        form_diameters_mm: Some(form.map(diameters)),
         thickness,
         spans: (1..=most).filter_map(|teeth| body.span(teeth)).map(span_numbers).collect(),
         balls: is_cylindrical.then(|| body.ball(diameter())).flatten().map(ball_numbers),
-        edge_below_tip_mm: body.edge_below_tip(),
+        edge_below_tip_mm,
         face,
+        bar: None,
     }
 }
 
@@ -45,9 +55,17 @@ fn middle_ball(body: &Body, rho: f64) -> f64 {
     (1.05 * width / BALL_STEP).ceil() * BALL_STEP
 }
 
-fn thickness_numbers(of: Thickness) -> ThicknessNumbers {
+fn thickness_numbers(body: &Body, of: Thickness) -> ThicknessNumbers {
     let Thickness { rho, z, arc, chord, chord_height } = of;
-    ThicknessNumbers { diameter_mm: 2.0 * rho, z_mm: z, arc_mm: arc, chord_mm: chord, chord_height_mm: chord_height }
+    let is_round = body.arrangement().is_closed();
+    ThicknessNumbers {
+        diameter_mm: is_round.then_some(2.0 * rho),
+        x_mm: (!is_round).then_some(rho),
+        z_mm: z,
+        arc_mm: arc,
+        chord_mm: chord,
+        chord_height_mm: chord_height,
+    }
 }
 
 fn span_numbers(of: Span) -> SpanNumbers {

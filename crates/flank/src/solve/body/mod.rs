@@ -39,9 +39,6 @@ pub fn solid(request: &SolidRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
-    if request.step.is_some() && request.part != SolidPart::Gear {
-        return Err(Failure::Request("a STEP file holds the whole gear: say `gear` for option `solid`".to_string()));
-    }
     let session = Session::new(request.evaluator, monitor);
     for job in space::with_solids(&jobs)? {
         each(built(job, (request, &origin), session)?);
@@ -121,7 +118,8 @@ fn one(
             MeshFormat::ThreeMf => folder.body_3mf(&file, header, &[(written, PlacedFrame::default())])?,
         }
     }
-    let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, &body, tolerance));
+    let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, (&body, part), tolerance));
+    let faces = faces.transpose()?;
     if let Some(faces) = faces.as_ref().filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed)) {
         folder.body_step(&file, header, faces)?;
     }

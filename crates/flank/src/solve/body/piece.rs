@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_expr::Expr;
-use flank_expr::geometry::{Axis, Chain, Step};
-use flank_solver::{Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
+use flank_expr::geometry::{Axis, Chain, Step, Vector3};
+use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -27,6 +27,7 @@ pub(crate) const SAME_LINE: f64 = 1e-6;
 pub(crate) struct Piece<'j, 'g> {
     job: &'j Job<'g>,
     pub(crate) surface: Cow<'j, GeneratedSurface<'g>>,
+    pub(crate) arrangement: Arrangement,
     session: Session<'j>,
     pub(crate) known: Vec<SurfacePoint>,
 }
@@ -53,7 +54,7 @@ impl<'j, 'g> Piece<'j, 'g> {
     /// If the surface is not sampled, or no point of its sample is solved.
     pub(crate) fn new(
         job: &'j Job<'g>,
-        surface: &'j GeneratedSurface<'g>,
+        (surface, arrangement): (&'j GeneratedSurface<'g>, Arrangement),
         session: Session<'j>,
     ) -> Result<Piece<'j, 'g>, Failure> {
         let name = &surface.name;
@@ -69,19 +70,24 @@ impl<'j, 'g> Piece<'j, 'g> {
         if known.is_empty() {
             return Err(format!("`{name}` bounds the spaces of a solid, and no point of its sample is solved").into());
         }
-        Ok(Piece { job, surface: Cow::Borrowed(surface), session, known })
+        Ok(Piece { job, surface: Cow::Borrowed(surface), arrangement, session, known })
     }
 
-    /// The same surface in another space: turned about the work's axis.
-    pub(crate) fn turned(&self, by: f64) -> Piece<'j, 'g> {
+    /// The same surface in another space: farther on about the work's axis, or along its line.
+    pub(crate) fn moved(&self, by: f64) -> Piece<'j, 'g> {
         let graph = self.surface.surface.position.0[0].graph();
-        let turn = Chain::new(graph, vec![Step::Rotate(Axis::Z, graph.constant(by))]);
-        let moved = self.surface.surface.moved(&turn);
-        let (sin, cos) = by.sin_cos();
-        let rotated = |[x, y, z]: [f64; 3]| [cos * x - sin * y, sin * x + cos * y, z];
+        let amount = graph.constant(by);
+        let step = match self.arrangement {
+            Arrangement::Round => Step::Rotate(Axis::Z, amount),
+            Arrangement::Straight { .. } => {
+                let zero = graph.constant(0.0);
+                Step::Translate(Vector3([zero, amount, zero]))
+            }
+        };
+        let moved = self.surface.surface.moved(&Chain::new(graph, vec![step]));
         let known = self.known.iter().map(|point| SurfacePoint {
-            position: rotated(point.position),
-            normal: rotated(point.normal),
+            position: self.arrangement.moved(point.position, by),
+            normal: self.arrangement.turned(point.normal, by),
             ..point.clone()
         });
         Piece {
@@ -91,15 +97,26 @@ impl<'j, 'g> Piece<'j, 'g> {
         }
     }
 
-    /// The two coordinates of the axial section.
+    /// The two coordinates of the section of the outline.
     pub(crate) fn section(&self) -> [Expr<'g>; 2] {
         let [x, y, z] = self.surface.surface.position.0;
-        [z, (x * x + y * y).sqrt()]
+        match self.arrangement {
+            Arrangement::Round => [z, (x * x + y * y).sqrt()],
+            Arrangement::Straight { .. } => [z, x],
+        }
+    }
+
+    /// How far along a space a point lies.
+    pub(crate) fn along_of(&self, blank: &Blank, point: &SurfacePoint) -> f64 {
+        Blank::share(blank.bounds(), self.arrangement.section(point.position))
     }
 
     /// How far along the space, and the angle about the axis from a place on.
     fn around(&self, [x, y, _]: [f64; 3], blank: &Blank) -> [Expr<'g>; 2] {
         let [own_x, own_y, _] = self.surface.surface.position.0;
+        if !self.arrangement.is_closed() {
+            return [blank.share_of(self.section()), own_y];
+        }
         let (ahead, aside) = (own_x * x + own_y * y, own_y * x - own_x * y);
         [blank.share_of(self.section()), aside.atan2(ahead)]
     }
@@ -122,7 +139,7 @@ impl<'j, 'g> Piece<'j, 'g> {
     /// Whether an unknown is more than a linear function of the way along at the known points.
     fn tells_rows(&self, unknown: usize, blank: &Blank) -> bool {
         let pairs: Vec<[f64; 2]> =
-            self.known.iter().map(|point| [along_of(blank, point), point.unknowns[unknown]]).collect();
+            self.known.iter().map(|point| [self.along_of(blank, point), point.unknowns[unknown]]).collect();
         let count = pairs.len() as f64;
         let [along, value] = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).sum::<f64>() / count);
         let sum = |a: usize, b: usize| -> f64 {
@@ -161,7 +178,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         let targets: Vec<[f64; 2]> = along.iter().map(|share| [value, *share]).collect();
         let width = self.surface.unknowns[unknown].high - self.surface.unknowns[unknown].low;
         let far = |point: &SurfacePoint| {
-            ((point.unknowns[unknown] - value) / width).abs() + (along_of(blank, point) - 0.5).abs()
+            ((point.unknowns[unknown] - value) / width).abs() + (self.along_of(blank, point) - 0.5).abs()
         };
         self.solved(self.across(unknown, blank), (&targets, [1, along.len()]), far)
     }
@@ -184,12 +201,14 @@ impl<'j, 'g> Piece<'j, 'g> {
     /// They are found by their place in the axial section, or, where that has a turning point (on the ground of a space), by their angle.
     pub(crate) fn values_at(&self, points: &[[f64; 3]], unknown: usize, blank: &Blank) -> Option<Vec<f64>> {
         let middle = points[points.len() / 2];
-        let place = |[x, y, z]: [f64; 3]| [z, x.hypot(y)];
         let turned = |[x, y, z]: [f64; 3]| {
-            let share = Blank::share(blank.bounds(), [z, x.hypot(y)]);
-            [share, (y * middle[0] - x * middle[1]).atan2(x * middle[0] + y * middle[1])]
+            let share = Blank::share(blank.bounds(), self.arrangement.section([x, y, z]));
+            match self.arrangement {
+                Arrangement::Round => [share, (y * middle[0] - x * middle[1]).atan2(x * middle[0] + y * middle[1])],
+                Arrangement::Straight { .. } => [share, y],
+            }
         };
-        let sections: Vec<[f64; 2]> = points.iter().map(|point| place(*point)).collect();
+        let sections: Vec<[f64; 2]> = points.iter().map(|point| self.arrangement.section(*point)).collect();
         let angles: Vec<[f64; 2]> = points.iter().map(|point| turned(*point)).collect();
         let tried = [(self.section(), sections), (self.around(middle, blank), angles)];
         tried.into_iter().find_map(|(coordinates, targets)| {
@@ -200,12 +219,6 @@ impl<'j, 'g> Piece<'j, 'g> {
             is_whole.then(|| (0..found.len()).map(|k| found.unknowns(k)[unknown]).collect())
         })
     }
-}
-
-/// How far along a space a point lies.
-pub(crate) fn along_of(blank: &Blank, point: &SurfacePoint) -> f64 {
-    let [x, y, z] = point.position;
-    Blank::share(blank.bounds(), [z, x.hypot(y)])
 }
 
 pub(crate) fn positions(points: &SurfacePoints) -> Vec<[f64; 3]> {

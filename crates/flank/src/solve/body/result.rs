@@ -80,16 +80,18 @@ pub struct MeshNumbers {
 /// What gauges and calipers find on a body, half-way along its teeth.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct GaugeNumbers {
-    /// Of the tip.
-    pub tip_diameter_mm: f64,
-    /// Of the deepest point of a space.
-    pub root_diameter_mm: f64,
-    /// Where the flanks end towards the root, the first one of the space and the last.
-    pub form_diameters_mm: [f64; 2],
+    /// Of the tip; where teeth differ, the largest. Null of a bar.
+    pub tip_diameter_mm: Option<f64>,
+    /// Of the deepest point of a space, of all. Null of a bar.
+    pub root_diameter_mm: Option<f64>,
+    /// Where the flanks end towards the root, the first one of the space and the last. Null of a bar, and where teeth differ.
+    pub form_diameters_mm: Option<[f64; 2]>,
     /// How far the edges in which pointed teeth end lie below the tip of the blank; null where teeth have lands.
     pub edge_below_tip_mm: Option<f64>,
     /// Of a gear with teeth on its face, where the depth is measured along the axis; else null.
     pub face: Option<FaceNumbers>,
+    /// Of a bar with teeth, where the depth is measured along x; else null.
+    pub bar: Option<BarNumbers>,
     /// Of the tooth, from the form diameter to the tip.
     pub thickness: Vec<ThicknessNumbers>,
     /// Over some teeth of a cylindrical gear, all that planes can touch.
@@ -110,11 +112,26 @@ pub struct FaceNumbers {
     pub form_z_mm: [f64; 2],
 }
 
-/// The thickness of a tooth on a circle.
+/// Places along the x axis of a bar with teeth.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct BarNumbers {
+    /// From one space to the next.
+    pub pitch_mm: f64,
+    /// Of the tip.
+    pub tip_x_mm: f64,
+    /// Of the deepest point of a space.
+    pub root_x_mm: f64,
+    /// Where the flanks end towards the root, the first one of the space and the last.
+    pub form_x_mm: [f64; 2],
+}
+
+/// The thickness of a tooth on a circle, or of a bar at an x.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ThicknessNumbers {
-    /// Of the circle.
-    pub diameter_mm: f64,
+    /// Of the circle; null of a bar.
+    pub diameter_mm: Option<f64>,
+    /// Of a bar where it is measured; else null.
+    pub x_mm: Option<f64>,
     /// Its place along the axis.
     pub z_mm: f64,
     /// Along the circle.
@@ -226,24 +243,31 @@ impl fmt::Display for SolidNumbers {
 
 impl fmt::Display for GaugeNumbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [first, last] = self.form_diameters_mm;
-        match &self.face {
-            None => {
-                let (tip, root) = (self.tip_diameter_mm, self.root_diameter_mm);
+        if let Some(FaceNumbers { tip_z_mm, root_z_mm, form_z_mm: [first, last] }) = &self.face {
+            let diameter = self.tip_diameter_mm.unwrap_or_default();
+            writeln!(f, "  tip      z {tip_z_mm:.4} mm, root z {root_z_mm:.4} mm at {diameter:.4} mm in diameter")?;
+            writeln!(f, "  form     z {first:.4} mm and z {last:.4} mm")?;
+        } else if let Some(BarNumbers { pitch_mm, tip_x_mm, root_x_mm, form_x_mm: [first, last] }) = &self.bar {
+            writeln!(f, "  tip      x {tip_x_mm:.4} mm, root x {root_x_mm:.4} mm, pitch {pitch_mm:.4} mm")?;
+            writeln!(f, "  form     x {first:.4} mm and x {last:.4} mm")?;
+        } else {
+            if let Some((tip, root)) = self.tip_diameter_mm.zip(self.root_diameter_mm) {
                 writeln!(f, "  tip      {tip:.4} mm in diameter, root {root:.4} mm")?;
-                writeln!(f, "  form     {first:.4} mm and {last:.4} mm in diameter")?;
             }
-            Some(FaceNumbers { tip_z_mm, root_z_mm, form_z_mm: [first, last] }) => {
-                let diameter = self.tip_diameter_mm;
-                writeln!(f, "  tip      z {tip_z_mm:.4} mm, root z {root_z_mm:.4} mm at {diameter:.4} mm in diameter")?;
-                writeln!(f, "  form     z {first:.4} mm and z {last:.4} mm")?;
+            if let Some([first, last]) = self.form_diameters_mm {
+                writeln!(f, "  form     {first:.4} mm and {last:.4} mm in diameter")?;
             }
         }
         if let Some(below) = self.edge_below_tip_mm {
             writeln!(f, "  edge     teeth are pointed: they end {below:.4} mm below the tip of the blank")?;
         }
         for of in &self.thickness {
-            let ThicknessNumbers { diameter_mm, arc_mm, chord_mm, chord_height_mm, .. } = of;
+            let ThicknessNumbers { diameter_mm, x_mm, arc_mm, chord_mm, chord_height_mm, .. } = of;
+            let Some(diameter_mm) = diameter_mm else {
+                let x = x_mm.map(rounded).unwrap_or_default();
+                writeln!(f, "  tooth    {arc_mm:.4} mm thick at x {x:.3} mm, {chord_height_mm:.4} mm below the tip")?;
+                continue;
+            };
             writeln!(
                 f,
                 "  tooth    {arc_mm:.4} mm thick at {diameter_mm:.3} mm, chord {chord_mm:.4} mm {chord_height_mm:.4} mm below the tip"

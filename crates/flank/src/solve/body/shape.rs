@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Job, Solid};
-use flank_solver::{Body, BodySheet, Fineness, Outcome, SheetFace};
+use flank_solver::{Arrangement, Body, BodySheet, Fineness, Outcome, SheetFace};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
+use crate::solve::blank;
 use crate::solve::body::space;
 use crate::solve::solved::Solved;
 
@@ -30,6 +31,7 @@ pub(crate) struct Shape {
     pub(crate) surfaces: Vec<String>,
     /// The body, or why there is none.
     pub(crate) body: Result<Body, String>,
+    arrangement: Arrangement,
     /// The sampled points of one space.
     space: Vec<BodySheet>,
 }
@@ -58,6 +60,7 @@ impl Shape {
             teeth: solid.teeth,
             surfaces: solid.space.iter().map(|at| job.surfaces[*at].name.clone()).collect(),
             body,
+            arrangement: blank::arrangement(solid),
             space,
         })
     }
@@ -66,7 +69,7 @@ impl Shape {
     pub(crate) fn whole(&self) -> Vec<BodySheet> {
         match &self.body {
             Ok(body) => body.sheets(body.teeth(), &whole(body)),
-            Err(_) => turned(&self.space, self.teeth, self.teeth),
+            Err(_) => repeated(&self.space, self.teeth, (self.arrangement, self.teeth)),
         }
     }
 
@@ -74,7 +77,7 @@ impl Shape {
     pub(crate) fn some(&self) -> Vec<BodySheet> {
         match &self.body {
             Ok(body) => body.sheets(SOME, &large(body)),
-            Err(_) => turned(&self.space, self.shown(), self.teeth),
+            Err(_) => repeated(&self.space, self.shown(), (self.arrangement, self.teeth)),
         }
     }
 
@@ -83,22 +86,28 @@ impl Shape {
         SOME.min(self.teeth)
     }
 
-    /// One tooth of a closed body, from the middle of a space to the middle of the next.
-    pub(crate) fn tooth(&self) -> Vec<BodySheet> {
-        let sheets = self.body.as_ref().map_or(Vec::new(), |body| body.sheets(1, &whole(body)));
-        sheets.into_iter().filter(|sheet| sheet.face != SheetFace::Cut).collect()
+    /// What a closed body consists of when it is turned about its axis so many times: one tooth, from the middle of a space to the middle of
+    /// the next, or all of it.
+    pub(crate) fn repeated(&self) -> (Vec<BodySheet>, u32) {
+        let Ok(body) = &self.body else { return (Vec::new(), self.teeth) };
+        if !body.arrangement().is_closed() || body.distinct() > 1 {
+            return (self.whole(), 1);
+        }
+        let sheets = body.sheets(1, &whole(body)).into_iter().filter(|sheet| sheet.face != SheetFace::Cut);
+        (sheets.collect(), self.teeth)
     }
 
     /// In the middle of some sheets: along the teeth, towards the heel or upwards, and from root to tip; unit vectors. The generated surfaces
     /// face the tip, on average.
-    pub(crate) fn directions(sheets: &[BodySheet]) -> [[f64; 3]; 2] {
+    pub(crate) fn directions(&self, sheets: &[BodySheet]) -> [[f64; 3]; 2] {
         let generated = sheets.iter().filter(|sheet| matches!(sheet.face, SheetFace::Surface(_)));
         let points = generated.flat_map(|sheet| sheet.points.iter().zip(&sheet.normals));
         let points = points.filter(|(point, _)| point[0].is_finite());
         let (mut sum, mut middle) = ([0.0; 2], [0.0; 2]);
         for ([x, y, _], [u, v, w]) in points {
             let rho = x.hypot(*y).max(f64::MIN_POSITIVE);
-            sum = [sum[0] + w, sum[1] + (x * u + y * v) / rho];
+            let out = if self.arrangement.is_closed() { (x * u + y * v) / rho } else { *u };
+            sum = [sum[0] + w, sum[1] + out];
             middle = [middle[0] + x, middle[1] + y];
         }
         let size = sum[0].hypot(sum[1]);
@@ -106,7 +115,8 @@ impl Shape {
         let side = if tip_z.abs() > 0.05 { -tip_z.signum() } else { tip_rho.signum() };
         let [along_z, along_rho] = [side * tip_rho, -side * tip_z];
         let far = middle[0].hypot(middle[1]);
-        let [cos, sin] = if far > 0.0 { middle.map(|x| x / far) } else { [1.0, 0.0] };
+        let is_around = far > 0.0 && self.arrangement.is_closed();
+        let [cos, sin] = if is_around { middle.map(|x| x / far) } else { [1.0, 0.0] };
         [[along_rho * cos, along_rho * sin, along_z], [tip_rho * cos, tip_rho * sin, tip_z]]
     }
 }
@@ -116,13 +126,21 @@ fn widest(body: &Body) -> f64 {
 }
 
 fn whole(body: &Body) -> Fineness {
-    let fineness = body.fineness(WHOLE * 2.0 * widest(body));
+    let size = match body.arrangement() {
+        Arrangement::Round => 2.0 * widest(body),
+        Arrangement::Straight { pitch } => pitch * f64::from(body.teeth()),
+    };
+    let fineness = body.fineness(WHOLE * size);
     Fineness { tooth: 2, rim: 1, along: fineness.along.min(MOST_ALONG), ..fineness }
 }
 
 fn large(body: &Body) -> Fineness {
     let [_, tip, _] = body.blank().bounds();
-    let size = (f64::from(SOME) * body.pitch().min(TAU / 6.0) * widest(body)).max(tip.length());
+    let width = match body.arrangement() {
+        Arrangement::Round => body.pitch().min(TAU / 6.0) * widest(body),
+        Arrangement::Straight { pitch } => pitch,
+    };
+    let size = (f64::from(SOME) * width).max(tip.length());
     Fineness { tooth: 4, rim: 2, ..body.fineness(LARGE * size) }
 }
 
@@ -151,14 +169,13 @@ fn sampled(job: &Job<'_>, solid: &Solid, solved: &[Solved<'_, '_>]) -> Vec<BodyS
     sheets.filter(|sheet| sheet.points.iter().any(|point| point[0].is_finite())).collect()
 }
 
-/// The same space so many times, next to each other, of `teeth` all around.
-fn turned(space: &[BodySheet], count: u32, teeth: u32) -> Vec<BodySheet> {
+/// The same space so many times, next to each other, of `teeth`.
+fn repeated(space: &[BodySheet], count: u32, (arrangement, teeth): (Arrangement, u32)) -> Vec<BodySheet> {
     let copy = |k: u32| {
-        let (sin, cos) = (TAU * (f64::from(k) - f64::from(count / 2)) / f64::from(teeth)).sin_cos();
-        let turn = move |[x, y, z]: [f64; 3]| [cos * x - sin * y, sin * x + cos * y, z];
+        let by = arrangement.pitch(teeth) * (f64::from(k) - f64::from(count / 2));
         space.iter().map(move |sheet| BodySheet {
-            points: sheet.points.iter().map(|point| turn(*point)).collect(),
-            normals: sheet.normals.iter().map(|normal| turn(*normal)).collect(),
+            points: sheet.points.iter().map(|point| arrangement.moved(*point, by)).collect(),
+            normals: sheet.normals.iter().map(|normal| arrangement.turned(*normal, by)).collect(),
             ..sheet.clone()
         })
     };

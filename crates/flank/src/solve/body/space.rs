@@ -6,9 +6,10 @@ use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, Surface
 use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::project::units;
-use crate::solve::body::borders::Borders;
+use crate::solve::blank;
+use crate::solve::body::borders::{Beside, Borders};
 use crate::solve::body::ends;
-use crate::solve::body::piece::{Piece, along_of, positions};
+use crate::solve::body::piece::{Piece, positions};
 
 /// How far charts may be off between their points, mm: below what any file or number shows.
 const EXACT: f64 = 1e-8;
@@ -39,12 +40,14 @@ pub(crate) fn with_solids<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>
 
 /// # Errors
 /// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
-pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>) -> Result<Space, Failure> {
-    let pieces = solid.space.iter().map(|at| Piece::new(job, &job.surfaces[*at], session));
-    let pieces: Vec<Piece<'_, '_>> = pieces.collect::<Result<_, Failure>>()?;
-    let blank = ends::blank(solid, &pieces)?;
-    let borders = Borders::new(solid, &pieces, &blank)?;
-    if pieces.len() < 2 && !borders.has_edge() {
+pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result<Space, Failure> {
+    let jobs = jobs_of_spaces(job, solid);
+    let spaces = jobs.iter().map(|job| pieces(job, solid, session)).collect::<Result<Vec<_>, Failure>>()?;
+    let blank = ends::blank(solid, &spaces[0])?;
+    let beside: Vec<Vec<Beside<'_, '_>>> = (0..spaces.len()).map(|k| beside(solid, &spaces, k)).collect();
+    let borders = |k: usize| Borders::new(solid, (&spaces[k], &beside[k]), &blank);
+    let borders: Vec<Borders<'_, '_>> = (0..spaces.len()).map(borders).collect::<Result<_, Failure>>()?;
+    if spaces[0].len() < 2 && !borders[0].has_edge() {
         return Err(format!(
             "the space of `{}` is one surface: its body needs all of them from tip to tip, the root among them",
             solid.name
@@ -52,38 +55,81 @@ pub(crate) fn body<'j>(job: &'j Job<'_>, solid: &'j Solid, session: Session<'j>)
         .into());
     }
     let faulty = |fault: BodyFault| faulty(solid, &blank, fault);
-    let (body, off) = match between(solid, (&pieces, &borders, &blank), session)? {
+    let (body, off) = match between(solid, (&spaces, &borders, &blank), session)? {
         (Ok(body), off) => (body, off),
         (Err(fault), _) => {
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
-            let borders = is_pointed.then(|| borders.meeting_in_an_edge(solid, &pieces, &blank)).flatten();
-            let borders = borders.ok_or_else(|| faulty(fault))?;
-            let (body, off) = between(solid, (&pieces, &borders, &blank), session)?;
+            let edges = borders.into_iter().zip(&beside).map(|(borders, beside)| {
+                borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed)
+            });
+            let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault))?;
+            let (body, off) = between(solid, (&spaces, &borders, &blank), session)?;
             (body.map_err(faulty)?, off)
         }
     };
-    Ok(Space { body, names: pieces.iter().map(|piece| piece.surface.name.clone()).collect(), off })
+    Ok(Space { body, names: spaces[0].iter().map(|piece| piece.surface.name.clone()).collect(), off })
+}
+
+/// The job of each space that differs from the first one, and of that: its parameter says which space it is.
+fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
+    let Some(each) = &solid.each else { return vec![job.clone()] };
+    let of_space = |space: u32| {
+        let mut job = Job { name: format!("{} {each} {space}", job.name), ..job.clone() };
+        let value = f64::from(space);
+        for parameter in job.parameters.iter_mut().filter(|parameter| parameter.name == *each) {
+            parameter.value = value;
+            parameter.definition = parameter.variable.graph().constant(value);
+        }
+        job
+    };
+    (0..solid.teeth).map(of_space).collect()
+}
+
+fn pieces<'j, 'g>(job: &'j Job<'g>, solid: &Solid, session: Session<'j>) -> Result<Vec<Piece<'j, 'g>>, Failure> {
+    let arrangement = blank::arrangement(solid);
+    solid.space.iter().map(|at| Piece::new(job, (&job.surfaces[*at], arrangement), session)).collect()
+}
+
+/// What may lie beside a space: the same space one on, whichever way round they are counted, or the spaces that are counted before and behind it.
+fn beside<'j, 'g>(solid: &Solid, spaces: &[Vec<Piece<'j, 'g>>], space: usize) -> Vec<Beside<'j, 'g>> {
+    let (count, own) = (spaces.len(), &spaces[space]);
+    let ends = |pieces: &[Piece<'j, 'g>]| [pieces[0].clone(), pieces[pieces.len() - 1].clone()];
+    let [first, last] = ends(own);
+    if solid.each.is_none() {
+        let pitch = blank::arrangement(solid).pitch(solid.teeth);
+        let moved = |by: f64| [last.clone(), first.moved(by)];
+        return [pitch, -pitch].into_iter().map(|by| [moved(by), moved(by)]).collect();
+    }
+    let [before, behind] = [count - 1, 1].map(|by| ends(&spaces[(space + by) % count]));
+    let between = |[_, last_before]: &[Piece<'j, 'g>; 2], [first_behind, _]: &[Piece<'j, 'g>; 2]| {
+        [[last_before.clone(), first.clone()], [last.clone(), first_behind.clone()]]
+    };
+    vec![between(&before, &behind), between(&behind, &before)]
 }
 
 /// The body between borders, and how far its charts are off.
 fn between(
     solid: &Solid,
-    (pieces, borders, blank): (&[Piece<'_, '_>], &Borders<'_, '_>, &Blank),
+    (spaces, borders, blank): (&[Vec<Piece<'_, '_>>], &[Borders<'_, '_>], &Blank),
     session: Session<'_>,
 ) -> Result<(Result<Body, BodyFault>, f64), Failure> {
     let mut made = None;
     for count in COUNTS {
-        session.check()?;
-        let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces[k], (borders, blank), count));
-        let charts: Vec<Chart> = charts.collect::<Result<_, Failure>>()?;
-        let off = charts.iter().map(Chart::tail).fold(0.0, f64::max);
+        let charts_of = |(pieces, borders): (&Vec<Piece<'_, '_>>, &Borders<'_, '_>)| {
+            session.check()?;
+            let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces[k], (borders, blank), count));
+            charts.collect::<Result<Vec<Chart>, Failure>>()
+        };
+        let charts: Vec<Vec<Chart>> = spaces.iter().zip(borders).map(charts_of).collect::<Result<_, Failure>>()?;
+        let off = charts.iter().flatten().map(Chart::tail).fold(0.0, f64::max);
         made = Some((charts, off));
         if off <= EXACT {
             break;
         }
     }
     let (charts, off) = made.expect("some counts are tried");
-    Ok((Body::new(blank.clone(), solid.teeth, charts, borders.has_edge()), off))
+    let arrangement = blank::arrangement(solid);
+    Ok((Body::new(blank.clone(), (arrangement, solid.teeth), charts, borders[0].has_edge()), off))
 }
 
 /// The chart of a surface between its borders.
@@ -105,7 +151,7 @@ fn chart(
     let middle = value(count / 2, count / 2);
     let width = (ends[1][count / 2] - ends[0][count / 2]).abs();
     let far =
-        |point: &SurfacePoint| (point.unknowns[unknown] - middle).abs() / width + (along_of(blank, point) - 0.5).abs();
+        |point: &SurfacePoint| (point.unknowns[unknown] - middle).abs() / width + (piece.along_of(blank, point) - 0.5).abs();
     let points = piece.solved(piece.across(unknown, blank), (&targets, [count; 2]), far);
     all_solved(solid, piece, &points)?;
     Ok(Chart::through(positions(&points), [count; 2]))
@@ -121,8 +167,8 @@ fn at_tip(
     let targets: Vec<[f64; 2]> = shares.iter().map(|share| blank.tip(*share)).collect();
     let middle = targets[targets.len() / 2];
     let far = |point: &SurfacePoint| {
-        let [x, y, z] = point.position;
-        (z - middle[0]).hypot(x.hypot(y) - middle[1])
+        let [z, rho] = piece.arrangement.section(point.position);
+        (z - middle[0]).hypot(rho - middle[1])
     };
     let points = piece.solved(piece.section(), (&targets, [1, shares.len()]), far);
     all_solved(solid, piece, &points)?;

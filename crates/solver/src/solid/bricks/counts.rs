@@ -1,6 +1,7 @@
 //! How finely a tooth is cut into bricks.
 
-use crate::solid::body::{Body, Polar};
+use crate::solid::arrangement::Polar;
+use crate::solid::body::Body;
 
 /// Samples of a line across a chart by which its length is measured.
 const SAMPLES: usize = 1024;
@@ -40,7 +41,7 @@ impl Body {
     /// If there are none up a flank, or fewer than three from flank to flank.
     pub fn brick_counts(&self, [profile, along, thickness]: [usize; 3]) -> BrickCounts {
         assert!(profile > 0 && thickness > 2, "a brick up the flank, and three from flank to flank");
-        let last = self.charts.len() - 1;
+        let last = self.charts().len() - 1;
         let finer = profile as f64 / USUAL;
         let measured: Vec<(f64, f64)> = (0..=last).map(|k| length_and_turn(&middle_line(self, k))).collect();
         let size = 0.5 * (measured[0].0 + measured[last].0) / profile as f64;
@@ -64,17 +65,17 @@ impl Body {
     /// How wide the land of a tooth is where it is narrowest, mm: 0 where teeth end in an edge.
     pub fn least_land(&self) -> f64 {
         let along: Vec<f64> = (0..=LANDS).map(|k| k as f64 / LANDS as f64).collect();
-        let lines = self.lines(&vec![vec![0.0, 1.0]; self.charts.len()], &along);
-        let land = |line: &Vec<Polar>| {
-            let [z, rho, angle] = line[0];
-            polar_distance([z, rho, angle + self.pitch()], line[line.len() - 1])
+        let of_tooth = |tooth: usize| {
+            let [lines, next] = self.tooth_lines(tooth, &vec![vec![0.0, 1.0]; self.charts().len()], &along);
+            let land = |(line, next): (&Vec<Polar>, &Vec<Polar>)| self.arrangement.distance(next[0], line[line.len() - 1]);
+            lines.iter().zip(&next).map(land).fold(f64::INFINITY, f64::min)
         };
-        lines.iter().map(land).fold(f64::INFINITY, f64::min)
+        (0..self.distinct()).map(of_tooth).fold(f64::INFINITY, f64::min)
     }
 
     /// From the middle of the root to the rest of the outline, half-way along, mm.
     fn depth_below(&self) -> f64 {
-        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts.len()], &[0.5])[0];
+        let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &[0.5])[0];
         let [z, rho, _] = line[line.len() / 2];
         let [below_z, below_rho] = self.middle_below();
         (z - below_z).hypot(rho - below_rho)
@@ -158,7 +159,7 @@ pub(crate) fn even_shares(body: &Body, chart: usize, count: usize) -> Vec<f64> {
 
 fn middle_line(body: &Body, chart: usize) -> Vec<[f64; 3]> {
     let shares: Vec<f64> = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64).collect();
-    body.charts[chart].lattice(&shares, &[0.5])
+    body.charts()[chart].lattice(&shares, &[0.5])
 }
 
 /// How long a line is, mm, and by how much it turns, rad.
@@ -171,9 +172,4 @@ fn length_and_turn(line: &[[f64; 3]]) -> (f64, f64) {
 
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
-}
-
-/// The distance of two points about the axis, mm, where these are near to each other.
-pub(crate) fn polar_distance(a: Polar, b: Polar) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1]).hypot(0.5 * (a[1] + b[1]) * (a[2] - b[2]))
 }

@@ -4,7 +4,8 @@
 //! lies the core of the tooth down to a row of the fillet, below it the rim. Where core and rim part, five cells meet in one
 //! node; everywhere else inside there are four.
 
-use crate::solid::body::{Body, Polar};
+use crate::solid::arrangement::Polar;
+use crate::solid::body::Body;
 use crate::solid::bricks::BrickOrder;
 use crate::solid::bricks::counts::BrickCounts;
 use crate::solid::bricks::section::normals;
@@ -72,7 +73,7 @@ impl Layout {
     pub(crate) fn new(body: &Body, counts: &BrickCounts, order: BrickOrder) -> Layout {
         let steps = order.steps();
         let whole: usize = counts.charts.iter().sum();
-        assert!(counts.charts.len() == body.charts.len() && whole.is_multiple_of(2), "counts of this body's charts");
+        assert!(counts.charts.len() == body.charts().len() && whole.is_multiple_of(2), "counts of this body's charts");
         let profile = whole / 2;
         let depth = depth(body, counts, profile);
         let mut layout = Layout {
@@ -224,7 +225,7 @@ fn chart_of_row(counts: &BrickCounts, profile: usize) -> impl Fn(Hand, usize) ->
 fn depth(body: &Body, counts: &BrickCounts, profile: usize) -> usize {
     let stations = counts.stations(body, BrickOrder::First);
     let line: Vec<Polar> = body.lines(&stations.across, &[0.5]).remove(0);
-    let normals = normals(&line, body.middle_below());
+    let normals = normals(&line, body.middle_below(), body.arrangement());
     let turned = |row: usize| normals[row][1].max(normals[2 * profile - row][1]);
     (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1)
 }

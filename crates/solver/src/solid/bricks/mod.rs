@@ -15,7 +15,8 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::solid::body::{Body, Polar, position};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::{Body, shifted};
 use crate::solid::bricks::counts::{BrickCounts, refined};
 use crate::solid::bricks::layout::{Cell, CellSide, Layout};
 use crate::solid::bricks::section::Sections;
@@ -131,11 +132,15 @@ impl Body {
         assert!((1..=self.teeth() as usize).contains(&teeth), "between one tooth and all");
         let stations = counts.stations(self, order);
         let layout = Layout::new(self, counts, order);
-        let sections = Sections::new(self, &layout, counts, &stations);
-        let places: Vec<Vec<Polar>> = (0..stations.along.len()).into_par_iter().map(|a| sections.places(a)).collect();
-        let numbers = Numbers::new(&layout, stations.along.len(), (teeth, teeth == self.teeth() as usize));
-        let nodes = numbers.positions(&places, self.pitch());
-        let is_forward = is_forward(layout.cells[0], &places, order.steps());
+        let places = |tooth: usize| {
+            let sections = Sections::new((self, tooth), &layout, counts, &stations);
+            (0..stations.along.len()).into_par_iter().map(|a| sections.places(a)).collect::<Vec<Vec<Polar>>>()
+        };
+        let places: Vec<Vec<Vec<Polar>>> = (0..self.distinct().min(teeth)).map(places).collect();
+        let is_ring = teeth == self.teeth() as usize && self.arrangement.is_closed();
+        let numbers = Numbers::new(&layout, stations.along.len(), (teeth, is_ring));
+        let nodes = numbers.positions(self, &places);
+        let is_forward = is_forward(self.arrangement, layout.cells[0], &places[0], order.steps());
         let bricks = bricks_of(&layout, &numbers, (counts.along, is_forward), order);
         let faces = faces_of(self, &layout, counts, (teeth, numbers.is_ring), is_forward);
         BrickMesh { order, nodes, bricks, teeth, faces, deviation: skin::deviation(self, &stations, order) }
@@ -143,8 +148,9 @@ impl Body {
 }
 
 /// Whether the corners of a cell, then those of the next section, are in the order of a brick's.
-fn is_forward(cell: Cell, places: &[Vec<Polar>], steps: usize) -> bool {
-    let corner = |section: usize, k: usize| nalgebra::Vector3::from(position(places[section][cell.nodes[k]]));
+fn is_forward(arrangement: Arrangement, cell: Cell, places: &[Vec<Polar>], steps: usize) -> bool {
+    let corner =
+        |section: usize, k: usize| nalgebra::Vector3::from(arrangement.position(places[section][cell.nodes[k]]));
     let from = corner(0, 0);
     let [a, b, c] = [corner(0, 1), corner(0, 3), corner(steps, 0)].map(|to| to - from);
     a.cross(&b).dot(&c) > 0.0
@@ -196,17 +202,22 @@ impl<'l> Numbers<'l> {
         }
     }
 
-    fn positions(&self, places: &[Vec<Polar>], pitch: f64) -> Vec<[f64; 3]> {
-        let used: Vec<Polar> =
-            places.iter().flatten().zip(&self.own).filter(|(_, own)| own.is_some()).map(|(place, _)| *place).collect();
-        let turned = |[z, rho, angle]: Polar, tooth: usize| position([z, rho, angle + tooth as f64 * pitch]);
-        let mut nodes: Vec<[f64; 3]> = Vec::with_capacity(self.teeth * used.len() + self.last.len());
+    /// By the places of each tooth that differs from the first, and of that.
+    fn positions(&self, body: &Body, places: &[Vec<Vec<Polar>>]) -> Vec<[f64; 3]> {
+        let of = |tooth: usize| &places[tooth % places.len()];
+        let is_used = |own: &Option<u32>| own.is_some();
+        let used = |places: &Vec<Vec<Polar>>| -> Vec<Polar> {
+            places.iter().flatten().zip(&self.own).filter(|(_, own)| is_used(own)).map(|(place, _)| *place).collect()
+        };
+        let used: Vec<Vec<Polar>> = places.iter().map(used).collect();
+        let placed = |place: Polar, tooth: usize| body.arrangement.position(shifted(place, body.way_of(tooth)));
+        let mut nodes: Vec<[f64; 3]> = Vec::with_capacity(self.teeth * used[0].len() + self.last.len());
         for tooth in 0..self.teeth {
-            nodes.par_extend(used.par_iter().map(|place| turned(*place, tooth)));
+            nodes.par_extend(used[tooth % used.len()].par_iter().map(|place| placed(*place, tooth)));
         }
         if !self.is_ring {
-            let last = self.last.keys().map(|(section, node)| places[*section][*node]);
-            nodes.extend(last.map(|place| turned(place, self.teeth - 1)));
+            let last = self.last.keys().map(|(section, node)| of(self.teeth - 1)[*section][*node]);
+            nodes.extend(last.map(|place| placed(place, self.teeth - 1)));
         }
         nodes
     }

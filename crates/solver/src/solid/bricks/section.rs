@@ -5,9 +5,10 @@
 //! weights keep the layers' thicknesses.
 
 use crate::contact::OutlineSegment;
-use crate::solid::body::{Body, Polar};
+use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::body::Body;
 use crate::solid::bricks::Stations;
-use crate::solid::bricks::counts::{BrickCounts, polar_distance};
+use crate::solid::bricks::counts::BrickCounts;
 use crate::solid::bricks::layout::{Hand, Layout};
 
 /// Laplace steps: more move no node by a tenth of its cell.
@@ -15,25 +16,30 @@ const LAPLACE_STEPS: usize = 24;
 /// Of the way from the root to the rest of the outline the band takes so much at the most.
 const MOST_OF_RIM: f64 = 0.35;
 
-/// All sections of a tooth.
+/// All sections of a tooth, one of those that [`Body::distinct`] counts.
 pub(crate) struct Sections<'b> {
     body: &'b Body,
     layout: &'b Layout,
-    /// Lines across a space.
-    lines: Vec<Vec<Polar>>,
+    /// Lines across the space before it and the one behind it.
+    lines: [Vec<Vec<Polar>>; 2],
     below: Vec<[f64; 2]>,
     band_share: f64,
     band: Vec<f64>,
     rim: Vec<f64>,
-    /// Of the lower row the shares of the pitch.
+    /// Of the lower row the shares of the way to the next space.
     around: Vec<f64>,
     /// Nodes that Laplace steps move, each with its neighbours.
     free: Vec<(usize, [usize; 4])>,
 }
 
 impl<'b> Sections<'b> {
-    pub(crate) fn new(body: &'b Body, layout: &'b Layout, counts: &BrickCounts, stations: &Stations) -> Sections<'b> {
-        let lines = body.lines(&stations.across, &stations.along);
+    pub(crate) fn new(
+        (body, tooth): (&'b Body, usize),
+        layout: &'b Layout,
+        counts: &BrickCounts,
+        stations: &Stations,
+    ) -> Sections<'b> {
+        let lines = body.tooth_lines(tooth, &stations.across, &stations.along);
         let mut sections = Sections {
             body,
             layout,
@@ -45,15 +51,15 @@ impl<'b> Sections<'b> {
             around: Vec::new(),
             free: free(layout),
         };
-        let middle = sections.lines.len() / 2;
+        let middle = stations.along.len() / 2;
         let mut places = vec![[0.0; 3]; layout.nodes];
         sections.place_bands(middle, &mut places);
         sections.place_core(&mut places);
         let top: Vec<Polar> = (0..=layout.width()).map(|column| places[layout.in_rim(0, column)]).collect();
-        sections.around = mixed_shares(&top);
+        sections.around = mixed_shares(&top, body.arrangement);
         let [z, rho, _] = top[0];
         let way = (z - sections.below[middle][0]).hypot(rho - sections.below[middle][1]);
-        let whole: f64 = top.windows(2).map(|pair| polar_distance(pair[0], pair[1])).sum();
+        let whole: f64 = top.windows(2).map(|pair| body.arrangement.distance(pair[0], pair[1])).sum();
         let size = whole / layout.width() as f64 * layout.steps as f64;
         sections.rim = counts.rim_shares(size / way, layout.steps);
         sections
@@ -65,17 +71,18 @@ impl<'b> Sections<'b> {
         self.place_bands(section, &mut places);
         self.place_core(&mut places);
         self.place_rim(section, &mut places);
-        smooth(&self.free, &mut places);
+        smooth(&self.free, self.body.arrangement, &mut places);
         self.bring_to_end(section, &mut places);
         places
     }
 
     fn place_bands(&self, section: usize, places: &mut [Polar]) {
-        let (layout, line, below) = (self.layout, &self.lines[section], self.below[section]);
-        let (last, pitch) = (line.len() - 1, self.body.pitch());
-        let normals = normals(line, below);
+        let (layout, below) = (self.layout, self.below[section]);
+        let [line, next] = self.lines.each_ref().map(|lines| &lines[section]);
+        let (last, arrangement) = (line.len() - 1, self.body.arrangement);
+        let into = [line, next].map(|line| normals(line, below, arrangement));
         let down = direction(line[0], below);
-        let half = |row: usize| 0.5 * polar_distance(line[last - row], turned(line[row], pitch));
+        let half = |row: usize| 0.5 * arrangement.distance(line[last - row], next[row]);
         let root = line[last / 2];
         let deepest = MOST_OF_RIM * (root[0] - below[0]).hypot(root[1] - below[1]);
         for row in 0..=layout.profile {
@@ -83,13 +90,15 @@ impl<'b> Sections<'b> {
             // at the tip along its land
             let turn = (row as f64 / layout.depth as f64).min(1.0);
             for (hand, at, inward) in [(Hand::Low, last - row, 1.0), (Hand::High, row, -1.0)] {
-                let place = if hand == Hand::Low { line[at] } else { turned(line[at], pitch) };
-                let [x, y] = unit([(1.0 - turn) * inward + turn * normals[at][0], turn * normals[at][1]]);
+                let (place, normal) = if hand == Hand::Low { (line[at], into[0][at]) } else { (next[at], into[1][at]) };
+                let [x, y] = unit([(1.0 - turn) * inward + turn * normal[0], turn * normal[1]]);
                 for (layer, share) in self.band.iter().enumerate() {
                     let [x, y] = [x, y].map(|part| part * share * thickness);
-                    let [z, rho, angle] = place;
-                    places[layout.in_band(hand, row, layer)] =
-                        if layer == 0 { place } else { [z + y * down[0], rho + y * down[1], angle + x / rho] };
+                    let [z, rho, way] = place;
+                    places[layout.in_band(hand, row, layer)] = match layer {
+                        0 => place,
+                        _ => [z + y * down[0], rho + y * down[1], way + x / arrangement.arc(rho)],
+                    };
                 }
             }
         }
@@ -106,11 +115,11 @@ impl<'b> Sections<'b> {
     }
 
     fn place_rim(&self, section: usize, places: &mut [Polar]) {
-        let (layout, line, below) = (self.layout, &self.lines[section], self.below[section]);
-        let start = line[(line.len() - 1) / 2][2];
+        let (layout, below) = (self.layout, self.below[section]);
+        let [start, end] = self.lines.each_ref().map(|lines| lines[section][(lines[section].len() - 1) / 2][2]);
         for (column, around) in self.around.iter().enumerate() {
             let from = places[layout.in_rim(0, column)];
-            let to = [below[0], below[1], start + around * self.body.pitch()];
+            let to = [below[0], below[1], start + around * (end - start)];
             for (row, share) in self.rim.iter().enumerate().skip(1) {
                 places[layout.in_rim(row, column)] = between(from, to, *share);
             }
@@ -122,7 +131,7 @@ impl<'b> Sections<'b> {
         let [begin, _, end] = self.body.blank().bounds();
         let segment: &OutlineSegment = match section {
             0 => begin,
-            last if last + 1 == self.lines.len() => end,
+            last if last + 1 == self.below.len() => end,
             _ => return,
         };
         if segment.center.is_some() {
@@ -135,9 +144,9 @@ impl<'b> Sections<'b> {
 }
 
 /// Of the places along a row the shares of the way, half by length and half evenly.
-fn mixed_shares(row: &[Polar]) -> Vec<f64> {
+fn mixed_shares(row: &[Polar], arrangement: Arrangement) -> Vec<f64> {
     let mut sums = vec![0.0];
-    row.windows(2).for_each(|pair| sums.push(sums[sums.len() - 1] + polar_distance(pair[0], pair[1])));
+    row.windows(2).for_each(|pair| sums.push(sums[sums.len() - 1] + arrangement.distance(pair[0], pair[1])));
     let (whole, last) = (sums[sums.len() - 1], row.len() - 1);
     let share =
         |(k, sum): (usize, &f64)| if k == last { 1.0 } else { 0.5 * sum / whole + 0.5 * k as f64 / last as f64 };
@@ -145,10 +154,10 @@ fn mixed_shares(row: &[Polar]) -> Vec<f64> {
 }
 
 /// Unit normals into the material along a line across a space, `[along the circle, towards a place below]`.
-pub(crate) fn normals(line: &[Polar], below: [f64; 2]) -> Vec<[f64; 2]> {
+pub(crate) fn normals(line: &[Polar], below: [f64; 2], arrangement: Arrangement) -> Vec<[f64; 2]> {
     let down = direction(line[0], below);
     let step = |from: Polar, to: Polar| {
-        let x = 0.5 * (from[1] + to[1]) * (to[2] - from[2]);
+        let x = arrangement.arc(0.5 * (from[1] + to[1])) * (to[2] - from[2]);
         unit([x, (to[0] - from[0]) * down[0] + (to[1] - from[1]) * down[1]])
     };
     let steps: Vec<[f64; 2]> = line.windows(2).map(|pair| step(pair[0], pair[1])).collect();
@@ -169,10 +178,6 @@ fn direction(place: Polar, below: [f64; 2]) -> [f64; 2] {
 fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     let size = x.hypot(y);
     if size == 0.0 { [0.0, 0.0] } else { [x / size, y / size] }
-}
-
-fn turned([z, rho, angle]: Polar, by: f64) -> Polar {
-    [z, rho, angle + by]
 }
 
 fn between(from: Polar, to: Polar, share: f64) -> Polar {
@@ -205,9 +210,9 @@ fn free(layout: &Layout) -> Vec<(usize, [usize; 4])> {
 }
 
 /// Each node to the mean of its neighbours, the nearer ones counting more.
-fn smooth(free: &[(usize, [usize; 4])], places: &mut [Polar]) {
+fn smooth(free: &[(usize, [usize; 4])], arrangement: Arrangement, places: &mut [Polar]) {
     let weights = |(node, neighbours): &(usize, [usize; 4])| {
-        let nearness = neighbours.map(|other| 1.0 / polar_distance(places[*node], places[other]));
+        let nearness = neighbours.map(|other| 1.0 / arrangement.distance(places[*node], places[other]));
         let sum: f64 = nearness.iter().sum();
         nearness.map(|of| of / sum)
     };

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::solid::body::Body;
 use crate::solid::bricks::{BrickOrder, Stations};
+use crate::solid::chart::Chart;
 
 /// Places of a face where it is held against its chart, from 0 to 1 both ways: the middle, where straight edges are off the most, and
 /// those where parabolas are.
@@ -12,10 +13,10 @@ const TRIED: [[usize; 2]; 5] = [[2, 2], [1, 1], [3, 1], [1, 3], [3, 3]];
 /// The largest distance of faces from their charts, along the normal, mm.
 pub(crate) fn deviation(body: &Body, stations: &Stations, order: BrickOrder) -> f64 {
     let along = quartered(&stations.along, order);
-    let of_chart = |k: usize| {
+    let of_chart = |(k, chart): (usize, &Chart)| {
         let across = quartered(&stations.across[k], order);
         let columns = along.len();
-        let exact = body.charts[k].lattice(&across, &along);
+        let exact = chart.lattice(&across, &along);
         let at = |i: usize, j: usize| Vector3::from(exact[i * columns + j]);
         let mut most: f64 = 0.0;
         for i in (0..across.len() - 1).step_by(4) {
@@ -31,7 +32,7 @@ pub(crate) fn deviation(body: &Body, stations: &Stations, order: BrickOrder) -> 
         }
         most
     };
-    (0..body.charts.len()).map(of_chart).fold(0.0, f64::max)
+    body.spaces().iter().flat_map(|charts| charts.iter().enumerate()).map(of_chart).fold(0.0, f64::max)
 }
 
 /// Stations with three more between any two corners, at the quarters of what the shape functions make of the shares.
