@@ -104,6 +104,40 @@ fn opencascade_finds_one_closed_body() {
     }
 }
 
+/// Racks, gears whose spaces differ, and one tooth and one space of straight, helical and spiral ones: each is one solid without open edges, as
+/// large as flank says. All teeth of a gear are alike, and so are all spaces: each part has its share of the volume.
+#[test]
+fn opencascade_finds_one_closed_body_of_each_part() {
+    let out = folder("step-parts");
+    let Some(python) = reader() else { return };
+    let to = out.to_str().expect("a plain path");
+    let parts = ["gear", "tooth", "space"];
+    let bodies = ["rack_body", "helical_rack_body", "spur_gear_body", "helical_gear_body"];
+    let bodies = bodies.into_iter().flat_map(|name| parts.map(|part| ("bodies", name, part)));
+    let bevel = ["tooth", "space"].map(|part| ("bevel", "pinion_19x62", part));
+    for (folder, name, part) in bodies.chain(bevel).chain([("bodies", "elliptical_gear_body", "gear")]) {
+        let spec = &format!("specs/{folder}/{name}.chain");
+        let run = flank(&["solve", spec, "--solid", part, "--step", "--out", to, "--json"]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let body = &built["solids"][0];
+        let run = Command::new(&python)
+            .arg(top().join("crates/cli/tests/readers/solid.py"))
+            .arg(out.join(format!("{name}.step")))
+            .output()
+            .expect("it has just been run");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let count = |key: &str| found[key].as_i64().expect("a count");
+        assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{name} {part}: {found}");
+        let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
+        let share = if part == "gear" { 1.0 } else { number(body, "teeth") };
+        let off = number(&found, "volume") * share / number(body, "volume_mm3") - 1.0;
+        // OpenCASCADE itself integrates to some 1e-7
+        assert!(off.abs() < 3e-7, "{name} {part} {off:e}: {found}");
+    }
+}
+
 #[test]
 fn the_head_and_the_report_say_how_far_the_faces_are_off() {
     let out = folder("step-told");

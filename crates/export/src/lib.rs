@@ -99,8 +99,8 @@ pub use solid::{
     BodyMesh, BrickBody, BrickSet, PlacedFrame, write_body_3mf, write_body_obj, write_body_stl, write_inp, write_vtu,
 };
 pub use step::{
-    Deviation, Face, GearBody, GearRun, GearSide, GearStrip, PlacedBody, TurnedSegment, spline_deviation, write_step, write_step_assembly,
-    write_step_body,
+    Deviation, Face, GearBody, GearRun, GearSide, GearStrip, PlacedBody, TurnedSegment, spline_deviation, write_step,
+    write_step_assembly, write_step_body,
 };
 pub use text::number::{degrees, fixed};
 

@@ -143,7 +143,8 @@ pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
 pub use solve::body::mounted::{MountedSolid, Mounting};
 pub use solve::body::result::{
-    BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers, ThicknessNumbers,
+    BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers,
+    ThicknessNumbers,
 };
 pub use solve::body::solid;
 pub use solve::result::{

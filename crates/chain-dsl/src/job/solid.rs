@@ -206,14 +206,10 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// The outline of a blank: a closed profile of the axial section, the material on its left.
-    fn outline(
-        &self,
-        context: &mut Context<'g>,
-        written: &Expression,
-        is_turned: bool,
-    ) -> Option<Vec<OutlineSegment>> {
+    fn outline(&self, context: &mut Context<'g>, written: &Expression, is_turned: bool) -> Option<Vec<OutlineSegment>> {
         let ExpressionKind::Path(path) = &written.kind else {
-            let message = "a blank is a profile of the job: points `[z, rho]` of its section, or `[z, x]` of that of a bar";
+            let message =
+                "a blank is a profile of the job: points `[z, rho]` of its section, or `[z, x]` of that of a bar";
             context.report(Diagnostic::new(Code::WrongKind, written.span, message).help(EXAMPLE));
             return None;
         };
@@ -301,11 +297,7 @@ fn missing<T>(context: &mut Context<'_>, call: &ast::Call, is_turned: bool) -> O
 }
 
 /// A segment with numbers; nothing where one has no value yet, or what cannot be an edge of a blank has been reported.
-fn outline_segment<'g>(
-    context: &mut Context<'g>,
-    segment: &Segment<'g>,
-    is_turned: bool,
-) -> Option<OutlineSegment> {
+fn outline_segment<'g>(context: &mut Context<'g>, segment: &Segment<'g>, is_turned: bool) -> Option<OutlineSegment> {
     let half = (segment.from + segment.to) * 0.5;
     let points = [segment.from, half, segment.to].map(|run| numbers(context, segment.point(run)));
     let [from, middle, to] = [points[0]?, points[1]?, points[2]?];

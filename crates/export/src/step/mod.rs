@@ -10,7 +10,10 @@ mod spline;
 use std::io::Write;
 
 pub use face::{Deviation, Face};
-pub use solid::{GearBody, GearRun, GearSide, GearStrip, PlacedBody, TurnedSegment, spline_deviation, write_step_assembly, write_step_body};
+pub use solid::{
+    GearBody, GearRun, GearSide, GearStrip, PlacedBody, TurnedSegment, spline_deviation, write_step_assembly,
+    write_step_body,
+};
 
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;

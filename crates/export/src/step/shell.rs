@@ -86,7 +86,12 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
         Ok(Edge(self.part.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)"))?))
     }
 
-    pub(super) fn spline_edge(&mut self, vertices: [usize; 2], poles: &[usize], of: &Direction) -> Result<Edge, WriteError> {
+    pub(super) fn spline_edge(
+        &mut self,
+        vertices: [usize; 2],
+        poles: &[usize],
+        of: &Direction,
+    ) -> Result<Edge, WriteError> {
         let (counts, values) = knots(of);
         let curve = format!(
             "B_SPLINE_CURVE_WITH_KNOTS('',{},{},.UNSPECIFIED.,.F.,.F.,{counts},{values},.UNSPECIFIED.)",
@@ -149,7 +154,8 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
             for (end, column) in [0, columns - 1].into_iter().enumerate() {
                 both[end] = match self.surface_of(strip) {
                     Some((surface, _)) => {
-                        let line: Vec<usize> = self.poles[strip].iter().skip(column).step_by(columns).copied().collect();
+                        let line: Vec<usize> =
+                            self.poles[strip].iter().skip(column).step_by(columns).copied().collect();
                         let direction = self.splines[surface].directions[0].clone();
                         self.spline_edge(ends[end], &line, &direction)?
                     }
@@ -202,7 +208,11 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
             };
             let [at_begin, at_end] = self.columns[strip];
             let [before, behind] = [self.rows[strip], self.rows[strip + 1]].map(|row| row.edge);
-            faces.push(self.face(&name, &[vec![(before, true), (at_end, true), (behind, false), (at_begin, false)]], surface)?);
+            faces.push(self.face(
+                &name,
+                &[vec![(before, true), (at_end, true), (behind, false), (at_begin, false)]],
+                surface,
+            )?);
         }
         if let Some(sides) = &self.body.sides {
             faces.extend(self.cut_faces(sides)?);

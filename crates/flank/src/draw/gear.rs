@@ -69,7 +69,8 @@ fn facts(shape: &Shape) -> Vec<(String, String)> {
     if !body.arrangement().is_closed() {
         let [tip, root] = body.tip_and_root();
         let (depth, pitch) = ((tip - root).abs(), body.pitch());
-        let lengths = [("pitch", pitch), ("depth of the teeth", depth), ("length of the tip", body.blank().bounds()[1].length())];
+        let lengths =
+            [("pitch", pitch), ("depth of the teeth", depth), ("length of the tip", body.blank().bounds()[1].length())];
         facts.extend(lengths.map(|(name, value)| fact(name, format!("{} mm", fixed(value, 3)))));
         return facts;
     }

@@ -93,7 +93,8 @@ impl Body {
         let (least, most): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) = (f64::min, f64::max);
         let (deeper, higher) = if self.is_external() { (least, most) } else { (most, least) };
         let points = self.spaces.iter().map(|charts| charts.iter().flat_map(|chart| chart.lattice(&shares, &[0.5])));
-        let depths = points.map(|points| points.map(|point| self.depth(self.arrangement.place(point))).collect::<Vec<f64>>());
+        let depths =
+            points.map(|points| points.map(|point| self.depth(self.arrangement.place(point))).collect::<Vec<f64>>());
         let ends = depths.map(|depths| [depths[0], depths.into_iter().reduce(deeper).unwrap_or_default()]);
         ends.reduce(|a, b| [higher(a[0], b[0]), deeper(a[1], b[1])]).unwrap_or_default()
     }
@@ -101,13 +102,15 @@ impl Body {
     /// The distance from the axis (of a face gear the z) at which both flanks end towards the root, half-way along, mm.
     pub fn form(&self) -> [f64; 2] {
         let [low, high] = self.flanks();
-        [(low, 1.0), (high, 0.0)].map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
+        [(low, 1.0), (high, 0.0)]
+            .map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
     }
 
     /// The charts that are the flanks: on each side the deepest one.
     fn flanks(&self) -> [usize; 2] {
         let depth = |k: &usize| {
-            let [from, to] = [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[*k].at([share, 0.5]))));
+            let [from, to] =
+                [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[*k].at([share, 0.5]))));
             (to - from).abs()
         };
         let count = self.charts().len();

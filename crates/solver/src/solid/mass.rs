@@ -82,7 +82,12 @@ impl Body {
                 }
             }
             // of the edge before the space and of the one behind it
-            for (wall, near, sense) in walls.iter().flatten().zip([lines[j][0][2], next[j][0][2]]).map(|((wall, sense), near)| (wall, near, sense)) {
+            for (wall, near, sense) in walls
+                .iter()
+                .flatten()
+                .zip([lines[j][0][2], next[j][0][2]])
+                .map(|((wall, sense), near)| (wall, near, sense))
+            {
                 for (across, by_across) in &nodes {
                     let [at, by_u, by_w] = wall.frame([*across, *along]);
                     let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
@@ -234,7 +239,9 @@ impl Body {
 
     /// The area of what a segment passes over, for a unit of the way along the spaces.
     fn strip_area(&self, segment: &OutlineSegment) -> f64 {
-        along(segment).map(|([_, rho], [by_z, by_rho], weight)| weight * self.arrangement.arc(rho) * by_z.hypot(by_rho)).sum()
+        along(segment)
+            .map(|([_, rho], [by_z, by_rho], weight)| weight * self.arrangement.arc(rho) * by_z.hypot(by_rho))
+            .sum()
     }
 }
 

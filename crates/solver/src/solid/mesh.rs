@@ -60,7 +60,9 @@ impl Cells {
         let next: Vec<(usize, usize)> =
             (0..=layout.rim).map(|row| (layout.in_rim(row, last), layout.in_rim(row, 0))).collect();
         let number = |tooth: usize, node: usize| match next.iter().find(|(far, _)| *far == node) {
-            Some((_, near)) if (part == BodyPart::Gear && is_closed) || (part != BodyPart::Tooth && tooth + 1 < teeth) => {
+            Some((_, near))
+                if (part == BodyPart::Gear && is_closed) || (part != BodyPart::Tooth && tooth + 1 < teeth) =>
+            {
                 (tooth + 1) % teeth * nodes + near
             }
             _ => tooth * nodes + node,
@@ -118,7 +120,8 @@ impl Body {
     pub fn mesh(&self, part: BodyPart, fineness: &Fineness) -> ClosedMesh {
         let layout = Layout::new(fineness);
         let cells = Cells::new(self, part, &layout);
-        let teeth: Vec<Tooth> = (0..self.distinct()).map(|tooth| Tooth::new(self, tooth, (&layout, fineness))).collect();
+        let teeth: Vec<Tooth> =
+            (0..self.distinct()).map(|tooth| Tooth::new(self, tooth, (&layout, fineness))).collect();
         let mut surface = Surface::new(self, (&layout, &cells), teeth);
         for cell in &cells.cells {
             surface.quad(cell.map(|node| (node, fineness.along)));

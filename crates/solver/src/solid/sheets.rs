@@ -58,7 +58,8 @@ impl Body {
             let (across, along) = Body::shares_of(fineness);
             self.tooth_lines(kind, &across, &along)
         };
-        let kinds: Vec<usize> = (0..self.distinct()).filter(|of| numbers.iter().any(|tooth| kind(*tooth) == *of)).collect();
+        let kinds: Vec<usize> =
+            (0..self.distinct()).filter(|of| numbers.iter().any(|tooth| kind(*tooth) == *of)).collect();
         let lines: Vec<[Vec<Vec<Polar>>; 2]> = kinds.iter().map(|of| lines(*of)).collect();
         let sections: Vec<Section<'_>> = lines.iter().map(|lines| Section::new(self, fineness, lines)).collect();
         let pieces: Vec<Vec<Piece>> = sections.iter().map(Section::pieces).collect();

@@ -392,7 +392,8 @@ impl Analysis {
                 list.words(&["inside", "outside", "towards", "where"], CompletionKind::Keyword, "side of the steel", 0)
             }
             ("surface" | "solid", "=") => {
-                let ways: &[&str] = if word == "solid" { &["turned", "extruded"] } else { &["envelope", "sweep", "move"] };
+                let ways: &[&str] =
+                    if word == "solid" { &["turned", "extruded"] } else { &["envelope", "sweep", "move"] };
                 for name in ways {
                     let detail = function_about(name).map_or("", |(signature, _)| signature);
                     list.add_text(name, CompletionKind::Function, detail, format!("{name}("), 0);

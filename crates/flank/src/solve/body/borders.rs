@@ -188,11 +188,16 @@ fn nearest(lines: &[Vec<EndLine>; 2]) -> Option<([(usize, f64); 2], f64)> {
     pairs.map(|(a, b)| ([(a.unknown, a.value), (b.unknown, b.value)], gap(a, b))).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The line on which both are at an end of what their tool, or a motion, runs through.
+/// The line on which both are at an end of what their tool, or else a motion, runs through.
 fn ends_in_one_line(pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Option<Shared> {
-    let lines =
-        pieces.map(|piece| [EndsOf::Tool, EndsOf::Motions].map(|whose| piece.end_lines(whose, blank, &ALONG)).concat());
-    nearest(&lines).filter(|(_, gap)| *gap <= SAME_LINE).map(|(ends, _)| Shared::Ends(ends))
+    let of_tool = pieces.map(|piece| piece.end_lines(EndsOf::Tool, blank, &ALONG));
+    let same = |lines: &[Vec<EndLine>; 2]| nearest(lines).filter(|(_, gap)| *gap <= SAME_LINE);
+    let shared = same(&of_tool).or_else(|| {
+        let [a, b] = pieces.map(|piece| piece.end_lines(EndsOf::Motions, blank, &ALONG));
+        let [first, second] = of_tool;
+        same(&[[first, a].concat(), [second, b].concat()])
+    });
+    shared.map(|(ends, _)| Shared::Ends(ends))
 }
 
 /// An end of one that lies within the other, as that of a flank lies on what the corner of its tool sweeps.
@@ -254,9 +259,9 @@ fn meeting_across(pieces: [&Piece<'_, '_>; 2], blank: &Blank, along: &[f64]) -> 
     let value = |point: &SurfacePoint| point.unknowns[across];
     let at = |share: f64, starts: &[Vec<f64>]| {
         let near: Vec<&SurfacePoint> = first.known.iter().collect();
-        let nearest = near
-            .iter()
-            .min_by(|a, b| (first.along_of(blank, a) - share).abs().total_cmp(&(first.along_of(blank, b) - share).abs()))?;
+        let nearest = near.iter().min_by(|a, b| {
+            (first.along_of(blank, a) - share).abs().total_cmp(&(first.along_of(blank, b) - share).abs())
+        })?;
         let line = Line { from: [value(nearest), share], direction: [1.0, 0.0] };
         let known = if starts.is_empty() { known_pairs(pieces, blank, share) } else { starts.to_vec() };
         let found = intersection.on_line(line, &known, &near);

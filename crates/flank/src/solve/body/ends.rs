@@ -33,8 +33,7 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let between = |from: usize, to: usize| {
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
     };
-    let off =
-        |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0])).fold(f64::INFINITY, f64::min);
+    let off = |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0])).fold(f64::INFINITY, f64::min);
     let (there, back) = (between(a, b), between(b, a));
     let (begin, tip, end) = if off(&there) <= off(&back) { (a, there, b) } else { (b, back, a) };
     let [tip] = tip[..] else {

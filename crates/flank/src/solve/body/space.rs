@@ -59,9 +59,10 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         (Ok(body), off) => (body, off),
         (Err(fault), _) => {
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
-            let edges = borders.into_iter().zip(&beside).map(|(borders, beside)| {
-                borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed)
-            });
+            let edges = borders
+                .into_iter()
+                .zip(&beside)
+                .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
             let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault))?;
             let (body, off) = between(solid, (&spaces, &borders, &blank), session)?;
             (body.map_err(faulty)?, off)
@@ -150,8 +151,9 @@ fn chart(
         (0..count * count).map(|at| [value(at / count, at % count), shares[at % count]]).collect();
     let middle = value(count / 2, count / 2);
     let width = (ends[1][count / 2] - ends[0][count / 2]).abs();
-    let far =
-        |point: &SurfacePoint| (point.unknowns[unknown] - middle).abs() / width + (piece.along_of(blank, point) - 0.5).abs();
+    let far = |point: &SurfacePoint| {
+        (point.unknowns[unknown] - middle).abs() / width + (piece.along_of(blank, point) - 0.5).abs()
+    };
     let points = piece.solved(piece.across(unknown, blank), (&targets, [count; 2]), far);
     all_solved(solid, piece, &points)?;
     Ok(Chart::through(positions(&points), [count; 2]))

@@ -67,7 +67,8 @@ impl Body {
         let along: Vec<f64> = (0..=LANDS).map(|k| k as f64 / LANDS as f64).collect();
         let of_tooth = |tooth: usize| {
             let [lines, next] = self.tooth_lines(tooth, &vec![vec![0.0, 1.0]; self.charts().len()], &along);
-            let land = |(line, next): (&Vec<Polar>, &Vec<Polar>)| self.arrangement.distance(next[0], line[line.len() - 1]);
+            let land =
+                |(line, next): (&Vec<Polar>, &Vec<Polar>)| self.arrangement.distance(next[0], line[line.len() - 1]);
             lines.iter().zip(&next).map(land).fold(f64::INFINITY, f64::min)
         };
         (0..self.distinct()).map(of_tooth).fold(f64::INFINITY, f64::min)

@@ -129,7 +129,11 @@ fn strips(names: &[String], body: &Body, part: BodyPart) -> Vec<Strip> {
             false => (count - middle..count).map(|k| (space, k, [0.0, 1.0])).collect(),
         };
         if !count.is_multiple_of(2) {
-            if is_first { charts.push((space, middle, [0.0, 0.5])) } else { charts.insert(0, (space, middle, [0.5, 1.0])) }
+            if is_first {
+                charts.push((space, middle, [0.0, 0.5]))
+            } else {
+                charts.insert(0, (space, middle, [0.5, 1.0]))
+            }
         }
         charts.into_iter().map(|(space, k, across)| chart(space, k, across)).collect::<Vec<Strip>>()
     };
@@ -165,11 +169,9 @@ fn strips(names: &[String], body: &Body, part: BodyPart) -> Vec<Strip> {
 /// The lines at which a part is cut off from its neighbours.
 fn cut(strips: &[Strip], body: &Body) -> [Cut; 2] {
     let line = |strip: &Strip, k: usize| match strip {
-        Strip::Chart(patch, spaces) => Cut {
-            chart: patch.chart.clone(),
-            across: patch.across[k],
-            by: f64::from(*spaces) * body.pitch(),
-        },
+        Strip::Chart(patch, spaces) => {
+            Cut { chart: patch.chart.clone(), across: patch.across[k], by: f64::from(*spaces) * body.pitch() }
+        }
         Strip::Land => unreachable!("a part begins and ends with parts of charts"),
     };
     [line(&strips[0], 0), line(&strips[strips.len() - 1], 1)]
