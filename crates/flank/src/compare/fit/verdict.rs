@@ -122,10 +122,14 @@ fn reasons(
     let unused = main.fit.directions.iter().filter(|of| !of.is_used).count();
     let all = main.fit.directions.len();
     if bound.is_empty() {
+        let more = if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" };
+        let finer = match unused {
+            0 => String::new(),
+            _ => format!("; option `resolution` below {} um takes in more of them", request.resolution * 1e3),
+        };
         reasons.push(format!(
-            "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{}",
-            all - unused,
-            if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" }
+            "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{more}{finer}",
+            all - unused
         ));
     }
     reasons.extend(fitting.reversed(request, main));
