@@ -104,7 +104,7 @@ fn opencascade_finds_one_closed_body() {
     }
 }
 
-/// Racks, gears whose spaces differ, and one tooth and one space of straight, helical and spiral ones: each is one solid without open edges, as
+/// Racks, and one tooth and one space of straight, helical and spiral ones: each is one solid without open edges, as
 /// large as flank says. All teeth of a gear are alike, and so are all spaces: each part has its share of the volume.
 #[test]
 fn opencascade_finds_one_closed_body_of_each_part() {
@@ -115,7 +115,7 @@ fn opencascade_finds_one_closed_body_of_each_part() {
     let bodies = ["rack_body", "helical_rack_body", "spur_gear_body", "helical_gear_body"];
     let bodies = bodies.into_iter().flat_map(|name| parts.map(|part| ("bodies", name, part)));
     let bevel = ["tooth", "space"].map(|part| ("bevel", "pinion_19x62", part));
-    for (folder, name, part) in bodies.chain(bevel).chain([("bodies", "elliptical_gear_body", "gear")]) {
+    for (folder, name, part) in bodies.chain(bevel) {
         let spec = &format!("specs/{folder}/{name}.chain");
         let run = flank(&["solve", spec, "--solid", part, "--step", "--out", to, "--json"]);
         assert!(run.status.success(), "{}", text(&run.stderr));
