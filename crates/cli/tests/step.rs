@@ -211,7 +211,4 @@ fn no_step_file_of_a_body_is_less_than_was_asked_for() {
     assert_eq!(run.status.code(), Some(3));
     assert!(text(&run.stderr).contains("no STEP file of it is written"), "{}", text(&run.stderr));
     assert!(!out.join("pinion_19x62.step").exists());
-    let run = flank(&["solve", spec, "--solid", "tooth", "--step", "--out", to]);
-    assert_eq!(run.status.code(), Some(2));
-    assert!(text(&run.stderr).contains("say `gear` for --solid"), "{}", text(&run.stderr));
 }
