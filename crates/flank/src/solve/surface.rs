@@ -40,11 +40,14 @@ pub(crate) fn problem<'g>(
         .expect("a job without errors leaves nothing unbound")
 }
 
-/// Such points while settings are open; `bindings` are the values of all other parameters.
+/// Settings that stay open with their first numbers, and the values of all other parameters.
+type OpenSettings<'a, 'g> = (&'a [(Expr<'g>, f64)], &'a [(Expr<'g>, Expr<'g>)]);
+
+/// Such points while settings are open.
 pub(crate) fn family<'g>(
     surface: &GeneratedSurface<'g>,
     coordinates: [Expr<'g>; 2],
-    (settings, bindings): (&[(Expr<'g>, f64)], &[(Expr<'g>, Expr<'g>)]),
+    (settings, bindings): OpenSettings<'_, 'g>,
     session: Session,
 ) -> SurfaceFamily {
     let bound = BoundSurface::new(&surface.surface, ranges(surface), bindings);

@@ -121,7 +121,8 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
             let is_even = body.arrangement().is_closed() && body.distinct() == 1;
             let is_of_all = matches!(number, SolidNumber::Volume | SolidNumber::Area | SolidNumber::Thickness(_));
             let is_extreme = matches!(number, SolidNumber::TipDiameter | SolidNumber::RootDiameter);
-            if !is_even && !is_of_all && !(is_extreme && body.arrangement().is_closed()) {
+            let is_told = is_even || is_of_all || is_extreme && body.arrangement().is_closed();
+            if !is_told {
                 return Err(format!("{name} has no such number: it is no gear with equal teeth about an axis"));
             }
             Ok(match number {

@@ -90,8 +90,8 @@ impl Body {
     /// the extremes of all spaces where these differ.
     pub fn tip_and_root(&self) -> [f64; 2] {
         let shares: Vec<f64> = (0..=64).map(|k| f64::from(k) / 64.0).collect();
-        let (least, most): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) = (f64::min, f64::max);
-        let (deeper, higher) = if self.is_external() { (least, most) } else { (most, least) };
+        let extremes: [fn(f64, f64) -> f64; 2] = [f64::min, f64::max];
+        let [deeper, higher] = if self.is_external() { extremes } else { [extremes[1], extremes[0]] };
         let points = self.spaces.iter().map(|charts| charts.iter().flat_map(|chart| chart.lattice(&shares, &[0.5])));
         let depths =
             points.map(|points| points.map(|point| self.depth(self.arrangement.place(point))).collect::<Vec<f64>>());
