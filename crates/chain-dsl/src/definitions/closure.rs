@@ -31,6 +31,8 @@ pub(crate) struct Linkage<'g> {
 struct Loop {
     first: usize,
     second: usize,
+    /// The frame that both hang on.
+    common: usize,
     components: Vec<Component>,
     /// Unknown axes by their places, with where they are in the branch that is meant.
     keeps: Vec<(usize, Interval)>,
@@ -48,10 +50,8 @@ impl Loop {
     /// What is zero where it closes: distances in mm, and sines of angles, as large as the skew part of the turn from the first frame to the
     /// second. Both are told in the frame that both hang on.
     fn residuals<'g>(&self, graph: &'g Graph, frames: &[Frame<'g>]) -> Vec<Expr<'g>> {
-        let line = |start: usize| std::iter::successors(Some(start), |&k| frames[k].parent).collect::<Vec<_>>();
-        let above = line(self.second);
-        let common = line(self.first).into_iter().find(|frame| above.contains(frame)).expect("frames are one tree");
-        let steps = |to: usize| path(frames, common, to).into_iter().flat_map(|(_, steps)| steps).collect::<Vec<_>>();
+        let steps =
+            |to: usize| path(frames, self.common, to).into_iter().flat_map(|(_, steps)| steps).collect::<Vec<_>>();
         let [first, second] = [self.first, self.second].map(steps);
         let apart = Chain::new(graph, second.clone()).origin_and_turn().0
             - Chain::new(graph, first.clone()).origin_and_turn().0;
@@ -164,6 +164,12 @@ pub(crate) fn linkages<'g>(
     if is_even { linkages } else { Vec::new() }
 }
 
+/// The nearest frame that two hang on; nothing where frames are not one tree.
+fn common_frame(frames: &[Frame<'_>], first: usize, second: usize) -> Option<usize> {
+    let line = |start: usize| std::iter::successors(Some(start), |&k| frames[k].parent);
+    line(first).find(|frame| line(second).any(|above| above == *frame))
+}
+
 /// The loops that a text declares; what is wrong in them is reported and left out.
 fn loops<'g>(
     context: &mut Context<'g>,
@@ -196,13 +202,18 @@ fn loops<'g>(
             *is_whole = false;
             continue;
         }
+        // a second root is reported with the frames
+        let Some(common) = common_frame(frames, first, second) else {
+            *is_whole = false;
+            continue;
+        };
         let mut components: Vec<Component> =
             along.into_iter().map(Component::Along).chain(about.into_iter().map(Component::About)).collect();
         if components.is_empty() {
             components = (0..3).map(Component::Along).chain((0..3).map(Component::About)).collect();
         }
         let span = Span { end: close.second.span.end, ..close.first.span };
-        loops.push(Loop { first, second, components, keeps, span });
+        loops.push(Loop { first, second, common, components, keeps, span });
     }
     loops
 }
