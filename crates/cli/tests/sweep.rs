@@ -577,6 +577,63 @@ fn what_does_not_go_together_is_refused() {
     assert!(text(&run.stderr).contains("is no study"), "{}", text(&run.stderr));
 }
 
+/// A disk of so many bytes at a folder; nothing where it cannot be mounted.
+#[cfg(target_os = "linux")]
+struct Disk(std::path::PathBuf);
+
+#[cfg(target_os = "linux")]
+impl Disk {
+    fn new(at: std::path::PathBuf, size: &str) -> Option<Disk> {
+        std::fs::create_dir_all(&at).expect("a folder");
+        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", size, "none"]).arg(&at).output();
+        mounted.is_ok_and(|run| run.status.success()).then_some(Disk(at))
+    }
+
+    fn resize(&self, size: &str) {
+        let run = Command::new("mount").args(["-o", &format!("remount,{size}")]).arg(&self.0).status();
+        assert!(run.expect("it was mounted").success());
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
+/// What fits stays whole, what does not is told, and the study goes on once there is room.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_loses_no_case() {
+    let folder = folder();
+    let Some(disk) = Disk::new(folder.path().join("disk"), "size=1m") else {
+        eprintln!("skipped 1 test: no disk can be mounted, which takes root");
+        return;
+    };
+    let (full, whole) = (disk.0.join("a").display().to_string(), study(&folder, "whole"));
+    let swept = |out: &str| {
+        let vary = ["--vary", "m.radial_distance=97.9mm..98.1mm by 8"];
+        flank(&[&["sweep", PINION, "--collect", "points", "--keep", "points", "--out", out], &vary[..]].concat())
+    };
+    let run = swept(&full);
+    assert_eq!(run.status.code(), Some(1), "{}{}", text(&run.stdout), text(&run.stderr));
+    assert!(text(&run.stderr).contains("o space left on device"), "{}", text(&run.stderr));
+    disk.resize("size=32m");
+    let run = flank(&["sweep", "run", &full]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert_eq!(swept(&whole).status.code(), Some(0));
+    assert_eq!(gathered(&full), gathered(&whole));
+    let kept = |study: &str| -> std::collections::BTreeMap<std::ffi::OsString, Vec<u8>> {
+        let files = std::fs::read_dir(Path::new(study).join("points")).expect("points");
+        files
+            .map(|file| file.expect("a file"))
+            .map(|file| (file.file_name(), std::fs::read(file.path()).expect("its bytes")))
+            .collect()
+    };
+    assert!(kept(&full) == kept(&whole) && kept(&full).len() == 8, "{:?}", kept(&full).keys());
+}
+
 /// Every command of the page about studies, in its order; blocks of commands have a folder each. Cases are fewer than on the page.
 #[test]
 #[cfg(unix)]
