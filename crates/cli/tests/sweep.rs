@@ -618,7 +618,7 @@ fn a_full_disk_loses_no_case() {
     };
     let run = swept(&full);
     assert_eq!(run.status.code(), Some(1), "{}{}", text(&run.stdout), text(&run.stderr));
-    assert!(text(&run.stderr).contains("o space left on device"), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("the disk is full"), "{}", text(&run.stderr));
     disk.resize("size=32m");
     let run = flank(&["sweep", "run", &full]);
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
